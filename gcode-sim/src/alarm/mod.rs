@@ -1,0 +1,182 @@
+//! What stops a control: each alarm a fact, its number and wording in one table ([`table`]).
+//!
+//! Numbers and triggers follow the alarm list of the 30i / 0i-F class; the wording is ours.
+mod table;
+
+use crate::source::{Span, Spanned};
+
+/// The control's own name for an alarm: `PS0112`, `MC3001`, `OT0500`; `SIM…` where the simulator, not the
+/// control, cannot go on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Code {
+    Ps(u16),
+    Mc(u16),
+    Ot(u16),
+    Sim(u16),
+}
+
+impl Code {
+    pub fn number(self) -> u32 {
+        match self {
+            Self::Ps(n) | Self::Mc(n) | Self::Ot(n) | Self::Sim(n) => u32::from(n),
+        }
+    }
+}
+
+impl std::fmt::Display for Code {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Ps(n) => write!(f, "PS{n:04}"),
+            Self::Mc(n) => write!(f, "MC{n:04}"),
+            Self::Ot(n) => write!(f, "OT{n:04}"),
+            Self::Sim(n) => write!(f, "SIM{n:04}"),
+        }
+    }
+}
+
+/// Why the control stops. Variants carry facts; [`table`] has the sentences.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Alarm {
+    TooManyDigits,
+    /// Text that is neither address and number nor a macro word.
+    NotAWord {
+        text: String,
+    },
+    NoDataAfterAddress {
+        letter: char,
+    },
+    IllegalMinus {
+        letter: char,
+    },
+    IllegalPoint {
+        letter: Option<char>,
+    },
+    ImproperAddress {
+        letter: char,
+    },
+    ImproperGCode {
+        code: String,
+    },
+    FeedZero,
+    RadiusTolerance {
+        start: f64,
+        end: f64,
+        allowed: f64,
+    },
+    NoRadiusOrCentre,
+    OffsetNumber {
+        number: i64,
+    },
+    G10Format {
+        what: String,
+    },
+    ReferenceReturnInCycle,
+    NoPeckDepth,
+    ReferenceReturnP {
+        p: i64,
+    },
+    ProgramNotFound {
+        number: u32,
+    },
+    TooManyCalls {
+        limit: usize,
+    },
+    SequenceNumberNotFound {
+        number: u32,
+    },
+    IntegerOverflow,
+    FloatOverflow,
+    DivideByZero,
+    Expression {
+        text: String,
+    },
+    NoSuchVariable {
+        number: i64,
+    },
+    WriteProtected {
+        number: u32,
+    },
+    ReadProtected {
+        number: u32,
+    },
+    TooManyBrackets,
+    OutOfRange {
+        function: String,
+        value: f64,
+    },
+    TooManyMacroCalls {
+        limit: usize,
+    },
+    MissingEnd {
+        number: u8,
+    },
+    MissingDo {
+        number: u8,
+    },
+    MacroFormat {
+        what: String,
+    },
+    LoopNumber {
+        number: i64,
+    },
+    MixedStatements,
+    JumpTargetNotFound {
+        number: u32,
+    },
+    GAsArgument,
+    TwoSubprogramCalls,
+    TwoMacroCalls,
+    TooManyArgumentSets,
+    CancelWithoutModalCall,
+    ArgumentFormat {
+        function: String,
+    },
+    SequenceNumberRange {
+        number: i64,
+    },
+    MissingOpenBracket,
+    MissingCloseBracket,
+    MissingEquals,
+    MissingComma,
+    IfFormat,
+    WhileFormat,
+    PositionOverflow {
+        letter: char,
+        value: f64,
+    },
+    EndOfRecord,
+    /// `#3000=n(TEXT)`: the program stops itself.
+    Raised {
+        number: u16,
+        text: String,
+    },
+    /// A code or function that a control may have and this simulator does not execute.
+    NotSimulated {
+        what: String,
+    },
+}
+
+/// What the table says about an alarm.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Row {
+    pub code: Code,
+    pub message: String,
+    /// One thing to do.
+    pub help: Option<String>,
+}
+
+impl Alarm {
+    pub fn code(&self) -> Code {
+        self.row().code
+    }
+
+    pub fn at(self, span: Span) -> Spanned<Self> {
+        Spanned::new(self, span)
+    }
+}
+
+impl std::fmt::Display for Alarm {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.row().message)
+    }
+}

@@ -1,0 +1,1 @@
+//! The path to holes, each with its block.

@@ -1,0 +1,40 @@
+//! Reads a Fanuc Custom Macro B program, executes it as the control would, follows the tool on the part,
+//! and holds the holes it makes against a reference that knows nothing of NC code.
+//!
+//! Text goes in at the top of this list and a verdict comes out at the bottom; a module may use the ones
+//! above it and never the ones below. A test holds this order.
+pub mod units;
+
+pub mod source;
+
+pub mod alarm;
+
+pub mod control;
+
+pub mod syntax;
+
+pub mod program;
+
+pub mod motion;
+
+pub mod diag;
+
+pub mod exec;
+
+pub mod job;
+
+pub mod part;
+
+pub mod machine;
+
+pub mod holes;
+
+pub mod verify;
+
+pub mod picture;
+
+pub mod session;
+
+pub mod report;
+
+pub mod cli;

@@ -1,0 +1,210 @@
+//! The seam between the control and the machine: what the control asks for, absolute, in machine coordinates,
+//! in mm and degrees. Below this line there are no modes, no cycles, no inches and no variables.
+use std::sync::Arc;
+
+use crate::source::Span;
+use crate::units::{Deg, MmPerMin, Rpm, Seconds};
+
+/// How many axes a control can have here.
+pub const MAX_AXES: usize = 8;
+
+/// The place of an axis in the control's axis table, counted from 0 (the manuals count from 1).
+pub type Axis = usize;
+
+/// The letters of a control's axes, axis 1 first: `#5001` is the first, `#5002` the second.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Axes(Vec<u8>);
+
+impl Axes {
+    /// At most [`MAX_AXES`] letters; more are an error of the machine file and refused there.
+    pub fn new(letters: &str) -> Option<Self> {
+        let bytes = letters.as_bytes();
+        let fits = bytes.len() <= MAX_AXES && bytes.iter().all(|b| b"XYZABCUVW".contains(b));
+        let once = bytes.iter().enumerate().all(|(i, b)| !bytes[..i].contains(b));
+        (fits && once).then(|| Self(bytes.to_vec()))
+    }
+
+    pub fn find(&self, letter: u8) -> Option<Axis> {
+        self.0.iter().position(|l| *l == letter)
+    }
+
+    pub fn letter(&self, axis: Axis) -> char {
+        self.0.get(axis).map_or('?', |l| char::from(*l))
+    }
+
+    /// A B C turn; all others slide.
+    pub fn is_rotary(&self, axis: Axis) -> bool {
+        matches!(self.letter(axis), 'A' | 'B' | 'C')
+    }
+
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    pub fn iter(&self) -> impl Iterator<Item = (Axis, char)> + '_ {
+        self.0.iter().map(|l| char::from(*l)).enumerate()
+    }
+}
+
+impl Default for Axes {
+    /// X Y Z A B C: axis 1 to 6 of the default control.
+    fn default() -> Self {
+        Self(b"XYZABC".to_vec())
+    }
+}
+
+/// One number per axis: mm for those that slide, degrees for those that turn.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Position(pub [f64; MAX_AXES]);
+
+impl std::ops::Index<Axis> for Position {
+    type Output = f64;
+    fn index(&self, axis: Axis) -> &f64 {
+        &self.0[axis]
+    }
+}
+
+impl std::ops::IndexMut<Axis> for Position {
+    fn index_mut(&mut self, axis: Axis) -> &mut f64 {
+        &mut self.0[axis]
+    }
+}
+
+/// One call on the way to a block: the block that called, and the call it was itself made from.
+#[derive(Debug)]
+pub struct Call {
+    /// The calling block (`G65 P8101 …`).
+    pub from: Span,
+    pub outer: Calls,
+}
+
+/// The chain of calls that led to a block, innermost first; `None` in the main program.
+pub type Calls = Option<Arc<Call>>;
+
+/// Where an event comes from: the block, and the calls that led to it.
+#[derive(Clone, Debug, Default)]
+pub struct Place {
+    pub block: Span,
+    pub calls: Calls,
+}
+
+/// What the machine is told by one block, or by one step of a cycle.
+#[derive(Clone, Debug)]
+pub struct Event<'a> {
+    pub kind: EventKind,
+    /// How long it takes: path over feed, rapid rates of the control's parameters, no acceleration.
+    pub seconds: Seconds,
+    pub block: Span,
+    pub calls: &'a Calls,
+}
+
+impl Event<'_> {
+    pub fn place(&self) -> Place {
+        Place { block: self.block, calls: self.calls.clone() }
+    }
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum EventKind {
+    /// Every axis at its rapid rate, taken as one straight segment in axis space.
+    Rapid {
+        to: Position,
+    },
+    /// All axes linear together.
+    Feed {
+        to: Position,
+        rate: MmPerMin,
+    },
+    /// A circle in the plane of two axes while all others move linearly.
+    Arc {
+        to: Position,
+        arc: Arc2,
+        rate: MmPerMin,
+    },
+    /// G31: a feed that ended at `to`, where the signal came or at its end.
+    Skip {
+        to: Position,
+        rate: MmPerMin,
+        touched: bool,
+    },
+    Dwell {
+        time: Seconds,
+    },
+    /// M06: this tool is in the spindle now.
+    Tool {
+        number: u32,
+    },
+    /// The tool length offset that is part of every machine position from now on; moves nothing itself.
+    ToolLength {
+        offset: Position,
+    },
+    Spindle {
+        turning: Spindle,
+        speed: Rpm,
+    },
+    Coolant {
+        on: bool,
+    },
+    /// The program waits for the operator.
+    Stop {
+        kind: StopKind,
+        text: String,
+        named: Vec<(u32, f64)>,
+    },
+}
+
+/// An arc of [`EventKind::Arc`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Arc2 {
+    /// The two axes of the plane, in its right-handed order: X Y, Z X or Y Z.
+    pub plane: (Axis, Axis),
+    /// The centre in machine coordinates, in the order of `plane`.
+    pub centre: (f64, f64),
+    /// The angle swept; positive is counterclockwise seen from the plane's positive third axis.
+    pub sweep: Deg,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Spindle {
+    #[default]
+    Off,
+    Clockwise,
+    Counterclockwise,
+}
+
+/// Why the program waits. `#3006=1(TEXT)` is [`StopKind::Message`]; its event names the variables that the text
+/// names (`#149`) with the values they had, so that the simulated operator can do what the message says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StopKind {
+    M00,
+    M01,
+    Message,
+}
+
+/// Who is told what the machine does. The control calls it once per event, in order.
+pub trait Sink {
+    fn event(&mut self, event: &Event<'_>);
+}
+
+/// Nobody listens: only the control's end state is asked for.
+impl Sink for () {
+    fn event(&mut self, _: &Event<'_>) {}
+}
+
+/// Two listeners side by side.
+impl<A: Sink, B: Sink> Sink for (A, B) {
+    fn event(&mut self, event: &Event<'_>) {
+        self.0.event(event);
+        self.1.event(event);
+    }
+}
+
+impl<S: Sink + ?Sized> Sink for &mut S {
+    fn event(&mut self, event: &Event<'_>) {
+        (**self).event(event);
+    }
+}

@@ -1,0 +1,5 @@
+//! What the drawing asks for, computed from the geometry of the part and nothing else.
+//!
+//! This module knows no NC code and shares no formula with the generator: a verifier that did would agree with
+//! its mistakes.
+pub mod hole;

@@ -1,0 +1,1 @@
+//! Data to words: terminal and JSON.

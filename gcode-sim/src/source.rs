@@ -1,0 +1,137 @@
+//! Program texts as bytes, and places in them: every token, operation, event and finding carries a [`Span`].
+use std::sync::Arc;
+
+/// Which text a place belongs to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct SourceId(pub u32);
+
+/// The bytes from `start` up to `end` of one text.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Span {
+    pub source: SourceId,
+    pub start: u32,
+    pub end: u32,
+}
+
+/// A value with the place it was written at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spanned<T> {
+    pub node: T,
+    pub span: Span,
+}
+
+impl<T> Spanned<T> {
+    pub fn new(node: T, span: Span) -> Self {
+        Self { node, span }
+    }
+}
+
+/// A place for people: both count from 1, the column in bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LineColumn {
+    pub line: u32,
+    pub column: u32,
+}
+
+/// One text: its name as the user gave it, its bytes, and where its lines begin.
+#[derive(Debug)]
+pub struct Source {
+    pub name: String,
+    pub bytes: Vec<u8>,
+    lines: Vec<u32>,
+}
+
+impl Source {
+    fn new(name: String, bytes: Vec<u8>) -> Self {
+        let lines = line_starts(&bytes);
+        Self { name, bytes, lines }
+    }
+
+    /// The line and column of the byte at `offset`.
+    pub fn place(&self, offset: u32) -> LineColumn {
+        let index = self.lines.partition_point(|start| *start <= offset).saturating_sub(1);
+        let start = self.lines.get(index).copied().unwrap_or(0);
+        LineColumn { line: index as u32 + 1, column: offset - start + 1 }
+    }
+}
+
+/// Where each line begins. A line ends with LF, with CR LF, or with a CR that stands alone; the stray CRs
+/// that some senders put around a LF belong to that one end of line.
+fn line_starts(bytes: &[u8]) -> Vec<u32> {
+    let mut starts = vec![0];
+    let mut at = 0;
+    while let Some(found) = bytes[at..].iter().position(|b| matches!(b, b'\n' | b'\r')) {
+        at += found;
+        at += end_of_line(&bytes[at..]);
+        starts.push(at as u32);
+    }
+    starts
+}
+
+/// The length of the end of line that `rest` begins with: CRs with at most one LF among them, 0 if none.
+pub fn end_of_line(rest: &[u8]) -> usize {
+    let before = rest.iter().take_while(|b| **b == b'\r').count();
+    match rest.get(before) {
+        Some(b'\n') => before + 1 + stray_returns(&rest[before + 1..]),
+        _ => usize::from(before > 0),
+    }
+}
+
+/// CRs after a LF that don't begin the next CR LF.
+fn stray_returns(rest: &[u8]) -> usize {
+    let count = rest.iter().take_while(|b| **b == b'\r').count();
+    if rest.get(count) == Some(&b'\n') { 0 } else { count }
+}
+
+/// All texts of one session. Adding one never moves another, so a [`SourceId`] stays good.
+#[derive(Clone, Debug, Default)]
+pub struct Sources(Vec<Arc<Source>>);
+
+impl Sources {
+    pub fn add(&mut self, name: impl Into<String>, bytes: impl Into<Vec<u8>>) -> SourceId {
+        let id = SourceId(self.0.len() as u32);
+        self.0.push(Arc::new(Source::new(name.into(), bytes.into())));
+        id
+    }
+
+    /// The text with this id; ids come only from [`Sources::add`] of the same collection.
+    pub fn get(&self, id: SourceId) -> &Arc<Source> {
+        &self.0[id.0 as usize]
+    }
+
+    pub fn place(&self, span: Span) -> LineColumn {
+        self.get(span.source).place(span.start)
+    }
+
+    /// What stands at `span`, bytes that aren't UTF-8 replaced.
+    pub fn text(&self, span: Span) -> String {
+        let bytes = &self.get(span.source).bytes;
+        String::from_utf8_lossy(&bytes[span.start as usize..span.end as usize]).into_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn starts(text: &[u8]) -> Vec<u32> {
+        line_starts(text)
+    }
+
+    #[test]
+    fn every_kind_of_line_end_counts_once() {
+        assert_eq!(starts(b"a\nb\nc"), [0, 2, 4]);
+        assert_eq!(starts(b"a\r\nb\r\nc"), [0, 3, 6]);
+        assert_eq!(starts(b"a\rb\rc"), [0, 2, 4]);
+        assert_eq!(starts(b"a\n\r\rb\n\r\rc"), [0, 4, 8]);
+        assert_eq!(starts(b"a\r\n\r\nb"), [0, 3, 5], "an empty line between CR LF pairs is a line");
+        assert_eq!(starts(b"a\r\rb"), [0, 2, 3], "CRs without a LF end a line each");
+    }
+
+    #[test]
+    fn places_count_from_one() {
+        let mut sources = Sources::default();
+        let id = sources.add("O1", *b"%\r\nO1\r\nG0 X1.\r\n");
+        assert_eq!(sources.get(id).place(10), LineColumn { line: 3, column: 4 });
+    }
+}

@@ -1,0 +1,119 @@
+//! Lengths, angles, feeds, speeds and times as types, and the only sines and cosines of the project.
+//!
+//! The trigonometry comes from `libm`, so that every machine computes the same bits and stored results hold.
+use std::ops::{Add, Mul, Neg, Sub};
+
+use serde::{Deserialize, Serialize};
+
+macro_rules! unit {
+    ($(#[$doc:meta])* $name:ident, $suffix:literal) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd, Serialize, Deserialize)]
+        #[serde(transparent)]
+        pub struct $name(pub f64);
+
+        impl $name {
+            pub const ZERO: Self = Self(0.0);
+
+            pub fn abs(self) -> Self {
+                Self(self.0.abs())
+            }
+        }
+
+        impl Add for $name {
+            type Output = Self;
+            fn add(self, other: Self) -> Self {
+                Self(self.0 + other.0)
+            }
+        }
+
+        impl Sub for $name {
+            type Output = Self;
+            fn sub(self, other: Self) -> Self {
+                Self(self.0 - other.0)
+            }
+        }
+
+        impl Neg for $name {
+            type Output = Self;
+            fn neg(self) -> Self {
+                Self(-self.0)
+            }
+        }
+
+        impl Mul<f64> for $name {
+            type Output = Self;
+            fn mul(self, factor: f64) -> Self {
+                Self(self.0 * factor)
+            }
+        }
+
+        impl std::fmt::Display for $name {
+            /// The number with the precision asked for, and its unit.
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                std::fmt::Display::fmt(&self.0, f)?;
+                f.write_str($suffix)
+            }
+        }
+    };
+}
+
+unit!(/// A length in millimetres.
+    Mm, " mm");
+unit!(/// An angle in degrees.
+    Deg, "°");
+unit!(/// A feed in millimetres a minute.
+    MmPerMin, " mm/min");
+unit!(/// A spindle speed in revolutions a minute.
+    Rpm, " r/min");
+unit!(/// A time in seconds.
+    Seconds, " s");
+
+impl Deg {
+    pub fn from_rad(rad: f64) -> Self {
+        Self(rad.to_degrees())
+    }
+
+    pub fn to_rad(self) -> f64 {
+        self.0.to_radians()
+    }
+
+    pub fn sin(self) -> f64 {
+        libm::sin(self.to_rad())
+    }
+
+    pub fn cos(self) -> f64 {
+        libm::cos(self.to_rad())
+    }
+
+    pub fn tan(self) -> f64 {
+        libm::tan(self.to_rad())
+    }
+
+    /// −90° … 90°.
+    pub fn asin(sine: f64) -> Self {
+        Self::from_rad(libm::asin(sine))
+    }
+
+    /// 0° … 180°.
+    pub fn acos(cosine: f64) -> Self {
+        Self::from_rad(libm::acos(cosine))
+    }
+
+    /// The direction of the point (x, y): −180° … 180°.
+    pub fn atan2(y: f64, x: f64) -> Self {
+        Self::from_rad(libm::atan2(y, x))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn angles_are_degrees() {
+        assert!((Deg(30.0).sin() - 0.5).abs() < 1e-15);
+        assert!((Deg::atan2(1.0, -1.0).0 - 135.0).abs() < 1e-12);
+        assert_eq!(format!("{:.3}", Mm(1.5)), "1.500 mm");
+    }
+}
