@@ -1,1 +1,72 @@
-//! Support.
+//! Reads a case folder, holds what comes out against the files beside it, and knows the kinds of cases.
+//!
+//! A case is a folder `suite/<kind>/<behaviour in words>/`. What goes in stands there (`case.nc`, a job, a
+//! picture's data), and what must come out stands beside it as snapshots. One file per kind in this folder.
+#![expect(clippy::unwrap_used, clippy::disallowed_methods, reason = "tests read files and may panic")]
+
+use std::path::{Path, PathBuf};
+
+/// The kinds of cases: the folder under `suite/`, and what is done with a case of it.
+pub const KINDS: &[(&str, fn(&Case))] = &[];
+
+/// The folder of one case.
+pub struct Case {
+    pub dir: PathBuf,
+}
+
+impl Case {
+    /// The bytes of an input file.
+    pub fn bytes(&self, name: &str) -> Vec<u8> {
+        let path = self.dir.join(name);
+        std::fs::read(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+    }
+
+    /// An input file as text.
+    pub fn text(&self, name: &str) -> String {
+        String::from_utf8(self.bytes(name)).unwrap()
+    }
+
+    /// The text of a file that a case may have.
+    pub fn optional(&self, name: &str) -> Option<String> {
+        std::fs::read_to_string(self.dir.join(name)).ok()
+    }
+
+    /// The case's name as it stands on disk: `kind/behaviour`.
+    pub fn name(&self) -> String {
+        self.dir.strip_prefix(root()).unwrap().display().to_string()
+    }
+
+    /// `shown` must be what `<name>.snap` beside the inputs says. `INSTA_UPDATE=always` accepts what is new.
+    pub fn snapshot(&self, name: &str, shown: &str) {
+        let mut settings = insta::Settings::clone_current();
+        settings.set_snapshot_path(&self.dir);
+        settings.set_prepend_module_to_snapshot(false);
+        settings.set_omit_expression(true);
+        settings.bind(|| insta::assert_snapshot!(name.to_owned(), shown));
+    }
+}
+
+/// The folder of all cases.
+pub fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("suite")
+}
+
+/// The folders of one kind in the order of their names.
+pub fn cases(kind: &str) -> Vec<Case> {
+    let Ok(entries) = std::fs::read_dir(root().join(kind)) else { return Vec::new() };
+    let mut dirs: Vec<_> = entries.map(|e| e.unwrap().path()).filter(|p| p.is_dir()).collect();
+    dirs.sort();
+    dirs.into_iter().map(|dir| Case { dir }).collect()
+}
+
+/// The kinds that have folders, so that a folder nobody runs is noticed.
+pub fn folders() -> Vec<String> {
+    let Ok(entries) = std::fs::read_dir(root()) else { return Vec::new() };
+    let mut names: Vec<_> = entries
+        .map(|e| e.unwrap())
+        .filter(|e| e.path().is_dir())
+        .map(|e| e.file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
