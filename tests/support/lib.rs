@@ -6,8 +6,11 @@
 
 use std::path::{Path, PathBuf};
 
-/// The kinds of cases: the folder under `suite/`, and what is done with a case of it.
-pub const KINDS: &[(&str, fn(&Case))] = &[];
+/// What is done with a case; it panics where something else comes out than must.
+type Run = fn(&Case);
+
+/// The kinds of cases by their folder under `suite/`.
+pub const KINDS: &[(&str, Run)] = &[];
 
 /// The folder of one case.
 pub struct Case {
