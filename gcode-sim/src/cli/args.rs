@@ -1,0 +1,257 @@
+//! The command line as written: clap's types, and the help texts with their examples.
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// Executes Fanuc Custom Macro B programs as the control would, follows the tool on the part, and holds the
+/// holes against a reference.
+#[derive(Debug, Parser)]
+#[command(name = "gcode-sim", version, max_term_width = 100, after_help = EXIT_CODES)]
+pub(super) struct Arguments {
+    #[command(subcommand)]
+    pub(super) command: Command,
+
+    /// Colours on the terminal; NO_COLOR is obeyed
+    #[arg(long, global = true, value_enum, default_value_t = Color::Auto)]
+    pub(super) color: Color,
+}
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0  done, and what was asked about holds
+  1  done, and the answer is no: out of tolerance, missing or extra holes, findings, a difference
+  2  the request can't be used: bad flag, unreadable file, malformed job or reference
+  3  the control stopped with an alarm, or a limit ended the run
+
+A program is simulated, not measured: every number printed here is a prediction.";
+
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    /// Execute a program and show the end state
+    #[command(after_help = "\
+Examples:
+  gcode-sim run O8100.nc
+  gcode-sim run O1234.nc --lib macros --set '#500=12.5' --format json
+  gcode-sim run O1234.nc --control NAT=1 --control DPI=1 --show '#5041'")]
+    Run(RunArguments),
+
+    /// List the holes a program makes, in the part's frame
+    #[command(after_help = "\
+Examples:
+  gcode-sim holes O8100.nc
+  gcode-sim holes O8100.nc --machine machine.toml --format json > holes.json")]
+    Holes(HolesArguments),
+
+    /// Compute the holes the part should get, from a job file's geometry alone
+    #[command(after_help = "\
+Examples:
+  gcode-sim reference job.toml > reference.json
+  gcode-sim reference job.toml --format csv")]
+    Reference(ReferenceArguments),
+
+    /// Hold a program's holes against a reference: position (ISO 1101), depth, missing and extra holes
+    #[command(after_help = "\
+Examples:
+  gcode-sim verify O8100.nc --reference job.toml
+  gcode-sim verify O8100.nc --reference reference.csv --tolerance 0.1 --worst-first
+  gcode-sim verify O8100.nc --reference job.toml --machine machine.toml --format json
+  gcode-sim verify O8100.nc --reference job.toml --picture top.png")]
+    Verify(VerifyArguments),
+
+    /// Draw a program's holes on the part as a PNG
+    #[command(after_help = "\
+Examples:
+  gcode-sim render O8100.nc -o top.png
+  gcode-sim render O8100.nc --reference job.toml -o top.png --size 1600x1200")]
+    Render(RenderArguments),
+
+    /// Compare two pictures and mark what differs
+    #[command(after_help = "\
+Example:
+  gcode-sim compare before.png after.png -o differences.png")]
+    Compare(CompareArguments),
+}
+
+/// The program, and everything its run depends on.
+#[derive(Debug, Args)]
+pub(super) struct ProgramArguments {
+    /// The main program; '-' reads standard input
+    #[arg(value_name = "PROGRAM.nc")]
+    pub(super) program: PathBuf,
+
+    /// A folder that holds called programs (repeatable; the program's own folder is searched first)
+    #[arg(long = "lib", value_name = "DIR")]
+    pub(super) libraries: Vec<PathBuf>,
+
+    /// Set a common variable before the start, e.g. '#500=12.5' (repeatable)
+    #[arg(long, value_name = "#N=VALUE")]
+    pub(super) set: Vec<String>,
+
+    /// The control: fanuc-31i, fanuc-0i-f or haas-ngc
+    #[arg(long, value_name = "NAME")]
+    pub(super) dialect: Option<String>,
+
+    /// Stop after this many blocks
+    #[arg(long, value_name = "N", default_value_t = 10_000_000)]
+    pub(super) max_blocks: u64,
+
+    /// A setting of the control, e.g. NAT=1, DPI=1, BDT=1+2, 5115=0.5 (repeatable)
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(super) control: Vec<String>,
+
+    /// An input signal, e.g. '#1005=1' (repeatable)
+    #[arg(long, value_name = "#N=0|1")]
+    pub(super) input: Vec<String>,
+
+    /// The machine: axes, rotary sign, head, tools, offsets [default: the machine of the paper]
+    #[arg(long, value_name = "MACHINE.toml")]
+    pub(super) machine: Option<PathBuf>,
+
+    /// End the run at the main program's N-th M99
+    #[arg(long, value_name = "N")]
+    pub(super) cycles: Option<u32>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct RunArguments {
+    #[command(flatten)]
+    pub(super) program: ProgramArguments,
+
+    /// Add every move to the result, in machine coordinates
+    #[arg(long)]
+    pub(super) moves: bool,
+
+    /// Show a system variable at the end, e.g. '#5041' (repeatable)
+    #[arg(long, value_name = "#N")]
+    pub(super) show: Vec<String>,
+
+    /// How the result is written
+    #[arg(long, value_enum, default_value_t = TextFormat::Text)]
+    pub(super) format: TextFormat,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct HolesArguments {
+    #[command(flatten)]
+    pub(super) program: ProgramArguments,
+
+    /// How the result is written
+    #[arg(long, value_enum, default_value_t = ListFormat::Text)]
+    pub(super) format: ListFormat,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ReferenceArguments {
+    /// The job file
+    #[arg(value_name = "JOB.toml")]
+    pub(super) job: PathBuf,
+
+    /// How the result is written
+    #[arg(long, value_enum, default_value_t = ListFormat::Json)]
+    pub(super) format: ListFormat,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct VerifyArguments {
+    #[command(flatten)]
+    pub(super) program: ProgramArguments,
+
+    /// What the part should get: a hole list (JSON or CSV) or a job file (TOML)
+    #[arg(long, value_name = "REF")]
+    pub(super) reference: PathBuf,
+
+    /// Diameter of the tolerance zone, mm [default: the job's, or 0.1]
+    #[arg(long, value_name = "MM")]
+    pub(super) tolerance: Option<f64>,
+
+    /// How far a hole's depth may be off, mm [default: the job's, or 0.1]
+    #[arg(long, value_name = "MM")]
+    pub(super) depth_tolerance: Option<f64>,
+
+    /// List the worst hole first
+    #[arg(long)]
+    pub(super) worst_first: bool,
+
+    /// All of an inspector's columns: nominal and actual x y z i j k d l
+    #[arg(long)]
+    pub(super) wide: bool,
+
+    /// Also draw the top view to this file
+    #[arg(long, value_name = "OUT.png")]
+    pub(super) picture: Option<PathBuf>,
+
+    /// How the result is written
+    #[arg(long, value_enum, default_value_t = TextFormat::Text)]
+    pub(super) format: TextFormat,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct RenderArguments {
+    #[command(flatten)]
+    pub(super) program: ProgramArguments,
+
+    /// The picture to write
+    #[arg(short, long, value_name = "OUT.png")]
+    pub(super) output: PathBuf,
+
+    /// What the part should get: draws the outline, each hole's verdict and its misfit
+    #[arg(long, value_name = "REF")]
+    pub(super) reference: Option<PathBuf>,
+
+    /// Diameter of the tolerance zone, mm [default: the job's, or 0.1]
+    #[arg(long, value_name = "MM")]
+    pub(super) tolerance: Option<f64>,
+
+    /// Which way to look
+    #[arg(long, value_enum, default_value_t = View::Top)]
+    pub(super) view: View,
+
+    /// Width and height in pixels
+    #[arg(long, value_name = "WxH", default_value = "1600x1200")]
+    pub(super) size: String,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct CompareArguments {
+    /// One picture
+    #[arg(value_name = "A.png")]
+    pub(super) left: PathBuf,
+
+    /// The other picture
+    #[arg(value_name = "B.png")]
+    pub(super) right: PathBuf,
+
+    /// Where to write the picture that marks what differs
+    #[arg(short, long, value_name = "DIFF.png")]
+    pub(super) output: Option<PathBuf>,
+
+    /// How much a colour value may differ, 0 to 255
+    #[arg(long, value_name = "STEPS", default_value_t = 1)]
+    pub(super) tolerance: u8,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum TextFormat {
+    Text,
+    Json,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum ListFormat {
+    Text,
+    Json,
+    Csv,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum View {
+    /// Along the axis of revolution
+    Top,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Color {
+    Auto,
+    Always,
+    Never,
+}

@@ -1,0 +1,41 @@
+//! Reads what the user names: programs, jobs, references, machine files; one clear sentence where it can't.
+use std::io::Read;
+use std::path::Path;
+
+use super::Refusal;
+
+/// Nothing a control could hold is larger.
+const LARGEST: u64 = 1 << 30;
+
+/// A file's bytes; `-` is standard input.
+#[expect(clippy::disallowed_methods, reason = "the command line reads files")]
+pub fn bytes(path: &Path) -> Result<Vec<u8>, Refusal> {
+    if path == Path::new("-") {
+        let mut bytes = Vec::new();
+        return match std::io::stdin().lock().take(LARGEST).read_to_end(&mut bytes) {
+            Ok(_) => Ok(bytes),
+            Err(error) => Err(Refusal::new(format!("standard input can't be read: {error}"))),
+        };
+    }
+    let unreadable = |error: std::io::Error| Refusal::new(format!("{} can't be read: {error}", path.display()));
+    let about = std::fs::metadata(path).map_err(unreadable)?;
+    if about.is_dir() {
+        return Err(Refusal::new(format!("{} is a folder; name a file in it", path.display())));
+    }
+    if about.len() > LARGEST {
+        return Err(Refusal::new(format!("{} is larger than 1 GiB", path.display())));
+    }
+    std::fs::read(path).map_err(unreadable)
+}
+
+/// A file's text, which must be UTF-8 (jobs, machine files, references; programs are bytes).
+pub fn text(path: &Path) -> Result<String, Refusal> {
+    let bytes = bytes(path)?;
+    match String::from_utf8(bytes) {
+        Ok(text) => Ok(text.strip_prefix('\u{feff}').map_or(text.clone(), str::to_owned)),
+        Err(error) => {
+            let line = error.as_bytes()[..error.utf8_error().valid_up_to()].iter().filter(|b| **b == b'\n').count() + 1;
+            Err(Refusal::new(format!("{}, line {line}: not UTF-8 text", path.display())))
+        }
+    }
+}

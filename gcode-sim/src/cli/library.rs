@@ -1,0 +1,90 @@
+//! Finds called programs in folders: `O8101.nc` by its name, any other file by the O-numbers it holds.
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use super::{Refusal, input};
+use crate::program::Library;
+
+/// The folders to look in, the first that has a program wins.
+pub struct Folders {
+    folders: Vec<PathBuf>,
+    /// What the files hold whose names don't tell; read at the first call that no name answers.
+    contents: Option<BTreeMap<u32, PathBuf>>,
+}
+
+impl Folders {
+    /// `folders` must exist: a misspelt one would look like a missing program later.
+    pub fn new(program: &Path, folders: &[PathBuf]) -> Result<Self, Refusal> {
+        if let Some(missing) = folders.iter().find(|folder| !folder.is_dir()) {
+            return Err(Refusal::new(format!("--lib {}: no such folder", missing.display())));
+        }
+        let own = match program.parent() {
+            Some(parent) if parent.as_os_str().is_empty() => PathBuf::from("."),
+            Some(parent) => parent.to_owned(),
+            None => PathBuf::from("."),
+        };
+        Ok(Self { folders: std::iter::once(own).chain(folders.iter().cloned()).collect(), contents: None })
+    }
+
+    fn by_name(&self, number: u32) -> Option<PathBuf> {
+        let wanted = |path: &Path| numbered(path) == Some(number);
+        self.folders.iter().find_map(|folder| files(folder).into_iter().find(|path| wanted(path)))
+    }
+
+    fn by_content(&mut self, number: u32) -> Option<PathBuf> {
+        let contents = self.contents.get_or_insert_with(|| {
+            let mut found = BTreeMap::new();
+            for path in self.folders.iter().flat_map(|folder| files(folder)) {
+                let Ok(bytes) = input::bytes(&path) else { continue };
+                for number in crate::program::numbers_in(&bytes) {
+                    found.entry(number).or_insert_with(|| path.clone());
+                }
+            }
+            found
+        });
+        contents.get(&number).cloned()
+    }
+}
+
+impl Library for Folders {
+    fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)> {
+        let path = self.by_name(number).or_else(|| self.by_content(number))?;
+        let bytes = input::bytes(&path).ok()?;
+        Some((path.display().to_string(), bytes))
+    }
+}
+
+/// The number in `O8101.nc`, `o8101.NC`, `O8101`, `8101.tap`.
+fn numbered(path: &Path) -> Option<u32> {
+    let stem = path.file_stem()?.to_str()?;
+    let digits = stem.strip_prefix(['O', 'o']).unwrap_or(stem);
+    if digits.bytes().all(|b| b.is_ascii_digit()) { digits.parse().ok() } else { None }
+}
+
+/// What can be a program: files that aren't of another kind by their ending, in the order of their names.
+fn files(folder: &Path) -> Vec<PathBuf> {
+    const OTHERS: [&str; 12] =
+        ["toml", "json", "csv", "png", "md", "txt", "html", "snap", "pdf", "zip", "rs", "new"];
+    let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
+    let mut files: Vec<_> = entries
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .filter(|path| {
+            let ending = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
+            path.is_file() && !OTHERS.contains(&ending.as_str())
+        })
+        .collect();
+    files.sort();
+    files
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_tell_numbers() {
+        for (name, number) in [("O8101.nc", Some(8101)), ("o0012", Some(12)), ("8101.TAP", Some(8101)), ("part.nc", None)] {
+            assert_eq!(numbered(Path::new(name)), number, "{name}");
+        }
+    }
+}
