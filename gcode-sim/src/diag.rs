@@ -10,6 +10,8 @@ pub enum Severity {
     Warning,
     /// The answer is no.
     Error,
+    /// The control stops.
+    Alarm,
 }
 
 /// One thing to tell. The message alone makes sense on a narrow screen: both numbers with units, wanted and found.

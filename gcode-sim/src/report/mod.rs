@@ -1,1 +1,2 @@
-//! Data to words: terminal and JSON.
+//! Data to words: what the terminal, JSON and CSV say of runs, holes and verdicts.
+pub mod diagnostic;

@@ -1,0 +1,127 @@
+//! A finding or an alarm as text: what, where with the line underlined, the calls that led there, what to do.
+use annotate_snippets::{Annotation, AnnotationKind, Level, Renderer, Snippet};
+
+use crate::diag::{Diagnostic, Severity};
+use crate::motion::{Calls, Place};
+use crate::source::{Sources, Span};
+
+/// How many calls of a chain are shown; the rest is counted.
+const CALLS_SHOWN: usize = 6;
+
+/// Draws a diagnostic with ANSI colours; the stream that prints it takes them out where they don't belong.
+pub fn render(diagnostic: &Diagnostic, sources: &Sources) -> String {
+    let level = match diagnostic.severity {
+        Severity::Alarm => Level::ERROR.with_name("alarm"),
+        Severity::Error => Level::ERROR,
+        Severity::Warning => Level::WARNING,
+        Severity::Note => Level::NOTE,
+    };
+    let mut group = level
+        .primary_title(escape(&diagnostic.message))
+        .id(diagnostic.code.clone())
+        .elements(Vec::<Snippet<'_, Annotation<'_>>>::new());
+    if let Some(place) = &diagnostic.place {
+        group = group.element(snippet(sources, diagnostic.span.unwrap_or(place.block)));
+        for call in calls(place, sources) {
+            group = group.element(Level::NOTE.no_name().message(call));
+        }
+    }
+    for (span, label) in &diagnostic.labels {
+        group = group.element(Level::NOTE.message(format!("{}: {label}", place_name(sources, *span))));
+    }
+    for note in &diagnostic.notes {
+        group = group.element(Level::NOTE.message(escape(note)));
+    }
+    if let Some(help) = &diagnostic.help {
+        group = group.element(Level::HELP.message(escape(help)));
+    }
+    let mut text = Renderer::styled().term_width(110).render(&[group]);
+    text.push('\n');
+    text
+}
+
+/// Bytes of a program's comment may hold anything; a terminal should see no control characters.
+fn escape(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
+}
+
+/// `O8101.nc:12`.
+pub fn place_name(sources: &Sources, span: Span) -> String {
+    format!("{}:{}", sources.get(span.source).name, sources.place(span).line)
+}
+
+/// The chain of calls, innermost first, one line each.
+fn calls(place: &Place, sources: &Sources) -> Vec<String> {
+    let mut lines = Vec::new();
+    let mut left = 0;
+    let mut next: &Calls = &place.calls;
+    while let Some(call) = next {
+        if lines.len() < CALLS_SHOWN {
+            lines.push(format!(
+                "called from {}: {}",
+                place_name(sources, call.from),
+                escape(sources.text(call.from).trim())
+            ));
+        } else {
+            left += 1;
+        }
+        next = &call.outer;
+    }
+    if left > 0 {
+        lines.push(format!("… and {left} more calls"));
+    }
+    lines
+}
+
+/// The line that `span` begins in, with the span underlined.
+fn snippet(sources: &Sources, span: Span) -> Snippet<'static, Annotation<'static>> {
+    let source = sources.get(span.source);
+    let at = source.place(span.start);
+    let bytes = &source.bytes;
+    let start = (span.start + 1 - at.column) as usize;
+    let end =
+        bytes[start..].iter().position(|b| matches!(b, b'\n' | b'\r')).map_or(bytes.len(), |n| start + n);
+    let from = (span.start as usize).clamp(start, end);
+    let to = (span.end as usize).clamp(from, end);
+    // Bytes that aren't UTF-8 are shown as replacement characters, which are longer: convert piece by piece.
+    let text = |bytes: &[u8]| escape(&String::from_utf8_lossy(bytes));
+    let (before, marked, after) = (text(&bytes[start..from]), text(&bytes[from..to]), text(&bytes[to..end]));
+    let range = before.len()..before.len() + marked.len();
+    Snippet::source(format!("{before}{marked}{after}"))
+        .line_start(at.line as usize)
+        .path(source.name.clone())
+        .annotation(AnnotationKind::Primary.span(range))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::motion::Call;
+
+    #[test]
+    fn a_message_names_line_call_and_remedy() {
+        let mut sources = Sources::default();
+        let main = sources.add("O0001.nc", *b"O1\nG65 P2 A1.\nM30\n");
+        let called = sources.add("O0002.nc", *b"O2(\xb0\xa1)\n#1=#2/0 (\xb0)\nM99\n");
+        let from = Span { source: main, start: 3, end: 13 };
+        let block = Span { source: called, start: 7, end: 18 };
+        let mut diagnostic = Diagnostic::new(Severity::Alarm, "PS0112", "division by zero")
+            .at(Place { block, calls: Some(Arc::new(Call { from, outer: None })) })
+            .help("a vacant variable counts as 0 here");
+        diagnostic.span = Some(Span { source: called, start: 10, end: 14 });
+        let text = anstream::adapter::strip_str(&render(&diagnostic, &sources)).to_string();
+        let wanted = "\
+alarm[PS0112]: division by zero
+ --> O0002.nc:2:4
+  |
+2 | #1=#2/0 (\u{fffd})
+  |    ^^^^
+  |
+  = called from O0001.nc:2: G65 P2 A1.
+  = help: a vacant variable counts as 0 here
+";
+        assert_eq!(text, wanted);
+    }
+}
