@@ -4,13 +4,18 @@
 //! picture's data), and what must come out stands beside it as snapshots. One file per kind in this folder.
 #![expect(clippy::unwrap_used, clippy::disallowed_methods, reason = "tests read files and may panic")]
 
+mod cli;
+pub mod programs;
+
 use std::path::{Path, PathBuf};
 
 /// What is done with a case; it panics where something else comes out than must.
 type Run = fn(&Case);
 
 /// The kinds of cases by their folder under `suite/`.
-pub const KINDS: &[(&str, Run)] = &[];
+pub const KINDS: &[(&str, Run)] = &[
+    ("cli", cli::run), //
+];
 
 /// The folder of one case.
 pub struct Case {
