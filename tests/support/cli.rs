@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::{Case, programs};
 
 /// Runs the commands and holds the whole session, exit codes and new files included, against `session.snap`.
-pub fn run(case: &Case) {
+pub(crate) fn run(case: &Case) {
     let place = tempfile::tempdir().unwrap();
     copy(&case.dir, place.path());
     let before = files(place.path());
