@@ -2,6 +2,7 @@
 //!
 //! Unknown keys, missing keys and values out of range are errors that name the key, the line and what is allowed.
 mod pin_holes;
+pub(crate) mod reader;
 
 use serde::Deserialize;
 use toml::Spanned;
@@ -9,6 +10,8 @@ use toml::Spanned;
 pub use pin_holes::{
     AxisDirection, Head, HeadKind, HoleWanted, MacroSettings, PinHoles, PinMachine, Surface, Tool,
 };
+pub use reader::JobError;
+use reader::Reader;
 
 use crate::control::{Dialect, Increment};
 
@@ -16,14 +19,6 @@ use crate::control::{Dialect, Increment};
 #[derive(Clone, Debug, PartialEq)]
 pub enum Job {
     PinHoles(PinHoles),
-}
-
-/// Why a job file can't be used: one sentence with the key, its line, and what is allowed.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{line}: {message}", line = match line { Some(n) => format!("line {n}"), None => "job".into() })]
-pub struct JobError {
-    pub line: Option<usize>,
-    pub message: String,
 }
 
 /// The control a job is for.
@@ -70,51 +65,5 @@ impl Job {
         match self {
             Self::PinHoles(job) => job.control,
         }
-    }
-}
-
-/// Turns places in the text into line numbers.
-struct Reader<'t> {
-    text: &'t str,
-}
-
-impl Reader<'_> {
-    fn line(&self, offset: usize) -> usize {
-        self.text.as_bytes()[..offset.min(self.text.len())].iter().filter(|b| **b == b'\n').count() + 1
-    }
-
-    fn syntax(&self, error: &toml::de::Error) -> JobError {
-        JobError {
-            line: error.span().map(|s| self.line(s.start)),
-            message: error.message().trim().to_owned(),
-        }
-    }
-
-    fn error<T>(&self, at: &Spanned<T>, message: impl Into<String>) -> JobError {
-        JobError { line: Some(self.line(at.span().start)), message: message.into() }
-    }
-
-    /// A finite number within bounds, or an error that names the key and what is allowed.
-    fn number(
-        &self,
-        key: &str,
-        value: &Spanned<f64>,
-        allowed: &str,
-        within: impl Fn(f64) -> bool,
-    ) -> Result<f64, JobError> {
-        let number = *value.as_ref();
-        if number.is_finite() && within(number) {
-            return Ok(number);
-        }
-        Err(self.error(value, format!("key '{key}' is {number}: {allowed}")))
-    }
-
-    /// One of a fixed list of words.
-    fn choice<T: Copy>(&self, key: &str, value: &Spanned<String>, all: &[(&str, T)]) -> Result<T, JobError> {
-        let found = all.iter().find(|(name, _)| name == value.as_ref());
-        found.map(|(_, choice)| *choice).ok_or_else(|| {
-            let names: Vec<_> = all.iter().map(|(name, _)| *name).collect();
-            self.error(value, format!("key '{key}' is '{}': one of {}", value.as_ref(), names.join(", ")))
-        })
     }
 }

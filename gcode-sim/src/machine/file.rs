@@ -1,0 +1,475 @@
+//! The machine file: axes, table, head, tools, offsets and the part's place, as TOML.
+//!
+//! Unknown keys, missing keys and values out of range are errors that name the key, the line and what is allowed.
+use nalgebra::{Point3, Unit, Vector3};
+use serde::Deserialize;
+use toml::{Spanned, Table};
+
+use super::{Chain, Head, HeadKind, Link, Machine, Placement, Tool, WorkOffset};
+use crate::control::{Dialect, Increment};
+use crate::job::JobError;
+use crate::job::reader::Reader;
+use crate::motion::{Axes, Axis};
+use crate::units::Deg;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    control: Option<FileControl>,
+    table: Vec<FileLink>,
+    head: Option<FileHead>,
+    tool: Option<Vec<FileTool>>,
+    offsets: Option<Spanned<Table>>,
+    part: Option<FilePart>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FileControl {
+    dialect: Option<Spanned<String>>,
+    increment: Option<Spanned<String>>,
+    axes: Option<Spanned<String>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FileLink {
+    letter: Spanned<String>,
+    turns: Option<Spanned<String>>,
+    slides: Option<Spanned<String>>,
+    sign: Spanned<i64>,
+    centre: Option<[Spanned<f64>; 3]>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FileHead {
+    kind: Spanned<String>,
+    pivot: Option<Spanned<f64>>,
+    direction: Option<Spanned<[f64; 3]>>,
+    letter: Option<Spanned<String>>,
+    sign: Option<Spanned<i64>>,
+    zero: Option<Spanned<f64>>,
+    angle: Option<Spanned<f64>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FileTool {
+    number: Spanned<i64>,
+    length: Option<Spanned<f64>>,
+    diameter: Option<Spanned<f64>>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FilePart {
+    origin: Option<[Spanned<f64>; 3]>,
+    shift: Option<[Spanned<f64>; 3]>,
+    tilt: Option<[Spanned<f64>; 3]>,
+}
+
+const LENGTH: &str = "mm, from -100000 to 100000";
+const DIRECTIONS: [(&str, Vector3<f64>); 3] = [
+    ("x", Vector3::new(1.0, 0.0, 0.0)),
+    ("y", Vector3::new(0.0, 1.0, 0.0)),
+    ("z", Vector3::new(0.0, 0.0, 1.0)),
+];
+
+impl Machine {
+    /// Reads a machine file's text.
+    pub fn parse(text: &str) -> Result<Self, JobError> {
+        let reader = Reader { text };
+        let file: File = toml::from_str(text).map_err(|e| reader.syntax(&e))?;
+        let control = file.control.unwrap_or_default();
+        let axes = control.axes(&reader)?;
+        let part = file.part.unwrap_or_default().check(&reader)?;
+        let mut table = Chain::default();
+        for link in &file.table {
+            let link = link.check(&reader, &axes, &table, part.origin)?;
+            table.0.push(link);
+        }
+        let head = match &file.head {
+            Some(head) => head.check(&reader, &axes, &table)?,
+            None => Head { kind: HeadKind::Free, pivot: 0.0 },
+        };
+        let mut tools: Vec<Tool> = Vec::new();
+        for tool in file.tool.iter().flatten() {
+            let checked = tool.check(&reader, &head)?;
+            if tools.iter().any(|other| other.number == checked.number) {
+                let message = format!("key 'tool.number': {} is there twice", checked.number);
+                return Err(reader.error(&tool.number, message));
+            }
+            tools.push(checked);
+        }
+        Ok(Self {
+            dialect: match &control.dialect {
+                Some(dialect) => reader.choice("control.dialect", dialect, &Dialect::ALL)?,
+                None => Dialect::default(),
+            },
+            increment: match &control.increment {
+                Some(increment) => reader.choice("control.increment", increment, &Increment::ALL)?,
+                None => Increment::default(),
+            },
+            slides: Chain::slides(&axes, &table),
+            offsets: file.offsets.map_or(Ok(Vec::new()), |offsets| work_offsets(&reader, &axes, &offsets))?,
+            axes,
+            table,
+            head,
+            tools,
+            part,
+        })
+    }
+}
+
+fn length(reader: &Reader<'_>, key: &str, value: &Spanned<f64>) -> Result<f64, JobError> {
+    reader.number(key, value, LENGTH, |v| v.abs() <= 100_000.0)
+}
+
+fn lengths(reader: &Reader<'_>, key: &str, values: &[Spanned<f64>; 3]) -> Result<Vector3<f64>, JobError> {
+    let [x, y, z] = values;
+    Ok(Vector3::new(length(reader, key, x)?, length(reader, key, y)?, length(reader, key, z)?))
+}
+
+fn sign(reader: &Reader<'_>, key: &str, value: &Spanned<i64>) -> Result<f64, JobError> {
+    match *value.as_ref() {
+        1 => Ok(1.0),
+        -1 => Ok(-1.0),
+        other => Err(reader.error(value, format!("key '{key}' is {other}: 1 or -1"))),
+    }
+}
+
+fn letter(reader: &Reader<'_>, key: &str, value: &Spanned<String>, axes: &Axes) -> Result<Axis, JobError> {
+    let found = match value.as_ref().as_bytes() {
+        [letter] => axes.find(*letter),
+        _ => None,
+    };
+    found.ok_or_else(|| {
+        let letters: String = axes.iter().map(|(_, letter)| letter).collect();
+        reader
+            .error(value, format!("key '{key}' is '{}': one of the control's axes {letters}", value.as_ref()))
+    })
+}
+
+impl FileControl {
+    fn axes(&self, reader: &Reader<'_>) -> Result<Axes, JobError> {
+        let Some(letters) = &self.axes else { return Ok(Axes::default()) };
+        Axes::new(letters.as_ref()).filter(|axes| !axes.is_empty()).ok_or_else(|| {
+            let allowed = "1 to 8 different letters of X Y Z A B C U V W, axis 1 first";
+            reader.error(letters, format!("key 'control.axes' is '{}': {allowed}", letters.as_ref()))
+        })
+    }
+}
+
+impl FileLink {
+    fn check(
+        &self,
+        reader: &Reader<'_>,
+        axes: &Axes,
+        inner: &Chain,
+        origin: Point3<f64>,
+    ) -> Result<Link, JobError> {
+        let axis = letter(reader, "table.letter", &self.letter, axes)?;
+        if inner.has(axis) {
+            let message = format!("key 'table.letter': {} is there twice", axes.letter(axis));
+            return Err(reader.error(&self.letter, message));
+        }
+        let sign = sign(reader, "table.sign", &self.sign)?;
+        let kinds = (&self.turns, &self.slides);
+        let (key, direction) = match kinds {
+            (Some(about), None) => ("turns", about),
+            (None, Some(along)) => ("slides", along),
+            _ => {
+                let message = "a [[table]] has one of the keys 'turns' and 'slides': x, y or z";
+                return Err(reader.error(&self.letter, message));
+            }
+        };
+        if (key == "turns") != axes.is_rotary(axis) {
+            let message =
+                format!("key 'table.{key}' doesn't go with {}: A B C turn, others slide", axes.letter(axis));
+            return Err(reader.error(direction, message));
+        }
+        let unit = Unit::new_unchecked(reader.choice(&format!("table.{key}"), direction, &DIRECTIONS)?);
+        match (&self.centre, key) {
+            (Some([x, ..]), "slides") => Err(reader.error(x, "key 'table.centre' goes with 'turns' only")),
+            (_, "slides") => Ok(Link::slide(axis, unit, sign)),
+            (Some(centre), _) => {
+                Ok(Link::turn(axis, unit, Point3::from(lengths(reader, "table.centre", centre)?), sign))
+            }
+            (None, _) => Ok(Link::turn(axis, unit, origin, sign)),
+        }
+    }
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Free,
+    Fixed,
+    Manual,
+    Axis,
+}
+
+const KINDS: [(&str, Kind); 4] =
+    [("free", Kind::Free), ("fixed", Kind::Fixed), ("manual", Kind::Manual), ("axis", Kind::Axis)];
+
+impl FileHead {
+    fn check(&self, reader: &Reader<'_>, axes: &Axes, table: &Chain) -> Result<Head, JobError> {
+        let kind = reader.choice("head.kind", &self.kind, &KINDS)?;
+        self.only_for(reader, kind)?;
+        let pivot = match &self.pivot {
+            Some(pivot) => reader.number("head.pivot", pivot, "mm, 0 or more", |v| v >= 0.0)?,
+            None => 0.0,
+        };
+        let angle = |key: &str, value: &Spanned<f64>| {
+            reader.number(key, value, "degrees from -360 to 360", |v| v.abs() <= 360.0).map(Deg)
+        };
+        let needs = |key: &str| {
+            reader.error(&self.kind, format!("kind = \"{}\" needs the key 'head.{key}'", self.kind.as_ref()))
+        };
+        let kind = match kind {
+            Kind::Free => HeadKind::Free,
+            Kind::Fixed => {
+                let direction = self.direction.as_ref().ok_or_else(|| needs("direction"))?;
+                let unit =
+                    Unit::try_new(Vector3::from(*direction.as_ref()), 1e-9).filter(|u| u.norm().is_finite());
+                let allowed = "key 'head.direction' is [x, y, z] from the tip to the spindle, not all 0";
+                HeadKind::Fixed(unit.ok_or_else(|| reader.error(direction, allowed))?)
+            }
+            Kind::Manual => {
+                HeadKind::Manual { start: self.angle.as_ref().map(|a| angle("head.angle", a)).transpose()? }
+            }
+            Kind::Axis => {
+                let value = self.letter.as_ref().ok_or_else(|| needs("letter"))?;
+                let axis = letter(reader, "head.letter", value, axes)?;
+                if !axes.is_rotary(axis) {
+                    return Err(reader.error(value, "key 'head.letter': the head turns by A, B or C"));
+                }
+                if table.has(axis) {
+                    let message = format!("key 'head.letter' is {}, which is the table's", axes.letter(axis));
+                    return Err(reader.error(value, message));
+                }
+                HeadKind::Axis {
+                    axis,
+                    sign: self.sign.as_ref().map_or(Ok(1.0), |s| sign(reader, "head.sign", s))?,
+                    zero: self.zero.as_ref().map_or(Ok(Deg::ZERO), |z| angle("head.zero", z))?,
+                }
+            }
+        };
+        Ok(Head { kind, pivot })
+    }
+
+    /// A key that means nothing for this kind of head is a mistake, not an extra.
+    fn only_for(&self, reader: &Reader<'_>, kind: Kind) -> Result<(), JobError> {
+        let given: [(&str, Option<usize>, &[Kind]); 6] = [
+            ("pivot", self.pivot.as_ref().map(start), &[Kind::Fixed, Kind::Manual, Kind::Axis]),
+            ("direction", self.direction.as_ref().map(start), &[Kind::Fixed]),
+            ("letter", self.letter.as_ref().map(start), &[Kind::Axis]),
+            ("sign", self.sign.as_ref().map(start), &[Kind::Axis]),
+            ("zero", self.zero.as_ref().map(start), &[Kind::Axis]),
+            ("angle", self.angle.as_ref().map(start), &[Kind::Manual]),
+        ];
+        for (key, place, kinds) in given {
+            if let (Some(place), false) = (place, kinds.contains(&kind)) {
+                let names: Vec<_> =
+                    KINDS.iter().filter(|(_, k)| kinds.contains(k)).map(|(name, _)| *name).collect();
+                let message = format!("key 'head.{key}' goes with kind {} only", names.join(", "));
+                return Err(JobError { line: Some(reader.line(place)), message });
+            }
+        }
+        Ok(())
+    }
+}
+
+fn start<T>(value: &Spanned<T>) -> usize {
+    value.span().start
+}
+
+impl FileTool {
+    fn check(&self, reader: &Reader<'_>, head: &Head) -> Result<Tool, JobError> {
+        let number = *self.number.as_ref();
+        let number =
+            u32::try_from(number).ok().filter(|n| (1..=99_999_999).contains(n)).ok_or_else(|| {
+                reader.error(&self.number, format!("key 'tool.number' is {number}: 1 to 99999999"))
+            })?;
+        if let (Some(length), HeadKind::Free) = (&self.length, &head.kind) {
+            let message = "key 'tool.length' acts along the tool, whose direction isn't known: give [head] with its kind, \
+                           or leave the length out";
+            return Err(reader.error(length, message));
+        }
+        let within = |key: &str, value: &Option<Spanned<f64>>, allowed: &str, least: f64| {
+            value
+                .as_ref()
+                .map(|v| reader.number(key, v, allowed, |v| v >= least && v <= 10_000.0))
+                .transpose()
+        };
+        Ok(Tool {
+            number,
+            length: within("tool.length", &self.length, "mm, 0 to 10000", 0.0)?,
+            diameter: within("tool.diameter", &self.diameter, "mm, 0.001 to 10000", 0.001)?,
+        })
+    }
+}
+
+impl FilePart {
+    fn check(&self, reader: &Reader<'_>) -> Result<Placement, JobError> {
+        let mut part = Placement::default();
+        if let Some(origin) = &self.origin {
+            part.origin = Point3::from(lengths(reader, "part.origin", origin)?);
+        }
+        if let Some(shift) = &self.shift {
+            part.shift = lengths(reader, "part.shift", shift)?;
+        }
+        if let Some(tilt) = &self.tilt {
+            for (angle, value) in part.tilt.iter_mut().zip(tilt) {
+                let allowed = "degrees from -360 to 360";
+                *angle = Deg(reader.number("part.tilt", value, allowed, |v| v.abs() <= 360.0)?);
+            }
+        }
+        Ok(part)
+    }
+}
+
+/// `G54 = { X = 500.0, B = 12.0 }`: axes that aren't named stay at 0.
+fn work_offsets(
+    reader: &Reader<'_>,
+    axes: &Axes,
+    offsets: &Spanned<Table>,
+) -> Result<Vec<WorkOffset>, JobError> {
+    let fail = |message: String| reader.error(offsets, message);
+    let mut found = Vec::new();
+    for (name, values) in offsets.as_ref() {
+        let code = name.strip_prefix('G').and_then(|code| code.parse::<u32>().ok());
+        let code = code
+            .filter(|code| (54..=59).contains(code))
+            .ok_or_else(|| fail(format!("key 'offsets.{name}' is not known: G54 to G59")))?;
+        let values = values
+            .as_table()
+            .ok_or_else(|| fail(format!("key 'offsets.{name}' names axes: {{ X = 0.0, Y = 0.0 }}")))?;
+        let mut offset = WorkOffset { code, values: Vec::new() };
+        for (letter, value) in values {
+            let axis = match letter.as_bytes() {
+                [letter] => axes.find(*letter),
+                _ => None,
+            };
+            let axis = axis.ok_or_else(|| {
+                fail(format!("key 'offsets.{name}.{letter}': the control has no axis {letter}"))
+            })?;
+            let number = value.as_float().or_else(|| value.as_integer().map(|v| v as f64));
+            let number = number.filter(|v| v.abs() <= 100_000.0).ok_or_else(|| {
+                fail(format!("key 'offsets.{name}.{letter}' is {value}: a number, -100000 to 100000"))
+            })?;
+            offset.values.push((axis, number));
+        }
+        found.push(offset);
+    }
+    Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PAPER: &str = "[[table]]\nletter = \"B\"\nturns = \"y\"\nsign = 1\n";
+
+    #[test]
+    fn the_shortest_file_is_the_machine_of_the_paper() {
+        assert_eq!(Machine::parse(PAPER).unwrap(), Machine::default());
+    }
+
+    #[test]
+    fn everything_a_file_can_say() {
+        let text = r#"
+[control]
+dialect = "haas-ngc"
+increment = "IS-C"
+axes = "XYZAB"
+[[table]]
+letter = "A"
+turns = "x"
+sign = -1
+centre = [1, 2.5, 3.0]
+[head]
+kind = "axis"
+letter = "B"
+sign = -1
+zero = 90.0
+pivot = 120.0
+[[tool]]
+number = 12
+length = 80.5
+diameter = 6.0
+[offsets]
+G54 = { X = 500.0, B = -3 }
+[part]
+origin = [500.0, 0.0, -200.0]
+shift = [0.1, 0.0, 0.0]
+tilt = [0.0, 0.0, 1.0]
+"#;
+        let machine = Machine::parse(text).unwrap();
+        assert_eq!(machine.axes.len(), 5);
+        let centre = Point3::new(1.0, 2.5, 3.0);
+        assert_eq!(machine.table.0, [Link::turn(3, Vector3::x_axis(), centre, -1.0)]);
+        assert_eq!(machine.head.kind, HeadKind::Axis { axis: 4, sign: -1.0, zero: Deg(90.0) });
+        assert_eq!(machine.head.pivot, 120.0);
+        assert_eq!(machine.tools, [Tool { number: 12, length: Some(80.5), diameter: Some(6.0) }]);
+        assert_eq!(machine.offsets[0].values, [(4, -3.0), (0, 500.0)]);
+        assert_eq!(machine.part.origin.z, -200.0);
+        assert_eq!(machine.part.tilt[2], Deg(1.0));
+    }
+
+    #[test]
+    fn a_table_turns_about_the_parts_origin_unless_told_otherwise() {
+        let machine = Machine::parse(&format!("{PAPER}[part]\norigin = [5.0, 6.0, 7.0]\n")).unwrap();
+        let LinkMotion::Turn { centre, .. } = &machine.table.0[0].motion else { panic!("it turns") };
+        assert_eq!(*centre, Point3::new(5.0, 6.0, 7.0));
+    }
+
+    use super::super::LinkMotion;
+
+    fn refused(text: &str) -> String {
+        Machine::parse(text).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn what_cannot_be_used_is_named_with_its_line() {
+        let cases = [
+            ("tables = []\n", "line 1: unknown field `tables`"),
+            ("[control]\n", "line 1: missing field `table`"),
+            ("[[table]]\nletter = \"B\"\nturns = \"y\"\n", "line 1: missing field `sign`"),
+            (
+                "[[table]]\nletter = \"B\"\nturns = \"q\"\nsign = 1\n",
+                "line 3: key 'table.turns' is 'q': one of x, y, z",
+            ),
+            (
+                "[[table]]\nletter = \"B\"\nturns = \"y\"\nsign = 2\n",
+                "line 4: key 'table.sign' is 2: 1 or -1",
+            ),
+            (
+                "[[table]]\nletter = \"V\"\nturns = \"y\"\nsign = 1\n",
+                "line 2: key 'table.letter' is 'V': one of the control's axes XYZABC",
+            ),
+            (
+                "table = []\n[head]\nkind = \"manual\"\npivot = -1.0\n",
+                "line 4: key 'head.pivot' is -1: mm, 0 or more",
+            ),
+            ("table = []\n[head]\nkind = \"axis\"\n", "line 3: kind = \"axis\" needs the key 'head.letter'"),
+            (
+                "table = []\n[head]\nkind = \"manual\"\ndirection = [0.0, 1.0, 0.0]\n",
+                "line 4: key 'head.direction' goes with kind fixed only",
+            ),
+            (
+                "table = []\n[offsets]\nG53 = { X = 1.0 }\n",
+                "line 2: key 'offsets.G53' is not known: G54 to G59",
+            ),
+            ("table = []\n[part]\ntilt = [0.0, nan, 0.0]\n", "line 3: key 'part.tilt' is NaN: degrees"),
+            (
+                "table = []\n[[tool]]\nnumber = 1\nlength = 5.0\n",
+                "line 4: key 'tool.length' acts along the tool",
+            ),
+        ];
+        for (text, expected) in cases {
+            let found = refused(text);
+            assert!(found.starts_with(expected), "{text:?}\n  says {found:?}\n  not  {expected:?}");
+        }
+    }
+}

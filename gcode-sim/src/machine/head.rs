@@ -1,0 +1,46 @@
+//! The head that holds the tool: which way the tool points, and how far its pivot is from the gauge line.
+use nalgebra::{Unit, Vector3};
+
+use super::Setup;
+use crate::motion::{Axis, Position};
+use crate::units::Deg;
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Head {
+    pub kind: HeadKind,
+    /// From the pivot to the spindle's gauge line.
+    pub pivot: f64,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum HeadKind {
+    /// Nothing is known: the tool is taken to point along each cutting feed.
+    Free,
+    /// Never moves; the direction points from the tip to the spindle.
+    Fixed(Unit<Vector3<f64>>),
+    /// Set by hand at an operator stop, in the plane of X and Y; `start` is how it stands before.
+    Manual { start: Option<Deg> },
+    /// An axis of the control, in the plane of X and Y: at 0 the tool stands at the angle `zero`.
+    Axis { axis: Axis, sign: f64, zero: Deg },
+}
+
+impl Head {
+    /// From the tip to the spindle. An angle h counts from +x towards +y: (cos h, sin h, 0).
+    pub fn direction(&self, at: &Position, setup: &Setup) -> Option<Unit<Vector3<f64>>> {
+        match &self.kind {
+            HeadKind::Free => setup.head_angle.map(in_plane),
+            HeadKind::Fixed(direction) => Some(*direction),
+            HeadKind::Manual { start } => setup.head_angle.or(*start).map(in_plane),
+            HeadKind::Axis { axis, sign, zero } => Some(in_plane(Deg(sign * at[*axis]) + *zero)),
+        }
+    }
+
+    /// Whether the operator can set its angle: a head about which nothing is known might well be such a one.
+    pub fn is_set_by_hand(&self) -> bool {
+        matches!(self.kind, HeadKind::Free | HeadKind::Manual { .. })
+    }
+}
+
+fn in_plane(angle: Deg) -> Unit<Vector3<f64>> {
+    Unit::new_unchecked(Vector3::new(angle.cos(), angle.sin(), 0.0))
+}
