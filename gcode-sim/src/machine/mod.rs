@@ -208,9 +208,11 @@ mod tests {
 
     #[test]
     fn the_tip_is_pivot_and_tool_length_below_the_pivot_point_along_the_head() {
-        let mut machine = Machine::default();
-        machine.head = Head { kind: HeadKind::Manual { start: None }, pivot: 100.0 };
-        machine.tools = vec![Tool { number: 2, length: Some(150.0), diameter: None }];
+        let machine = Machine {
+            head: Head { kind: HeadKind::Manual { start: None }, pivot: 100.0 },
+            tools: vec![Tool { number: 2, length: Some(150.0), diameter: None }],
+            ..Machine::default()
+        };
         let setup = Setup { head_angle: Some(Deg(30.0)), tool: Some(2), ..Setup::default() };
         let pose = machine.tool(&at(&machine, &[(b'X', 400.0), (b'Y', 300.0)]), &setup);
         // 250 mm along (cos 30°, sin 30°) = (216.506…, 125).
