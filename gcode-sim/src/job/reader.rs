@@ -20,10 +20,8 @@ impl Reader<'_> {
     }
 
     pub(crate) fn syntax(&self, error: &toml::de::Error) -> JobError {
-        JobError {
-            line: error.span().map(|s| self.line(s.start)),
-            message: error.message().trim().to_owned(),
-        }
+        let line = error.span().map(|s| self.line(s.start));
+        JobError { line, message: super::wording::reword(self.text, line, error.message().trim()) }
     }
 
     pub(crate) fn error<T>(&self, at: &Spanned<T>, message: impl Into<String>) -> JobError {

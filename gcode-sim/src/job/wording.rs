@@ -1,0 +1,122 @@
+//! What the TOML reader complains of, in the words of a job file: the full name of the key, and what is allowed.
+
+/// Rewords `message`, which is about line `line` (counted from 1) of `text`.
+pub(crate) fn reword(text: &str, line: Option<usize>, message: &str) -> String {
+    let place = line.map(|line| Place::of(text, line)).unwrap_or_default();
+    if let Some(field) = quoted(message, "missing field ") {
+        return format!("key '{}' is missing", place.inside(field));
+    }
+    if let Some(field) = quoted(message, "unknown field ") {
+        let allowed = message.split_once("expected ").map_or("no keys", |(_, rest)| rest);
+        let allowed = allowed.trim_start_matches("one of ").replace('`', "").replace(" or ", ", ");
+        return format!("key '{}' is not known; allowed: {allowed}", place.beside(field));
+    }
+    let Some(mismatch) = message.strip_prefix("invalid type: ") else { return message.to_owned() };
+    let Some((found, expected)) = mismatch.split_once(", expected ") else { return message.to_owned() };
+    let expected = match expected {
+        "f64" => "a number",
+        "i64" | "u32" => "a whole number",
+        "a string" => "text in quotes",
+        "a sequence" => "a list in brackets",
+        other if other.starts_with("struct") => "a table",
+        other => other,
+    };
+    format!("key '{}' is {}: {expected} is needed", place.name(), found.replace('`', ""))
+}
+
+/// The first word in backquotes behind `before`.
+fn quoted<'m>(message: &'m str, before: &str) -> Option<&'m str> {
+    message.strip_prefix(before)?.strip_prefix('`')?.split_once('`').map(|(field, _)| field)
+}
+
+/// Which table and which key a line is about.
+#[derive(Default)]
+struct Place {
+    /// `surface` in `[surface]`, `hole` in `[[hole]]`; empty before the first.
+    table: String,
+    /// The key the line sets; `None` where it is a table's header.
+    key: Option<String>,
+}
+
+impl Place {
+    fn of(text: &str, line: usize) -> Self {
+        let mut place = Self::default();
+        for (number, content) in text.lines().enumerate() {
+            let content = content.trim();
+            if let Some(header) = content.strip_prefix('[').filter(|_| !content.starts_with("[\"")) {
+                let name = header.trim_start_matches('[').split(']').next().unwrap_or("");
+                place = Self { table: name.trim().to_owned(), key: None };
+            } else if let Some((key, _)) = content.split_once('=') {
+                place.key = Some(key.trim().trim_matches('"').to_owned());
+            }
+            if number + 1 == line {
+                // The root's missing keys are reported at line 1, whatever that sets.
+                let is_header = content.starts_with('[') || !content.contains('=');
+                if is_header {
+                    place.key = None;
+                }
+                break;
+            }
+        }
+        place
+    }
+
+    fn name(&self) -> String {
+        join(&[&self.table, self.key.as_deref().unwrap_or("")])
+    }
+
+    /// A key of the table that the line opens: by a header, or by an inline table as the key's value.
+    fn inside(&self, field: &str) -> String {
+        match &self.key {
+            Some(key) if !self.table.is_empty() => join(&[&self.table, key, field]),
+            _ => join(&[&self.table, field]),
+        }
+    }
+
+    /// A key that the line sets, or that an inline table on it holds.
+    fn beside(&self, field: &str) -> String {
+        match &self.key {
+            Some(key) if key != field => join(&[&self.table, key, field]),
+            None if self.table == field => field.to_owned(),
+            _ => join(&[&self.table, field]),
+        }
+    }
+}
+
+fn join(parts: &[&str]) -> String {
+    let parts: Vec<_> = parts.iter().copied().filter(|part| !part.is_empty()).collect();
+    parts.join(".")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const JOB: &str = "family = \"x\"\n[machine]\nrotary = { letter = \"B\" }\n[[hole]]\nradius = 1.0\n";
+
+    #[test]
+    fn a_key_is_named_with_its_table() {
+        let told = |line, message| reword(JOB, Some(line), message);
+        assert_eq!(told(1, "missing field `control`"), "key 'control' is missing");
+        assert_eq!(told(2, "missing field `head`"), "key 'machine.head' is missing");
+        assert_eq!(told(3, "missing field `sign`"), "key 'machine.rotary.sign' is missing");
+        assert_eq!(told(4, "missing field `id`"), "key 'hole.id' is missing");
+        assert_eq!(
+            told(5, "unknown field `radius`, expected `a` or `b`"),
+            "key 'hole.radius' is not known; allowed: a, b"
+        );
+        assert_eq!(
+            told(3, "unknown field `sgn`, expected one of `letter`, `sign`"),
+            "key 'machine.rotary.sgn' is not known; allowed: letter, sign"
+        );
+        assert_eq!(
+            told(4, "unknown field `hole`, expected one of `tool`, `drill`"),
+            "key 'hole' is not known; allowed: tool, drill"
+        );
+        assert_eq!(
+            told(5, "invalid type: string \"x\", expected f64"),
+            "key 'hole.radius' is string \"x\": a number is needed"
+        );
+        assert_eq!(told(5, "duplicate key"), "duplicate key");
+    }
+}
