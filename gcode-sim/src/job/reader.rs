@@ -21,7 +21,7 @@ impl Reader<'_> {
 
     pub(crate) fn syntax(&self, error: &toml::de::Error) -> JobError {
         let line = error.span().map(|s| self.line(s.start));
-        JobError { line, message: super::wording::reword(self.text, line, error.message().trim()) }
+        JobError { line, message: super::wording::reword(self.text, error.span(), error.message().trim()) }
     }
 
     pub(crate) fn error<T>(&self, at: &Spanned<T>, message: impl Into<String>) -> JobError {

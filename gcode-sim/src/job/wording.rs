@@ -1,8 +1,10 @@
 //! What the TOML reader complains of, in the words of a job file: the full name of the key, and what is allowed.
+use std::ops::Range;
 
-/// Rewords `message`, which is about line `line` (counted from 1) of `text`.
-pub(crate) fn reword(text: &str, line: Option<usize>, message: &str) -> String {
-    let place = line.map(|line| Place::of(text, line)).unwrap_or_default();
+/// Rewords `message`, which is about the bytes `span` of `text`.
+pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> String {
+    // What the root lacks is reported at no byte at all.
+    let place = span.filter(|s| !s.is_empty()).map(|s| Place::of(text, s.start)).unwrap_or_default();
     if let Some(field) = quoted(message, "missing field ") {
         return format!("key '{}' is missing", place.inside(field));
     }
@@ -39,22 +41,19 @@ struct Place {
 }
 
 impl Place {
-    fn of(text: &str, line: usize) -> Self {
+    fn of(text: &str, offset: usize) -> Self {
         let mut place = Self::default();
-        for (number, content) in text.lines().enumerate() {
-            let content = content.trim();
-            if let Some(header) = content.strip_prefix('[').filter(|_| !content.starts_with("[\"")) {
+        let mut end = 0;
+        for line in text.split_inclusive('\n') {
+            end += line.len();
+            let content = line.trim();
+            if let Some(header) = content.strip_prefix('[') {
                 let name = header.trim_start_matches('[').split(']').next().unwrap_or("");
                 place = Self { table: name.trim().to_owned(), key: None };
             } else if let Some((key, _)) = content.split_once('=') {
                 place.key = Some(key.trim().trim_matches('"').to_owned());
             }
-            if number + 1 == line {
-                // The root's missing keys are reported at line 1, whatever that sets.
-                let is_header = content.starts_with('[') || !content.contains('=');
-                if is_header {
-                    place.key = None;
-                }
+            if end > offset {
                 break;
             }
         }
@@ -96,8 +95,11 @@ mod tests {
 
     #[test]
     fn a_key_is_named_with_its_table() {
-        let told = |line, message| reword(JOB, Some(line), message);
-        assert_eq!(told(1, "missing field `control`"), "key 'control' is missing");
+        let told = |line: usize, message| {
+            let start = JOB.split_inclusive('\n').take(line - 1).map(str::len).sum();
+            reword(JOB, Some(start..start + 1), message)
+        };
+        assert_eq!(reword(JOB, Some(0..0), "missing field `control`"), "key 'control' is missing");
         assert_eq!(told(2, "missing field `head`"), "key 'machine.head' is missing");
         assert_eq!(told(3, "missing field `sign`"), "key 'machine.rotary.sign' is missing");
         assert_eq!(told(4, "missing field `id`"), "key 'hole.id' is missing");

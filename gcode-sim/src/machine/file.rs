@@ -433,9 +433,12 @@ tilt = [0.0, 0.0, 1.0]
     #[test]
     fn what_cannot_be_used_is_named_with_its_line() {
         let cases = [
-            ("tables = []\n", "line 1: unknown field `tables`"),
-            ("[control]\n", "line 1: missing field `table`"),
-            ("[[table]]\nletter = \"B\"\nturns = \"y\"\n", "line 1: missing field `sign`"),
+            (
+                "tables = []\n",
+                "line 1: key 'tables' is not known; allowed: control, table, head, tool, offsets, part",
+            ),
+            ("[control]\n", "line 1: key 'table' is missing"),
+            ("[[table]]\nletter = \"B\"\nturns = \"y\"\n", "line 1: key 'table.sign' is missing"),
             (
                 "[[table]]\nletter = \"B\"\nturns = \"q\"\nsign = 1\n",
                 "line 3: key 'table.turns' is 'q': one of x, y, z",

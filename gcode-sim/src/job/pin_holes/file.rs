@@ -208,7 +208,7 @@ impl FileHead {
     fn check(&self, reader: &Reader<'_>, rotary: char) -> Result<Head, JobError> {
         let pivot = match &self.pivot {
             Some(pivot) => {
-                reader.number("machine.head.pivot", pivot, "0 to 99999 mm", within(0.0, 99_999.0))?
+                reader.number("machine.head.pivot", pivot, "0 to 9999 mm", within(0.0, 9_999.0))?
             }
             None => 0.0,
         };

@@ -44,9 +44,7 @@ impl FileTool {
             number: number as u32,
             diameter: reader.number("tool.diameter", &self.diameter, LENGTH, within(0.01, 99_999.0))?,
             length: match &self.length {
-                Some(length) => {
-                    reader.number("tool.length", length, "0 to 99999 mm", within(0.0, 99_999.0))?
-                }
+                Some(length) => reader.number("tool.length", length, "0 to 9999 mm", within(0.0, 9_999.0))?,
                 None => 0.0,
             },
             speed: reader.number("tool.speed", &self.speed, "a whole number from 1 to 99999 r/min", |v| {
