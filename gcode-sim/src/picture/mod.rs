@@ -1,1 +1,54 @@
-//! Holes and verdict to a picture.
+//! What a job looks like, as PNG: a scene in mm, laid out on a sheet of pixels, painted; and pictures compared.
+//!
+//! `views` turn holes and paths into a [`Scene`], which knows mm and roles but no pixels and no NC words.
+//! [`lay_out`] turns any scene into a [`Sheet`]: everything has its pixel place, no label covers another. [`paint`]
+//! only paints. A new view is a new file in `views/`; a new file format is a new painter of sheets.
+mod compare;
+mod font;
+mod ink;
+mod labels;
+mod lettering;
+mod lines;
+mod marks;
+mod measure;
+mod palette;
+mod panel;
+mod raster;
+mod scene;
+mod sheet;
+mod size;
+mod symbol;
+mod views;
+
+pub use compare::{Difference, compare};
+pub use ink::{Align, Dash, Ink, Px, Rect, Rgb};
+pub use raster::{paint, png};
+pub use scene::{Axis, LegendItem, Mark, Misfit, Pen, Point, Sample, Scene, Shape, Standing, Stroke, Title};
+pub use sheet::{Sheet, lay_out};
+pub use size::Size;
+pub use views::top::{DrawnHole, PathPiece, TopView, top_view};
+
+/// Why a picture can't be made or compared.
+#[derive(Debug, thiserror::Error)]
+pub enum PictureError {
+    #[error("a picture of {width}x{height} pixels is too small to be read: ask for at least {least}")]
+    TooSmall { width: u32, height: u32, least: &'static str },
+    #[error("a picture of {width}x{height} pixels is too large: at most {most} pixels a side")]
+    TooLarge { width: u32, height: u32, most: u32 },
+    #[error("`{0}` is no size of a picture: write width x height in pixels, such as 1600x1200")]
+    NoSize(String),
+    #[error("{what} has a coordinate that is no number or lies beyond {limit} mm")]
+    OffTheSheet { what: String, limit: f64 },
+    #[error("the picture can't be written as PNG: {0}")]
+    Encode(String),
+    #[error("{which} can't be read as a picture: {reason}")]
+    Decode { which: String, reason: String },
+}
+
+/// The scene as a PNG file of exactly this size.
+///
+/// # Errors
+/// A coordinate that can't be drawn, see [`lay_out`].
+pub fn draw(scene: &Scene, size: Size) -> Result<Vec<u8>, PictureError> {
+    png(&paint(&lay_out(scene, size)?))
+}

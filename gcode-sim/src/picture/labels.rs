@@ -1,0 +1,288 @@
+//! Finds a free place for every label: near its symbol, else further away on a leader, else none at all.
+//!
+//! Greedy and deterministic: the most important label first, each at its cheapest free place. A label is only put
+//! where it covers nothing that is in the field, so two labels can never overlap.
+use super::ink::{Px, Rect, px};
+use crate::units::Deg;
+
+/// Something a label must keep off.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Obstacle {
+    Box(Rect),
+    Disc {
+        centre: Px,
+        radius: f64,
+    },
+    /// A circle's line; its inside is free.
+    Ring {
+        centre: Px,
+        radius: f64,
+    },
+    Segment(Px, Px),
+}
+
+/// Where a label stands, and the line that leads to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Spot {
+    pub(super) rect: Rect,
+    pub(super) leader: Option<(Px, Px)>,
+}
+
+/// The area for labels and what is already in it, sorted into cells so that asking stays cheap.
+#[derive(Clone)]
+pub(super) struct Field {
+    area: Rect,
+    cell: f64,
+    columns: usize,
+    cells: Vec<Vec<Obstacle>>,
+    /// Lines that may be interrupted by a label where nothing better is found.
+    soft: Vec<Obstacle>,
+}
+
+const DIRECTIONS: u32 = 24;
+/// Distances between symbol and label, in heights of a line; from the second on there is a leader.
+const DISTANCES: [f64; 8] = [0.2, 0.7, 1.2, 1.8, 2.6, 3.6, 5.0, 6.5];
+
+impl Field {
+    pub(super) fn new(area: Rect, cell: f64) -> Self {
+        let columns = (area.width() / cell).max(0.0) as usize + 1;
+        let rows = (area.height() / cell).max(0.0) as usize + 1;
+        Self { area, cell, columns, cells: vec![Vec::new(); columns * rows], soft: Vec::new() }
+    }
+
+    /// Nothing will be placed over it.
+    pub(super) fn block(&mut self, obstacle: Obstacle) {
+        let cells = self.touched(&obstacle.bounds());
+        for index in cells {
+            self.cells[index].push(obstacle);
+        }
+    }
+
+    /// Labels keep off it if they can.
+    pub(super) fn discourage(&mut self, obstacle: Obstacle) {
+        self.soft.push(obstacle);
+    }
+
+    pub(super) fn is_free(&self, rect: &Rect) -> bool {
+        self.area.contains(rect)
+            && self.touched(rect).into_iter().all(|i| self.cells[i].iter().all(|o| !o.hits(rect)))
+    }
+
+    /// Puts a label of this size beside the symbol at `at` and blocks its place. `clear` is the symbol's radius,
+    /// `line` the height of a line of text, `reach` how many of the distances may be tried.
+    pub(super) fn place(
+        &mut self,
+        at: Px,
+        clear: f64,
+        (width, height): (f64, f64),
+        line: f64,
+        reach: usize,
+    ) -> Option<Spot> {
+        let mut best: Option<(f64, Spot)> = None;
+        for (step, distance) in DISTANCES.iter().take(reach).enumerate() {
+            for turn in 0..DIRECTIONS {
+                // From the upper right, alternately to both sides: where a reader expects a number.
+                let side = if turn % 2 == 0 { 1.0 } else { -1.0 };
+                let off = f64::from(turn.div_ceil(2)) * side * 360.0 / f64::from(DIRECTIONS);
+                let angle = Deg(-30.0 + off);
+                let cost = distance * 2.0 + off.abs() / 180.0;
+                if best.is_some_and(|(least, _)| least <= cost) {
+                    continue;
+                }
+                let direction = [angle.cos(), angle.sin()];
+                let far = clear + distance * line;
+                // The box touches the circle of radius `far` with a side or a corner.
+                let lean = direction.map(|part| (1.5 * part).clamp(-1.0, 1.0));
+                let middle = px(
+                    at.x + direction[0] * far + lean[0] * width / 2.0,
+                    at.y + direction[1] * far + lean[1] * height / 2.0,
+                );
+                let rect = Rect::new(middle.x - width / 2.0, middle.y - height / 2.0, width, height);
+                if !self.is_free(&rect) {
+                    continue;
+                }
+                let leader = (1 < step).then(|| Self::leader(at, clear, &rect));
+                if leader.is_some_and(|(from, to)| self.is_crossed(from, to)) {
+                    continue;
+                }
+                let cost = cost + 2.0 * self.soft.iter().filter(|o| o.hits(&rect)).count() as f64;
+                if best.is_none_or(|(least, _)| cost < least) {
+                    best = Some((cost, Spot { rect, leader }));
+                }
+            }
+        }
+        let (_, spot) = best?;
+        self.block(Obstacle::Box(spot.rect));
+        if let Some((from, to)) = spot.leader {
+            self.block(Obstacle::Segment(from, to));
+        }
+        Some(spot)
+    }
+
+    /// Puts a label onto one of `middles`, the first that is free.
+    pub(super) fn place_on(
+        &mut self,
+        middles: impl IntoIterator<Item = Px>,
+        (width, height): (f64, f64),
+    ) -> Option<Spot> {
+        let rects =
+            middles.into_iter().map(|m| Rect::new(m.x - width / 2.0, m.y - height / 2.0, width, height));
+        let rect = rects.into_iter().find(|rect| self.is_free(rect))?;
+        self.block(Obstacle::Box(rect));
+        Some(Spot { rect, leader: None })
+    }
+
+    fn leader(at: Px, clear: f64, rect: &Rect) -> (Px, Px) {
+        let end = rect.nearest(at);
+        let length = at.distance(end).max(1e-9);
+        (at.toward([(end.x - at.x) / length, (end.y - at.y) / length], clear), end)
+    }
+
+    fn is_crossed(&self, from: Px, to: Px) -> bool {
+        let bounds = Obstacle::Segment(from, to).bounds();
+        self.touched(&bounds).into_iter().any(|i| self.cells[i].iter().any(|o| o.crosses(from, to)))
+    }
+
+    fn touched(&self, rect: &Rect) -> Vec<usize> {
+        let rows = self.cells.len() / self.columns;
+        let clamp = |v: f64, most: usize| ((v / self.cell).max(0.0) as usize).min(most - 1);
+        let (left, right) = (
+            clamp(rect.left - self.area.left, self.columns),
+            clamp(rect.right - self.area.left, self.columns),
+        );
+        let (top, bottom) = (clamp(rect.top - self.area.top, rows), clamp(rect.bottom - self.area.top, rows));
+        (top..=bottom).flat_map(|row| (left..=right).map(move |column| row * self.columns + column)).collect()
+    }
+}
+
+impl Obstacle {
+    fn bounds(&self) -> Rect {
+        match *self {
+            Self::Box(rect) => rect,
+            Self::Disc { centre, radius } | Self::Ring { centre, radius } => {
+                Rect::new(centre.x - radius, centre.y - radius, 2.0 * radius, 2.0 * radius)
+            }
+            Self::Segment(a, b) => {
+                Rect { left: a.x.min(b.x), top: a.y.min(b.y), right: a.x.max(b.x), bottom: a.y.max(b.y) }
+            }
+        }
+    }
+
+    pub(super) fn hits(&self, rect: &Rect) -> bool {
+        match *self {
+            Self::Box(other) => other.overlaps(rect),
+            Self::Disc { centre, radius } => rect.nearest(centre).distance(centre) < radius,
+            Self::Ring { centre, radius } => {
+                rect.nearest(centre).distance(centre) <= radius && radius <= rect.farthest(centre)
+            }
+            Self::Segment(a, b) => enters(rect, a, b),
+        }
+    }
+
+    /// A leader may pass over the thin line of a circle, over nothing else.
+    fn crosses(&self, from: Px, to: Px) -> bool {
+        match *self {
+            Self::Box(rect) => enters(&rect, from, to),
+            Self::Disc { centre, radius } => distance_to(centre, from, to) < radius * 0.98,
+            Self::Ring { .. } => false,
+            Self::Segment(a, b) => {
+                let side = |p: Px, q: Px, r: Px| (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
+                side(a, b, from) * side(a, b, to) <= 0.0 && side(from, to, a) * side(from, to, b) <= 0.0
+            }
+        }
+    }
+}
+
+/// Whether a segment has points inside the rectangle (Liang and Barsky's clipping).
+fn enters(rect: &Rect, a: Px, b: Px) -> bool {
+    let (dx, dy) = (b.x - a.x, b.y - a.y);
+    let (mut first, mut last) = (0.0f64, 1.0f64);
+    for (slope, room) in
+        [(-dx, a.x - rect.left), (dx, rect.right - a.x), (-dy, a.y - rect.top), (dy, rect.bottom - a.y)]
+    {
+        if slope == 0.0 {
+            if room < 0.0 {
+                return false;
+            }
+        } else if slope < 0.0 {
+            first = first.max(room / slope);
+        } else {
+            last = last.min(room / slope);
+        }
+    }
+    first < last
+}
+
+fn distance_to(point: Px, a: Px, b: Px) -> f64 {
+    let (dx, dy) = (b.x - a.x, b.y - a.y);
+    let square = (dx * dx + dy * dy).max(1e-12);
+    let along = (((point.x - a.x) * dx + (point.y - a.y) * dy) / square).clamp(0.0, 1.0);
+    point.distance(px(a.x + along * dx, a.y + along * dy))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn field() -> Field {
+        Field::new(Rect::new(0.0, 0.0, 400.0, 300.0), 40.0)
+    }
+
+    #[test]
+    fn a_label_stands_at_the_upper_right_of_a_lonely_symbol() {
+        let spot = field().place(px(200.0, 150.0), 10.0, (30.0, 12.0), 12.0, 8).unwrap();
+        assert!(200.0 < spot.rect.left && spot.rect.bottom < 150.0, "{spot:?}");
+        assert_eq!(spot.leader, None);
+    }
+
+    #[test]
+    fn a_label_in_a_corner_stays_on_the_sheet() {
+        let spot = field().place(px(398.0, 2.0), 5.0, (60.0, 24.0), 12.0, 8).unwrap();
+        assert!(Rect::new(0.0, 0.0, 400.0, 300.0).contains(&spot.rect), "{spot:?}");
+    }
+
+    #[test]
+    fn a_label_that_has_no_place_beside_its_symbol_gets_a_leader() {
+        let mut field = field();
+        field.block(Obstacle::Ring { centre: px(200.0, 150.0), radius: 16.0 });
+        let spot = field.place(px(200.0, 150.0), 10.0, (30.0, 12.0), 12.0, 8).unwrap();
+        assert!(!Obstacle::Ring { centre: px(200.0, 150.0), radius: 16.0 }.hits(&spot.rect));
+        field.block(Obstacle::Disc { centre: px(100.0, 100.0), radius: 26.0 });
+        let spot = field.place(px(100.0, 100.0), 10.0, (30.0, 12.0), 12.0, 8);
+        // The leader itself would run through the disc that fills the surroundings.
+        assert_eq!(spot, None);
+    }
+
+    #[test]
+    fn a_full_field_takes_no_label() {
+        let mut field = field();
+        field.block(Obstacle::Box(Rect::new(0.0, 0.0, 400.0, 300.0)));
+        assert_eq!(field.place(px(200.0, 150.0), 10.0, (30.0, 12.0), 12.0, 8), None);
+    }
+
+    proptest! {
+        #[test]
+        fn no_two_labels_overlap_and_none_leaves_the_area(
+            places in prop::collection::vec((0.0f64..400.0, 0.0f64..300.0, 8.0f64..70.0), 1..60),
+        ) {
+            let mut field = field();
+            for (x, y, _) in &places {
+                field.block(Obstacle::Disc { centre: px(*x, *y), radius: 5.0 });
+            }
+            let mut placed: Vec<Spot> = Vec::new();
+            for (x, y, width) in &places {
+                placed.extend(field.place(px(*x, *y), 6.0, (*width, 12.0), 12.0, 8));
+            }
+            for (i, spot) in placed.iter().enumerate() {
+                prop_assert!(Rect::new(0.0, 0.0, 400.0, 300.0).contains(&spot.rect));
+                for other in &placed[i + 1..] {
+                    prop_assert!(!spot.rect.overlaps(&other.rect));
+                }
+                for (x, y, _) in &places {
+                    prop_assert!(5.0 <= spot.rect.nearest(px(*x, *y)).distance(px(*x, *y)) + 1e-9);
+                }
+            }
+        }
+    }
+}

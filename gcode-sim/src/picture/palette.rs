@@ -1,0 +1,32 @@
+//! Colours and line kinds of the roles: Okabe and Ito's palette, which the colour-blind can tell apart, on white.
+//!
+//! Colour never stands alone: every standing has a shape and a mark of its own (`symbol`), every pen its dashes.
+use super::ink::{Dash, Rgb};
+use super::scene::{Pen, Standing};
+
+pub(super) const PAPER: Rgb = Rgb(255, 255, 255);
+pub(super) const TEXT: Rgb = Rgb(0, 0, 0);
+pub(super) const SOFT_TEXT: Rgb = Rgb(70, 70, 70);
+pub(super) const RULE: Rgb = Rgb(150, 150, 150);
+/// Leaders, direction arrows, the circle of the tolerance zone.
+pub(super) const THIN: Rgb = Rgb(90, 90, 90);
+
+pub(super) fn standing(standing: Standing) -> Rgb {
+    match standing {
+        Standing::Good => Rgb(0, 114, 178),
+        Standing::Bad => Rgb(213, 94, 0),
+        Standing::Missing => Rgb(0, 0, 0),
+        Standing::Extra => Rgb(230, 159, 0),
+        Standing::Unjudged => Rgb(90, 90, 90),
+    }
+}
+
+/// Colour, width in parts of the text's height, dashes in the same unit.
+pub(super) fn pen(pen: Pen, text: f64) -> (Rgb, f64, Dash) {
+    match pen {
+        Pen::Outline => (Rgb(0, 0, 0), 0.13 * text, Dash::Solid),
+        Pen::Construction => (Rgb(120, 120, 120), 0.06 * text, Dash::Pattern([0.55 * text, 0.4 * text])),
+        Pen::Feed => (Rgb(0, 158, 115), 0.1 * text, Dash::Solid),
+        Pen::Rapid => (Rgb(86, 180, 233), 0.07 * text, Dash::Pattern([0.25 * text, 0.25 * text])),
+    }
+}

@@ -1,0 +1,125 @@
+//! What to draw, in mm and in roles: no pixels, no colours, no NC words.
+
+/// A point of the plane of the drawing, mm: to the right and up. A view says which way of the part is right.
+pub type Point = [f64; 2];
+
+/// One drawing.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Scene {
+    pub title: Title,
+    pub axes: Vec<Axis>,
+    pub strokes: Vec<Stroke>,
+    pub marks: Vec<Mark>,
+    /// Diameter of the tolerance zone round every mark that has a misfit, mm.
+    pub zone: Option<f64>,
+    pub legend: Vec<LegendItem>,
+}
+
+/// The title block.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Title {
+    pub name: String,
+    /// What is seen and from where.
+    pub view: String,
+    /// Position tolerance as a feature control frame has it: diameter of the zone, mm.
+    pub position: Option<f64>,
+    /// Verdict on the whole.
+    pub verdict: Option<(Standing, String)>,
+    /// Further lines, one thing each.
+    pub lines: Vec<String>,
+    /// What the reader must not take the picture for.
+    pub caution: String,
+}
+
+/// An axis of the part: drawn as a centre line through its origin, arrow and name at its positive end.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    pub name: String,
+    /// Unit vector of its positive end.
+    pub direction: Point,
+}
+
+/// A line of the drawing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stroke {
+    pub shape: Shape,
+    pub pen: Pen,
+    /// Written onto the line where there is room.
+    pub caption: Option<String>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape {
+    Line(Vec<Point>),
+    Circle { centre: Point, radius: f64 },
+}
+
+/// What a line stands for; its colour and dashes follow from that.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pen {
+    /// Edge of the part.
+    Outline,
+    /// Not an edge, only helps the eye: the circle on which holes lie.
+    Construction,
+    /// Path of the tool while it cuts.
+    Feed,
+    /// Path of the tool in rapid motion.
+    Rapid,
+}
+
+/// How a hole stands against what was wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Standing {
+    Bad,
+    Missing,
+    Extra,
+    /// Nothing was held against it.
+    Unjudged,
+    Good,
+}
+
+impl Standing {
+    /// Nothing to look at twice.
+    pub fn is_good(self) -> bool {
+        matches!(self, Self::Good | Self::Unjudged)
+    }
+}
+
+/// A hole seen along or across its axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mark {
+    /// Where it should be; where it is, if nothing was asked for.
+    pub at: Point,
+    pub radius: f64,
+    pub standing: Standing,
+    /// Most important first; what finds no room is left out from the end.
+    pub label: Vec<String>,
+    /// Projection of the unit vector out of the part.
+    pub direction: Option<Point>,
+    pub misfit: Option<Misfit>,
+    /// Where it is in truth, if there is a place for it.
+    pub found: Option<Point>,
+}
+
+/// Actual − nominal at both ends of a hole, mm, seen along the nominal axis: inside the zone's circle is inside tolerance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Misfit {
+    pub entry: Point,
+    pub bottom: Point,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct LegendItem {
+    pub sample: Sample,
+    pub text: String,
+}
+
+/// What a line of the legend shows at its left.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sample {
+    Standing(Standing),
+    Pen(Pen),
+    Direction,
+    /// The sheet adds how many times it is magnified, or leaves the line out if none is drawn.
+    Misfit,
+}

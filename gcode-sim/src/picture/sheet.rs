@@ -1,0 +1,125 @@
+//! Lays a scene out on a sheet of a given size: scale, dials, labels, scale bar, title block. Decides, doesn't paint.
+use super::PictureError;
+use super::font::Font;
+use super::ink::{Ink, Rect};
+use super::labels::Field;
+use super::lettering::{caption_strokes, label_marks};
+use super::lines::{axes, block_stroke, is_path, scale_bar, stroke_ink};
+use super::marks::{Dials, draw_marks};
+use super::measure::Scale;
+use super::panel::Panel;
+use super::scene::{Point, Scene, Shape};
+use super::size::Size;
+
+/// A picture, laid out: every ink has its place in pixels.
+#[derive(Clone, Debug)]
+pub struct Sheet {
+    pub size: Size,
+    pub inks: Vec<Ink>,
+    /// The labels of the holes and lines, as placed: none overlaps another.
+    pub labels: Vec<(Rect, Vec<String>)>,
+    /// What the picture leaves out, as it says itself.
+    pub notes: Vec<String>,
+    /// How many times misfits are enlarged against the part; none is drawn without.
+    pub magnification: Option<f64>,
+}
+
+/// Coordinates beyond are slips, not parts, mm.
+const FARTHEST: f64 = 1e6;
+
+/// What every step of the layout needs.
+pub(super) struct Frame {
+    pub(super) font: Font,
+    /// Size of ordinary text, pixels.
+    pub(super) text: f64,
+    pub(super) scale: Scale,
+}
+
+/// # Errors
+/// A coordinate that is no number, or farther than a kilometre from the origin.
+pub fn lay_out(scene: &Scene, size: Size) -> Result<Sheet, PictureError> {
+    check(scene)?;
+    let font = Font::embedded();
+    let text = size.text();
+    let (width, height) = (f64::from(size.width()), f64::from(size.height()));
+    let page = Rect::new(0.0, 0.0, width, height).grown(-(0.5 * text).round());
+    let panel = Panel::beside(page, scene, &font, text);
+    let strip = 2.4 * text;
+    let drawing = Rect { bottom: panel.drawing.bottom - strip, ..panel.drawing };
+
+    let extent = extent(scene);
+    let scale = Scale::fitting(extent, drawing.grown(-2.9 * text));
+    let frame = Frame { font, text, scale };
+    let dials = Dials::choose(scene, &frame);
+    let mut field = Field::new(drawing.grown(-0.3 * text), 3.0 * text);
+
+    let mut inks = Vec::new();
+    for stroke in &scene.strokes {
+        inks.push(stroke_ink(stroke, &frame));
+        block_stroke(&mut field, stroke, &frame);
+    }
+    inks.extend(axes(scene, &frame, extent, drawing, &mut field));
+    let drawn = draw_marks(scene, &frame, &dials, &mut field);
+    inks.extend(drawn.iter().flat_map(|d| d.inks.iter().cloned()));
+    let mut notes = dials.notes(scene, &drawn);
+    let mut labels = Vec::new();
+    notes.extend(label_marks(scene, &drawn, &frame, &mut field, &mut inks, &mut labels));
+    caption_strokes(scene, &frame, &mut field, &mut inks, &mut labels);
+    let bar = Rect { top: drawing.bottom, ..panel.drawing };
+    inks.extend(scale_bar(&frame, bar));
+    inks.extend(panel.inks(scene, &frame, dials.magnification(), &notes));
+    Ok(Sheet { size, inks, labels, notes, magnification: dials.magnification() })
+}
+
+fn check(scene: &Scene) -> Result<(), PictureError> {
+    let fits = |p: &Point| p.iter().all(|v| v.abs() <= FARTHEST);
+    let off = |what: String| PictureError::OffTheSheet { what, limit: FARTHEST };
+    for stroke in &scene.strokes {
+        let fine = match &stroke.shape {
+            Shape::Line(points) => points.iter().all(fits),
+            Shape::Circle { centre, radius } => fits(centre) && fits(&[*radius, 0.0]) && 0.0 <= *radius,
+        };
+        if !fine {
+            return Err(off(format!("a line of the drawing ({:?})", stroke.pen)));
+        }
+    }
+    for mark in &scene.marks {
+        let places =
+            [mark.found, mark.direction, mark.misfit.map(|m| m.entry), mark.misfit.map(|m| m.bottom)];
+        if !(fits(&mark.at) && fits(&[mark.radius, 0.0]) && places.iter().flatten().all(fits)) {
+            return Err(off(format!("hole {}", mark.label.first().map_or("", String::as_str))));
+        }
+    }
+    Ok(())
+}
+
+/// What must be seen, mm: every line but the tool's path, every hole, and the origin where there are axes.
+fn extent(scene: &Scene) -> (Point, Point) {
+    let mut seen: Vec<(Point, f64)> = Vec::new();
+    let path_alone = scene.marks.is_empty() && scene.strokes.iter().all(|s| is_path(s.pen));
+    for stroke in &scene.strokes {
+        match &stroke.shape {
+            Shape::Line(points) if path_alone || !is_path(stroke.pen) => {
+                seen.extend(points.iter().map(|p| (*p, 0.0)))
+            }
+            Shape::Line(_) => {}
+            Shape::Circle { centre, radius } => seen.push((*centre, *radius)),
+        }
+    }
+    for mark in &scene.marks {
+        seen.extend([Some(mark.at), mark.found].into_iter().flatten().map(|place| (place, mark.radius)));
+    }
+    if !scene.axes.is_empty() || seen.is_empty() {
+        seen.push(([0.0, 0.0], 0.0));
+    }
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for (at, radius) in seen {
+        low = [low[0].min(at[0] - radius), low[1].min(at[1] - radius)];
+        high = [high[0].max(at[0] + radius), high[1].max(at[1] + radius)];
+    }
+    // A single hole without a part round it would fill the sheet.
+    let widest = (high[0] - low[0]).max(high[1] - low[1]);
+    let least = 20.0 * scene.marks.iter().map(|m| m.radius).fold(0.5, f64::max);
+    let grow = ((least - widest) / 2.0).max(0.0);
+    (low.map(|v| v - grow), high.map(|v| v + grow))
+}

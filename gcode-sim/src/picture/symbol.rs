@@ -1,0 +1,121 @@
+//! The signs of a drawing as paths: what a verdict looks like without its colour, arrows, the position symbol.
+use super::ink::{Dash, Ink, Px, Rgb, px};
+use super::palette;
+use super::scene::Standing;
+use crate::units::Deg;
+
+/// The sign of a standing, `radius` pixels large. Every one differs from the others in outline and in its mark:
+/// ✓ in a disc, ✗ in a square, an empty dashed ring, + in a triangle, a dot in a ring.
+pub(super) fn standing(standing: Standing, at: Px, radius: f64) -> Vec<Ink> {
+    let color = palette::standing(standing);
+    let stroke = (radius * 0.3).max(1.2);
+    match standing {
+        Standing::Good => vec![
+            Ink::Disc { centre: at, radius, color },
+            path(at, radius, &[[-0.5, 0.02], [-0.14, 0.42], [0.52, -0.4]], stroke, palette::PAPER),
+        ],
+        Standing::Bad => {
+            let s = radius * 0.95;
+            let corners = [[-s, -s], [s, -s], [s, s], [-s, s]].map(|[x, y]| px(at.x + x, at.y + y));
+            vec![
+                Ink::Area { points: corners.to_vec(), color },
+                path(at, radius, &[[-0.45, -0.45], [0.45, 0.45]], stroke, palette::PAPER),
+                path(at, radius, &[[-0.45, 0.45], [0.45, -0.45]], stroke, palette::PAPER),
+            ]
+        }
+        Standing::Missing => {
+            let width = (radius * 0.3).max(1.5);
+            let inner = radius * 1.1 - width / 2.0;
+            let eighth = inner * std::f64::consts::TAU / 8.0;
+            let dash = Dash::Pattern([eighth * 0.62, eighth * 0.38]);
+            vec![
+                Ink::Disc { centre: at, radius, color: palette::PAPER },
+                Ink::Ring { centre: at, radius: inner, width, dash, color },
+            ]
+        }
+        Standing::Extra => {
+            let corners = [[0.0, -1.15], [1.1, 0.8], [-1.1, 0.8]];
+            let points: Vec<_> =
+                corners.iter().map(|[x, y]| px(at.x + x * radius, at.y + y * radius)).collect();
+            let width = (radius * 0.18).max(1.0);
+            let edge = Ink::Line {
+                points: points.clone(),
+                closed: true,
+                width,
+                dash: Dash::Solid,
+                color: palette::TEXT,
+            };
+            vec![
+                Ink::Area { points, color },
+                edge,
+                path(at, radius, &[[-0.4, 0.2], [0.4, 0.2]], width, palette::TEXT),
+                path(at, radius, &[[0.0, -0.2], [0.0, 0.6]], width, palette::TEXT),
+            ]
+        }
+        Standing::Unjudged => {
+            let width = (radius * 0.22).max(1.2);
+            vec![
+                Ink::Disc { centre: at, radius, color: palette::PAPER },
+                Ink::Ring { centre: at, radius: radius - width / 2.0, width, dash: Dash::Solid, color },
+                Ink::Disc { centre: at, radius: radius * 0.25, color },
+            ]
+        }
+    }
+}
+
+/// A line with a head at its end.
+pub(super) fn arrow(from: Px, to: Px, width: f64, head: f64, color: Rgb) -> Vec<Ink> {
+    let length = from.distance(to).max(1e-9);
+    let along = [(to.x - from.x) / length, (to.y - from.y) / length];
+    let across = [-along[1], along[0]];
+    let neck = to.toward(along, -head);
+    let points = vec![to, neck.toward(across, head * 0.36), neck.toward(across, -head * 0.36)];
+    vec![Ink::line(from, neck, width, color), Ink::Area { points, color }]
+}
+
+/// ⌖ of ISO 1101: a circle with crosshairs that reach beyond it.
+pub(super) fn position(at: Px, radius: f64, width: f64, color: Rgb) -> Vec<Ink> {
+    vec![
+        Ink::Ring { centre: at, radius: radius * 0.62, width, dash: Dash::Solid, color },
+        path(at, radius, &[[-1.0, 0.0], [1.0, 0.0]], width, color),
+        path(at, radius, &[[0.0, -1.0], [0.0, 1.0]], width, color),
+    ]
+}
+
+/// The unit direction on the sheet at an angle, counter-clockwise from the right.
+pub(super) fn direction(angle: Deg) -> [f64; 2] {
+    [angle.cos(), -angle.sin()]
+}
+
+fn path(at: Px, radius: f64, points: &[[f64; 2]], width: f64, color: Rgb) -> Ink {
+    let points = points.iter().map(|[x, y]| px(at.x + x * radius, at.y + y * radius)).collect();
+    Ink::Line { points, closed: false, width, dash: Dash::Solid, color }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is left of a sign in a photocopy: kinds of ink and number of points, but no colours.
+    fn shape(of: Standing) -> Vec<String> {
+        let inks = standing(of, px(0.0, 0.0), 10.0);
+        let kinds = inks.iter().map(|ink| match ink {
+            Ink::Line { points, dash, .. } => format!("line {} {dash:?}", points.len()),
+            Ink::Area { points, .. } => format!("area {}", points.len()),
+            Ink::Ring { dash, .. } => format!("ring {dash:?}"),
+            Ink::Disc { radius, .. } => format!("disc {radius}"),
+            Ink::Text { text, .. } => format!("text {text}"),
+        });
+        kinds.collect()
+    }
+
+    #[test]
+    fn verdicts_differ_by_more_than_colour() {
+        let all = [Standing::Good, Standing::Bad, Standing::Missing, Standing::Extra, Standing::Unjudged];
+        for (i, a) in all.iter().enumerate() {
+            for b in &all[i + 1..] {
+                assert_ne!(shape(*a), shape(*b), "{a:?} {b:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,2 @@
+//! What can be shown of a part, one view a file: each turns holes and paths into a scene.
+pub(super) mod top;
