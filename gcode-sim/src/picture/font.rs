@@ -39,10 +39,10 @@ impl Font {
         format!("{}…", short.trim_end())
     }
 
-    /// Lines of at most `width`, broken at spaces; a word that is too long for a line of its own is cut short.
+    /// Lines of at most `width`, broken at spaces (not at no-break spaces); a word that is too long for a line of its own is cut short.
     pub(super) fn wrapped(&self, text: &str, size: f64, width: f64) -> Vec<String> {
         let mut lines: Vec<String> = Vec::new();
-        for word in text.split_whitespace() {
+        for word in text.split(' ').filter(|word| !word.is_empty()) {
             match lines.last_mut() {
                 Some(line) if self.width(&format!("{line} {word}"), size) <= width => {
                     line.push(' ');

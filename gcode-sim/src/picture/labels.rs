@@ -21,6 +21,25 @@ pub(super) enum Obstacle {
     Segment(Px, Px),
 }
 
+/// What a label belongs to.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Symbol {
+    pub(super) at: Px,
+    /// Labels keep this far from it.
+    pub(super) clear: f64,
+    /// Others are so close that a line must lead to the very place.
+    pub(super) pinned: bool,
+}
+
+impl Symbol {
+    fn leader(&self, rect: &Rect) -> (Px, Px) {
+        let end = rect.nearest(self.at);
+        let length = self.at.distance(end).max(1e-9);
+        let start = if self.pinned { 0.0 } else { self.clear };
+        (self.at.toward([(end.x - self.at.x) / length, (end.y - self.at.y) / length], start), end)
+    }
+}
+
 /// Where a label stands, and the line that leads to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Spot {
@@ -68,18 +87,11 @@ impl Field {
             && self.touched(rect).into_iter().all(|i| self.cells[i].iter().all(|o| !o.hits(rect)))
     }
 
-    /// Puts a label of this size beside the symbol at `at` and blocks its place. `clear` is the symbol's radius,
-    /// `line` the height of a line of text, `reach` how many of the distances may be tried.
-    pub(super) fn place(
-        &mut self,
-        at: Px,
-        clear: f64,
-        (width, height): (f64, f64),
-        line: f64,
-        reach: usize,
-    ) -> Option<Spot> {
+    /// Puts a label of this size beside a symbol and blocks its place; `line` is the height of a line of text.
+    pub(super) fn place(&mut self, symbol: Symbol, (width, height): (f64, f64), line: f64) -> Option<Spot> {
+        let Symbol { at, clear, pinned } = symbol;
         let mut best: Option<(f64, Spot)> = None;
-        for (step, distance) in DISTANCES.iter().take(reach).enumerate() {
+        for (step, distance) in DISTANCES.iter().enumerate() {
             for turn in 0..DIRECTIONS {
                 // From the upper right, alternately to both sides: where a reader expects a number.
                 let side = if turn % 2 == 0 { 1.0 } else { -1.0 };
@@ -101,8 +113,8 @@ impl Field {
                 if !self.is_free(&rect) {
                     continue;
                 }
-                let leader = (1 < step).then(|| Self::leader(at, clear, &rect));
-                if leader.is_some_and(|(from, to)| self.is_crossed(from, to)) {
+                let leader = (pinned || 1 < step).then(|| symbol.leader(&rect));
+                if leader.is_some_and(|leader| self.is_crossed(leader, symbol)) {
                     continue;
                 }
                 let cost = cost + 2.0 * self.soft.iter().filter(|o| o.hits(&rect)).count() as f64;
@@ -132,15 +144,20 @@ impl Field {
         Some(Spot { rect, leader: None })
     }
 
-    fn leader(at: Px, clear: f64, rect: &Rect) -> (Px, Px) {
-        let end = rect.nearest(at);
-        let length = at.distance(end).max(1e-9);
-        (at.toward([(end.x - at.x) / length, (end.y - at.y) / length], clear), end)
-    }
-
-    fn is_crossed(&self, from: Px, to: Px) -> bool {
+    /// Whether something lies in the leader's way. A crowd is left through the other symbols.
+    fn is_crossed(&self, (from, to): (Px, Px), symbol: Symbol) -> bool {
+        let in_crowd = |o: &Obstacle| match *o {
+            Obstacle::Disc { centre, radius } => {
+                symbol.pinned && centre.distance(symbol.at) < symbol.clear + radius
+            }
+            Obstacle::Segment(a, b) => {
+                symbol.pinned && a.distance(symbol.at).min(b.distance(symbol.at)) < 2.0 * symbol.clear
+            }
+            Obstacle::Box(_) | Obstacle::Ring { .. } => false,
+        };
         let bounds = Obstacle::Segment(from, to).bounds();
-        self.touched(&bounds).into_iter().any(|i| self.cells[i].iter().any(|o| o.crosses(from, to)))
+        let cells = self.touched(&bounds);
+        cells.into_iter().any(|i| self.cells[i].iter().any(|o| o.crosses(from, to) && !in_crowd(o)))
     }
 
     fn touched(&self, rect: &Rect) -> Vec<usize> {
@@ -225,20 +242,24 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    fn symbol(x: f64, y: f64, clear: f64) -> Symbol {
+        Symbol { at: px(x, y), clear, pinned: false }
+    }
+
     fn field() -> Field {
         Field::new(Rect::new(0.0, 0.0, 400.0, 300.0), 40.0)
     }
 
     #[test]
     fn a_label_stands_at_the_upper_right_of_a_lonely_symbol() {
-        let spot = field().place(px(200.0, 150.0), 10.0, (30.0, 12.0), 12.0, 8).unwrap();
+        let spot = field().place(symbol(200.0, 150.0, 10.0), (30.0, 12.0), 12.0).unwrap();
         assert!(200.0 < spot.rect.left && spot.rect.bottom < 150.0, "{spot:?}");
         assert_eq!(spot.leader, None);
     }
 
     #[test]
     fn a_label_in_a_corner_stays_on_the_sheet() {
-        let spot = field().place(px(398.0, 2.0), 5.0, (60.0, 24.0), 12.0, 8).unwrap();
+        let spot = field().place(symbol(398.0, 2.0, 5.0), (60.0, 24.0), 12.0).unwrap();
         assert!(Rect::new(0.0, 0.0, 400.0, 300.0).contains(&spot.rect), "{spot:?}");
     }
 
@@ -246,10 +267,10 @@ mod tests {
     fn a_label_that_has_no_place_beside_its_symbol_gets_a_leader() {
         let mut field = field();
         field.block(Obstacle::Ring { centre: px(200.0, 150.0), radius: 16.0 });
-        let spot = field.place(px(200.0, 150.0), 10.0, (30.0, 12.0), 12.0, 8).unwrap();
+        let spot = field.place(symbol(200.0, 150.0, 10.0), (30.0, 12.0), 12.0).unwrap();
         assert!(!Obstacle::Ring { centre: px(200.0, 150.0), radius: 16.0 }.hits(&spot.rect));
         field.block(Obstacle::Disc { centre: px(100.0, 100.0), radius: 26.0 });
-        let spot = field.place(px(100.0, 100.0), 10.0, (30.0, 12.0), 12.0, 8);
+        let spot = field.place(symbol(100.0, 100.0, 10.0), (30.0, 12.0), 12.0);
         // The leader itself would run through the disc that fills the surroundings.
         assert_eq!(spot, None);
     }
@@ -258,7 +279,7 @@ mod tests {
     fn a_full_field_takes_no_label() {
         let mut field = field();
         field.block(Obstacle::Box(Rect::new(0.0, 0.0, 400.0, 300.0)));
-        assert_eq!(field.place(px(200.0, 150.0), 10.0, (30.0, 12.0), 12.0, 8), None);
+        assert_eq!(field.place(symbol(200.0, 150.0, 10.0), (30.0, 12.0), 12.0), None);
     }
 
     proptest! {
@@ -272,7 +293,7 @@ mod tests {
             }
             let mut placed: Vec<Spot> = Vec::new();
             for (x, y, width) in &places {
-                placed.extend(field.place(px(*x, *y), 6.0, (*width, 12.0), 12.0, 8));
+                placed.extend(field.place(symbol(*x, *y, 6.0), (*width, 12.0), 12.0));
             }
             for (i, spot) in placed.iter().enumerate() {
                 prop_assert!(Rect::new(0.0, 0.0, 400.0, 300.0).contains(&spot.rect));

@@ -1,7 +1,7 @@
 //! Letters holes and lines: as many lines of every label as there is room for, and a note of what had none.
 use super::font::{ASCENT, DESCENT};
 use super::ink::{Ink, Px, Rect, px};
-use super::labels::{Field, Spot};
+use super::labels::{Field, Spot, Symbol};
 use super::marks::Drawn;
 use super::palette;
 use super::scene::{Scene, Shape};
@@ -15,71 +15,103 @@ const LABEL_LIMIT: usize = 400;
 /// Height of a line of text in parts of its size.
 const LEADING: f64 = 1.18;
 
-/// Labels every hole, all with as many lines as all have room for; says what found no place.
-pub(super) fn label_marks(
-    scene: &Scene,
-    drawn: &[Drawn],
-    frame: &Frame,
-    field: &mut Field,
-    inks: &mut Vec<Ink>,
-    labels: &mut Vec<(Rect, Vec<String>)>,
-) -> Vec<String> {
-    let mut order: Vec<usize> = (0..scene.marks.len()).collect();
-    order.sort_by_key(|i| (scene.marks[*i].standing, *i));
-    order.truncate(LABEL_LIMIT);
-    let most = scene.marks.iter().map(|m| m.label.len()).max().unwrap_or(0);
-    let reach = if scene.marks.len() <= 60 { 8 } else { 4 };
-
-    let mut best: Option<(Field, Vec<(usize, Spot, usize)>, usize)> = None;
-    for lines in (1..=most).rev() {
-        let mut trial = field.clone();
-        let mut spots = Vec::new();
-        for i in &order {
-            let mark = &scene.marks[*i];
-            let full = if mark.standing.is_good() { lines } else { most };
-            let tries = (1..=full.min(mark.label.len())).rev().filter(|n| *n <= lines || *n == full);
-            for n in tries {
-                let box_size = text_box(&mark.label[..n], frame);
-                let line = frame.text * LEADING;
-                if let Some(spot) = trial.place(drawn[*i].centre, drawn[*i].clear, box_size, line, reach) {
-                    spots.push((*i, spot, n));
-                    break;
-                }
-            }
-        }
-        let done = spots.len() == order.len()
-            && spots.iter().all(|(i, _, n)| lines.min(scene.marks[*i].label.len()) <= *n);
-        let better = best.as_ref().is_none_or(|(_, old, _)| old.len() < spots.len());
-        if done || better {
-            best = Some((trial, spots, lines));
-        }
-        if done {
-            break;
-        }
-    }
-    let Some((trial, spots, _)) = best else { return Vec::new() };
-    *field = trial;
-    for (i, spot, n) in &spots {
-        let lines = scene.marks[*i].label[..*n].to_vec();
-        if let Some((from, to)) = spot.leader {
-            inks.push(Ink::line(from, to, (0.05 * frame.text).max(1.0), palette::THIN));
-        }
-        write(&lines, spot.rect, frame, inks);
-        labels.push((spot.rect, lines));
-    }
-    let mut notes = Vec::new();
-    let without = scene.marks.iter().filter(|m| !m.label.is_empty()).count() - spots.len();
-    if 0 < without {
-        notes.push(format!("{without} of {} holes without a number: no room", scene.marks.len()));
-    }
-    let cut = spots.iter().filter(|(i, _, n)| *n < scene.marks[*i].label.len()).count();
-    if 0 < cut {
-        notes.push(format!("{cut} labels shortened: no room"));
-    }
-    notes
+/// The labels of all holes, placed.
+pub(super) struct Lettering {
+    /// The field with the labels in it.
+    pub(super) field: Field,
+    labels: Vec<Label>,
 }
 
-/// Radii and the like, on their lines: at 8 places round a circle, at thirds of a straight line.
+/// Which hole, where, and how many lines of its label.
+struct Label {
+    mark: usize,
+    spot: Spot,
+    lines: usize,
+}
+
+impl Lettering {
+    /// As many lines for every good hole as all good holes have room for; the others get all they can.
+    pub(super) fn of(scene: &Scene, drawn: &[Drawn], frame: &Frame, field: &Field) -> Self {
+        let mut order: Vec<usize> = (0..scene.marks.len()).collect();
+        order.sort_by_key(|i| (scene.marks[*i].standing, *i));
+        order.truncate(LABEL_LIMIT);
+        let most = scene.marks.iter().map(|m| m.label.len()).max().unwrap_or(0);
+        let mut best = Self { field: field.clone(), labels: Vec::new() };
+        for lines in (1..=most).rev() {
+            let trial = Self::with_lines(lines, &order, scene, drawn, frame, field.clone());
+            let short = |l: &Label| l.lines < lines.min(scene.marks[l.mark].label.len());
+            let complete = trial.labels.len() == order.len() && !trial.labels.iter().any(short);
+            if complete || best.labels.len() < trial.labels.len() {
+                best = trial;
+            }
+            if complete {
+                break;
+            }
+        }
+        best
+    }
+
+    fn with_lines(
+        lines: usize,
+        order: &[usize],
+        scene: &Scene,
+        drawn: &[Drawn],
+        frame: &Frame,
+        field: Field,
+    ) -> Self {
+        let mut trial = Self { field, labels: Vec::new() };
+        for i in order {
+            let (mark, hole) = (&scene.marks[*i], &drawn[*i]);
+            let full = if mark.standing.is_good() { lines.min(mark.label.len()) } else { mark.label.len() };
+            let symbol = Symbol { at: hole.centre, clear: hole.clear, pinned: hole.crowded };
+            let found = (1..=full).rev().find_map(|n| {
+                let size = text_box(&mark.label[..n], frame);
+                Some((n, trial.field.place(symbol, size, frame.text * LEADING)?))
+            });
+            trial.labels.extend(found.map(|(lines, spot)| Label { mark: *i, spot, lines }));
+        }
+        trial
+    }
+
+    /// How many holes that have a label are drawn without one.
+    pub(super) fn unlabelled(&self, scene: &Scene) -> usize {
+        scene.marks.iter().filter(|m| !m.label.is_empty()).count() - self.labels.len()
+    }
+
+    pub(super) fn write(
+        &self,
+        scene: &Scene,
+        frame: &Frame,
+        inks: &mut Vec<Ink>,
+    ) -> Vec<(Rect, Vec<String>)> {
+        let thin = (0.05 * frame.text).max(1.0);
+        let leaders = self.labels.iter().filter_map(|l| l.spot.leader);
+        inks.extend(leaders.map(|(from, to)| Ink::line(from, to, thin, palette::THIN)));
+        let mut labels = Vec::new();
+        for label in &self.labels {
+            let lines = scene.marks[label.mark].label[..label.lines].to_vec();
+            write(&lines, label.spot.rect, frame, inks);
+            labels.push((label.spot.rect, lines));
+        }
+        labels
+    }
+
+    /// What is left out.
+    pub(super) fn notes(&self, scene: &Scene) -> Vec<String> {
+        let mut notes = Vec::new();
+        let without = self.unlabelled(scene);
+        if 0 < without {
+            notes.push(format!("{without} of {} holes without a number: no room.", scene.marks.len()));
+        }
+        let cut = self.labels.iter().filter(|l| l.lines < scene.marks[l.mark].label.len()).count();
+        if 0 < cut {
+            notes.push(format!("{cut} labels shortened: no room."));
+        }
+        notes
+    }
+}
+
+/// Radii and the like, on their lines: somewhere round a circle, from the lower left on, or on a straight line.
 pub(super) fn caption_strokes(
     scene: &Scene,
     frame: &Frame,

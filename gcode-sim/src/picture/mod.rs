@@ -4,6 +4,7 @@
 //! [`lay_out`] turns any scene into a [`Sheet`]: everything has its pixel place, no label covers another. [`paint`]
 //! only paints. A new view is a new file in `views/`; a new file format is a new painter of sheets.
 mod compare;
+mod dials;
 mod font;
 mod ink;
 mod labels;

@@ -1,11 +1,12 @@
 //! Lays a scene out on a sheet of a given size: scale, dials, labels, scale bar, title block. Decides, doesn't paint.
 use super::PictureError;
+use super::dials::{Detail, Dials};
 use super::font::Font;
 use super::ink::{Ink, Rect};
 use super::labels::Field;
-use super::lettering::{caption_strokes, label_marks};
+use super::lettering::{Lettering, caption_strokes};
 use super::lines::{axes, block_stroke, is_path, scale_bar, stroke_ink};
-use super::marks::{Dials, draw_marks};
+use super::marks::draw_marks;
 use super::measure::Scale;
 use super::panel::Panel;
 use super::scene::{Point, Scene, Shape};
@@ -33,6 +34,8 @@ pub(super) struct Frame {
     /// Size of ordinary text, pixels.
     pub(super) text: f64,
     pub(super) scale: Scale,
+    /// Radius in pixels beyond which a dial would hide the part.
+    pub(super) largest_dial: f64,
 }
 
 /// # Errors
@@ -49,26 +52,58 @@ pub fn lay_out(scene: &Scene, size: Size) -> Result<Sheet, PictureError> {
 
     let extent = extent(scene);
     let scale = Scale::fitting(extent, drawing.grown(-2.9 * text));
-    let frame = Frame { font, text, scale };
-    let dials = Dials::choose(scene, &frame);
-    let mut field = Field::new(drawing.grown(-0.3 * text), 3.0 * text);
+    let largest_dial = (2.4 * text).min(0.05 * drawing.width().min(drawing.height()));
+    let frame = Frame { font, text, scale, largest_dial };
 
-    let mut inks = Vec::new();
-    for stroke in &scene.strokes {
-        inks.push(stroke_ink(stroke, &frame));
-        block_stroke(&mut field, stroke, &frame);
+    let mut plans = Detail::ALL.iter().map(|detail| Plan::new(scene, &frame, drawing, extent, *detail));
+    let mut best = plans.next().expect("there is a first detail");
+    for plan in plans {
+        if best.unlabelled == 0 {
+            break;
+        }
+        if plan.unlabelled < best.unlabelled {
+            best = plan;
+        }
     }
-    inks.extend(axes(scene, &frame, extent, drawing, &mut field));
-    let drawn = draw_marks(scene, &frame, &dials, &mut field);
-    inks.extend(drawn.iter().flat_map(|d| d.inks.iter().cloned()));
-    let mut notes = dials.notes(scene, &drawn);
-    let mut labels = Vec::new();
-    notes.extend(label_marks(scene, &drawn, &frame, &mut field, &mut inks, &mut labels));
-    caption_strokes(scene, &frame, &mut field, &mut inks, &mut labels);
-    let bar = Rect { top: drawing.bottom, ..panel.drawing };
-    inks.extend(scale_bar(&frame, bar));
-    inks.extend(panel.inks(scene, &frame, dials.magnification(), &notes));
-    Ok(Sheet { size, inks, labels, notes, magnification: dials.magnification() })
+    let Plan { mut inks, labels, notes, magnification, .. } = best;
+    inks.extend(scale_bar(&frame, Rect { top: drawing.bottom, ..panel.drawing }));
+    inks.extend(panel.inks(scene, &frame, magnification, &notes));
+    Ok(Sheet { size, inks, labels, notes, magnification })
+}
+
+/// The drawing with some of the detail there could be.
+struct Plan {
+    inks: Vec<Ink>,
+    labels: Vec<(Rect, Vec<String>)>,
+    notes: Vec<String>,
+    magnification: Option<f64>,
+    /// Holes without a number.
+    unlabelled: usize,
+}
+
+impl Plan {
+    fn new(scene: &Scene, frame: &Frame, drawing: Rect, extent: (Point, Point), detail: Detail) -> Self {
+        let mut field = Field::new(drawing.grown(-0.3 * frame.text), 3.0 * frame.text);
+        let mut inks = Vec::new();
+        for stroke in &scene.strokes {
+            inks.push(stroke_ink(stroke, frame));
+            block_stroke(&mut field, stroke, frame);
+        }
+        inks.extend(axes(scene, frame, extent, drawing, &mut field));
+        let dials = Dials::choose(scene, frame, detail);
+        let drawn = draw_marks(scene, frame, &dials, &mut field);
+        inks.extend(drawn.iter().flat_map(|d| d.inks.iter().cloned()));
+        let mut lettering = Lettering::of(scene, &drawn, frame, &field);
+        let mut labels = lettering.write(scene, frame, &mut inks);
+        caption_strokes(scene, frame, &mut lettering.field, &mut inks, &mut labels);
+        let mut notes: Vec<String> = dials.note(scene).into_iter().collect();
+        if drawn.iter().any(|d| d.cut) {
+            notes.push("Misfit with an arrow: longer than drawn.".to_owned());
+        }
+        notes.extend(lettering.notes(scene));
+        let unlabelled = lettering.unlabelled(scene);
+        Self { inks, labels, notes, magnification: dials.magnification(), unlabelled }
+    }
 }
 
 fn check(scene: &Scene) -> Result<(), PictureError> {

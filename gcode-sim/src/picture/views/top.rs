@@ -118,7 +118,7 @@ fn mark(hole: &DrawnHole, rotary: &str) -> Option<Mark> {
         label,
         direction: Some(seen(shown.axis)),
         misfit: both.and_then(|(nominal, found)| misfit(nominal, found)),
-        found: both.and_then(|(nominal, found)| Some(seen(crossing(nominal, found, 0.0)?.into()))),
+        found: both.map(|(_, found)| seen(found.entry)),
     })
 }
 
@@ -200,7 +200,7 @@ fn worst(holes: &[DrawnHole]) -> Option<String> {
         Some(worst) if next.0 <= worst.0 => Some(worst),
         _ => Some(next),
     })?;
-    Some(format!("worst position: Φ{phi:.4} (hole {id})"))
+    Some(format!("worst position: Φ{phi:.4} (hole\u{a0}{id})"))
 }
 
 fn legend(view: &TopView, marks: &[Mark], has_circles: bool) -> Vec<LegendItem> {

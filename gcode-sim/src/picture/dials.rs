@@ -1,0 +1,155 @@
+//! How much can be shown of each hole: where there is room for a dial with the misfit, how large, how enlarged.
+use super::ink::Px;
+use super::measure::magnification;
+use super::scene::{Mark, Scene, Standing};
+use super::sheet::Frame;
+
+/// How much is drawn of the holes, tried in this order until every hole has its number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Detail {
+    Misfits,
+    MisfitsOfBadOnes,
+    Signs,
+    SignsWithoutAxes,
+}
+
+impl Detail {
+    pub(super) const ALL: [Self; 4] =
+        [Self::Misfits, Self::MisfitsOfBadOnes, Self::Signs, Self::SignsWithoutAxes];
+
+    fn shows_misfit(self, mark: &Mark) -> bool {
+        mark.misfit.is_some()
+            && match self {
+                Self::Misfits => true,
+                Self::MisfitsOfBadOnes => !mark.standing.is_good(),
+                Self::Signs | Self::SignsWithoutAxes => false,
+            }
+    }
+}
+
+/// Where misfits are shown on this sheet, and how large.
+#[derive(Clone, Debug)]
+pub(super) struct Dials {
+    /// Times enlarged and radius of the zone's circle in pixels.
+    pub(super) shown: Option<(f64, f64)>,
+    /// Whether a hole has a dial.
+    has: Vec<bool>,
+    /// Distance of each hole to its nearest neighbour, pixels.
+    gaps: Vec<f64>,
+    pub(super) detail: Detail,
+}
+
+impl Dials {
+    /// As large as the distances of three in four holes allow; a hole that is closer to a neighbour has none.
+    pub(super) fn choose(scene: &Scene, frame: &Frame, detail: Detail) -> Self {
+        let gaps = gaps(scene, frame);
+        let wanted: Vec<bool> = scene.marks.iter().map(|mark| detail.shows_misfit(mark)).collect();
+        let mut room: Vec<f64> = gaps.iter().zip(&wanted).filter(|(_, w)| **w).map(|(gap, _)| *gap).collect();
+        room.sort_by(f64::total_cmp);
+        let most = room.get(room.len() / 4).map_or(0.0, |gap| (0.42 * gap).min(frame.largest_dial));
+        let shown = scene.zone.filter(|zone| 0.0 < *zone && 0.8 * frame.text <= most).map(|zone| {
+            let times = magnification(most / (zone / 2.0 * frame.scale.factor));
+            (times, times * zone / 2.0 * frame.scale.factor)
+        });
+        let radius = shown.map_or(f64::INFINITY, |(_, radius)| radius);
+        let has = wanted.iter().zip(&gaps).map(|(wanted, gap)| *wanted && 2.0 * radius <= *gap).collect();
+        Self { shown, has, gaps, detail }
+    }
+
+    /// Times enlarged and radius of the circle, for a hole that has a dial.
+    pub(super) fn of(&self, index: usize) -> Option<(f64, f64)> {
+        self.shown.filter(|_| self.has[index])
+    }
+
+    /// Times enlarged, if any misfit is drawn.
+    pub(super) fn magnification(&self) -> Option<f64> {
+        self.shown.filter(|_| self.has.contains(&true)).map(|(times, _)| times)
+    }
+
+    /// Radius of a hole's sign.
+    pub(super) fn badge(&self, index: usize, text: f64) -> f64 {
+        (0.36 * self.gaps[index]).min(0.55 * text).max(0.28 * text)
+    }
+
+    /// Signs that lie on each other: a label beside them could belong to either.
+    pub(super) fn is_crowded(&self, index: usize, text: f64) -> bool {
+        self.gaps[index] < 2.0 * self.badge(index, text)
+    }
+
+    /// What is left out.
+    pub(super) fn note(&self, scene: &Scene) -> Option<String> {
+        let known = scene.marks.iter().filter(|m| m.misfit.is_some() && scene.zone.is_some()).count();
+        match known - self.has.iter().filter(|has| **has).count() {
+            0 => None,
+            left if left == known => Some("Misfits not drawn: no room.".to_owned()),
+            left => Some(format!("Misfits of {left} of {known} holes not drawn: no room.")),
+        }
+    }
+}
+
+/// The distance from each hole to its nearest neighbour, pixels. A surplus hole in the place of another doesn't count:
+/// its sign moves aside.
+fn gaps(scene: &Scene, frame: &Frame) -> Vec<f64> {
+    let mut places: Vec<(Px, bool, usize)> = Vec::new();
+    for (index, mark) in scene.marks.iter().enumerate() {
+        places.push((frame.scale.px(mark.at), mark.standing == Standing::Extra, index));
+    }
+    places.sort_by(|a, b| a.0.x.total_cmp(&b.0.x).then(a.2.cmp(&b.2)));
+    let mut gaps = vec![f64::INFINITY; places.len()];
+    for (i, (a, extra, index)) in places.iter().enumerate() {
+        for (b, other_extra, other) in &places[i + 1..] {
+            if gaps[*index].max(4.0 * frame.largest_dial) < b.x - a.x {
+                break;
+            }
+            let distance = a.distance(*b);
+            if (*extra || *other_extra) && distance < 0.3 * frame.text {
+                continue;
+            }
+            gaps[*index] = gaps[*index].min(distance);
+            gaps[*other] = gaps[*other].min(distance);
+        }
+    }
+    gaps
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::picture::font::Font;
+    use crate::picture::ink::Rect;
+    use crate::picture::measure::Scale;
+    use crate::picture::scene::Misfit;
+
+    fn mark(at: [f64; 2], standing: Standing) -> Mark {
+        let misfit = Some(Misfit { entry: [0.01, 0.0], bottom: [0.01, 0.0] });
+        Mark { at, radius: 3.0, standing, label: Vec::new(), direction: None, misfit, found: None }
+    }
+
+    /// 1 px a mm, text of 10 px.
+    fn frame() -> Frame {
+        let scale = Scale::fitting(([0.0, 0.0], [100.0, 100.0]), Rect::new(0.0, 0.0, 100.0, 100.0));
+        Frame { font: Font::embedded(), text: 10.0, scale, largest_dial: 25.0 }
+    }
+
+    #[test]
+    fn the_zone_is_drawn_at_a_round_magnification() {
+        let marks = vec![mark([0.0, 0.0], Standing::Good), mark([50.0, 0.0], Standing::Good)];
+        let scene = Scene { marks, zone: Some(0.1), ..Scene::default() };
+        let dials = Dials::choose(&scene, &frame(), Detail::Misfits);
+        // 0.42 of 50 px are 21 px; the zone's radius is 0.05 px: 420 times at most.
+        assert_eq!(dials.magnification().map(|m| m.round()), Some(400.0));
+        assert_eq!(dials.note(&scene), None);
+    }
+
+    #[test]
+    fn a_hole_close_to_another_has_no_dial_and_that_is_said() {
+        let mut marks: Vec<Mark> = (0..8).map(|i| mark([f64::from(i) * 50.0, 0.0], Standing::Good)).collect();
+        marks.push(mark([3.0, 0.0], Standing::Good));
+        let scene = Scene { marks, zone: Some(0.1), ..Scene::default() };
+        let dials = Dials::choose(&scene, &frame(), Detail::Misfits);
+        assert_eq!((dials.of(0), dials.of(8)), (None, None));
+        assert!(dials.of(4).is_some());
+        assert!(dials.is_crowded(0, 10.0) && !dials.is_crowded(4, 10.0));
+        assert_eq!(dials.note(&scene).unwrap(), "Misfits of 2 of 9 holes not drawn: no room.");
+    }
+}
