@@ -3,3 +3,6 @@
 //! This module knows no NC code and shares no formula with the generator: a verifier that did would agree with
 //! its mistakes.
 pub mod hole;
+mod read;
+pub mod reference;
+pub mod surface;

@@ -1,0 +1,146 @@
+//! The part's surface as an implicit function, and where a line meets it: by its values and gradients alone.
+use nalgebra::{Point3, Unit, Vector3};
+
+/// A convex body; lengths in mm, in the part's frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Surface {
+    /// Of revolution about y: `a` its equatorial, `b` its polar radius.
+    Ellipsoid { a: f64, b: f64 },
+}
+
+impl Surface {
+    /// Below 0 inside, 0 on the surface, above 0 outside.
+    pub fn value(&self, p: &Point3<f64>) -> f64 {
+        match *self {
+            Self::Ellipsoid { a, b } => {
+                let (x, y, z) = (p.x / a, p.y / b, p.z / a);
+                x * x + y * y + z * z - 1.0
+            }
+        }
+    }
+
+    pub fn gradient(&self, p: &Point3<f64>) -> Vector3<f64> {
+        match *self {
+            Self::Ellipsoid { a, b } => {
+                Vector3::new(2.0 * p.x / (a * a), 2.0 * p.y / (b * b), 2.0 * p.z / (a * a))
+            }
+        }
+    }
+
+    /// The unit normal out of the body; `None` where the gradient vanishes, as in the centre.
+    pub fn normal(&self, p: &Point3<f64>) -> Option<Unit<Vector3<f64>>> {
+        Unit::try_new(self.gradient(p), f64::MIN_POSITIVE)
+    }
+
+    /// How far below the surface a point lies, to first order: exact on the surface, the right sign everywhere.
+    pub fn depth(&self, p: &Point3<f64>) -> f64 {
+        let slope = self.gradient(p).norm();
+        if slope == 0.0 { f64::INFINITY } else { -self.value(p) / slope }
+    }
+
+    /// Where a line leaves the body towards `out`; `None` where it misses the body.
+    pub fn exit(&self, on: &Point3<f64>, out: &Unit<Vector3<f64>>) -> Option<Point3<f64>> {
+        let at = |t: f64| on + out.into_inner() * t;
+        let innermost = self.innermost(on, out);
+        // A line that touches is one that meets: what is left of the value there is rounding.
+        if self.value(&at(innermost)) > 1e-12 {
+            return None;
+        }
+        let beyond = grow(innermost, 1.0, |t| self.value(&at(t)) > 0.0);
+        Some(at(bisect(innermost, beyond, |t| self.value(&at(t)) > 0.0)))
+    }
+
+    /// The deepest point of a straight way; of one that only touches the body at an end, that end.
+    pub fn deepest_between(&self, from: &Point3<f64>, to: &Point3<f64>) -> Point3<f64> {
+        let Some(along) = Unit::try_new(to - from, 1e-9) else { return *from };
+        // The slope grows along the way, because the body is convex.
+        if self.gradient(from).dot(&along) >= 0.0 {
+            return *from;
+        }
+        if self.gradient(to).dot(&along) <= 0.0 {
+            return *to;
+        }
+        from + along.into_inner() * self.innermost(from, &along)
+    }
+
+    /// Where along a line the value is least: there its slope changes sign, once, because the body is convex.
+    fn innermost(&self, on: &Point3<f64>, along: &Unit<Vector3<f64>>) -> f64 {
+        let rising = |t: f64| self.gradient(&(on + along.into_inner() * t)).dot(along) > 0.0;
+        let high = grow(0.0, 1.0, rising);
+        let low = grow(0.0, -1.0, |t| !rising(t));
+        bisect(low, high, rising)
+    }
+}
+
+/// The first of `from` + `step`·1, 2, 4, 8 … where `reached` holds.
+fn grow(from: f64, mut step: f64, reached: impl Fn(f64) -> bool) -> f64 {
+    while !reached(from + step) && step.abs() < 1e12 {
+        step *= 2.0;
+    }
+    from + step
+}
+
+/// Where `above` changes from false at `low` to true at `high`, to the last bit.
+fn bisect(mut low: f64, mut high: f64, above: impl Fn(f64) -> bool) -> f64 {
+    loop {
+        let middle = low + (high - low) / 2.0;
+        if middle <= low || middle >= high {
+            return middle;
+        }
+        if above(middle) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn a_sphere_is_left_where_pythagoras_says() {
+        let sphere = Surface::Ellipsoid { a: 5.0, b: 5.0 };
+        let up = Vector3::y_axis();
+        let exit = sphere.exit(&Point3::new(3.0, -80.0, 0.0), &up).unwrap();
+        assert!((exit - Point3::new(3.0, 4.0, 0.0)).norm() < 1e-14, "{exit}");
+        assert!(sphere.exit(&Point3::new(5.1, 0.0, 0.0), &up).is_none());
+        let touching = sphere.exit(&Point3::new(5.0, 9.0, 0.0), &up).unwrap();
+        assert!((touching - Point3::new(5.0, 0.0, 0.0)).norm() < 1e-6, "{touching}");
+    }
+
+    #[test]
+    fn depth_is_the_distance_near_the_surface() {
+        let sphere = Surface::Ellipsoid { a: 100.0, b: 100.0 };
+        assert!((sphere.depth(&Point3::new(0.0, 99.9, 0.0)) - 0.1).abs() < 1e-4);
+        assert!(sphere.depth(&Point3::new(0.0, 100.1, 0.0)) < 0.0);
+    }
+
+    #[test]
+    fn a_way_past_the_body_is_deepest_in_its_middle() {
+        let sphere = Surface::Ellipsoid { a: 10.0, b: 10.0 };
+        let (from, to) = (Point3::new(-20.0, 6.0, 0.0), Point3::new(30.0, 6.0, 0.0));
+        assert!((sphere.deepest_between(&from, &to) - Point3::new(0.0, 6.0, 0.0)).norm() < 1e-6);
+        let away = Point3::new(0.0, 10.0, 0.0);
+        assert_eq!(sphere.deepest_between(&away, &Point3::new(0.0, 50.0, 0.0)), away);
+    }
+
+    proptest! {
+        /// A line through a point of the surface given by its latitude is left there.
+        #[test]
+        fn a_line_is_left_at_the_point_it_was_laid_through(
+            (a, b) in (1.0..2000.0, 1.0..2000.0),
+            (latitude, azimuth) in (0.01..1.57, -9.0..9.0f64),
+        ) {
+            let (a, b): (f64, f64) = (a, b);
+            let surface = Surface::Ellipsoid { a, b };
+            let r = a * libm::cos(latitude);
+            let p = Point3::new(r * libm::cos(azimuth), b * libm::sin(latitude), r * libm::sin(azimuth));
+            let exit = surface.exit(&Point3::new(p.x, 0.0, p.z), &Vector3::y_axis()).unwrap();
+            prop_assert!((exit - p).norm() < 1e-9 * a.max(b), "{} {}", exit, p);
+        }
+    }
+}
