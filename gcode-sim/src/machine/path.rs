@@ -50,15 +50,24 @@ impl Machine {
         }
     }
 
-    /// A path p(t) strays from its chord by at most |p''|·Δt²/8. With the table and the head turning by γ in all,
-    /// the slides going b, and levers no longer than ρ, |p''| is at most γ²·ρ + 2·γ·b; an arc of sweep s and
-    /// radius R adds s²·R.
-    fn steps(&self, travel: &Travel<'_>, setup: &Setup, tolerance: f64) -> u32 {
+    /// Whether the tool goes straight on the part: neither the table nor the head turns, and no arc.
+    pub fn is_straight(&self, travel: &Travel<'_>) -> bool {
+        travel.arc.is_none() && self.turn(travel) == Deg::ZERO
+    }
+
+    fn turn(&self, travel: &Travel<'_>) -> Deg {
         let head = match self.head.kind {
             HeadKind::Axis { axis, .. } => Deg(travel.to[axis] - travel.from[axis]).abs(),
             HeadKind::Free | HeadKind::Fixed(_) | HeadKind::Manual { .. } => Deg::ZERO,
         };
-        let turn = (self.table.turned(travel.from, travel.to) + head).to_rad();
+        self.table.turned(travel.from, travel.to) + head
+    }
+
+    /// A path p(t) strays from its chord by at most |p''|·Δt²/8. With the table and the head turning by γ in all,
+    /// the slides going b, and levers no longer than ρ, |p''| is at most γ²·ρ + 2·γ·b; an arc of sweep s and
+    /// radius R adds s²·R.
+    fn steps(&self, travel: &Travel<'_>, setup: &Setup, tolerance: f64) -> u32 {
+        let turn = self.turn(travel).to_rad();
         let sweep = travel.arc.map_or(0.0, |arc| arc.sweep.to_rad());
         if turn == 0.0 && sweep == 0.0 {
             return 1;

@@ -174,7 +174,7 @@ mod tests {
                 "line 1: column 'k' is missing: the header is id,x,y,z,i,j,k,depth,diameter",
             ),
             (HOLE.replace("depth", "deep"), "line 1: column 86: unknown field `deep`"),
-            (HOLE.replace("5}]}", "5}"), "line 1: column 90: EOF while parsing a list"),
+            (HOLE.replace("5}]}", "5}"), "line 1: column 91: EOF while parsing a list"),
         ];
         for (text, expected) in cases {
             let found = refused(&text);

@@ -1,1 +1,0 @@
-//! The path to holes, each with its block.

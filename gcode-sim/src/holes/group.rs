@@ -1,0 +1,154 @@
+//! Passes → holes: what several tools, or one tool in several goes, cut on one line is one hole.
+use nalgebra::{Point3, Unit, Vector3};
+
+use super::near::PointTree;
+use crate::machine::Machine;
+use crate::motion::{Place, Position};
+use crate::units::Deg;
+
+/// Passes belong to one hole when one's bottom lies this near the other's line, in mm, …
+const ASIDE: f64 = 0.5;
+
+/// … and their directions differ by no more than this: 5°.
+const COSINE: f64 = 0.996_194_698_091_745_5;
+
+/// A tool was there before when it reaches less than this deeper, in mm.
+const DEEPER: f64 = 0.001;
+
+/// A feed into the part along one line, in the part's frame.
+#[derive(Clone, Debug)]
+pub(super) struct Pass {
+    pub start: Point3<f64>,
+    pub bottom: Point3<f64>,
+    /// The tool's direction out of the part, or the feed's where it isn't known.
+    pub axis: Unit<Vector3<f64>>,
+    /// The direction of the feed, out of the part.
+    pub fed: Unit<Vector3<f64>>,
+    pub tool: Option<u32>,
+    pub place: Place,
+    pub at: Position,
+}
+
+/// A hole the program makes, in the part's frame.
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// Where the cutting feed of the finishing tool begins, on the hole's axis.
+    pub entry: Point3<f64>,
+    /// Out of the part.
+    pub axis: Unit<Vector3<f64>>,
+    /// From the entry to the deepest point of any tool.
+    pub depth: f64,
+    /// Of the finishing tool, where the tool table has it.
+    pub diameter: Option<f64>,
+    pub tool: Option<u32>,
+    /// The block that finished it.
+    pub place: Place,
+    /// Where the axes stood at the bottom.
+    pub at: Position,
+    /// The angle between the finishing feed and the tool's axis.
+    pub off_tool: Deg,
+    /// The same tool had already been here, as deep: the hole before this one in the list is the same hole.
+    pub again: bool,
+}
+
+/// The holes in the order in which their first passes were made.
+pub(super) fn holes(passes: &[Pass], machine: &Machine) -> Vec<Found> {
+    let first = same_line(passes);
+    let mut groups: Vec<Vec<&Pass>> = Vec::new();
+    let mut place = vec![0; passes.len()];
+    for (index, pass) in passes.iter().enumerate() {
+        if first[index] == index {
+            place[index] = groups.len();
+            groups.push(Vec::new());
+        }
+        groups[place[first[index]]].push(pass);
+    }
+    groups.iter().flat_map(|group| holes_of(group, machine)).collect()
+}
+
+/// For each pass the first one on its line.
+fn same_line(passes: &[Pass]) -> Vec<usize> {
+    let tree = PointTree::new(passes.iter().map(|pass| pass.bottom));
+    let mut first: Vec<usize> = (0..passes.len()).collect();
+    for (index, pass) in passes.iter().enumerate() {
+        let margin = Vector3::repeat(ASIDE);
+        let low = pass.start.inf(&pass.bottom) - margin;
+        let high = pass.start.sup(&pass.bottom) + margin;
+        tree.in_box(&low, &high, &mut |other| {
+            let to = passes[other].bottom - pass.bottom;
+            let aside = (to - pass.axis.into_inner() * to.dot(&pass.axis)).norm();
+            if aside <= ASIDE && pass.axis.dot(&passes[other].axis) >= COSINE {
+                let (a, b) = (root(&mut first, index), root(&mut first, other));
+                first[a.max(b)] = a.min(b);
+            }
+        });
+    }
+    (0..passes.len()).map(|index| root(&mut first, index)).collect()
+}
+
+fn root(first: &mut [usize], mut index: usize) -> usize {
+    while first[index] != index {
+        first[index] = first[first[index]];
+        index = first[index];
+    }
+    index
+}
+
+/// One hole, and one more for every time a tool came back for nothing.
+fn holes_of(group: &[&Pass], machine: &Machine) -> Vec<Found> {
+    let out = group[0].axis;
+    let height = |p: &Point3<f64>| p.coords.dot(&out);
+    let mut cutting: Vec<&Pass> = Vec::with_capacity(group.len());
+    let mut again: Vec<&Pass> = Vec::new();
+    for pass in group {
+        let before = cutting.iter().filter(|other| other.tool == pass.tool);
+        let lowest = before.map(|other| height(&other.bottom)).fold(f64::INFINITY, f64::min);
+        match height(&pass.bottom) < lowest - DEEPER {
+            true => cutting.push(pass),
+            false => again.push(pass),
+        }
+    }
+    let lowest = cutting.iter().map(|pass| height(&pass.bottom)).fold(f64::INFINITY, f64::min);
+    let finish = finishing(&cutting, lowest, height, machine);
+    let one = |pass: &Pass, starts: &[&Pass], bottom: f64, again: bool| {
+        let start = starts.iter().map(|p| height(&p.start)).fold(f64::NEG_INFINITY, f64::max);
+        let slope = pass.axis.dot(&out);
+        let along =
+            |level: f64| pass.bottom + pass.axis.into_inner() * ((level - height(&pass.bottom)) / slope);
+        Found {
+            entry: along(start),
+            axis: pass.axis,
+            depth: (along(start) - along(bottom)).norm(),
+            diameter: pass.tool.and_then(|tool| machine.find_tool(tool)?.diameter),
+            tool: pass.tool,
+            place: pass.place.clone(),
+            at: pass.at,
+            off_tool: Deg::acos(pass.axis.dot(&pass.fed).clamp(-1.0, 1.0)),
+            again,
+        }
+    };
+    let starts: Vec<&Pass> = cutting.iter().copied().filter(|pass| pass.tool == finish.tool).collect();
+    let mut found = vec![one(finish, &starts, lowest, false)];
+    found.extend(again.into_iter().map(|pass| one(pass, &[pass], height(&pass.bottom), true)));
+    found
+}
+
+/// The last pass of the largest tool that goes at least half as deep as the hole; where diameters aren't known, of
+/// the last tool. A countersink is large and shallow and doesn't make the hole.
+fn finishing<'p>(
+    cutting: &[&'p Pass],
+    lowest: f64,
+    height: impl Fn(&Point3<f64>) -> f64,
+    machine: &Machine,
+) -> &'p Pass {
+    let longest = cutting.iter().map(|pass| height(&pass.start) - lowest).fold(0.0, f64::max);
+    let diameter = |pass: &Pass| pass.tool.and_then(|tool| machine.find_tool(tool)?.diameter).unwrap_or(0.0);
+    let mut best = cutting[0];
+    for pass in &cutting[1..] {
+        let deep = |p: &Pass| height(&p.bottom) <= lowest + longest / 2.0;
+        if (deep(pass), diameter(pass)) >= (deep(best), diameter(best)) {
+            best = pass;
+        }
+    }
+    best
+}

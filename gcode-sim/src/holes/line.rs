@@ -1,0 +1,198 @@
+//! The line a cutting feed runs along on the part, as long as the tool stays on it: strokes in, pecks, the way out.
+use nalgebra::{Point3, Unit, Vector3};
+
+use super::Pass;
+use crate::motion::{Place, Position};
+
+/// A stroke counts as deeper than the last when it is so by this much, in mm.
+const DEEPER: f64 = 0.001;
+
+/// Where a tool that was on a line is after a motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum After {
+    /// Still on it.
+    On,
+    /// It left along the line, past the point where the feed had begun.
+    Out,
+    /// It left to the side, from this far below where the feed had begun, having come back by `back`.
+    Aside { back: f64 },
+}
+
+/// The current line. Depths count from `start`, positive into the part.
+#[derive(Debug)]
+pub(super) struct Line {
+    pub start: Point3<f64>,
+    pub out: Unit<Vector3<f64>>,
+    /// The direction of the tool on the part, where known.
+    pub tool_axis: Option<Unit<Vector3<f64>>>,
+    pub tool: Option<u32>,
+    pub spindle_off: bool,
+    /// The depth reached by finished strokes.
+    deepest: f64,
+    /// The stroke being fed.
+    stroke: Option<Stroke>,
+    /// The tool's depth now.
+    depth: f64,
+    /// The block, and the axes' position, of the deepest point of the finished strokes.
+    place: Place,
+    at: Position,
+    /// Half the rounding of a programmed point, mm.
+    rounding: f64,
+}
+
+/// Feeds inwards without a way back between them.
+#[derive(Debug)]
+struct Stroke {
+    from: f64,
+    reach: f64,
+    place: Place,
+    at: Position,
+}
+
+impl Line {
+    /// A feed from `start` to `end` that is the first on its line; `None` if it is too short to have a direction.
+    pub(super) fn begin(
+        start: Point3<f64>,
+        end: Point3<f64>,
+        place: Place,
+        at: Position,
+        rounding: f64,
+    ) -> Option<Self> {
+        let out = Unit::try_new(start - end, 1e-9)?;
+        let depth = (start - end).norm();
+        Some(Self {
+            start,
+            out,
+            tool_axis: None,
+            tool: None,
+            spindle_off: false,
+            deepest: 0.0,
+            stroke: Some(Stroke { from: 0.0, reach: depth, place: place.clone(), at }),
+            depth,
+            place,
+            at,
+            rounding,
+        })
+    }
+
+    /// How deep the line is cut.
+    pub(super) fn cut(&self) -> f64 {
+        self.stroke.as_ref().map_or(self.deepest, |stroke| stroke.reach.max(self.deepest))
+    }
+
+    pub(super) fn bottom(&self) -> Point3<f64> {
+        self.start - self.out.into_inner() * self.cut()
+    }
+
+    /// The block of the deepest point.
+    pub(super) fn place(&self) -> &Place {
+        match &self.stroke {
+            Some(stroke) if stroke.reach > self.deepest => &stroke.place,
+            _ => &self.place,
+        }
+    }
+
+    pub(super) fn depth_of(&self, p: &Point3<f64>) -> f64 {
+        (self.start - p).dot(&self.out)
+    }
+
+    /// Rounded end points let a line through two of them wander: once for each point, and more beyond them.
+    fn is_beside(&self, p: &Point3<f64>) -> bool {
+        let depth = self.depth_of(p);
+        let aside = (p - self.start + self.out.into_inner() * depth).norm();
+        aside > 3.0 * self.rounding * (1.0 + depth.abs() / self.cut().max(1e-3)) + 1e-9
+    }
+
+    /// Where the tool is after a straight motion to `to`.
+    pub(super) fn after(&self, from: &Point3<f64>, to: &Point3<f64>) -> After {
+        let depth = self.depth_of(to);
+        if !self.is_beside(to) {
+            return After::On;
+        }
+        if self.depth <= self.rounding * 2.0 {
+            return After::Out;
+        }
+        if depth < 0.0 && !self.is_beside(&(from + (to - from) * (self.depth / (self.depth - depth)))) {
+            return After::Out;
+        }
+        self.aside()
+    }
+
+    /// Where a motion that leaves the line passes the level at which the feed had begun, or its start above that.
+    pub(super) fn top_between(&self, from: &Point3<f64>, to: &Point3<f64>) -> Point3<f64> {
+        let depth = self.depth_of(to);
+        if self.depth <= 0.0 || depth >= self.depth {
+            return *from;
+        }
+        from + (to - from) * (self.depth / (self.depth - depth)).min(1.0)
+    }
+
+    /// Left in some other way than straight.
+    pub(super) fn aside(&self) -> After {
+        if self.depth <= self.rounding * 2.0 {
+            After::Out
+        } else {
+            After::Aside { back: self.cut() - self.depth }
+        }
+    }
+
+    /// A feed along the line. Answers a pass that was fed a second time for nothing, if that ended here.
+    pub(super) fn feed(&mut self, to: &Point3<f64>, place: Place, at: &Position) -> Option<Pass> {
+        let depth = self.depth_of(to);
+        if depth <= self.depth {
+            return self.back(depth);
+        }
+        if depth > self.cut() {
+            // The longer the line, the better its two ends tell its direction.
+            self.out = Unit::new_normalize(self.start - to);
+        }
+        let from = self.stroke.as_ref().map_or(self.depth, |stroke| stroke.from);
+        self.stroke = Some(Stroke { from, reach: depth, place, at: *at });
+        self.depth = depth;
+        None
+    }
+
+    /// A rapid along the line. The answer tells whether it ran deeper than the line was cut.
+    pub(super) fn rapid(&mut self, to: &Point3<f64>) -> (Option<Pass>, bool) {
+        let depth = self.depth_of(to);
+        if depth <= self.depth {
+            return (self.back(depth), false);
+        }
+        let again = self.end_stroke();
+        let uncut = depth > self.deepest + 2.0 * self.rounding + DEEPER;
+        self.deepest = self.deepest.max(depth);
+        self.depth = depth;
+        (again, uncut)
+    }
+
+    fn back(&mut self, depth: f64) -> Option<Pass> {
+        let again = if depth < self.depth { self.end_stroke() } else { None };
+        self.depth = depth;
+        again
+    }
+
+    /// A full stroke from where the feed had begun that cuts no deeper was fed for nothing.
+    fn end_stroke(&mut self) -> Option<Pass> {
+        let stroke = self.stroke.take()?;
+        if stroke.reach > self.deepest + DEEPER {
+            self.deepest = stroke.reach;
+            self.place = stroke.place;
+            self.at = stroke.at;
+            return None;
+        }
+        let full = stroke.from <= 2.0 * self.rounding;
+        full.then(|| self.pass(stroke.reach, stroke.place, stroke.at))
+    }
+
+    /// The passes of the line when the tool has left it: the line's own, and one that was fed again for nothing.
+    pub(super) fn finish(mut self) -> (Pass, Option<Pass>) {
+        let again = self.end_stroke();
+        (self.pass(self.deepest, self.place.clone(), self.at), again)
+    }
+
+    fn pass(&self, depth: f64, place: Place, at: Position) -> Pass {
+        let bottom = self.start - self.out.into_inner() * depth;
+        let axis = self.tool_axis.unwrap_or(self.out);
+        Pass { start: self.start, bottom, axis, fed: self.out, tool: self.tool, place, at }
+    }
+}

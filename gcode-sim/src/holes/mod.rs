@@ -1,0 +1,239 @@
+//! Motion → holes: follows the tool on the part, sees feeds along one line as passes, and passes as holes.
+mod findings;
+mod group;
+mod judge;
+mod line;
+pub mod near;
+
+use nalgebra::Point3;
+
+pub use group::Found;
+use group::Pass;
+use line::{After, Line};
+
+use self::findings::Findings;
+use crate::diag::Diagnostic;
+use crate::machine::path::Travel;
+use crate::machine::{Frame, Machine, Pose, Setup};
+use crate::motion::{Arc2, Event, EventKind, Position, Sink, Spindle, StopKind};
+use crate::part::hole::{Hole, HoleList, Origin, Unit};
+use crate::part::surface::Surface;
+use crate::source::Span;
+
+/// What a program does to the part.
+#[derive(Clone, Debug, Default)]
+pub struct Extracted {
+    /// In the order in which they were begun.
+    pub holes: Vec<Found>,
+    pub findings: Vec<Diagnostic>,
+}
+
+/// Listens to a run and collects the holes it makes.
+#[derive(Debug)]
+pub struct Extractor<'m> {
+    machine: &'m Machine,
+    surface: Option<Surface>,
+    at: Position,
+    setup: Setup,
+    spindle: Spindle,
+    /// The part's place while the table stands as it does in `at`.
+    frame: Frame,
+    /// The tool on the part.
+    pose: Pose,
+    /// The tool has been outside the part: what it does before that, nobody knows where it stood.
+    outside: bool,
+    line: Option<Line>,
+    passes: Vec<Pass>,
+    findings: Findings,
+}
+
+/// How a motion was asked for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Pace {
+    Rapid,
+    Feed,
+    /// Neither cuts nor hurries: a probe looks for its signal.
+    Probe,
+}
+
+impl<'m> Extractor<'m> {
+    /// Starts with every axis at machine zero.
+    pub fn new(machine: &'m Machine) -> Self {
+        let (at, setup) = (Position::default(), Setup::default());
+        let frame = machine.part_frame(&at);
+        let pose = machine.tool(&at, &setup).on(&frame);
+        Self {
+            machine,
+            surface: None,
+            at,
+            setup,
+            spindle: Spindle::Off,
+            frame,
+            pose,
+            outside: false,
+            line: None,
+            passes: Vec::new(),
+            findings: Findings::default(),
+        }
+    }
+
+    /// With the part's surface known, motion inside it is seen as well.
+    #[must_use]
+    pub fn with_surface(mut self, surface: Option<Surface>) -> Self {
+        self.surface = surface;
+        self
+    }
+
+    pub fn finish(mut self) -> Extracted {
+        if let Some(line) = self.line.take() {
+            let after = line.aside();
+            self.judge_line(line, after, false);
+        }
+        Extracted { holes: group::holes(&self.passes, self.machine), findings: self.findings.finish() }
+    }
+
+    fn motion(&mut self, event: &Event<'_>, pace: Pace, to: &Position, arc: Option<&Arc2>) {
+        let from = self.at;
+        self.idle_axes(event, &from, to);
+        let before = self.pose;
+        if self.machine.table.differs(&from, to) {
+            self.frame = self.machine.part_frame(to);
+        }
+        self.at = *to;
+        self.pose = self.machine.tool(to, &self.setup).on(&self.frame);
+        let travel = Travel { from: &from, to, arc };
+        if !self.machine.is_straight(&travel) {
+            self.leave_curved(event, pace, &travel);
+            return;
+        }
+        if (self.pose.tip - before.tip).norm() < 1e-9 {
+            return;
+        }
+        let free_from = self.stay_or_leave(event, pace, before.tip);
+        match (pace, free_from) {
+            (Pace::Rapid, Some(start)) => self.check_rapid(event, &start, &self.pose.tip.clone()),
+            (Pace::Feed, Some(start)) => self.begin_line(event, start),
+            _ => {}
+        }
+        self.look_outside();
+    }
+
+    /// Follows a straight motion from `from` on the current line. Where it has left the line, or there is none:
+    /// the point from which it moved freely.
+    fn stay_or_leave(&mut self, event: &Event<'_>, pace: Pace, from: Point3<f64>) -> Option<Point3<f64>> {
+        let Some(mut line) = self.line.take() else { return Some(from) };
+        let tip = self.pose.tip;
+        match line.after(&from, &tip) {
+            After::On => {
+                let again = match pace {
+                    Pace::Feed => line.feed(&tip, event.place(), &self.at),
+                    Pace::Rapid | Pace::Probe => {
+                        let (again, uncut) = line.rapid(&tip);
+                        if uncut {
+                            self.rapid_into_uncut(event, &line);
+                        }
+                        again
+                    }
+                };
+                self.passes.extend(again);
+                self.line = Some(line);
+                None
+            }
+            after @ (After::Out | After::Aside { .. }) => {
+                let free = if after == After::Out { line.top_between(&from, &tip) } else { from };
+                self.judge_line(line, after, pace == Pace::Feed);
+                Some(free)
+            }
+        }
+    }
+
+    fn begin_line(&mut self, event: &Event<'_>, start: Point3<f64>) {
+        let rounding = self.machine.increment.size() / 2.0;
+        let line = Line::begin(start, self.pose.tip, event.place(), self.at, rounding);
+        self.line = line.map(|mut line| {
+            line.tool_axis = self.pose.axis;
+            line.tool = self.setup.tool;
+            line.spindle_off = self.spindle == Spindle::Off;
+            line
+        });
+    }
+
+    /// The table or the head turns, or an arc: the tool's way on the part is curved.
+    fn leave_curved(&mut self, event: &Event<'_>, pace: Pace, travel: &Travel<'_>) {
+        if let Some(line) = self.line.take() {
+            let after = line.aside();
+            self.judge_line(line, after, pace == Pace::Feed);
+        }
+        match pace {
+            Pace::Rapid => self.check_curved(event, travel, judge::Curved::Rapid),
+            Pace::Feed => self.check_curved(event, travel, judge::Curved::Feed),
+            Pace::Probe => {}
+        }
+        self.look_outside();
+    }
+
+    fn look_outside(&mut self) {
+        if let (false, Some(surface)) = (self.outside, &self.surface) {
+            self.outside = surface.value(&self.pose.tip) > 0.0;
+        }
+    }
+
+    /// Something other than an axis changed where the tool is.
+    fn set_up(&mut self, change: impl FnOnce(&mut Setup)) {
+        change(&mut self.setup);
+        let pose = self.machine.tool(&self.at, &self.setup).on(&self.frame);
+        if pose != self.pose {
+            self.pose = pose;
+            if let Some(line) = self.line.take() {
+                let after = line.aside();
+                self.judge_line(line, after, false);
+            }
+        }
+    }
+}
+
+impl Sink for Extractor<'_> {
+    fn event(&mut self, event: &Event<'_>) {
+        match &event.kind {
+            EventKind::Rapid { to } => self.motion(event, Pace::Rapid, to, None),
+            EventKind::Feed { to, .. } => self.motion(event, Pace::Feed, to, None),
+            EventKind::Arc { to, arc, .. } => self.motion(event, Pace::Feed, to, Some(arc)),
+            EventKind::Skip { to, .. } => self.motion(event, Pace::Probe, to, None),
+            EventKind::Tool { number } => {
+                self.known_tool(event, *number);
+                self.set_up(|setup| setup.tool = Some(*number));
+            }
+            EventKind::ToolLength { offset } => self.set_up(|setup| setup.offset = *offset),
+            EventKind::Spindle { turning, .. } => self.spindle = *turning,
+            EventKind::Stop { kind: StopKind::Message, text, named } => {
+                if let Some(angle) = self.head_message(event, text, named) {
+                    self.set_up(|setup| setup.head_angle = Some(angle));
+                }
+            }
+            EventKind::Stop { .. } | EventKind::Dwell { .. } | EventKind::Coolant { .. } => {}
+        }
+    }
+}
+
+impl Extracted {
+    /// The document that `holes` writes; `locate` names the program and the line of a block.
+    pub fn list(&self, locate: impl Fn(Span) -> (String, u32)) -> HoleList {
+        let holes = self.holes.iter().map(|found| found.hole(&locate)).collect();
+        HoleList { unit: Unit::Mm, holes }
+    }
+}
+
+impl Found {
+    /// In the schema of the contract; the program alone gives no id.
+    pub fn hole(&self, locate: impl Fn(Span) -> (String, u32)) -> Hole {
+        let (program, line) = locate(self.place.block);
+        Hole {
+            id: None,
+            entry: self.entry.coords.into(),
+            axis: self.axis.into_inner().into(),
+            depth: self.depth,
+            diameter: self.diameter,
+            from: Some(Origin { program, line, tool: self.tool }),
+        }
+    }
+}
