@@ -47,8 +47,9 @@ pub struct Found {
     pub at: Position,
     /// The angle between the finishing feed and the tool's axis.
     pub off_tool: Deg,
-    /// The same tool had already been here, as deep: the hole before this one in the list is the same hole.
-    pub again: bool,
+    /// The place in the list of the first hole on this line. A later one with the same is the same hole, drilled
+    /// again by a tool that had been there.
+    pub first: usize,
 }
 
 /// The holes in the order in which their first passes were made.
@@ -63,7 +64,11 @@ pub(super) fn holes(passes: &[Pass], machine: &Machine) -> Vec<Found> {
         }
         groups[place[first[index]]].push(pass);
     }
-    groups.iter().flat_map(|group| holes_of(group, machine)).collect()
+    let mut found = Vec::with_capacity(groups.len());
+    for group in &groups {
+        holes_of(group, machine, &mut found);
+    }
+    found
 }
 
 /// For each pass the first one on its line.
@@ -95,7 +100,8 @@ fn root(first: &mut [usize], mut index: usize) -> usize {
 }
 
 /// One hole, and one more for every time a tool came back for nothing.
-fn holes_of(group: &[&Pass], machine: &Machine) -> Vec<Found> {
+fn holes_of(group: &[&Pass], machine: &Machine, found: &mut Vec<Found>) {
+    let first = found.len();
     let out = group[0].axis;
     let height = |p: &Point3<f64>| p.coords.dot(&out);
     let mut cutting: Vec<&Pass> = Vec::with_capacity(group.len());
@@ -110,7 +116,7 @@ fn holes_of(group: &[&Pass], machine: &Machine) -> Vec<Found> {
     }
     let lowest = cutting.iter().map(|pass| height(&pass.bottom)).fold(f64::INFINITY, f64::min);
     let finish = finishing(&cutting, lowest, height, machine);
-    let one = |pass: &Pass, starts: &[&Pass], bottom: f64, again: bool| {
+    let one = |pass: &Pass, starts: &[&Pass], bottom: f64| {
         let start = starts.iter().map(|p| height(&p.start)).fold(f64::NEG_INFINITY, f64::max);
         let slope = pass.axis.dot(&out);
         let along =
@@ -124,13 +130,12 @@ fn holes_of(group: &[&Pass], machine: &Machine) -> Vec<Found> {
             place: pass.place.clone(),
             at: pass.at,
             off_tool: Deg::acos(pass.axis.dot(&pass.fed).clamp(-1.0, 1.0)),
-            again,
+            first,
         }
     };
     let starts: Vec<&Pass> = cutting.iter().copied().filter(|pass| pass.tool == finish.tool).collect();
-    let mut found = vec![one(finish, &starts, lowest, false)];
-    found.extend(again.into_iter().map(|pass| one(pass, &[pass], height(&pass.bottom), true)));
-    found
+    found.push(one(finish, &starts, lowest));
+    found.extend(again.into_iter().map(|pass| one(pass, &[pass], height(&pass.bottom))));
 }
 
 /// The last pass of the largest tool that goes at least half as deep as the hole; where diameters aren't known, of

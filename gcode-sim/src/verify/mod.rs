@@ -1,1 +1,63 @@
-//! Holes to a verdict.
+//! Holds the holes a program makes against the wanted ones: which is which, how far off, and whether that will do.
+mod checks;
+mod matching;
+pub mod position;
+mod rounding;
+mod verdict;
+
+pub use matching::{Comparison, Pair};
+pub use rounding::{Rounding, Share};
+pub use verdict::{Answer, Extra, Finding, HoleVerdict, Placed, Verdict};
+
+use crate::diag::Diagnostic;
+use crate::holes::Extracted;
+use crate::machine::Machine;
+use crate::part::reference::Reference;
+use crate::source::Span;
+
+/// What a hole may be off by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerances {
+    /// Diameter of the zone in which the axis must lie (ISO 1101), mm.
+    pub position: f64,
+    /// Either way, mm.
+    pub depth: f64,
+    /// Either way, mm; held against where the finishing tool's diameter is known.
+    pub diameter: f64,
+}
+
+impl Tolerances {
+    /// What was asked for goes before what the reference says; without either, the paper's Φ0.1.
+    pub fn of(reference: &Reference, asked: Option<f64>) -> Self {
+        Self {
+            position: asked.or(reference.position).unwrap_or(0.1),
+            depth: reference.depth.unwrap_or(0.1),
+            diameter: 0.05,
+        }
+    }
+}
+
+/// Something a check has against the holes.
+#[derive(Clone, Debug)]
+pub struct Objection {
+    /// The wanted hole it is about, counted from 0.
+    pub wanted: Option<usize>,
+    pub finding: Diagnostic,
+}
+
+/// The verdict on a program. `locate` names the program and the line of a block.
+pub fn verify(
+    extracted: &Extracted,
+    reference: &Reference,
+    tolerances: Tolerances,
+    machine: &Machine,
+    locate: &dyn Fn(Span) -> (String, u32),
+) -> Verdict {
+    let comparison = Comparison::new(&reference.holes, &extracted.holes, tolerances);
+    let rounding = rounding::shares(&comparison, machine);
+    let mut objections = Vec::new();
+    for check in checks::ALL {
+        check(&comparison, &mut objections);
+    }
+    verdict::verdict(&comparison, rounding, objections, &extracted.findings, locate)
+}

@@ -1,0 +1,43 @@
+//! A table that turns the other way than the program believes mirrors the pattern: said once, instead of hole by
+//! hole only.
+use nalgebra::Unit;
+
+use super::{Comparison, Objection};
+use crate::diag::Diagnostic;
+use crate::holes::Found;
+
+/// Holes that lie on the mirror itself prove nothing; so many others must agree, in parts of those missing.
+const MOST: f64 = 0.8;
+
+pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>) {
+    if comparison.missing.is_empty() || comparison.extra.is_empty() {
+        return;
+    }
+    let wanted: Vec<_> = comparison.missing.iter().map(|index| comparison.wanted[*index].clone()).collect();
+    for (axis, name) in [(2, 'z'), (0, 'x'), (1, 'y')] {
+        let turned: Vec<_> = comparison.extra.iter().map(|i| mirror(&comparison.found[*i], axis)).collect();
+        let again = Comparison::new(&wanted, &turned, comparison.tolerances);
+        if (again.pairs.len() as f64) < MOST * wanted.len() as f64 {
+            continue;
+        }
+        let message = format!(
+            "{} holes lie mirrored, with {name} turned round: the rotary table turns the other way than the program believes",
+            again.pairs.len()
+        );
+        let place = comparison.found[comparison.extra[0]].place.clone();
+        let finding = Diagnostic::error("rotary-sign", message)
+            .help("turn round the table's sign in the machine file, or machine.rotary.sign in the job")
+            .at(place);
+        objections.push(Objection { wanted: None, finding });
+        return;
+    }
+}
+
+fn mirror(found: &Found, axis: usize) -> Found {
+    let mut mirrored = found.clone();
+    mirrored.entry[axis] = -mirrored.entry[axis];
+    let mut out = mirrored.axis.into_inner();
+    out[axis] = -out[axis];
+    mirrored.axis = Unit::new_unchecked(out);
+    mirrored
+}

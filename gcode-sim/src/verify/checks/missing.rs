@@ -1,0 +1,31 @@
+//! Every wanted hole must be there.
+use nalgebra::{Point3, Vector3};
+
+use super::{Comparison, Objection};
+use crate::diag::Diagnostic;
+use crate::holes::near::PointTree;
+
+pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>) {
+    let tree = PointTree::new(comparison.extra.iter().map(|index| comparison.found[*index].bottom()));
+    for wanted in &comparison.missing {
+        let hole = &comparison.wanted[*wanted];
+        let end = Point3::from(hole.entry) - Vector3::from(hole.axis) * hole.depth;
+        let message = format!("hole {} is missing", comparison.id(*wanted));
+        let finding = Diagnostic::error("hole-missing", message);
+        let finding = match tree.nearest(&end) {
+            Some((near, distance)) => {
+                let found = &comparison.found[comparison.extra[near]];
+                let off = found.bottom() - end;
+                finding
+                    .note(format!(
+                        "the nearest hole nobody asked for ends {distance:.3} mm away: {:+.3} {:+.3} {:+.3} in x, y, z",
+                        off.x, off.y, off.z
+                    ))
+                    .help("if that is the hole meant, its place is wrong; else the program leaves the hole out")
+                    .at(found.place.clone())
+            }
+            None => finding.help("the program leaves it out"),
+        };
+        objections.push(Objection { wanted: Some(*wanted), finding });
+    }
+}

@@ -1,0 +1,14 @@
+//! The checks: one file each, one line here.
+mod depth;
+mod diameter;
+mod mirrored;
+mod missing;
+mod position;
+pub(super) mod surplus;
+
+use super::{Comparison, Objection};
+
+type Check = fn(&Comparison<'_>, &mut Vec<Objection>);
+
+pub(super) const ALL: &[Check] =
+    &[mirrored::check, missing::check, surplus::check, position::check, depth::check, diameter::check];

@@ -1,0 +1,36 @@
+//! Nothing may be drilled that nobody asked for.
+use nalgebra::Point3;
+
+use super::{Comparison, Objection};
+use crate::diag::Diagnostic;
+
+pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>) {
+    for index in &comparison.extra {
+        let twice = twice(comparison, *index).is_some();
+        let (code, help) = match twice {
+            true => ("hole-twice", "the same tool comes back for nothing: take the second call out"),
+            false => ("hole-extra", "take it out of the program, or correct its place"),
+        };
+        let finding = Diagnostic::error(code, why(comparison, *index))
+            .help(help)
+            .at(comparison.found[*index].place.clone());
+        objections.push(Objection { wanted: None, finding });
+    }
+}
+
+/// The wanted hole that was drilled on the same line already; such holes stand side by side in the list.
+fn twice(comparison: &Comparison<'_>, extra: usize) -> Option<usize> {
+    let first = comparison.found[extra].first;
+    let same = (first..comparison.found.len()).take_while(|index| comparison.found[*index].first == first);
+    same.filter(|index| *index != extra).find_map(|index| comparison.wanted_of(index))
+}
+
+/// In one sentence, for the finding and for the verdict.
+pub(crate) fn why(comparison: &Comparison<'_>, extra: usize) -> String {
+    let found = &comparison.found[extra];
+    if let Some(wanted) = twice(comparison, extra) {
+        return format!("hole {} is drilled a second time", comparison.id(wanted));
+    }
+    let Point3 { coords: p } = found.entry;
+    format!("nobody asked for the hole that begins at x {:.3} y {:.3} z {:.3} on the part", p.x, p.y, p.z)
+}

@@ -1,0 +1,95 @@
+//! Which drilled hole is which wanted one: the pairs that lie nearest to one another first.
+use nalgebra::{Point3, Vector3};
+
+use super::Tolerances;
+use super::position::Deviation;
+use crate::holes::Found;
+use crate::holes::near::PointTree;
+use crate::part::hole::Hole;
+
+/// A drilled hole can be a wanted one when its axis passes the wanted entry and bottom this near, in mm.
+const REACH: f64 = 5.0;
+
+/// … and its direction is within this of the wanted one: 30°.
+const COSINE: f64 = 0.866_025_403_784_438_6;
+
+/// A wanted hole and the drilled one taken for it, by their numbers in the lists.
+#[derive(Clone, Copy, Debug)]
+pub struct Pair {
+    pub wanted: usize,
+    pub found: usize,
+    pub deviation: Deviation,
+}
+
+/// Both lists, and what belongs together.
+#[derive(Debug)]
+pub struct Comparison<'a> {
+    pub wanted: &'a [Hole],
+    pub found: &'a [Found],
+    pub tolerances: Tolerances,
+    /// In the order of the wanted holes.
+    pub pairs: Vec<Pair>,
+    /// Wanted and not there.
+    pub missing: Vec<usize>,
+    /// There and not wanted.
+    pub extra: Vec<usize>,
+    taken_for: Vec<Option<usize>>,
+}
+
+impl<'a> Comparison<'a> {
+    pub fn new(wanted: &'a [Hole], found: &'a [Found], tolerances: Tolerances) -> Self {
+        let reach = REACH.max(2.0 * tolerances.position);
+        let tree = PointTree::new(wanted.iter().map(|hole| Point3::from(hole.entry)));
+        let mut candidates = Vec::with_capacity(found.len());
+        for (index, hole) in found.iter().enumerate() {
+            let margin = Vector3::repeat(reach);
+            let bottom = hole.bottom();
+            let low = hole.entry.inf(&bottom) - margin;
+            let high = hole.entry.sup(&bottom) + margin;
+            tree.in_box(&low, &high, &mut |other| {
+                if hole.axis.dot(&Vector3::from(wanted[other].axis)) < COSINE {
+                    return;
+                }
+                if let Some(deviation) = Deviation::new(&wanted[other], &bottom, &hole.axis) {
+                    if deviation.phi() <= 2.0 * reach {
+                        candidates.push(Pair { wanted: other, found: index, deviation });
+                    }
+                }
+            });
+        }
+        candidates.sort_by(|a, b| {
+            let order = a.deviation.phi().total_cmp(&b.deviation.phi());
+            order.then(a.found.cmp(&b.found)).then(a.wanted.cmp(&b.wanted))
+        });
+        let (mut is_there, mut taken_for) = (vec![false; wanted.len()], vec![None; found.len()]);
+        let mut pairs = Vec::with_capacity(wanted.len());
+        for pair in candidates {
+            if !is_there[pair.wanted] && taken_for[pair.found].is_none() {
+                is_there[pair.wanted] = true;
+                taken_for[pair.found] = Some(pair.wanted);
+                pairs.push(pair);
+            }
+        }
+        pairs.sort_by_key(|pair| pair.wanted);
+        let missing = (0..wanted.len()).filter(|index| !is_there[*index]).collect();
+        let extra = (0..found.len()).filter(|index| taken_for[*index].is_none()).collect();
+        Self { wanted, found, tolerances, pairs, missing, extra, taken_for }
+    }
+
+    /// The wanted hole that a drilled one was taken for.
+    pub fn wanted_of(&self, found: usize) -> Option<usize> {
+        self.taken_for.get(found).copied().flatten()
+    }
+
+    /// A wanted hole's name.
+    pub fn id(&self, wanted: usize) -> &str {
+        self.wanted[wanted].id.as_deref().unwrap_or("?")
+    }
+}
+
+impl Found {
+    /// The deepest point any tool reached, on the hole's axis.
+    pub fn bottom(&self) -> Point3<f64> {
+        self.entry - self.axis.into_inner() * self.depth
+    }
+}

@@ -1,0 +1,110 @@
+//! How much of the tolerance the control's least increment uses up by itself: half an increment of every axis, the
+//! worst way round, at the hole's place.
+use nalgebra::{Point3, Vector3};
+
+use super::Comparison;
+use crate::holes::Found;
+use crate::machine::{HeadKind, LinkMotion, Machine};
+use crate::motion::Axis;
+use crate::units::Deg;
+
+/// What one axis' half increment moves the hole's axis by, sideways, at the worse end, in mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Share {
+    pub letter: char,
+    pub moves: f64,
+}
+
+/// The worst case for one hole.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Rounding {
+    /// Of the position, as a diameter in mm.
+    pub phi: f64,
+    /// The axes that have to be rounded at all, the largest share first.
+    pub shares: Vec<Share>,
+}
+
+/// For every pair, in order.
+pub(super) fn shares(comparison: &Comparison<'_>, machine: &Machine) -> Vec<Rounding> {
+    let axes = rounded_axes(comparison, machine);
+    let each = comparison.pairs.iter().map(|pair| {
+        let wanted = &comparison.wanted[pair.wanted];
+        let out = Vector3::from(wanted.axis);
+        let entry = Point3::from(wanted.entry);
+        let found = &comparison.found[pair.found];
+        let moved = axes.iter().map(|axis| {
+            let aside = |v: Vector3<f64>| v - out * v.dot(&out);
+            let ends = [(entry, wanted.depth), (entry - out * wanted.depth, 0.0)];
+            (*axis, ends.map(|(end, above)| aside(half_increment(machine, *axis, found, &end, above))))
+        });
+        worst_case(machine, moved.collect())
+    });
+    each.collect()
+}
+
+/// An axis that stands at the same whole number of mm or degrees in every hole has nothing to round.
+fn rounded_axes(comparison: &Comparison<'_>, machine: &Machine) -> Vec<Axis> {
+    let Some(first) = comparison.pairs.first().map(|pair| comparison.found[pair.found].at) else {
+        return Vec::new();
+    };
+    let moves = |axis: Axis| {
+        let varies = comparison.pairs.iter().any(|pair| comparison.found[pair.found].at[axis] != first[axis]);
+        machine.carries(axis) && (varies || first[axis].fract() != 0.0)
+    };
+    machine.axes.iter().map(|(axis, _)| axis).filter(|axis| moves(*axis)).collect()
+}
+
+/// How a point of the hole's axis, `above` its bottom, moves on the part when `axis` goes half an increment.
+fn half_increment(
+    machine: &Machine,
+    axis: Axis,
+    found: &Found,
+    point: &Point3<f64>,
+    above: f64,
+) -> Vector3<f64> {
+    let half = machine.increment.size() / 2.0;
+    let frame = machine.part_frame(&found.at);
+    let mut next = found.at;
+    next[axis] += half;
+    if machine.table.has(axis) {
+        let there = frame * point;
+        return machine.part_frame(&next).inverse_transform_point(&there) - point;
+    }
+    if let HeadKind::Axis { axis: head, .. } = machine.head.kind
+        && head == axis
+    {
+        let length = found.tool.and_then(|tool| machine.find_tool(tool)?.length).unwrap_or(0.0);
+        let lever = machine.head.pivot + length - above;
+        let across = frame.rotation * found.axis.into_inner();
+        let across = Vector3::new(-across.y, across.x, 0.0) * (lever * Deg(half).to_rad());
+        return frame.rotation.inverse_transform_vector(&across);
+    }
+    let along = machine.slides.0.iter().find(|link| link.axis == axis).map(|link| match &link.motion {
+        LinkMotion::Slide { along } => along.into_inner(),
+        LinkMotion::Turn { .. } => Vector3::zeros(),
+    });
+    frame.rotation.inverse_transform_vector(&(along.unwrap_or_default() * half))
+}
+
+/// The signs of all movements that together move one end of the axis farthest.
+fn worst_case(machine: &Machine, moved: Vec<(Axis, [Vector3<f64>; 2])>) -> Rounding {
+    let mut worst = 0.0f64;
+    // The first sign can stay: turning all of them round changes nothing.
+    for signs in 0..1u32 << moved.len().saturating_sub(1) {
+        for end in 0..2 {
+            let sum = moved.iter().enumerate().fold(Vector3::zeros(), |sum, (i, (_, ends))| {
+                if signs >> i & 1 == 1 { sum - ends[end] } else { sum + ends[end] }
+            });
+            worst = worst.max(sum.norm());
+        }
+    }
+    let mut shares: Vec<Share> = moved
+        .iter()
+        .map(|(axis, [entry, bottom])| Share {
+            letter: machine.axes.letter(*axis),
+            moves: entry.norm().max(bottom.norm()),
+        })
+        .collect();
+    shares.sort_by(|a, b| b.moves.total_cmp(&a.moves));
+    Rounding { phi: 2.0 * worst, shares }
+}

@@ -1,0 +1,217 @@
+//! The answer: every hole with its numbers, what is missing and what is too many, and why.
+use serde::Serialize;
+
+use super::{Comparison, Objection, Rounding};
+use crate::diag::{Diagnostic, Severity};
+use crate::part::hole::{Hole, Origin};
+use crate::source::Span;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Answer {
+    Pass,
+    Fail,
+}
+
+/// As `verify --format json` writes it. Nothing is rounded.
+#[derive(Clone, Debug, Serialize)]
+pub struct Verdict {
+    /// Says what kind of numbers these are.
+    pub basis: &'static str,
+    /// Diameter of the zone of position, mm.
+    pub tolerance: f64,
+    /// Either way, mm.
+    pub depth_tolerance: f64,
+    pub verdict: Answer,
+    /// The largest phi; null where no hole was found.
+    pub worst: Option<f64>,
+    /// Where the worst comes from, in words.
+    pub worst_from: Option<String>,
+    /// The most that rounding to the least increment alone can make of phi at any hole.
+    pub rounding: Option<f64>,
+    pub holes: Vec<HoleVerdict>,
+    /// The ids of wanted holes that aren't there.
+    pub missing: Vec<String>,
+    pub extra: Vec<Extra>,
+    pub findings: Vec<Finding>,
+    /// The findings with their places, for people.
+    #[serde(skip)]
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// One wanted hole that was found.
+#[derive(Clone, Debug, Serialize)]
+pub struct HoleVerdict {
+    pub id: String,
+    pub phi: f64,
+    pub at_entry: f64,
+    pub at_bottom: f64,
+    pub depth_error: f64,
+    pub ok: bool,
+    /// Between the axes, degrees.
+    pub tilt: f64,
+    /// Of phi beyond the tolerance; 0 inside.
+    pub out_of_tolerance: f64,
+    /// What rounding alone can make of phi here.
+    pub rounding: f64,
+    pub nominal: Placed,
+    pub actual: Placed,
+    pub from: Origin,
+    /// The codes of the findings against it.
+    pub objections: Vec<String>,
+}
+
+/// A hole as an inspector writes it down; the actual one where its axis crosses the plane of the nominal entry.
+#[derive(Clone, Debug, Serialize)]
+pub struct Placed {
+    pub entry: [f64; 3],
+    pub axis: [f64; 3],
+    pub diameter: Option<f64>,
+    pub depth: f64,
+}
+
+/// A hole nobody asked for.
+#[derive(Clone, Debug, Serialize)]
+pub struct Extra {
+    #[serde(flatten)]
+    pub hole: Hole,
+    pub why: String,
+}
+
+/// A finding as data.
+#[derive(Clone, Debug, Serialize)]
+pub struct Finding {
+    pub code: String,
+    pub severity: &'static str,
+    pub message: String,
+    pub help: Option<String>,
+    pub notes: Vec<String>,
+    /// The wanted hole it is about.
+    pub hole: Option<String>,
+    pub from: Option<Origin>,
+}
+
+pub(super) fn verdict(
+    comparison: &Comparison<'_>,
+    rounding: Vec<Rounding>,
+    objections: Vec<Objection>,
+    findings: &[Diagnostic],
+    locate: &dyn Fn(Span) -> (String, u32),
+) -> Verdict {
+    let mut against: Vec<Vec<String>> = vec![Vec::new(); comparison.wanted.len()];
+    for objection in &objections {
+        if let Some(wanted) = objection.wanted {
+            against[wanted].push(objection.finding.code.clone());
+        }
+    }
+    let holes: Vec<HoleVerdict> = comparison
+        .pairs
+        .iter()
+        .zip(&rounding)
+        .map(|(pair, rounding)| {
+            let objections = std::mem::take(&mut against[pair.wanted]);
+            hole_verdict(comparison, pair, rounding, objections, locate)
+        })
+        .collect();
+    let failed = |finding: &Diagnostic| Severity::Error <= finding.severity;
+    let fails = objections.iter().any(|o| failed(&o.finding)) || findings.iter().any(failed);
+    let worst = (0..holes.len()).max_by(|a, b| holes[*a].phi.total_cmp(&holes[*b].phi).then(b.cmp(a)));
+    let origin = |finding: &Diagnostic| {
+        finding.place.as_ref().map(|place| {
+            let (program, line) = locate(place.block);
+            Origin { program, line, tool: None }
+        })
+    };
+    let told = objections.iter().map(|o| (o.wanted, &o.finding)).chain(findings.iter().map(|f| (None, f)));
+    Verdict {
+        basis: "predicted by simulation, not measured",
+        tolerance: comparison.tolerances.position,
+        depth_tolerance: comparison.tolerances.depth,
+        verdict: if fails { Answer::Fail } else { Answer::Pass },
+        worst: worst.map(|index| holes[index].phi),
+        worst_from: worst.map(|index| worst_from(&holes[index], &rounding[index])),
+        rounding: rounding.iter().map(|r| r.phi).reduce(f64::max),
+        missing: comparison.missing.iter().map(|index| comparison.id(*index).to_owned()).collect(),
+        extra: comparison.extra.iter().map(|index| extra(comparison, *index, locate)).collect(),
+        findings: told
+            .map(|(wanted, finding)| Finding {
+                code: finding.code.clone(),
+                severity: match finding.severity {
+                    Severity::Note => "note",
+                    Severity::Warning => "warning",
+                    Severity::Error => "error",
+                    Severity::Alarm => "alarm",
+                },
+                message: finding.message.clone(),
+                help: finding.help.clone(),
+                notes: finding.notes.clone(),
+                hole: wanted.map(|index| comparison.id(index).to_owned()),
+                from: origin(finding),
+            })
+            .collect(),
+        holes,
+        diagnostics: objections.into_iter().map(|o| o.finding).chain(findings.iter().cloned()).collect(),
+    }
+}
+
+fn hole_verdict(
+    comparison: &Comparison<'_>,
+    pair: &super::Pair,
+    rounding: &Rounding,
+    objections: Vec<String>,
+    locate: &dyn Fn(Span) -> (String, u32),
+) -> HoleVerdict {
+    let (wanted, found, deviation) =
+        (&comparison.wanted[pair.wanted], &comparison.found[pair.found], &pair.deviation);
+    let phi = deviation.phi();
+    let (program, line) = locate(found.place.block);
+    HoleVerdict {
+        id: comparison.id(pair.wanted).to_owned(),
+        phi,
+        at_entry: deviation.at_entry,
+        at_bottom: deviation.at_bottom,
+        depth_error: deviation.depth_error,
+        ok: objections.is_empty(),
+        tilt: deviation.tilt.0,
+        out_of_tolerance: (phi - comparison.tolerances.position).max(0.0),
+        rounding: rounding.phi,
+        nominal: Placed {
+            entry: wanted.entry,
+            axis: wanted.axis,
+            diameter: wanted.diameter,
+            depth: wanted.depth,
+        },
+        actual: Placed {
+            entry: deviation.entry.coords.into(),
+            axis: found.axis.into_inner().into(),
+            diameter: found.diameter,
+            depth: wanted.depth + deviation.depth_error,
+        },
+        from: Origin { program, line, tool: found.tool },
+        objections,
+    }
+}
+
+fn extra(comparison: &Comparison<'_>, index: usize, locate: &dyn Fn(Span) -> (String, u32)) -> Extra {
+    let found = &comparison.found[index];
+    Extra { hole: found.hole(locate), why: super::checks::surplus::why(comparison, index) }
+}
+
+/// One sentence: which end, how far, by how much of it rounding is to blame, and the block.
+fn worst_from(hole: &HoleVerdict, rounding: &Rounding) -> String {
+    let (end, off) = match hole.at_bottom > hole.at_entry {
+        true => ("bottom", hole.at_bottom),
+        false => ("entry", hole.at_entry),
+    };
+    let shares: Vec<_> = rounding.shares.iter().map(|s| format!("{} {:.4}", s.letter, s.moves)).collect();
+    let shares = if shares.is_empty() { String::new() } else { format!(" ({} mm)", shares.join(", ")) };
+    // What can be explained by rounding is compared with room for the arithmetic itself.
+    let blame = match hole.phi <= rounding.phi + 1e-6 {
+        true => "which rounding to the least increment explains",
+        false => "more than rounding to the least increment explains",
+    };
+    format!(
+        "hole {}: the axis is {off:.4} mm off at its {end}, {blame}: at most Φ{:.4} there{shares}; made by {} line {}",
+        hole.id, rounding.phi, hole.from.program, hole.from.line
+    )
+}
