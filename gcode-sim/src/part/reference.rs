@@ -90,7 +90,7 @@ mod tests {
     use super::*;
 
     fn wanted(radius: f64, azimuth: f64, axis: AxisDirection) -> HoleWanted {
-        HoleWanted { id: "h".into(), radius, azimuth, axis, diameter: 6.0, depth: 15.0 }
+        HoleWanted { id: "h".into(), radius, azimuth, axis, diameter: 6.0, depth: 15.0, tools: vec![1] }
     }
 
     fn near(found: [f64; 3], expected: [f64; 3]) {

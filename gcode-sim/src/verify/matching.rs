@@ -50,10 +50,10 @@ impl<'a> Comparison<'a> {
                 if hole.axis.dot(&Vector3::from(wanted[other].axis)) < COSINE {
                     return;
                 }
-                if let Some(deviation) = Deviation::new(&wanted[other], &bottom, &hole.axis) {
-                    if deviation.phi() <= 2.0 * reach {
-                        candidates.push(Pair { wanted: other, found: index, deviation });
-                    }
+                if let Some(deviation) = Deviation::new(&wanted[other], &bottom, &hole.axis)
+                    && deviation.phi() <= 2.0 * reach
+                {
+                    candidates.push(Pair { wanted: other, found: index, deviation });
                 }
             });
         }
