@@ -5,6 +5,7 @@
 #![expect(clippy::unwrap_used, clippy::disallowed_methods, reason = "tests read files and may panic")]
 
 mod cli;
+mod r#gen;
 pub mod programs;
 
 use std::path::{Path, PathBuf};
@@ -13,9 +14,7 @@ use std::path::{Path, PathBuf};
 type Run = fn(&Case);
 
 /// The kinds of cases by their folder under `suite/`.
-pub const KINDS: &[(&str, Run)] = &[
-    ("cli", cli::run), //
-];
+pub const KINDS: &[(&str, Run)] = &[("cli", cli::run), ("gen", r#gen::run)];
 
 /// The folder of one case.
 pub struct Case {

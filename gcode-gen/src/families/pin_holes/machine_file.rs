@@ -1,0 +1,45 @@
+//! The machine file of a pin-hole job: what `gcode-sim --machine` needs to follow the emitted programs.
+use std::fmt::Write;
+
+use gcode_sim::control::{Dialect, Increment};
+use gcode_sim::job::{HeadKind, PinHoles};
+
+/// The text of `machine.toml`.
+pub(super) fn machine_file(job: &PinHoles) -> String {
+    let name_of_dialect = Dialect::ALL.iter().find(|(_, d)| *d == job.control.dialect).map_or("", |(n, _)| n);
+    let name_of_increment =
+        Increment::ALL.iter().find(|(_, i)| *i == job.control.increment).map_or("", |(n, _)| n);
+    let rotary = job.machine.rotary;
+    let head = job.machine.head;
+    let mut text = format!(
+        "# The machine and control that the programs beside this file are for; lengths in mm, angles in degrees.\n\
+         [control]\n\
+         dialect = \"{name_of_dialect}\"\n\
+         increment = \"{name_of_increment}\"\n\
+         \n\
+         # The rotary table carries the part about y; its axis goes through the part's origin.\n\
+         [[table]]\n\
+         letter = \"{}\"\n\
+         turns = \"y\"\n\
+         sign = {}\n\
+         \n\
+         # The head tilts the tool in the xy plane; its angle counts from x towards y.\n\
+         [head]\n",
+        rotary.letter, rotary.sign
+    );
+    match head.kind {
+        HeadKind::Manual => text.push_str("kind = \"manual\"\n"),
+        HeadKind::Axis(letter) => {
+            let _ = write!(text, "kind = \"axis\"\nletter = \"{letter}\"\n");
+        }
+    }
+    let _ = writeln!(text, "pivot = {:?}", head.pivot);
+    for tool in &job.tools {
+        let _ = write!(
+            text,
+            "\n[[tool]]\nnumber = {}\nlength = {:?}\ndiameter = {:?}\n",
+            tool.number, tool.length, tool.diameter
+        );
+    }
+    text
+}

@@ -1,0 +1,114 @@
+//! The resident macros of the pin holes: NC texts with marks for what differs between machines and controls.
+use gcode_sim::control::{Dialect, Increment};
+use gcode_sim::job::{HeadKind, PinHoles};
+
+use crate::nc::number::number;
+use crate::nc::program::name;
+use crate::package::Program;
+
+/// One hole: approach, feed, retract.
+pub const HOLE: u32 = 8101;
+/// The head angle of a radius, and the head set to it.
+pub const HEAD: u32 = 8102;
+
+/// What the macros depend on. Everything else is an argument, so that one copy in a control serves all jobs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Resident {
+    pub dialect: Dialect,
+    pub increment: Increment,
+    pub rotary: char,
+    pub head: HeadKind,
+    /// The common variable that shows the head angle to set; the next one holds the angle that is set.
+    pub common: u32,
+}
+
+impl Resident {
+    pub fn of(job: &PinHoles) -> Self {
+        Self {
+            dialect: job.control.dialect,
+            increment: job.control.increment,
+            rotary: job.machine.rotary.letter,
+            head: job.machine.head.kind,
+            common: job.macros.common,
+        }
+    }
+
+    pub fn programs(&self) -> Vec<Program> {
+        vec![
+            Program { number: HOLE, text: self.fill(include_str!("hole.nc")) },
+            Program { number: HEAD, text: self.fill(include_str!("head.nc")) },
+        ]
+    }
+
+    /// The common variable with the angle the head has; vacant until the head is set.
+    pub fn set(&self) -> u32 {
+        self.common + 1
+    }
+
+    fn fill(&self, text: &str) -> String {
+        let (set_head, spindle_note) = match self.head {
+            HeadKind::Manual => (
+                format!("M09\nM05\n#3006=1(SET HEAD TO ANGLE IN #{})\nM03\nM08", self.common),
+                "\n(STOPS SPINDLE AND COOLANT FOR THE OPERATOR, THEN M03 M08)",
+            ),
+            HeadKind::Axis(letter) => (format!("G90 G00 {letter}#{}", self.common), ""),
+        };
+        let marks = [
+            ("{hole}", name(HOLE, self.dialect)),
+            // A program's name stands at its head, where Haas writes five digits, and in sentences.
+            ("{head}(", format!("{}(", name(HEAD, self.dialect))),
+            ("{head}", format!("O{HEAD}")),
+            ("{head_call}", HEAD.to_string()),
+            ("{rotary}", self.rotary.to_string()),
+            ("{angle}", self.common.to_string()),
+            ("{set}", self.set().to_string()),
+            ("{per_degree}", number(self.increment.per_unit(), self.increment)),
+            ("{set_head}", set_head),
+            ("{spindle_note}", spindle_note.to_owned()),
+        ];
+        marks.iter().fold(text.to_owned(), |text, (mark, value)| text.replace(mark, value))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn all() -> Vec<Resident> {
+        let mut all = Vec::new();
+        for (_, dialect) in Dialect::ALL {
+            for (_, increment) in Increment::ALL {
+                for head in [HeadKind::Manual, HeadKind::Axis('A')] {
+                    all.push(Resident { dialect, increment, rotary: 'B', head, common: 140 });
+                }
+            }
+        }
+        all
+    }
+
+    #[test]
+    fn every_mark_is_filled_and_every_character_is_displayable() {
+        for program in all().iter().flat_map(Resident::programs) {
+            assert!(!program.text.contains(['{', '}']), "{}", program.text);
+            assert!(
+                program
+                    .text
+                    .bytes()
+                    .all(|b| b == b'\n' || (b.is_ascii_graphic() || b == b' ') && !b.is_ascii_lowercase()),
+                "{}",
+                program.text
+            );
+        }
+    }
+
+    #[test]
+    fn a_message_fits_the_26_characters_of_an_old_control() {
+        for program in all().iter().flat_map(Resident::programs) {
+            for line in program.text.lines().filter(|line| line.contains("#3000=") || line.contains("#3006="))
+            {
+                let message = line.split_once('(').unwrap().1.trim_end_matches(')');
+                assert!(message.len() <= 26, "{message} has {} characters", message.len());
+            }
+        }
+    }
+}

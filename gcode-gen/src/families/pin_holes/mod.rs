@@ -1,0 +1,181 @@
+//! Pin holes on an ellipsoid of revolution: a main program of calls, and resident macros that compute equation (8).
+//!
+//! The method is that of *Improved Processing Technology of Positioning Pin Hole on Melon Mold*; see
+//! `docs/methods/pin-holes.md`. Nothing that follows from a, b, r and the azimuth stands in the main program as a
+//! number: changing R there moves the hole to its right new place.
+mod machine_file;
+pub mod macros;
+
+use gcode_sim::control::{Dialect, Increment};
+use gcode_sim::job::{AxisDirection, HeadKind, HoleWanted, PinHoles};
+
+use self::macros::{HEAD, HOLE, Resident};
+use super::Family;
+use crate::nc::block::Block;
+use crate::nc::number::number;
+use crate::nc::program::Program as Text;
+use crate::order::{HeadSetting, ToolPass, passes};
+use crate::package::{Package, Program};
+
+/// The main program.
+pub const MAIN: u32 = 8100;
+
+pub const FAMILY: Family = Family { name: "pin-holes", new_job: include_str!("new.toml") };
+
+/// The main program, the resident macros and the machine file of a job.
+pub fn emit(job: &PinHoles) -> Package {
+    let mut programs = vec![Program { number: MAIN, text: Main::new(job).text() }];
+    programs.extend(Resident::of(job).programs());
+    Package { main: MAIN, programs, machine: machine_file::machine_file(job) }
+}
+
+struct Main<'j> {
+    job: &'j PinHoles,
+    resident: Resident,
+    text: Text,
+}
+
+impl<'j> Main<'j> {
+    fn new(job: &'j PinHoles) -> Self {
+        let text = Text::new(MAIN, "PIN HOLES ON AN ELLIPSOID OF REVOLUTION", job.control.dialect);
+        Self { job, resident: Resident::of(job), text }
+    }
+
+    fn text(mut self) -> String {
+        let passes = passes(self.job);
+        self.header(&passes);
+        self.start();
+        for pass in &passes {
+            self.tool(pass);
+        }
+        self.text.block(
+            Block::of(format!("#{}=#0", self.resident.set())).comment("HEAD SET FOR NOTHING ANY MORE"),
+        );
+        self.text.block(Block::of("M30"));
+        self.text.finish()
+    }
+
+    fn number(&self, value: f64) -> String {
+        number(value, self.job.control.increment)
+    }
+
+    /// The program's contract with whoever runs it.
+    fn header(&mut self, passes: &[ToolPass<'_>]) {
+        let job = self.job;
+        let (a, b) = (self.number(job.surface.a), self.number(job.surface.b));
+        let holes = job.holes.len();
+        let rotary = job.machine.rotary;
+        let sign = if rotary.sign < 0 { "-" } else { "" };
+        let head = match job.machine.head.kind {
+            HeadKind::Manual => "SET BY HAND AT A STOP".to_owned(),
+            HeadKind::Axis(letter) => format!("MOVED AS AXIS {letter}"),
+        };
+        let control = control_name(job);
+        let common = self.resident.common;
+        let lines = [
+            format!("{holes} HOLES, SURFACE [X*X+Z*Z]/A/A+Y*Y/B/B = 1, A {a} B {b}"),
+            "NUMBERS ARE MILLIMETRES AND DEGREES, FEEDS MM/MIN".to_owned(),
+            format!("CONTROL {control}, MACHINE FILE MACHINE.TOML"),
+            "WORK ZERO G54 IS THE CENTRE OF THE ELLIPSOID, Y ITS AXIS".to_owned(),
+            format!("ROTARY {} = {sign}AZIMUTH, FROM X TOWARDS Z", rotary.letter),
+            format!("HEAD ANGLE FROM X TOWARDS Y, {head}"),
+            format!("CALLS O{HEAD} HEAD ANGLE OF A RADIUS, AND O{HOLE} ONE HOLE"),
+            "THEY COMPUTE EQUATION 8 OF IMPROVED PROCESSING TECHNOLOGY OF".to_owned(),
+            "POSITIONING PIN HOLE ON MELON MOLD FROM A, B AND R".to_owned(),
+            format!("TO MOVE A HOLE CHANGE R OR W IN ITS O{HOLE} CALLS AND R IN THE"),
+            format!("O{HEAD} CALL ABOVE, WHERE THE HEAD DOES NOT SUIT A HOLE O{HOLE}"),
+            format!("CALLS O{HEAD} ITSELF BEFORE IT CUTS"),
+            "A EQUATORIAL RADIUS, B POLAR RADIUS, C CLEARANCE, D DEPTH".to_owned(),
+            "E FEED OUT, F FEED IN, H 0. NORMAL 1. AXIAL, Q PIVOT TO TIP".to_owned(),
+            format!("R RADIUS, U SIGN OF {}, V RETRACT, W AZIMUTH", rotary.letter),
+            format!("COMMON VARIABLES #{common} HEAD ANGLE TO SET, #{} ANGLE SET", common + 1),
+            format!("ALARMS 3001-3016 BY O{HOLE}, 3021-3029 BY O{HEAD}"),
+            "START WITH THE TOOL CLEAR OF THE PART, ABOVE OR BESIDE IT".to_owned(),
+        ];
+        for line in lines {
+            self.text.remark(line);
+        }
+        for ToolPass { tool, .. } in passes {
+            let (diameter, length) = (self.number(tool.diameter), self.number(tool.length));
+            self.text.remark(format!("T{} {} DIAMETER {diameter} LENGTH {length}", tool.number, tool.name));
+        }
+    }
+
+    fn start(&mut self) {
+        self.text.block(Block::of("G21"));
+        self.text.block(Block::of("G00 G17 G40 G49 G54 G80 G90 G94"));
+        self.text.block(Block::of(format!("#{}=#0", self.resident.set())).comment("HEAD NOT SET YET"));
+    }
+
+    fn tool(&mut self, pass: &ToolPass<'_>) {
+        let tool = pass.tool;
+        let diameter = self.number(tool.diameter);
+        self.text.remark(format!("T{} {} DIAMETER {diameter}", tool.number, tool.name));
+        self.text.block(Block::of(format!("T{} M06", tool.number)));
+        self.text.block(Block::of(format!("S{:.0} M03", tool.speed)));
+        self.text.block(Block::of("M08"));
+        for setting in &pass.settings {
+            let head = self.head_call(pass, setting);
+            self.text.block(head);
+            for hole in &setting.holes {
+                let call = self.hole_call(pass, hole);
+                self.text.block(call);
+            }
+        }
+        self.text.block(Block::of("M09"));
+        // The tip is then V above the pole or higher, whatever the angle of the head: see O8102.
+        let height = [self.job.surface.b, self.reach(pass), self.job.machine.retract].map(|v| self.number(v));
+        self.text
+            .block(Block::of(format!("G90 G00 Y[{}]", height.join("+"))).comment("B+Q+V, CLEAR OF THE PART"));
+        self.text.block(Block::of("M05"));
+    }
+
+    /// From the head's pivot to the tip.
+    fn reach(&self, pass: &ToolPass<'_>) -> f64 {
+        self.job.machine.head.pivot + pass.tool.length
+    }
+
+    fn head_call(&self, pass: &ToolPass<'_>, setting: &HeadSetting<'_>) -> Block {
+        let job = self.job;
+        Block::call(HEAD)
+            .word('A', self.number(job.surface.a))
+            .word('B', self.number(job.surface.b))
+            .word('R', self.number(setting.radius))
+            .word('H', flag(setting.axis))
+            .word('Q', self.number(self.reach(pass)))
+            .word('V', self.number(job.machine.retract))
+            .comment("HEAD")
+    }
+
+    fn hole_call(&self, pass: &ToolPass<'_>, hole: &HoleWanted) -> Block {
+        let job = self.job;
+        Block::call(HOLE)
+            .word('A', self.number(job.surface.a))
+            .word('B', self.number(job.surface.b))
+            .word('R', self.number(hole.radius))
+            .word('W', self.number(hole.azimuth))
+            .word('H', flag(hole.axis))
+            .word('D', self.number(hole.depth))
+            .word('C', self.number(job.machine.clearance))
+            .word('V', self.number(job.machine.retract))
+            .word('F', self.number(pass.tool.feed))
+            .word('E', self.number(pass.tool.retract_feed))
+            .word('U', self.number(f64::from(job.machine.rotary.sign)))
+            .word('Q', self.number(self.reach(pass)))
+            .comment(format!("HOLE {}", hole.id))
+    }
+}
+
+fn flag(axis: AxisDirection) -> &'static str {
+    match axis {
+        AxisDirection::Normal => "0.",
+        AxisDirection::Axial => "1.",
+    }
+}
+
+/// `FANUC-31I, INCREMENT IS-B`.
+fn control_name(job: &PinHoles) -> String {
+    let dialect = Dialect::ALL.iter().find(|(_, d)| *d == job.control.dialect).map_or("", |(n, _)| n);
+    let increment = Increment::ALL.iter().find(|(_, i)| *i == job.control.increment).map_or("", |(n, _)| n);
+    format!("{dialect}, INCREMENT {increment}")
+}

@@ -1,0 +1,45 @@
+//! One block: words in their order and a comment behind them.
+use super::text::displayable;
+
+/// The longest comment behind a block.
+const COMMENT: usize = 48;
+
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Block {
+    words: Vec<String>,
+    comment: Option<String>,
+}
+
+impl Block {
+    /// Words as they stand: `G90 G00`.
+    pub fn of(words: impl Into<String>) -> Self {
+        Self { words: vec![words.into()], comment: None }
+    }
+
+    /// A call of a resident macro; its arguments follow.
+    pub fn call(program: u32) -> Self {
+        Self::of(format!("G65 P{program}"))
+    }
+
+    #[must_use]
+    pub fn word(mut self, letter: char, value: impl std::fmt::Display) -> Self {
+        self.words.push(format!("{letter}{value}"));
+        self
+    }
+
+    #[must_use]
+    pub fn comment(mut self, text: impl AsRef<str>) -> Self {
+        self.comment = Some(displayable(text.as_ref(), COMMENT));
+        self
+    }
+}
+
+impl std::fmt::Display for Block {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.words.join(" "))?;
+        match &self.comment {
+            Some(comment) => write!(f, " ({comment})"),
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! A program from its O-number to the `%`: remarks, and blocks with sequence numbers to restart at.
+use gcode_sim::control::Dialect;
+
+use super::block::Block;
+use super::text::displayable;
+
+/// The longest line of a remark.
+const REMARK: usize = 72;
+
+/// The largest sequence number of all three dialects.
+const LARGEST_N: usize = 99_999;
+
+pub struct Program {
+    head: String,
+    lines: Vec<Line>,
+}
+
+enum Line {
+    Remark(String),
+    Block(Block),
+}
+
+impl Program {
+    pub fn new(number: u32, title: &str, dialect: Dialect) -> Self {
+        let head = format!("{}({})", name(number, dialect), displayable(title, REMARK));
+        Self { head, lines: Vec::new() }
+    }
+
+    /// A comment on a line of its own.
+    pub fn remark(&mut self, text: impl AsRef<str>) {
+        self.lines.push(Line::Remark(displayable(text.as_ref(), REMARK)));
+    }
+
+    pub fn block(&mut self, block: Block) {
+        self.lines.push(Line::Block(block));
+    }
+
+    /// The text; blocks are numbered in tens as far as that goes, else in ones.
+    pub fn finish(self) -> String {
+        let blocks = self.lines.iter().filter(|line| matches!(line, Line::Block(_))).count();
+        let step = if blocks * 10 <= LARGEST_N { 10 } else { 1 };
+        let mut text = format!("%\n{}\n", self.head);
+        let mut number = 0;
+        for line in self.lines {
+            match line {
+                Line::Remark(remark) => text.push_str(&format!("({remark})\n")),
+                Line::Block(block) => {
+                    number += step;
+                    let name = if number <= LARGEST_N { format!("N{number} ") } else { String::new() };
+                    text.push_str(&format!("{name}{block}\n"));
+                }
+            }
+        }
+        text.push_str("%\n");
+        text
+    }
+}
+
+/// `O8100`; Haas writes five digits.
+pub fn name(number: u32, dialect: Dialect) -> String {
+    match dialect {
+        Dialect::Fanuc31i | Dialect::Fanuc0iF => format!("O{number:04}"),
+        Dialect::HaasNgc => format!("O{number:05}"),
+    }
+}
