@@ -4,6 +4,10 @@ mod group;
 mod judge;
 mod line;
 pub mod near;
+#[cfg(test)]
+pub(crate) mod script;
+#[cfg(test)]
+mod tests;
 
 use nalgebra::Point3;
 
@@ -178,17 +182,18 @@ impl<'m> Extractor<'m> {
         }
     }
 
-    /// Something other than an axis changed where the tool is.
+    /// Something other than an axis changes where the tool is, or which tool it is.
     fn set_up(&mut self, change: impl FnOnce(&mut Setup)) {
+        let before = self.setup;
         change(&mut self.setup);
-        let pose = self.machine.tool(&self.at, &self.setup).on(&self.frame);
-        if pose != self.pose {
-            self.pose = pose;
-            if let Some(line) = self.line.take() {
-                let after = line.aside();
-                self.judge_line(line, after, false);
-            }
+        if self.setup == before {
+            return;
         }
+        if let Some(line) = self.line.take() {
+            let after = line.aside();
+            self.judge_line(line, after, false);
+        }
+        self.pose = self.machine.tool(&self.at, &self.setup).on(&self.frame);
     }
 }
 
