@@ -1,2 +1,3 @@
 //! Data to words: what the terminal, JSON and CSV say of runs, holes and verdicts.
 pub mod diagnostic;
+pub mod verdict_table;

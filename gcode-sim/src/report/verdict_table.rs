@@ -1,0 +1,285 @@
+//! A verdict as the table an inspector knows: nominal, actual, deviation, position, out of tolerance.
+use std::fmt::Write;
+
+use crate::verify::{Answer, HoleVerdict, Placed, Verdict};
+
+/// How much of it, and in which order.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Layout {
+    /// By position, the worst hole first; else in the order of the reference.
+    pub worst_first: bool,
+    /// Every column of an inspection report, four lines a hole, instead of one line a hole.
+    pub full: bool,
+}
+
+/// How many ids of missing holes, and how many extra ones, are written out; the rest is counted.
+const LISTED: usize = 12;
+
+/// Lengths in mm, angles in degrees; judged unrounded, shown rounded.
+pub fn table(verdict: &Verdict, layout: Layout) -> String {
+    let mut holes: Vec<&HoleVerdict> = verdict.holes.iter().collect();
+    if layout.worst_first {
+        holes.sort_by(|a, b| b.phi.total_cmp(&a.phi));
+    }
+    let mut text = format!(
+        "Position of {} against Φ{}: {}\nmm and degrees; deviations are actual less nominal\n\n",
+        count(holes.len(), "hole"),
+        verdict.tolerance,
+        verdict.basis
+    );
+    if layout.full {
+        holes.iter().for_each(|hole| full(&mut text, hole, verdict.tolerance));
+    } else {
+        lines(&mut text, &holes);
+    }
+    summary(&mut text, verdict);
+    text
+}
+
+/// One line a hole.
+fn lines(text: &mut String, holes: &[&HoleVerdict]) {
+    if holes.is_empty() {
+        return;
+    }
+    let wide = holes.iter().map(|hole| hole.id.chars().count()).max().unwrap_or(0).clamp(4, 12);
+    put(
+        text,
+        &format!(
+            "{:<wide$} {:>9} {:>9} {:>9} {:>8} {:>8} {:>8} {:>7} {:>7} {:>7} {:>8} {:>7} {:>7}  verdict",
+            "hole", "x", "y", "z", "dx", "dy", "dz", "entry", "bottom", "tilt", "depth", "Φ", "out"
+        ),
+    );
+    for hole in holes {
+        let [x, y, z] = hole.nominal.entry.map(|v| near(v, 3));
+        let [dx, dy, dz] = off(hole).map(signed);
+        put(
+            text,
+            &format!(
+                "{:<wide$} {x:>9} {y:>9} {z:>9} {dx:>8} {dy:>8} {dz:>8} {:>7} {:>7} {:>7} {:>8} {:>7} {:>7}  {}",
+                hole.id,
+                near(hole.at_entry, 4),
+                near(hole.at_bottom, 4),
+                near(hole.tilt, 4),
+                signed(hole.depth_error),
+                near(hole.phi, 4),
+                near(hole.out_of_tolerance, 4),
+                said(hole)
+            ),
+        );
+    }
+    text.push('\n');
+}
+
+/// Every column, a line each for nominal, actual and deviation.
+fn full(text: &mut String, hole: &HoleVerdict, tolerance: f64) {
+    let head = ["x", "y", "z", "i", "j", "k", "d", "l"].map(|name| format!("{name:>10}")).concat();
+    put(text, &format!("{:<11}{head}", format!("hole {}", hole.id)));
+    let columns = |placed: &Placed| {
+        let [x, y, z] = placed.entry.map(|v| near(v, 4));
+        let [i, j, k] = placed.axis.map(|v| near(v, 6));
+        let d = placed.diameter.map_or("-".to_owned(), |d| near(d, 3));
+        [x, y, z, i, j, k, d, near(placed.depth, 4)].map(|column| format!("{column:>10}")).concat()
+    };
+    put(text, &format!("{:<11}{}", " nominal", columns(&hole.nominal)));
+    put(text, &format!("{:<11}{}", " actual", columns(&hole.actual)));
+    let (nominal, actual) = (&hole.nominal, &hole.actual);
+    let axis = [0, 1, 2].map(|i| signed_to(actual.axis[i] - nominal.axis[i], 6));
+    let diameter = match (actual.diameter, nominal.diameter) {
+        (Some(actual), Some(nominal)) => signed_to(actual - nominal, 3),
+        _ => "-".to_owned(),
+    };
+    let rest = [diameter, signed(hole.depth_error)];
+    let all = off(hole).map(signed).into_iter().chain(axis).chain(rest);
+    put(
+        text,
+        &format!("{:<11}{}", " deviation", all.map(|column| format!("{column:>10}")).collect::<String>()),
+    );
+    put(
+        text,
+        &format!(
+            " position   Φ{} of Φ{tolerance}, out of tolerance {} (entry {}, bottom {}, tilt {}°)",
+            near(hole.phi, 4),
+            near(hole.out_of_tolerance, 4),
+            near(hole.at_entry, 4),
+            near(hole.at_bottom, 4),
+            near(hole.tilt, 4)
+        ),
+    );
+    let tool = hole.from.tool.map_or(String::new(), |tool| format!(", T{tool}"));
+    put(text, &format!(" verdict    {}; {} line {}{tool}", said(hole), hole.from.program, hole.from.line));
+    text.push('\n');
+}
+
+fn summary(text: &mut String, verdict: &Verdict) {
+    let good = verdict.holes.iter().filter(|hole| hole.ok).count();
+    let wanted = verdict.holes.len() + verdict.missing.len();
+    let answer = match verdict.verdict {
+        Answer::Pass => "PASS",
+        Answer::Fail => "FAIL",
+    };
+    let mut parts = vec![format!("{good} of {} good", count(wanted, "wanted hole"))];
+    if !verdict.missing.is_empty() {
+        parts.push(format!("{} missing", verdict.missing.len()));
+    }
+    if !verdict.extra.is_empty() {
+        parts.push(format!("{} too many", verdict.extra.len()));
+    }
+    put(text, &format!("{answer}: {}", parts.join(", ")));
+    if let (Some(worst), Some(from)) = (verdict.worst, &verdict.worst_from) {
+        put(text, &format!("worst    Φ{} of Φ{}: {from}", near(worst, 4), verdict.tolerance));
+    }
+    if let Some(rounding) = verdict.rounding {
+        let share = rounding / verdict.tolerance * 100.0;
+        put(
+            text,
+            &format!(
+                "rounding to the least increment alone can use up Φ{rounding:.4}, {share:.1} % of the zone"
+            ),
+        );
+    }
+    if !verdict.missing.is_empty() {
+        put(text, &format!("missing  {}", some(&verdict.missing, |id| id.clone(), ", ")));
+    }
+    if !verdict.extra.is_empty() {
+        put(text, &format!("extra    {}", some(&verdict.extra, |extra| extra.why.clone(), "\n         ")));
+    }
+}
+
+/// The first few, and how many more there are.
+fn some<T>(all: &[T], name: impl Fn(&T) -> String, between: &str) -> String {
+    let mut shown: Vec<_> = all.iter().take(LISTED).map(name).collect();
+    if LISTED < all.len() {
+        shown.push(format!("… and {} more", all.len() - LISTED));
+    }
+    shown.join(between)
+}
+
+fn put(text: &mut String, line: &str) {
+    // Writing to a string can't fail.
+    let _ = writeln!(text, "{}", line.trim_end());
+}
+
+fn off(hole: &HoleVerdict) -> [f64; 3] {
+    [0, 1, 2].map(|i| hole.actual.entry[i] - hole.nominal.entry[i])
+}
+
+fn said(hole: &HoleVerdict) -> String {
+    let why: Vec<_> = hole.objections.iter().map(|code| code.trim_start_matches("hole-")).collect();
+    if hole.ok { "pass".to_owned() } else { format!("FAIL {}", why.join(", ")) }
+}
+
+fn count(number: usize, what: &str) -> String {
+    format!("{number} {what}{}", if number == 1 { "" } else { "s" })
+}
+
+/// Rounded; never "-0.000".
+fn near(value: f64, places: usize) -> String {
+    let text = format!("{value:.places$}");
+    match text.strip_prefix('-') {
+        Some(zero) if zero.bytes().all(|b| b == b'0' || b == b'.') => zero.to_owned(),
+        _ => text,
+    }
+}
+
+fn signed(value: f64) -> String {
+    signed_to(value, 4)
+}
+
+fn signed_to(value: f64, places: usize) -> String {
+    let text = near(value, places);
+    match value > 0.0 && text.bytes().any(|b| b.is_ascii_digit() && b != b'0') {
+        true => format!("+{text}"),
+        false => text,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::part::hole::Origin;
+
+    fn hole(id: &str, phi: f64, objections: &[&str]) -> HoleVerdict {
+        let placed = |x: f64| Placed {
+            entry: [x, 674.93, 0.0],
+            axis: [0.0, 1.0, 0.0],
+            diameter: Some(6.0),
+            depth: 15.0,
+        };
+        HoleVerdict {
+            id: id.into(),
+            phi,
+            at_entry: phi / 2.0,
+            at_bottom: phi / 2.0,
+            depth_error: -0.00002,
+            ok: objections.is_empty(),
+            tilt: 0.0,
+            out_of_tolerance: (phi - 0.1).max(0.0),
+            rounding: 0.0211,
+            nominal: placed(420.0),
+            actual: placed(420.0 + phi / 2.0),
+            from: Origin { program: "O8101".into(), line: 31, tool: Some(2) },
+            objections: objections.iter().map(|o| (*o).to_owned()).collect(),
+        }
+    }
+
+    fn verdict() -> Verdict {
+        Verdict {
+            basis: "predicted by simulation, not measured",
+            tolerance: 0.1,
+            depth_tolerance: 0.1,
+            verdict: Answer::Fail,
+            worst: Some(0.1234),
+            worst_from: Some("hole 2: …".into()),
+            rounding: Some(0.0211),
+            holes: vec![hole("1", 0.0002, &[]), hole("2", 0.1234, &["hole-position"])],
+            missing: (3..18).map(|id| id.to_string()).collect(),
+            extra: Vec::new(),
+            findings: Vec::new(),
+            diagnostics: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn one_line_a_hole() {
+        insta::assert_snapshot!(table(&verdict(), Layout::default()), @r"
+Position of 2 holes against Φ0.1: predicted by simulation, not measured
+mm and degrees; deviations are actual less nominal
+
+hole         x         y         z       dx       dy       dz   entry  bottom    tilt    depth       Φ     out  verdict
+1      420.000   674.930     0.000  +0.0001   0.0000   0.0000  0.0001  0.0001  0.0000   0.0000  0.0002  0.0000  pass
+2      420.000   674.930     0.000  +0.0617   0.0000   0.0000  0.0617  0.0617  0.0000   0.0000  0.1234  0.0234  FAIL position
+
+FAIL: 1 of 17 wanted holes good, 15 missing
+worst    Φ0.1234 of Φ0.1: hole 2: …
+rounding to the least increment alone can use up Φ0.0211, 21.1 % of the zone
+missing  3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, … and 3 more
+");
+    }
+
+    #[test]
+    fn every_column_worst_first() {
+        insta::assert_snapshot!(table(&verdict(), Layout { worst_first: true, full: true }), @r"
+Position of 2 holes against Φ0.1: predicted by simulation, not measured
+mm and degrees; deviations are actual less nominal
+
+hole 2              x         y         z         i         j         k         d         l
+ nominal     420.0000  674.9300    0.0000  0.000000  1.000000  0.000000     6.000   15.0000
+ actual      420.0617  674.9300    0.0000  0.000000  1.000000  0.000000     6.000   15.0000
+ deviation    +0.0617    0.0000    0.0000  0.000000  0.000000  0.000000     0.000    0.0000
+ position   Φ0.1234 of Φ0.1, out of tolerance 0.0234 (entry 0.0617, bottom 0.0617, tilt 0.0000°)
+ verdict    FAIL position; O8101 line 31, T2
+
+hole 1              x         y         z         i         j         k         d         l
+ nominal     420.0000  674.9300    0.0000  0.000000  1.000000  0.000000     6.000   15.0000
+ actual      420.0001  674.9300    0.0000  0.000000  1.000000  0.000000     6.000   15.0000
+ deviation    +0.0001    0.0000    0.0000  0.000000  0.000000  0.000000     0.000    0.0000
+ position   Φ0.0002 of Φ0.1, out of tolerance 0.0000 (entry 0.0001, bottom 0.0001, tilt 0.0000°)
+ verdict    pass; O8101 line 31, T2
+
+FAIL: 1 of 17 wanted holes good, 15 missing
+worst    Φ0.1234 of Φ0.1: hole 2: …
+rounding to the least increment alone can use up Φ0.0211, 21.1 % of the zone
+missing  3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, … and 3 more
+");
+    }
+}
