@@ -7,6 +7,8 @@ pub mod units;
 
 pub mod source;
 
+pub mod motion;
+
 pub mod alarm;
 
 pub mod control;
@@ -14,8 +16,6 @@ pub mod control;
 pub mod syntax;
 
 pub mod program;
-
-pub mod motion;
 
 pub mod diag;
 

@@ -1,1 +1,161 @@
-//! One program through the whole chain.
+//! One program through the whole chain: what the command line, the generator and tests call.
+use crate::alarm::Alarm;
+use crate::control::Settings;
+use crate::diag::{Diagnostic, Severity};
+use crate::exec::{Control, Limits, Outcome};
+use crate::holes::{Extracted, Extractor};
+use crate::machine::Machine;
+use crate::motion::Sink;
+use crate::part::hole::HoleList;
+use crate::part::reference::Reference;
+use crate::part::surface::Surface;
+use crate::program::{Library, Memory};
+use crate::source::Span;
+use crate::verify::{Tolerances, Verdict, verify};
+
+/// A program to run, and everything its run depends on.
+#[derive(Clone, Debug)]
+pub struct Request {
+    /// The file's name as the user gave it.
+    pub name: String,
+    pub bytes: Vec<u8>,
+    pub settings: Settings,
+    pub machine: Machine,
+    pub limits: Limits,
+    /// Variables set before the start.
+    pub variables: Vec<(u32, f64)>,
+}
+
+impl Request {
+    /// A program on a machine, with that machine's control and the limits of [`Limits::default`].
+    pub fn new(name: impl Into<String>, bytes: impl Into<Vec<u8>>, machine: Machine) -> Self {
+        let settings = Settings {
+            axes: machine.axes.clone(),
+            dialect: machine.dialect,
+            increment: machine.increment,
+            ..Settings::default()
+        };
+        Self {
+            name: name.into(),
+            bytes: bytes.into(),
+            settings,
+            machine,
+            limits: Limits::default(),
+            variables: Vec::new(),
+        }
+    }
+}
+
+/// Why a run can't begin.
+#[derive(Debug, thiserror::Error)]
+pub enum SessionError {
+    #[error("{name} holds no program")]
+    NoProgram { name: String },
+    #[error("#{number} can't be set: {alarm}")]
+    Variable { number: u32, alarm: Alarm },
+}
+
+/// A run that is over, with the control as it stands.
+#[derive(Debug)]
+pub struct Run {
+    pub control: Control,
+    pub outcome: Outcome,
+}
+
+/// Runs a program and tells `sink` what the machine does.
+pub fn run<S: Sink>(
+    request: &Request,
+    library: &mut impl Library,
+    sink: &mut S,
+) -> Result<Run, SessionError> {
+    let mut memory = Memory::default();
+    memory.load(request.name.clone(), request.bytes.clone());
+    if memory.programs().is_empty() {
+        return Err(SessionError::NoProgram { name: request.name.clone() });
+    }
+    let mut control = Control::new(memory, request.settings.clone());
+    for (number, value) in
+        presets(&request.machine, request.settings.tool_offsets).chain(request.variables.iter().copied())
+    {
+        control.set(number, value).map_err(|alarm| SessionError::Variable { number, alarm })?;
+    }
+    let outcome = control.run(request.limits, library, sink);
+    Ok(Run { control, outcome })
+}
+
+/// What stands in the control of a machine that is set up: work offsets (#5221…), and the lengths of the tools in
+/// the table as geometry offsets H (#11001…).
+fn presets(machine: &Machine, pairs: usize) -> impl Iterator<Item = (u32, f64)> + '_ {
+    let work = machine.offsets.iter().flat_map(|offset| {
+        let first = 5221 + 20 * (offset.code - 54);
+        offset.values.iter().map(move |(axis, value)| (first + *axis as u32, *value))
+    });
+    let measured = move |number: u32| (1..=pairs).contains(&(number as usize));
+    let lengths = machine.tools.iter().filter_map(move |tool| {
+        tool.length.filter(|_| measured(tool.number)).map(|length| (11_000 + tool.number, length))
+    });
+    work.chain(lengths)
+}
+
+/// A run with the holes it made.
+#[derive(Debug)]
+pub struct Simulation {
+    pub run: Run,
+    pub extracted: Extracted,
+}
+
+/// Runs a program and follows the tool; with the surface known, motion inside the part is seen as well.
+pub fn simulate(
+    request: &Request,
+    library: &mut impl Library,
+    surface: Option<Surface>,
+) -> Result<Simulation, SessionError> {
+    let mut extractor = Extractor::new(&request.machine).with_surface(surface);
+    let run = run(request, library, &mut extractor)?;
+    let mut extracted = extractor.finish();
+    extracted.findings.extend(run.stopped());
+    Ok(Simulation { run, extracted })
+}
+
+impl Simulation {
+    /// The holes against the wanted ones.
+    pub fn verify(&self, reference: &Reference, tolerances: Tolerances, machine: &Machine) -> Verdict {
+        verify(&self.extracted, reference, tolerances, machine, &|span| self.run.locate(span))
+    }
+
+    /// The document that `holes` writes.
+    pub fn list(&self) -> HoleList {
+        self.extracted.list(|span| self.run.locate(span))
+    }
+}
+
+impl Run {
+    /// The program and the line of a block, as people name them: `O8101`, 31.
+    pub fn locate(&self, span: Span) -> (String, u32) {
+        let memory = self.control.memory();
+        let line = memory.sources().place(span).line;
+        let program = memory.program_at(span);
+        (program.map_or_else(|| memory.sources().get(span.source).name.clone(), |p| p.label()), line)
+    }
+
+    /// Why the run stopped before its end, as a finding; `None` where it didn't.
+    pub fn stopped(&self) -> Option<Diagnostic> {
+        match &self.outcome {
+            Outcome::End => None,
+            Outcome::Alarm(stopped) => {
+                let row = stopped.alarm.row();
+                let mut finding = Diagnostic::new(Severity::Alarm, row.code.to_string(), row.message);
+                finding.place = Some(stopped.place.clone());
+                finding.span = Some(stopped.span);
+                finding.help = row.help;
+                Some(finding)
+            }
+            Outcome::Limit => {
+                let blocks = self.control.blocks();
+                let message = format!("the program has not ended after {blocks} blocks");
+                let finding = Diagnostic::new(Severity::Alarm, "limit", message).at(self.control.place());
+                Some(finding.help("does a loop never end? --max-blocks allows more"))
+            }
+        }
+    }
+}

@@ -5,6 +5,7 @@
 #![expect(clippy::unwrap_used, clippy::disallowed_methods, reason = "tests read files and may panic")]
 
 mod cli;
+pub mod expect;
 mod r#gen;
 pub mod programs;
 

@@ -63,9 +63,22 @@ pub enum Alarm {
         end: f64,
         allowed: f64,
     },
+    PlaneSelect,
     NoRadiusOrCentre,
     OffsetNumber {
         number: i64,
+    },
+    SkipInCompensation,
+    NotAtReference {
+        letter: char,
+    },
+    ScaleRate {
+        value: f64,
+    },
+    PlaneInRotation,
+    NoIntermediatePoint,
+    FileNotFound {
+        name: String,
     },
     G10Format {
         what: String,
@@ -75,6 +88,8 @@ pub enum Alarm {
     ReferenceReturnP {
         p: i64,
     },
+    /// M98 or G65 without P.
+    ProgramNotNamed,
     ProgramNotFound {
         number: u32,
     },
@@ -128,6 +143,12 @@ pub enum Alarm {
     TwoMacroCalls,
     TooManyArgumentSets,
     CancelWithoutModalCall,
+    NoVariableName {
+        name: String,
+    },
+    RepeatedAddress {
+        letter: char,
+    },
     ArgumentFormat {
         function: String,
     },
@@ -149,6 +170,8 @@ pub enum Alarm {
     Raised {
         number: u16,
         text: String,
+        /// MCA 6008#1: shown as MC n instead of MC 3000 + n.
+        plain: bool,
     },
     /// A code or function that a control may have and this simulator does not execute.
     NotSimulated {

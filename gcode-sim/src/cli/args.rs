@@ -107,6 +107,14 @@ pub(super) struct ProgramArguments {
     #[arg(long, value_name = "MACHINE.toml")]
     pub(super) machine: Option<PathBuf>,
 
+    /// A code that calls a macro, e.g. G201=9010 or M50=9020 (repeatable)
+    #[arg(long, value_name = "CODE=PROGRAM")]
+    pub(super) code: Vec<String>,
+
+    /// G31 stops after this part of its path, 0 to 1
+    #[arg(long, value_name = "PART")]
+    pub(super) skip: Option<f64>,
+
     /// End the run at the main program's N-th M99
     #[arg(long, value_name = "N")]
     pub(super) cycles: Option<u32>,
@@ -174,7 +182,7 @@ pub(super) struct VerifyArguments {
 
     /// All of an inspector's columns: nominal and actual x y z i j k d l
     #[arg(long)]
-    pub(super) wide: bool,
+    pub(super) full: bool,
 
     /// Also draw the top view to this file
     #[arg(long, value_name = "OUT.png")]

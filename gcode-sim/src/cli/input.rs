@@ -17,7 +17,8 @@ pub fn bytes(path: &Path) -> Result<Vec<u8>, Refusal> {
             Err(error) => Err(Refusal::new(format!("standard input can't be read: {error}"))),
         };
     }
-    let unreadable = |error: std::io::Error| Refusal::new(format!("{} can't be read: {error}", path.display()));
+    let unreadable =
+        |error: std::io::Error| Refusal::new(format!("{} can't be read: {error}", path.display()));
     let about = std::fs::metadata(path).map_err(unreadable)?;
     if about.is_dir() {
         return Err(Refusal::new(format!("{} is a folder; name a file in it", path.display())));
@@ -34,7 +35,9 @@ pub fn text(path: &Path) -> Result<String, Refusal> {
     match String::from_utf8(bytes) {
         Ok(text) => Ok(text.strip_prefix('\u{feff}').map_or(text.clone(), str::to_owned)),
         Err(error) => {
-            let line = error.as_bytes()[..error.utf8_error().valid_up_to()].iter().filter(|b| **b == b'\n').count() + 1;
+            let line =
+                error.as_bytes()[..error.utf8_error().valid_up_to()].iter().filter(|b| **b == b'\n').count()
+                    + 1;
             Err(Refusal::new(format!("{}, line {line}: not UTF-8 text", path.display())))
         }
     }

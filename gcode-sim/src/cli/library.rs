@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 
 use super::{Refusal, input};
 use crate::program::Library;
+use crate::source::SourceId;
+use crate::syntax::{self, Piece, ast::ProgramName};
 
 /// The folders to look in, the first that has a program wins.
 pub struct Folders {
@@ -36,7 +38,7 @@ impl Folders {
             let mut found = BTreeMap::new();
             for path in self.folders.iter().flat_map(|folder| files(folder)) {
                 let Ok(bytes) = input::bytes(&path) else { continue };
-                for number in crate::program::numbers_in(&bytes) {
+                for number in numbers_in(&bytes) {
                     found.entry(number).or_insert_with(|| path.clone());
                 }
             }
@@ -52,6 +54,14 @@ impl Library for Folders {
         let bytes = input::bytes(&path).ok()?;
         Some((path.display().to_string(), bytes))
     }
+}
+
+/// The O-numbers of the programs in a file.
+fn numbers_in(bytes: &[u8]) -> impl Iterator<Item = u32> + '_ {
+    syntax::Pieces::new(SourceId::default(), bytes).filter_map(|piece| match piece {
+        Piece::Program { name: ProgramName::Number(number), .. } => Some(number),
+        _ => None,
+    })
 }
 
 /// The number in `O8101.nc`, `o8101.NC`, `O8101`, `8101.tap`.
@@ -83,7 +93,9 @@ mod tests {
 
     #[test]
     fn names_tell_numbers() {
-        for (name, number) in [("O8101.nc", Some(8101)), ("o0012", Some(12)), ("8101.TAP", Some(8101)), ("part.nc", None)] {
+        for (name, number) in
+            [("O8101.nc", Some(8101)), ("o0012", Some(12)), ("8101.TAP", Some(8101)), ("part.nc", None)]
+        {
             assert_eq!(numbered(Path::new(name)), number, "{name}");
         }
     }

@@ -1,1 +1,112 @@
-//! The only place that prints and opens files.
+//! The only place that prints and opens files: arguments in, exit status out.
+mod args;
+mod compare;
+mod holes;
+pub mod input;
+pub mod library;
+mod options;
+pub mod output;
+mod reference;
+mod render;
+mod run;
+mod verify;
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use args::{Arguments, Color, Command};
+
+use crate::diag::{Diagnostic, Severity};
+use crate::report::diagnostic;
+use crate::session::Run;
+
+/// How a request ended; contract of both programs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// Done, and what was asked about holds.
+    Holds,
+    /// Done, and the answer is no.
+    Fails,
+    /// The request can't be used.
+    Refused,
+    /// The control stopped with an alarm, or a limit ended the run.
+    Stopped,
+}
+
+impl From<Status> for ExitCode {
+    fn from(status: Status) -> Self {
+        Self::from(match status {
+            Status::Holds => 0,
+            Status::Fails => 1,
+            Status::Refused => 2,
+            Status::Stopped => 3,
+        })
+    }
+}
+
+/// Why a request can't be used, in one sentence with its remedy.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+pub struct Refusal(String);
+
+impl Refusal {
+    pub fn new(message: impl Into<String>) -> Self {
+        Self(message.into())
+    }
+}
+
+/// Does what the command line asks for.
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Status {
+    let arguments = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // Help and version are results; everything else is a request that can't be used.
+            let asked = !error.use_stderr();
+            let text = error.render().ansi().to_string();
+            if asked && output::print(&text).is_ok() {
+                return Status::Holds;
+            }
+            output::tell(&text);
+            return Status::Refused;
+        }
+    };
+    match arguments.color {
+        Color::Auto => {}
+        Color::Always => anstream::ColorChoice::Always.write_global(),
+        Color::Never => anstream::ColorChoice::Never.write_global(),
+    }
+    let done = match arguments.command {
+        Command::Run(arguments) => run::run(&arguments),
+        Command::Holes(arguments) => holes::run(&arguments),
+        Command::Reference(arguments) => reference::run(&arguments),
+        Command::Verify(arguments) => verify::run(&arguments),
+        Command::Render(arguments) => render::run(&arguments),
+        Command::Compare(arguments) => compare::run(&arguments),
+    };
+    done.unwrap_or_else(|refusal| {
+        output::tell(&format!("error: {refusal}\n"));
+        Status::Refused
+    })
+}
+
+/// Tells why a run stopped before its end, if it did.
+fn stopped(run: &Run) -> Option<Status> {
+    let finding = run.stopped()?;
+    output::tell(&diagnostic::render(&finding, run.control.memory().sources()));
+    Some(Status::Stopped)
+}
+
+/// Tells what was found, and what that means for the exit status.
+fn findings(all: &[Diagnostic], run: &Run) -> Status {
+    let sources = run.control.memory().sources();
+    for finding in all {
+        output::tell(&diagnostic::render(finding, sources));
+    }
+    match all.iter().map(|finding| finding.severity).max() {
+        Some(Severity::Alarm) => Status::Stopped,
+        Some(Severity::Error) => Status::Fails,
+        _ => Status::Holds,
+    }
+}

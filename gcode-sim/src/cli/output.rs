@@ -15,6 +15,15 @@ pub fn print(text: &str) -> Result<(), Refusal> {
     }
 }
 
+/// Prints one JSON document.
+pub fn json(document: &impl serde::Serialize) -> Result<(), Refusal> {
+    let text = serde_json::to_string_pretty(document);
+    print(
+        &(text.map_err(|error| Refusal::new(format!("the result can't be written as JSON: {error}")))?
+            + "\n"),
+    )
+}
+
 /// Tells something that isn't the result.
 pub fn tell(text: &str) {
     // Where even standard error is closed there is nobody left to tell.
@@ -30,7 +39,9 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Refusal> {
 pub fn write_all(files: &[(&Path, &[u8])]) -> Result<(), Refusal> {
     let mut waiting = Vec::new();
     for (path, bytes) in files {
-        let unwritable = |error: &dyn std::fmt::Display| Refusal::new(format!("{} can't be written: {error}", path.display()));
+        let unwritable = |error: &dyn std::fmt::Display| {
+            Refusal::new(format!("{} can't be written: {error}", path.display()))
+        };
         if path.is_dir() {
             return Err(unwritable(&"it is a folder"));
         }
@@ -38,13 +49,15 @@ pub fn write_all(files: &[(&Path, &[u8])]) -> Result<(), Refusal> {
             Some(folder) if !folder.as_os_str().is_empty() => folder,
             _ => Path::new("."),
         };
-        let mut file = tempfile::Builder::new().prefix(".writing-").tempfile_in(folder).map_err(|e| unwritable(&e))?;
+        let mut file =
+            tempfile::Builder::new().prefix(".writing-").tempfile_in(folder).map_err(|e| unwritable(&e))?;
         file.write_all(bytes).map_err(|e| unwritable(&e))?;
         allow_reading(file.as_file()).map_err(|e| unwritable(&e))?;
         waiting.push((path, file));
     }
     for (path, file) in waiting {
-        file.persist(path).map_err(|e| Refusal::new(format!("{} can't be written: {}", path.display(), e.error)))?;
+        file.persist(path)
+            .map_err(|e| Refusal::new(format!("{} can't be written: {}", path.display(), e.error)))?;
     }
     Ok(())
 }

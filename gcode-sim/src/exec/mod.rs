@@ -1,1 +1,427 @@
-//! Operations to events.
+//! Operations to events: a control that can be stepped block by block, held and looked at.
+mod arcs;
+mod block;
+mod calls;
+mod cycles;
+mod eval;
+mod modal;
+mod offsets;
+mod one_shot;
+mod plan;
+mod state;
+mod statements;
+mod system_vars;
+mod transform;
+mod travel;
+mod vars;
+mod words;
+
+use std::collections::BTreeMap;
+
+pub use modal::Modal;
+pub use state::{Codes, State};
+pub use vars::{Value, Vars};
+
+use self::calls::{Frame, FrameKind, ModalCall};
+use self::offsets::Offsets;
+use self::plan::{Flow, Plan, Write};
+use self::words::Given;
+use crate::alarm::Alarm;
+use crate::control::Settings;
+use crate::motion::{Axis, Event, EventKind, Place, Position, Sink, StopKind};
+use crate::program::{Library, Memory, OpKind, ProgramId};
+use crate::source::{Span, Spanned};
+use crate::units::Seconds;
+
+/// How long a run may take.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// Blocks executed, macro statements included.
+    pub blocks: u64,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self { blocks: 10_000_000 }
+    }
+}
+
+/// How a run ended.
+#[derive(Clone, Debug)]
+pub enum Outcome {
+    /// M02, M30, the M99 that ends the run, or the program's end.
+    End,
+    Alarm(Stopped),
+    /// The limit of blocks: the program may never end.
+    Limit,
+}
+
+/// Where and why the control stopped.
+#[derive(Clone, Debug)]
+pub struct Stopped {
+    pub alarm: Alarm,
+    /// The part of the block it is about.
+    pub span: Span,
+    /// The block, and the calls that led to it.
+    pub place: Place,
+}
+
+/// An operator stop.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stop {
+    pub kind: StopKind,
+    pub text: String,
+    /// The variables that the text names, with their values.
+    pub named: Vec<(u32, f64)>,
+}
+
+/// As many operator stops are kept; a program that loops over M00 must not fill the memory.
+const STOPS: usize = 10_000;
+
+/// A control with programs in its memory: everything a run is.
+#[derive(Debug)]
+pub struct Control {
+    memory: Memory,
+    core: Core,
+    plan: Plan,
+    given: Given,
+    main: ProgramId,
+    outcome: Option<Outcome>,
+}
+
+/// Everything but the programs.
+#[derive(Clone, Debug)]
+pub(crate) struct Core {
+    settings: Settings,
+    state: State,
+    vars: Vars,
+    offsets: Offsets,
+    frames: Vec<Frame>,
+    modal_calls: Vec<ModalCall>,
+    /// Names given by SETVN.
+    names: BTreeMap<String, u32>,
+    outputs: u32,
+    /// What #3001 and #3002 have been set off by: milliseconds, hours.
+    clocks: (f64, f64),
+    /// #3003 and #3004.
+    switches: [f64; 2],
+    /// #3901 and #3902.
+    parts: [f64; 2],
+    /// M99 of the main program, counted.
+    cycles: u32,
+    seconds: f64,
+    blocks: u64,
+    moves: u64,
+    stops: Vec<Stop>,
+    block: Span,
+}
+
+impl Control {
+    /// A control switched on, about to run the first program of `memory`.
+    pub fn new(memory: Memory, settings: Settings) -> Self {
+        let offsets = Offsets::new(settings.tool_offsets);
+        let core = Core {
+            settings,
+            state: State::default(),
+            vars: Vars::default(),
+            offsets,
+            frames: Vec::new(),
+            modal_calls: Vec::new(),
+            names: BTreeMap::new(),
+            outputs: 0,
+            clocks: (0.0, 0.0),
+            switches: [0.0; 2],
+            parts: [0.0; 2],
+            cycles: 0,
+            seconds: 0.0,
+            blocks: 0,
+            moves: 0,
+            stops: Vec::new(),
+            block: Span::default(),
+        };
+        let mut control = Self {
+            memory,
+            core,
+            plan: Plan::default(),
+            given: Given::default(),
+            main: ProgramId::default(),
+            outcome: None,
+        };
+        control.select(ProgramId::default());
+        control
+    }
+
+    /// Makes another program of the memory the main program.
+    pub fn select(&mut self, program: ProgramId) {
+        self.main = program;
+        self.outcome = None;
+        self.core.frames.clear();
+        self.core.frames.push(Frame::main(program));
+        if let Some(program) = self.memory.programs().get(program.0 as usize) {
+            self.core.state.codes.o = program.number().unwrap_or(0);
+            self.core.block = program.span;
+        }
+    }
+
+    /// Sets a variable before the run, as the operator would on the screen.
+    pub fn set(&mut self, number: u32, value: f64) -> Result<(), Alarm> {
+        let written = self.core.write(number, Value::Number(value), None, Span::default(), &mut ());
+        written.map_err(|alarm| alarm.node)
+    }
+
+    /// Runs to the end, to an alarm, or to a limit.
+    pub fn run<S: Sink>(&mut self, limits: Limits, library: &mut impl Library, sink: &mut S) -> Outcome {
+        while self.core.blocks < limits.blocks {
+            if let Some(outcome) = self.step(library, sink) {
+                return outcome;
+            }
+        }
+        self.outcome = Some(Outcome::Limit);
+        Outcome::Limit
+    }
+
+    /// Does one block; `Some` when the run is over. A block that alarms has changed nothing.
+    pub fn step<S: Sink>(&mut self, library: &mut impl Library, sink: &mut S) -> Option<Outcome> {
+        if let Some(outcome @ (Outcome::End | Outcome::Alarm(_))) = &self.outcome {
+            return Some(outcome.clone());
+        }
+        let done = self.block(library, sink);
+        let outcome = match done {
+            Ok(outcome) => outcome?,
+            Err(alarm) => {
+                let calls = self.core.frames.last().map(|f| f.calls.clone()).unwrap_or_default();
+                let place = Place { block: self.core.block, calls };
+                Outcome::Alarm(Stopped { alarm: alarm.node, span: alarm.span, place })
+            }
+        };
+        self.outcome = Some(outcome.clone());
+        Some(outcome)
+    }
+
+    fn block<S: Sink>(
+        &mut self,
+        library: &mut impl Library,
+        sink: &mut S,
+    ) -> Result<Option<Outcome>, Spanned<Alarm>> {
+        let Self { memory, core, plan, given, .. } = self;
+        if memory.programs().is_empty() {
+            return Err(Alarm::EndOfRecord.at(Span::default()));
+        }
+        let frame = core.frame();
+        let (id, place, main) = (frame.program, frame.next, frame.kind == FrameKind::Main);
+        let program = memory.get(id);
+        let Some(op) = program.ops.get(place) else {
+            core.block = Span { start: program.span.end, ..program.span };
+            // A main program may end without M30 here; a called one has nowhere to go back from.
+            if main {
+                return Ok(Some(Outcome::End));
+            }
+            return Err(Alarm::EndOfRecord.at(core.block));
+        };
+        core.block = op.span;
+        core.blocks += 1;
+        core.frame_mut().next = place + 1;
+        if op.skip.is_some_and(|switch| core.skips(switch)) {
+            return Ok(None);
+        }
+        match &op.kind {
+            OpKind::Empty => {}
+            OpKind::Alarm(alarm) => return Err((**alarm).clone()),
+            OpKind::Statement(statement) => {
+                return core.statement(program, statement, op.span, sink);
+            }
+            OpKind::Words(words) => {
+                core.prepare(program, words, given, plan, op.span)?;
+                let span = op.span;
+                if let Some(number) = op.number {
+                    plan.state.codes.n = number;
+                }
+                return self.finish(span, library, sink);
+            }
+        }
+        if let Some(number) = op.number {
+            core.state.codes.n = number;
+        }
+        Ok(None)
+    }
+
+    /// Carries out the plan of a block of words. What can still alarm comes first.
+    fn finish<S: Sink>(
+        &mut self,
+        span: Span,
+        library: &mut impl Library,
+        sink: &mut S,
+    ) -> Result<Option<Outcome>, Spanned<Alarm>> {
+        let mut flow = std::mem::take(&mut self.plan.flow);
+        if let Flow::Call(call) = &mut flow {
+            let at = call.span;
+            self.resolve(call, library).map_err(|alarm| alarm.at(at))?;
+        }
+        self.core.commit(&mut self.plan, sink);
+        match flow {
+            Flow::Next if self.plan.moved && !self.core.modal_calls.is_empty() => {
+                self.core.call_after_move(span).map_err(|alarm| alarm.at(span))?;
+            }
+            Flow::Next => {}
+            Flow::Call(call) => {
+                self.core.enter(&call, span);
+                let program = self.core.frame().program;
+                self.core.state.codes.o = self.memory.get(program).number().unwrap_or(0);
+            }
+            Flow::Return(to) => {
+                let outcome = self.go_back(to, span)?;
+                let program = self.core.frame().program;
+                self.core.state.codes.o = self.memory.get(program).number().unwrap_or(0);
+                return Ok(outcome);
+            }
+            Flow::CancelModal => self.core.cancel_modal(),
+            Flow::End => return Ok(Some(Outcome::End)),
+        }
+        Ok(None)
+    }
+
+    pub fn memory(&self) -> &Memory {
+        &self.memory
+    }
+
+    pub fn settings(&self) -> &Settings {
+        &self.core.settings
+    }
+
+    /// How the run ended, or `None` while it goes on.
+    pub fn outcome(&self) -> Option<&Outcome> {
+        self.outcome.as_ref()
+    }
+
+    /// What isn't vacant, by number: the main program's locals as they stood before M30's reset, and the commons.
+    pub fn variables(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
+        self.core.vars.known()
+    }
+
+    /// A variable of any kind by its number, as a program would read it now.
+    pub fn variable(&self, number: u32) -> Result<Value, Alarm> {
+        self.core.read(number)
+    }
+
+    /// The coordinate of an axis in the active work coordinate system, as #5001… show it.
+    pub fn work_position(&self, axis: Axis) -> f64 {
+        let state = &self.core.state;
+        self.core.shown(state, Some(axis), state.programmed[axis])
+    }
+
+    /// In machine coordinates, mm and degrees.
+    pub fn machine_position(&self) -> Position {
+        self.core.state.machine
+    }
+
+    pub fn state(&self) -> &State {
+        &self.core.state
+    }
+
+    /// The block last begun, and the calls that led to it.
+    pub fn place(&self) -> Place {
+        let calls = self.core.frames.last().map(|f| f.calls.clone()).unwrap_or_default();
+        Place { block: self.core.block, calls }
+    }
+
+    /// Blocks executed so far.
+    pub fn blocks(&self) -> u64 {
+        self.core.blocks
+    }
+
+    /// Moves told so far.
+    pub fn moves(&self) -> u64 {
+        self.core.moves
+    }
+
+    /// What the motion takes, without acceleration.
+    pub fn seconds(&self) -> Seconds {
+        Seconds(self.core.seconds)
+    }
+
+    /// Operator stops in order; the first ten thousand.
+    pub fn stops(&self) -> &[Stop] {
+        &self.core.stops
+    }
+}
+
+impl Core {
+    /// Everything a plan says, in the order it says it.
+    fn commit<S: Sink>(&mut self, plan: &mut Plan, sink: &mut S) {
+        let before = self.state;
+        self.state = plan.state;
+        for (kind, seconds) in plan.events.drain(..) {
+            self.tell(kind, seconds, sink);
+        }
+        if let Some(drill) = plan.drill.take() {
+            self.tell_drill(&drill, sink);
+        }
+        for (kind, seconds) in plan.after.drain(..) {
+            self.tell(kind, seconds, sink);
+        }
+        for write in plan.writes.drain(..) {
+            match write {
+                Write::Work { system, axis, value } => self.offsets.work_mut(system)[axis] = value,
+                Write::Tool { register, number, value } => {
+                    self.offsets.register(register)[number as usize] = value;
+                }
+            }
+            self.offsets_changed();
+        }
+        if let Some(kind) = plan.stop.take() {
+            self.tell(EventKind::Stop { kind, text: String::new(), named: Vec::new() }, 0.0, sink);
+        }
+        if self.state.codes.m == 30 && before.codes.m != 30 {
+            self.parts[0] += 1.0;
+        }
+    }
+
+    fn tell_drill<S: Sink>(&mut self, drill: &cycles::Drill, sink: &mut S) {
+        let (mut seconds, mut moves) = (0.0, 0);
+        let block = self.block;
+        let calls = self.frame().calls.clone();
+        self.drill(drill, &mut |kind, time| {
+            seconds += time;
+            moves += u64::from(moves_something(&kind));
+            sink.event(&Event { kind, seconds: Seconds(time), block, calls: &calls });
+        });
+        self.seconds += seconds;
+        self.moves += moves;
+    }
+
+    /// Tells the machine one thing and counts it.
+    fn tell<S: Sink>(&mut self, kind: EventKind, seconds: f64, sink: &mut S) {
+        self.seconds += seconds;
+        self.moves += u64::from(moves_something(&kind));
+        if let EventKind::Stop { kind, text, named } = &kind
+            && self.stops.len() < STOPS
+        {
+            self.stops.push(Stop { kind: *kind, text: text.clone(), named: named.clone() });
+        }
+        let block = self.block;
+        sink.event(&Event { kind, seconds: Seconds(seconds), block, calls: &self.frame().calls });
+    }
+
+    fn set_names(&mut self, first: u32, names: &[String]) -> Result<(), Alarm> {
+        for (place, name) in names.iter().enumerate() {
+            let number = first + place as u32;
+            if !(500..=549).contains(&number) {
+                return Err(Alarm::NoSuchVariable { number: i64::from(number) });
+            }
+            self.names.insert(name.clone(), number);
+        }
+        Ok(())
+    }
+
+    fn named(&self, name: &str) -> Result<u32, Alarm> {
+        let unknown = || Alarm::NoVariableName { name: name.to_owned() };
+        self.names.get(name).copied().ok_or_else(unknown)
+    }
+}
+
+fn moves_something(kind: &EventKind) -> bool {
+    matches!(
+        kind,
+        EventKind::Rapid { .. } | EventKind::Feed { .. } | EventKind::Arc { .. } | EventKind::Skip { .. }
+    )
+}

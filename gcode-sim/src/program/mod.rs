@@ -1,1 +1,147 @@
-//! Tree to operations.
+//! Tree to operations: codes looked up, loops paired, sequence numbers found, expressions in postfix order.
+//!
+//! A [`Program`] is what will run. Nothing here depends on a control's settings, so a program is lowered once.
+pub mod codes;
+pub mod cycles;
+mod expr;
+mod flow;
+mod lower;
+pub mod m_codes;
+mod memory;
+pub mod modes;
+mod words;
+
+pub use expr::{Code, Instruction, Operand, Operation, STACK};
+pub use memory::{Library, Memory, NoLibrary, ProgramId};
+pub use words::{CallOp, CallTarget, Calling, Coded, Input, Words};
+
+use crate::alarm::Alarm;
+use crate::source::{Span, Spanned};
+use crate::syntax::ast::{PrintKind, ProgramName};
+
+/// The place of an operation in its program.
+pub type OpIndex = usize;
+
+/// One O-program, ready to run.
+#[derive(Debug)]
+pub struct Program {
+    pub name: ProgramName,
+    /// From the O word, or the first block, to the end of the last block.
+    pub span: Span,
+    pub ops: Vec<Op>,
+    /// The postfix code of all expressions; a [`Code`] is a range of it.
+    instructions: Vec<Instruction>,
+    /// Sequence numbers with their operations, by number, then by place.
+    numbers: Vec<(u32, OpIndex)>,
+    /// The names that [`Operation::Named`] counts.
+    names: Vec<String>,
+}
+
+/// One block.
+#[derive(Debug)]
+pub struct Op {
+    pub span: Span,
+    /// The block skip switch at its start.
+    pub skip: Option<u8>,
+    pub number: Option<u32>,
+    pub kind: OpKind,
+}
+
+#[derive(Debug)]
+pub enum OpKind {
+    /// A block without words: an empty line, a comment, a sequence number alone.
+    Empty,
+    Words(Box<Words>),
+    Statement(Statement),
+    /// The control stops here if it gets here.
+    Alarm(Box<Spanned<Alarm>>),
+}
+
+#[derive(Debug)]
+pub enum Statement {
+    Assign {
+        /// The number of the variable.
+        target: Operand,
+        target_span: Span,
+        value: Operand,
+        /// The first comment of the block: the text of `#3000=` and `#3006=`.
+        text: Option<Box<[u8]>>,
+    },
+    Goto(Spanned<Operand>),
+    IfGoto {
+        condition: Code,
+        to: Spanned<Operand>,
+    },
+    IfThen {
+        condition: Code,
+        then: Box<Self>,
+    },
+    /// `end` is the operation of the END.
+    While {
+        condition: Code,
+        number: u8,
+        end: OpIndex,
+    },
+    Do {
+        number: u8,
+        end: OpIndex,
+    },
+    /// `start` is the operation of the WHILE or DO.
+    End {
+        number: u8,
+        start: OpIndex,
+    },
+    SetNames {
+        first: Operand,
+        names: Vec<String>,
+    },
+    Print {
+        kind: PrintKind,
+        parts: Vec<PrintPart>,
+    },
+    OpenOutput,
+    CloseOutput,
+    /// `IF[…]THEN` of something that must not stand there.
+    Alarm(Box<Spanned<Alarm>>),
+}
+
+#[derive(Debug)]
+pub enum PrintPart {
+    Text(String),
+    Value { value: Operand, whole: u8, decimals: u8 },
+}
+
+impl Program {
+    /// The O number, or `None` for a program with a name or without any.
+    pub fn number(&self) -> Option<u32> {
+        match self.name {
+            ProgramName::Number(number) => Some(number),
+            ProgramName::Name(_) | ProgramName::Unnamed => None,
+        }
+    }
+
+    /// The name as a control shows it: `O8101`, `<BRACKET-OP1>`; `MAIN` where there is none.
+    pub fn label(&self) -> String {
+        match &self.name {
+            ProgramName::Number(number) => format!("O{number:04}"),
+            ProgramName::Name(name) => format!("<{name}>"),
+            ProgramName::Unnamed => "MAIN".into(),
+        }
+    }
+
+    pub fn code(&self, code: Code) -> &[Instruction] {
+        &self.instructions[code.start as usize..code.end as usize]
+    }
+
+    pub(crate) fn variable_name(&self, index: u32) -> &str {
+        self.names.get(index as usize).map_or("", String::as_str)
+    }
+
+    /// The block with this sequence number: the next one from `from` on, else the first of the program.
+    pub fn find_number(&self, number: u32, from: OpIndex) -> Option<OpIndex> {
+        let first = self.numbers.partition_point(|entry| *entry < (number, 0));
+        let next = self.numbers.partition_point(|entry| *entry < (number, from));
+        let is_it = |index: usize| self.numbers.get(index).filter(|(n, _)| *n == number).map(|(_, op)| *op);
+        is_it(next).or_else(|| is_it(first))
+    }
+}

@@ -1,3 +1,6 @@
 //! Data to words: what the terminal, JSON and CSV say of runs, holes and verdicts.
 pub mod diagnostic;
+pub mod holes;
+pub mod run;
+pub mod top;
 pub mod verdict_table;

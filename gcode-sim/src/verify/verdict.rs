@@ -59,6 +59,9 @@ pub struct HoleVerdict {
     pub from: Origin,
     /// The codes of the findings against it.
     pub objections: Vec<String>,
+    /// Which of the holes that the program makes it is, counted from 0.
+    #[serde(skip)]
+    pub found: usize,
 }
 
 /// A hole as an inspector writes it down; the actual one where its axis crosses the plane of the nominal entry.
@@ -189,6 +192,7 @@ fn hole_verdict(
         },
         from: Origin { program, line, tool: found.tool },
         objections,
+        found: pair.found,
     }
 }
 

@@ -1,0 +1,33 @@
+//! `gcode-sim compare`: where two pictures differ.
+use super::args::CompareArguments;
+use super::{Refusal, Status, input, output};
+use crate::picture;
+
+pub(super) fn run(arguments: &CompareArguments) -> Result<Status, Refusal> {
+    let (left, right) = (input::bytes(&arguments.left)?, input::bytes(&arguments.right)?);
+    let refused = |error: picture::PictureError| Refusal::new(error.to_string());
+    let difference = picture::compare(&left, &right, arguments.tolerance).map_err(refused)?;
+    if difference.is_none() {
+        output::print("the pictures are alike\n")?;
+        return Ok(Status::Holds);
+    }
+    let [(w, h), (other_w, other_h)] = difference.sizes;
+    let mut text = if (w, h) == (other_w, other_h) {
+        format!("{} of {} pixels differ", difference.pixels, u64::from(w) * u64::from(h))
+    } else {
+        format!("the sizes differ: {w}x{h} and {other_w}x{other_h}; {} pixels differ", difference.pixels)
+    };
+    if let Some([left, top, right, bottom]) = difference.bounds {
+        text.push_str(&format!(
+            ", by up to {} steps, between ({left}, {top}) and ({right}, {bottom})",
+            difference.largest
+        ));
+    }
+    text.push('\n');
+    if let Some(path) = &arguments.output {
+        output::write(path, &difference.png().map_err(refused)?)?;
+        text.push_str(&format!("picture: {}\n", path.display()));
+    }
+    output::print(&text)?;
+    Ok(Status::Fails)
+}

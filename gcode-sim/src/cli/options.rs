@@ -1,0 +1,77 @@
+//! Turns what stands on the command line into a request the session can run.
+use std::path::Path;
+
+use super::args::ProgramArguments;
+use super::library::Folders;
+use super::{Refusal, input};
+use crate::exec::Limits;
+use crate::machine::Machine;
+use crate::part::reference::Reference;
+use crate::session::Request;
+
+/// Reads the program and the machine, and resolves every setting.
+pub(super) fn request(arguments: &ProgramArguments) -> Result<(Request, Folders), Refusal> {
+    let machine = match &arguments.machine {
+        Some(path) => machine(path)?,
+        None => Machine::default(),
+    };
+    let folders = Folders::new(&arguments.program, &arguments.libraries)?;
+    let piped = arguments.program == Path::new("-");
+    let name = if piped { "standard input".to_owned() } else { arguments.program.display().to_string() };
+    let mut request = Request::new(name, input::bytes(&arguments.program)?, machine);
+    let mut settings: Vec<(&str, String)> = Vec::new();
+    settings.extend(arguments.control.iter().map(|text| ("--control", text.clone())));
+    settings.extend(arguments.input.iter().map(|text| ("--input", text.clone())));
+    settings.extend(arguments.code.iter().map(|text| ("--code", text.clone())));
+    settings.extend(arguments.dialect.iter().map(|name| ("--dialect", format!("DIALECT={name}"))));
+    settings.extend(arguments.cycles.iter().map(|count| ("--cycles", format!("CYCLES={count}"))));
+    settings.extend(arguments.skip.iter().map(|part| ("--skip", format!("SKIP={part}"))));
+    for (flag, text) in settings {
+        let Some((key, value)) = text.split_once('=') else {
+            return Err(Refusal::new(format!("{flag} {text}: write KEY=VALUE, for example NAT=1")));
+        };
+        let taken = request.settings.set(key.trim(), value.trim());
+        taken.map_err(|error| Refusal::new(format!("{flag}: {error}")))?;
+    }
+    for text in &arguments.set {
+        request.variables.push(assignment(text)?);
+    }
+    request.limits = Limits { blocks: arguments.max_blocks };
+    Ok((request, folders))
+}
+
+fn machine(path: &Path) -> Result<Machine, Refusal> {
+    Machine::parse(&input::text(path)?).map_err(|error| Refusal::new(format!("{}, {error}", path.display())))
+}
+
+/// A hole list or a job file.
+pub(super) fn reference(path: &Path) -> Result<Reference, Refusal> {
+    Reference::parse(&input::text(path)?)
+        .map_err(|error| Refusal::new(format!("{}, {error}", path.display())))
+}
+
+/// A tolerance that somebody asked for.
+pub(super) fn tolerance(flag: &str, value: Option<f64>) -> Result<Option<f64>, Refusal> {
+    match value {
+        Some(mm) if !(mm.is_finite() && mm > 0.0) => {
+            Err(Refusal::new(format!("{flag} {mm}: a length above 0 mm")))
+        }
+        value => Ok(value),
+    }
+}
+
+/// `#500=12.5`.
+fn assignment(text: &str) -> Result<(u32, f64), Refusal> {
+    let parsed = text.trim().strip_prefix('#').and_then(|rest| {
+        let (number, value) = rest.split_once('=')?;
+        let value = value.trim().parse::<f64>().ok().filter(|v| v.is_finite())?;
+        Some((number.trim().parse().ok()?, value))
+    });
+    parsed.ok_or_else(|| Refusal::new(format!("--set {text}: write a variable and a number, '#500=12.5'")))
+}
+
+/// `#5041`.
+pub(super) fn variable(text: &str) -> Result<u32, Refusal> {
+    let number = text.trim().strip_prefix('#').and_then(|digits| digits.parse().ok());
+    number.ok_or_else(|| Refusal::new(format!("--show {text}: write a variable, '#5041'")))
+}

@@ -1,0 +1,54 @@
+//! `gcode-sim render`: a picture of the holes on the part.
+use std::path::Path;
+
+use super::args::{RenderArguments, View};
+use super::{Refusal, Status, options, output};
+use crate::part::reference::Reference;
+use crate::picture::{self, Size, TopView};
+use crate::report::top;
+use crate::session::{self, Request, Simulation};
+use crate::verify::{Tolerances, Verdict};
+
+pub(super) fn run(arguments: &RenderArguments) -> Result<Status, Refusal> {
+    let View::Top = arguments.view;
+    let (request, mut folders) = options::request(&arguments.program)?;
+    let reference = arguments.reference.as_deref().map(options::reference).transpose()?;
+    let asked = options::tolerance("--tolerance", arguments.tolerance)?;
+    let surface = reference.as_ref().and_then(|r| r.surface);
+    let simulation =
+        session::simulate(&request, &mut folders, surface).map_err(|e| Refusal::new(e.to_string()))?;
+    let drawn = match &reference {
+        Some(reference) => {
+            let verdict = simulation.verify(reference, Tolerances::of(reference, asked), &request.machine);
+            view(&request, &simulation, reference, &verdict)
+        }
+        None => top::of_holes(&name(&request), &simulation, &request.machine),
+    };
+    write(&drawn, &arguments.size, &arguments.output)?;
+    output::print(&format!("picture: {}\n", arguments.output.display()))?;
+    Ok(super::stopped(&simulation.run).unwrap_or(Status::Holds))
+}
+
+/// The top view of a verdict.
+pub(super) fn view(
+    request: &Request,
+    simulation: &Simulation,
+    reference: &Reference,
+    verdict: &Verdict,
+) -> TopView {
+    top::of_verdict(&name(request), simulation, reference, verdict, &request.machine)
+}
+
+/// Draws a view to a file of exactly the size asked for.
+pub(super) fn write(view: &TopView, size: &str, path: &Path) -> Result<(), Refusal> {
+    let refused = |error: picture::PictureError| Refusal::new(error.to_string());
+    let size: Size = size.parse().map_err(refused)?;
+    let png = picture::draw(&picture::top_view(view), size).map_err(refused)?;
+    output::write(path, &png)
+}
+
+/// The file's name without its folder.
+fn name(request: &Request) -> String {
+    let file = Path::new(&request.name).file_name();
+    file.map_or_else(|| request.name.clone(), |name| name.to_string_lossy().into_owned())
+}

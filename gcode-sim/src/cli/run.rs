@@ -1,0 +1,27 @@
+//! `gcode-sim run`: executes a program and shows the end state.
+use super::args::{RunArguments, TextFormat};
+use super::{Refusal, Status, options, output};
+use crate::report::run::{Moves, RunReport};
+use crate::session;
+
+pub(super) fn run(arguments: &RunArguments) -> Result<Status, Refusal> {
+    let (request, mut folders) = options::request(&arguments.program)?;
+    let wanted = arguments.show.iter().map(|text| options::variable(text)).collect::<Result<Vec<_>, _>>()?;
+    let mut moves = arguments.moves.then(Moves::default);
+    let done = match &mut moves {
+        Some(moves) => session::run(&request, &mut folders, moves),
+        None => session::run(&request, &mut folders, &mut ()),
+    };
+    let run = done.map_err(|error| Refusal::new(error.to_string()))?;
+    let mut system = Vec::new();
+    for number in wanted {
+        let value = run.control.variable(number);
+        system.push((number, value.map_err(|alarm| Refusal::new(format!("--show '#{number}': {alarm}")))?));
+    }
+    let report = RunReport::new(&run, moves.as_ref(), system);
+    match arguments.format {
+        TextFormat::Text => output::print(&report.text())?,
+        TextFormat::Json => output::json(&report)?,
+    }
+    Ok(super::stopped(&run).unwrap_or(Status::Holds))
+}

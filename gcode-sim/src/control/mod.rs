@@ -1,0 +1,230 @@
+//! The settings of a control that a program's meaning depends on, in one struct: never an `if` in the reader.
+mod table;
+
+use crate::motion::{Axes, MAX_AXES, Position};
+use crate::units::MmPerMin;
+
+pub use table::{ROWS, Row, SettingError};
+
+/// The least input increment (parameter 1013).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Increment {
+    /// 0.01 mm and degrees.
+    IsA,
+    /// 0.001 mm and degrees.
+    #[default]
+    IsB,
+    /// 0.0001 mm and degrees.
+    IsC,
+}
+
+impl Increment {
+    pub const ALL: [(&'static str, Self); 3] =
+        [("IS-A", Self::IsA), ("IS-B", Self::IsB), ("IS-C", Self::IsC)];
+
+    /// How many increments make a millimetre or a degree.
+    pub fn per_unit(self) -> f64 {
+        match self {
+            Self::IsA => 100.0,
+            Self::IsB => 1_000.0,
+            Self::IsC => 10_000.0,
+        }
+    }
+
+    /// The multiple of the increment nearest to `value`, half away from zero.
+    pub fn round(self, value: f64) -> f64 {
+        (value * self.per_unit()).round() / self.per_unit()
+    }
+
+    /// The increment itself in mm or degrees.
+    pub fn size(self) -> f64 {
+        1.0 / self.per_unit()
+    }
+}
+
+/// Which family of controls; its limits and differences are data.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Dialect {
+    #[default]
+    Fanuc31i,
+    Fanuc0iF,
+    HaasNgc,
+}
+
+impl Dialect {
+    pub const ALL: [(&'static str, Self); 3] =
+        [("fanuc-31i", Self::Fanuc31i), ("fanuc-0i-f", Self::Fanuc0iF), ("haas-ngc", Self::HaasNgc)];
+}
+
+/// What is done where the sources are silent or contradict one another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Unsure {
+    /// `-#1` with #1 vacant stays vacant in an expression instead of becoming 0.
+    pub minus_keeps_vacancy: bool,
+    /// `[#1]` with #1 vacant stays vacant instead of becoming 0.
+    pub brackets_keep_vacancy: bool,
+    /// A literal finer than the increment is rounded instead of cut off.
+    pub round_literals: bool,
+    /// GOTO takes the first of several equal N of the program instead of the next one downwards.
+    pub first_stored_number: bool,
+    /// `IF[…]THEN` takes any statement and not only an assignment.
+    pub then_takes_goto: bool,
+    /// G65 … L sets the arguments anew for every pass.
+    pub repeats_reset_locals: bool,
+    /// `ATAN[0]/[0]` raises PS0119 instead of answering 0.
+    pub atan_of_nothing_alarms: bool,
+    /// `TAN[90]` raises PS0119 instead of answering a large number.
+    pub tan_90_alarms: bool,
+    /// G53 in G91 moves by the increment instead of not moving.
+    pub g53_moves_in_g91: bool,
+    /// A drilling block with K0 moves to its XY.
+    pub k0_positions: bool,
+    /// After a skipped G31 #5001… are the commanded end instead of the place of the signal.
+    pub skip_keeps_end: bool,
+    /// `G43 H` without an axis word moves the axis by the offset at once.
+    pub length_moves_at_once: bool,
+    /// G84 and G74 dwell P at the R level too.
+    pub tap_dwells_at_r: bool,
+    /// G67 without G66 raises PS1100.
+    pub g67_alarms: bool,
+    /// An arc whose R can't reach its end raises PS0020 instead of a half circle.
+    pub small_radius_alarms: bool,
+}
+
+/// Everything a run depends on besides the programs. `Default` is a 30i / 0i-F class mill, metric, IS-B.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    pub dialect: Dialect,
+    pub increment: Increment,
+    pub axes: Axes,
+    /// ROA 1008#0: the axes whose work coordinate runs from 0 to 360 and that turn the shorter way.
+    pub roll_over: [bool; MAX_AXES],
+    /// DPI 3401#0: a number without a point is mm, degrees, seconds instead of increments.
+    pub calculator_input: bool,
+    /// NAT 6004#0: ASIN and ATAN answer −90…90 and −180…180 instead of 270…90 and 0…360.
+    pub signed_angles: bool,
+    /// MFZ 6004#1: sines, cosines and tangents below 1e-8 become 0.
+    pub zero_residues: bool,
+    /// IJK 6008#7: I J K in G65 are always specification I.
+    pub plain_ijk: bool,
+    /// V15 6000#3: geometry and wear change places in the variables of tool offsets.
+    pub series_15_offsets: bool,
+    /// AD2 3403#6: an address twice in a block raises PS5074.
+    pub no_repeated_address: bool,
+    /// M3B 3404#7: up to three M codes in a block.
+    pub three_m_codes: bool,
+    /// MCA 6008#1: `#3000=n` shows MC n instead of MC 3000 + n.
+    pub plain_macro_alarms: bool,
+    /// SCR 5400#7: G51 counts its factors in 0.001 instead of 0.00001.
+    pub coarse_scaling: bool,
+    /// Block-skip switches that are on, by number 1 to 9.
+    pub skip_switches: [bool; 9],
+    /// M01 stops.
+    pub optional_stop: bool,
+    /// The inputs #1000 to #1031 that are 1, as bits.
+    pub inputs: u32,
+    /// The skip signal comes after this part of a G31 path; without it, never.
+    pub skip_signal: Option<f64>,
+    /// The main program's M99 of this number ends the run.
+    pub cycles: Option<u32>,
+    /// 6050…: G codes × 10 that call a macro, and its program.
+    pub g_calls: Vec<(u16, u32)>,
+    /// 6080…: M codes that call a macro, and its program.
+    pub m_calls: Vec<(u32, u32)>,
+    /// 1420: rapid rate of the axes that slide.
+    pub rapid: MmPerMin,
+    /// 1420: rapid rate of the axes that turn, degrees a minute.
+    pub rapid_rotary: f64,
+    /// 3410: how far an arc's end may be off its radius, mm.
+    pub arc_tolerance: f64,
+    /// 5114: the retract of G73, mm.
+    pub g73_retract: f64,
+    /// 5115: the clearance of G83 above the last depth, mm.
+    pub g83_clearance: f64,
+    /// 1241: the second reference position, in machine coordinates.
+    pub second_reference: Position,
+    /// Pairs of tool offsets.
+    pub tool_offsets: usize,
+    /// Macro calls inside one another.
+    pub macro_levels: usize,
+    /// Calls of all kinds inside one another.
+    pub call_levels: usize,
+    /// #3011 as yyyymmdd: a run never reads a clock.
+    pub date: u32,
+    /// #3012 as hhmmss at the start of the run.
+    pub time: u32,
+    pub unsure: Unsure,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            dialect: Dialect::default(),
+            increment: Increment::default(),
+            axes: Axes::default(),
+            roll_over: [false; MAX_AXES],
+            calculator_input: false,
+            signed_angles: false,
+            zero_residues: false,
+            plain_ijk: false,
+            series_15_offsets: false,
+            no_repeated_address: false,
+            three_m_codes: false,
+            plain_macro_alarms: false,
+            coarse_scaling: true,
+            skip_switches: [false; 9],
+            optional_stop: true,
+            inputs: 0,
+            skip_signal: None,
+            cycles: None,
+            g_calls: Vec::new(),
+            m_calls: Vec::new(),
+            rapid: MmPerMin(24_000.0),
+            rapid_rotary: 3_600.0,
+            arc_tolerance: 0.02,
+            g73_retract: 1.0,
+            g83_clearance: 0.5,
+            second_reference: Position::default(),
+            tool_offsets: 400,
+            macro_levels: 5,
+            call_levels: 15,
+            date: 20_260_101,
+            time: 120_000,
+            unsure: Unsure::default(),
+        }
+    }
+}
+
+impl Default for Unsure {
+    fn default() -> Self {
+        Self {
+            minus_keeps_vacancy: false,
+            brackets_keep_vacancy: true,
+            round_literals: false,
+            first_stored_number: false,
+            then_takes_goto: false,
+            repeats_reset_locals: false,
+            atan_of_nothing_alarms: false,
+            tan_90_alarms: false,
+            g53_moves_in_g91: false,
+            k0_positions: false,
+            skip_keeps_end: false,
+            length_moves_at_once: true,
+            tap_dwells_at_r: true,
+            g67_alarms: true,
+            small_radius_alarms: true,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounding_is_half_away_from_zero() {
+        assert_eq!(Increment::IsB.round(-1.0005), -1.001);
+        assert_eq!(Increment::IsB.round(12.3456), 12.346);
+        assert_eq!(Increment::IsA.round(0.005), 0.01);
+    }
+}

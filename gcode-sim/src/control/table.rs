@@ -1,0 +1,205 @@
+//! The settings by their names: the parameter a manual names, its key on the command line, how it is read.
+use super::{Dialect, Increment, Settings};
+use crate::units::MmPerMin;
+
+/// Why a setting can't be taken.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SettingError {
+    #[error("no setting '{key}': `gcode-sim settings` lists them")]
+    Unknown { key: String },
+    #[error("setting {key} can't be '{value}': {allowed}")]
+    Value { key: String, value: String, allowed: &'static str },
+}
+
+/// One setting that has a name.
+pub struct Row {
+    pub key: &'static str,
+    /// What it decides, with the parameter's number where a control has one.
+    pub meaning: &'static str,
+    /// The values it takes, for the message.
+    pub allowed: &'static str,
+    set: fn(&mut Settings, &str) -> Option<()>,
+}
+
+const SWITCH: &str = "0 or 1";
+const LENGTH: &str = "a length in mm, 0 or more";
+const COUNT: &str = "a whole number";
+
+macro_rules! switch {
+    ($key:literal, $meaning:literal, $($field:ident).+) => {
+        Row { key: $key, meaning: $meaning, allowed: SWITCH, set: |s, v| { s.$($field).+ = switch(v)?; Some(()) } }
+    };
+}
+
+macro_rules! number {
+    ($key:literal, $meaning:literal, $allowed:expr, |$s:ident, $v:ident| $set:expr) => {
+        Row {
+            key: $key,
+            meaning: $meaning,
+            allowed: $allowed,
+            set: |$s, $v| {
+                $set;
+                Some(())
+            },
+        }
+    };
+}
+
+/// Every setting with a name, in the order they are listed.
+#[rustfmt::skip]
+pub const ROWS: &[Row] = &[
+    number!("DIALECT", "the family of controls", "fanuc-31i, fanuc-0i-f or haas-ngc", |s, v| s.dialect = choice(v, &Dialect::ALL)?),
+    number!("INCREMENT", "1013: the least input increment", "IS-A, IS-B or IS-C", |s, v| s.increment = choice(v, &Increment::ALL)?),
+    switch!("DPI", "3401#0: numbers without a point are mm, degrees, seconds", calculator_input),
+    switch!("NAT", "6004#0: ASIN -90 to 90, ATAN -180 to 180", signed_angles),
+    switch!("MFZ", "6004#1: SIN, COS, TAN below 1e-8 become 0", zero_residues),
+    switch!("IJK", "6008#7: I J K in G65 are always specification I", plain_ijk),
+    switch!("V15", "6000#3: geometry and wear change places in tool offset variables", series_15_offsets),
+    switch!("AD2", "3403#6: an address twice in a block alarms", no_repeated_address),
+    switch!("M3B", "3404#7: up to three M codes in a block", three_m_codes),
+    switch!("MCA", "6008#1: #3000=n shows MC n", plain_macro_alarms),
+    switch!("SCR", "5400#7: G51 counts in 0.001", coarse_scaling),
+    number!("ROA", "1008#0: axes that roll over at 360 degrees", "letters of axes that turn", |s, v| roll_over(s, v)?),
+    number!("BDT", "block skip switches that are on", "switches 1 to 9, as in 1+2", |s, v| skip_switches(s, v)?),
+    switch!("OPTIONAL-STOP", "M01 stops", optional_stop),
+    number!("SKIP", "the skip signal comes after this part of a G31 path", "0 to 1", |s, v| s.skip_signal = Some(between(v, 0.0, 1.0)?)),
+    number!("CYCLES", "the main program's M99 of this number ends the run", COUNT, |s, v| s.cycles = Some(v.parse().ok()?)),
+    number!("RAPID", "1420: rapid rate of sliding axes, mm/min", "more than 0", |s, v| s.rapid = MmPerMin(positive(v)?)),
+    number!("RAPID-ROTARY", "1420: rapid rate of turning axes, degrees/min", "more than 0", |s, v| s.rapid_rotary = positive(v)?),
+    number!("3410", "how far an arc's end may be off its radius", LENGTH, |s, v| s.arc_tolerance = length(v)?),
+    number!("5114", "retract of G73", LENGTH, |s, v| s.g73_retract = length(v)?),
+    number!("5115", "clearance of G83", LENGTH, |s, v| s.g83_clearance = length(v)?),
+    number!("OFFSETS", "pairs of tool offsets", "1 to 999", |s, v| s.tool_offsets = whole(v, 1, 999)?),
+    number!("MACRO-LEVELS", "macro calls inside one another", "1 to 15", |s, v| s.macro_levels = whole(v, 1, 15)?),
+    number!("CALL-LEVELS", "calls inside one another", "1 to 30", |s, v| s.call_levels = whole(v, 1, 30)?),
+    number!("DATE", "#3011", "yyyymmdd", |s, v| s.date = whole(v, 0, 99_991_231)? as u32),
+    number!("TIME", "#3012", "hhmmss", |s, v| s.time = whole(v, 0, 235_959)? as u32),
+    switch!("VACANT-MINUS", "-#1 of a vacant #1 stays vacant in an expression", unsure.minus_keeps_vacancy),
+    switch!("VACANT-BRACKETS", "[#1] of a vacant #1 stays vacant", unsure.brackets_keep_vacancy),
+    switch!("ROUND-LITERALS", "literals finer than the increment are rounded, not cut off", unsure.round_literals),
+    switch!("GOTO-FIRST", "of equal N, GOTO takes the first of the program, not the next", unsure.first_stored_number),
+    switch!("THEN-GOTO", "IF[..]THEN GOTO is taken", unsure.then_takes_goto),
+    switch!("L-RESETS", "G65 L sets the arguments anew for every pass", unsure.repeats_reset_locals),
+    switch!("ATAN-0-ALARM", "ATAN[0]/[0] alarms", unsure.atan_of_nothing_alarms),
+    switch!("TAN-90-ALARM", "TAN[90] alarms", unsure.tan_90_alarms),
+    switch!("G53-IN-G91", "G53 moves by increments in G91", unsure.g53_moves_in_g91),
+    switch!("K0-MOVES", "a drilling block with K0 moves in the plane", unsure.k0_positions),
+    switch!("SKIP-KEEPS-END", "#5001.. after a skipped G31 are the commanded end", unsure.skip_keeps_end),
+    switch!("G43-MOVES", "G43 H without an axis moves by the offset at once", unsure.length_moves_at_once),
+    switch!("TAP-DWELL-R", "G84 and G74 dwell at R too", unsure.tap_dwells_at_r),
+    switch!("G67-ALARM", "G67 without G66 alarms", unsure.g67_alarms),
+    switch!("SMALL-R-ALARM", "an arc whose R is too small alarms", unsure.small_radius_alarms),
+];
+
+impl Settings {
+    /// Sets one setting by its key (`NAT`, `5115`), an input by its variable (`#1005`), or a code that calls a
+    /// macro (`G201`, `M50`).
+    pub fn set(&mut self, key: &str, value: &str) -> Result<(), SettingError> {
+        let bad = |allowed| SettingError::Value { key: key.to_owned(), value: value.to_owned(), allowed };
+        if let Some(row) = ROWS.iter().find(|row| row.key.eq_ignore_ascii_case(key)) {
+            return (row.set)(self, value.trim()).ok_or_else(|| bad(row.allowed));
+        }
+        if let Some(number) = key.strip_prefix('#') {
+            let bit = number.parse().ok().filter(|n| (1000..=1031).contains(n)).map(|n: u32| n - 1000);
+            let bit = bit.ok_or_else(|| SettingError::Unknown { key: key.to_owned() })?;
+            let on = switch(value).ok_or_else(|| bad(SWITCH))?;
+            self.inputs = if on { self.inputs | 1 << bit } else { self.inputs & !(1 << bit) };
+            return Ok(());
+        }
+        let unknown = || SettingError::Unknown { key: key.to_owned() };
+        let code: f64 = key.get(1..).and_then(|n| n.parse().ok()).ok_or_else(unknown)?;
+        let program = whole(value, 1, 99_999_999).ok_or_else(|| bad("a program number"))? as u32;
+        match key.as_bytes().first() {
+            Some(b'G' | b'g') if (1.0..=999.9).contains(&code) => {
+                self.g_calls.push(((code * 10.0).round() as u16, program));
+            }
+            Some(b'M' | b'm') if (1.0..=99_999_999.0).contains(&code) => {
+                self.m_calls.push((code as u32, program));
+            }
+            _ => return Err(unknown()),
+        }
+        Ok(())
+    }
+}
+
+fn switch(value: &str) -> Option<bool> {
+    match value {
+        "0" => Some(false),
+        "1" => Some(true),
+        _ => None,
+    }
+}
+
+fn choice<T: Copy>(value: &str, all: &[(&str, T)]) -> Option<T> {
+    all.iter().find(|(name, _)| name.eq_ignore_ascii_case(value)).map(|(_, choice)| *choice)
+}
+
+fn between(value: &str, least: f64, most: f64) -> Option<f64> {
+    value.parse().ok().filter(|v| (least..=most).contains(v))
+}
+
+fn length(value: &str) -> Option<f64> {
+    between(value, 0.0, 1e6)
+}
+
+fn positive(value: &str) -> Option<f64> {
+    between(value, f64::MIN_POSITIVE, 1e9)
+}
+
+fn whole(value: &str, least: usize, most: usize) -> Option<usize> {
+    value.parse().ok().filter(|v| (least..=most).contains(v))
+}
+
+fn roll_over(settings: &mut Settings, letters: &str) -> Option<()> {
+    for letter in letters.bytes().filter(|b| *b != b'+') {
+        let axis = settings.axes.find(letter.to_ascii_uppercase())?;
+        if !settings.axes.is_rotary(axis) {
+            return None;
+        }
+        settings.roll_over[axis] = true;
+    }
+    Some(())
+}
+
+fn skip_switches(settings: &mut Settings, value: &str) -> Option<()> {
+    for number in value.split('+') {
+        let switch = whole(number, 1, 9)?;
+        settings.skip_switches[switch - 1] = true;
+    }
+    Some(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_have_names() {
+        let mut settings = Settings::default();
+        for (key, value) in
+            [("NAT", "1"), ("BDT", "1+3"), ("ROA", "A"), ("5115", "0.2"), ("#1005", "1"), ("G201", "9010")]
+        {
+            settings.set(key, value).unwrap();
+        }
+        assert!(settings.signed_angles && settings.roll_over[3]);
+        assert_eq!(settings.skip_switches.map(u8::from), [1, 0, 1, 0, 0, 0, 0, 0, 0]);
+        assert_eq!((settings.g83_clearance, settings.inputs), (0.2, 1 << 5));
+        assert_eq!(settings.g_calls, [(2010, 9010)]);
+    }
+
+    #[test]
+    fn a_refusal_names_the_key_and_what_is_allowed() {
+        let mut settings = Settings::default();
+        let told = |r: Result<(), SettingError>| r.unwrap_err().to_string();
+        assert_eq!(told(settings.set("NAT", "2")), "setting NAT can't be '2': 0 or 1");
+        assert!(told(settings.set("NOPE", "1")).starts_with("no setting 'NOPE'"));
+        assert!(told(settings.set("ROA", "X")).contains("letters of axes that turn"));
+    }
+
+    #[test]
+    fn keys_stand_once() {
+        for (i, row) in ROWS.iter().enumerate() {
+            assert!(ROWS[..i].iter().all(|other| other.key != row.key), "{}", row.key);
+        }
+    }
+}

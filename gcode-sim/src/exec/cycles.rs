@@ -1,0 +1,290 @@
+//! Expands a drilling cycle's row into moves, hole by hole.
+use super::Core;
+use super::eval::{Checked, at};
+use super::plan::Plan;
+use super::state::{Level, State};
+use super::words::Given;
+use crate::alarm::Alarm;
+use crate::motion::{Axis, EventKind, Position, Spindle, StopKind};
+use crate::program::cycles::{Cycle, Step};
+use crate::program::modes::{Distance, ReturnTo};
+use crate::source::Span;
+use crate::units::{MmPerMin, Rpm, Seconds};
+
+/// A drilling block, checked: telling it can't fail.
+#[derive(Clone, Debug)]
+pub(super) struct Drill {
+    cycle: &'static Cycle,
+    /// Where the block begins; after it the plan's state stands where it ends.
+    from: State,
+    /// The first hole, as programmed, and from hole to hole.
+    hole: Position,
+    step: Position,
+    repeats: u32,
+    axis: Axis,
+    shift: (Axis, f64),
+    rate: MmPerMin,
+    /// Seconds.
+    dwell: f64,
+}
+
+impl Core {
+    /// Whether a block drills: it names an axis or R.
+    pub(super) fn drills(&self, given: &Given) -> bool {
+        given.has(b'R') || self.names_axis(given)
+    }
+
+    /// Checks a drilling block and works out where it ends.
+    pub(super) fn prepare_drill(
+        &self,
+        plan: &mut Plan,
+        given: &Given,
+        cycle: &'static Cycle,
+        span: Span,
+    ) -> Checked<()> {
+        let missing = Alarm::ImproperAddress { letter: 'Z' };
+        let axis = at(self.settings.axes.find(b'Z').ok_or(missing), span)?;
+        let repeats = given.count(b'K')?.unwrap_or(1);
+        let incremental = plan.state.modal.distance == Distance::Incremental;
+        let from = plan.state;
+        // The block's own depth words are not a move.
+        let mut goal = self.goal(given, &mut plan.state)?.programmed;
+        goal[axis] = from.programmed[axis];
+        self.drilling_words(plan, given, incremental)?;
+        if cycle.needs_q && plan.state.drilling.q.is_none_or(|q| q == 0.0) {
+            return Err(Alarm::NoPeckDepth.at(span));
+        }
+        let (rate, _) = at(self.time_along(&plan.state, 1.0, 1.0, 0.0, given.has(b'F')), span)?;
+        plan.moved = true;
+        if repeats == 0 && !self.settings.unsure.k0_positions {
+            return Ok(());
+        }
+        let mut step = Position::default();
+        if incremental {
+            for (place, _) in self.settings.axes.iter() {
+                step[place] = goal[place] - from.programmed[place];
+            }
+        }
+        let first = self.plane_axes(plan.state.modal.plane).map_or(0, |(first, _)| first);
+        let shift = plan.state.drilling.q.unwrap_or(0.0).abs();
+        let drill = Drill {
+            cycle,
+            from: State { machine: from.machine, ..plan.state },
+            hole: goal,
+            step,
+            repeats: repeats.max(1),
+            axis,
+            shift: (if first == axis { self.other_axis(axis) } else { first }, shift),
+            rate,
+            dwell: plan.state.drilling.p,
+        };
+        let last = drill.last(self);
+        let level = if plan.state.modal.return_to == ReturnTo::R && cycle.starts_at_r {
+            plan.state.drilling.r_level()
+        } else {
+            plan.state.drilling.initial
+        };
+        let drills = repeats > 0;
+        plan.state.programmed = last;
+        if drills {
+            plan.state.programmed[axis] = level;
+        }
+        let machine = self.to_machine(&plan.state, plan.state.programmed);
+        if drills {
+            plan.drill = Some(drill);
+            plan.state.machine = machine;
+        } else {
+            let mut to = machine;
+            to[axis] = from.machine[axis];
+            plan.state.machine = from.machine;
+            self.rapid(plan, to);
+        }
+        Ok(())
+    }
+
+    fn other_axis(&self, axis: Axis) -> Axis {
+        self.settings.axes.find(b'X').filter(|x| *x != axis).unwrap_or_default()
+    }
+
+    /// Z R P Q stay in force from hole to hole.
+    fn drilling_words(&self, plan: &mut Plan, given: &Given, incremental: bool) -> Checked<()> {
+        let state = &plan.state;
+        let mut data = state.drilling;
+        if let Some(value) = self.dimension(given, b'R', state)? {
+            data.r = Level { value, incremental };
+        }
+        if let Some(value) = self.dimension(given, b'Z', state)? {
+            data.z = Level { value, incremental };
+        }
+        if let Some(value) = self.dimension(given, b'Q', state)? {
+            // Its sign is ignored.
+            data.q = Some(value.abs());
+        }
+        if let Some(milliseconds) = given.count(b'P')? {
+            data.p = f64::from(milliseconds) / 1000.0;
+        }
+        plan.state.drilling = data;
+        Ok(())
+    }
+
+    /// Tells a drilling block move by move.
+    pub(super) fn drill(&self, drill: &Drill, tell: &mut impl FnMut(EventKind, f64)) {
+        let mut way = Way { core: self, at: drill.from.machine, rate: drill.rate, tell };
+        let state = &drill.from;
+        let data = &state.drilling;
+        let (r, z) = (data.r_level(), data.z_level());
+        for turn in 0..drill.repeats {
+            let mut hole = drill.hole;
+            for place in 0..self.settings.axes.len() {
+                hole[place] = self.clean(hole[place] + f64::from(turn) * drill.step[place]);
+            }
+            let level = |value: f64| {
+                let mut point = hole;
+                point[drill.axis] = value;
+                self.to_machine(state, point)
+            };
+            let mut over = level(r);
+            over[drill.axis] = way.at[drill.axis];
+            way.rapid(over);
+            if drill.cycle.starts_at_r {
+                way.rapid(level(r));
+            }
+            for step in drill.cycle.steps {
+                self.drill_step(*step, drill, &level, (r, z), &mut way);
+            }
+        }
+    }
+
+    fn drill_step<T: FnMut(EventKind, f64)>(
+        &self,
+        step: Step,
+        drill: &Drill,
+        level: &impl Fn(f64) -> Position,
+        (r, z): (f64, f64),
+        way: &mut Way<'_, T>,
+    ) {
+        let state = &drill.from;
+        let initial = state.drilling.initial;
+        let to_initial = state.modal.return_to == ReturnTo::Initial;
+        let turning = |turning| EventKind::Spindle { turning, speed: Rpm(state.codes.s) };
+        match step {
+            Step::FeedToBottom => way.feed(level(z)),
+            Step::PeckFull => {
+                self.peck((r, z), drill, |last, next, done| {
+                    if last != r {
+                        let clearance = self.settings.g83_clearance.min((r - last).abs());
+                        way.rapid(level(last + clearance.copysign(r - z)));
+                    }
+                    way.feed(level(next));
+                    if !done {
+                        way.rapid(level(r));
+                    }
+                });
+            }
+            Step::PeckShort => {
+                let retract = self.settings.g73_retract.copysign(r - z);
+                self.peck((r, z), drill, |_, next, done| {
+                    way.feed(level(next));
+                    if !done {
+                        way.rapid(level(next + retract));
+                    }
+                });
+            }
+            Step::Dwell => way.dwell(drill.dwell),
+            Step::DwellAtR if self.settings.unsure.tap_dwells_at_r => way.dwell(drill.dwell),
+            Step::DwellAtR => {}
+            Step::FeedToR => way.feed(level(r)),
+            Step::RapidBack => way.shifted_to(level(if to_initial { initial } else { r }), drill.axis),
+            Step::RapidToInitial if to_initial => way.rapid(level(initial)),
+            Step::RapidToInitial => {}
+            Step::RapidToInitialAlways => way.shifted_to(level(initial), drill.axis),
+            Step::RapidToR => way.shifted_to(level(r), drill.axis),
+            Step::Shift => {
+                let mut to = way.at;
+                to[drill.shift.0] = self.clean(to[drill.shift.0] + drill.shift.1);
+                way.rapid(to);
+            }
+            Step::ShiftBack => {
+                let mut to = way.at;
+                to[drill.shift.0] = self.clean(to[drill.shift.0] - drill.shift.1);
+                way.rapid(to);
+            }
+            Step::SpindleStop => (way.tell)(turning(Spindle::Off), 0.0),
+            Step::SpindleForward => (way.tell)(turning(Spindle::Clockwise), 0.0),
+            Step::SpindleReverse => (way.tell)(turning(Spindle::Counterclockwise), 0.0),
+            Step::ManualRetract => {
+                let stop = EventKind::Stop {
+                    kind: StopKind::M00,
+                    text: "retract by hand to R".into(),
+                    named: Vec::new(),
+                };
+                (way.tell)(stop, 0.0);
+                way.rapid(level(r));
+            }
+        }
+    }
+
+    /// From R by Q until Z; the last peck is what is left.
+    fn peck(&self, (r, z): (f64, f64), drill: &Drill, mut each: impl FnMut(f64, f64, bool)) {
+        let q = drill.from.drilling.q.unwrap_or(0.0).copysign(z - r);
+        let pecks = if q == 0.0 { 1.0 } else { ((z - r) / q - 1e-9).ceil().max(1.0) };
+        let mut last = r;
+        let mut count = 1.0;
+        while count <= pecks {
+            let done = count == pecks;
+            let next = if done { z } else { self.clean(r + count * q) };
+            each(last, next, done);
+            last = next;
+            count += 1.0;
+        }
+    }
+}
+
+impl Drill {
+    /// Where the last hole is.
+    fn last(&self, core: &Core) -> Position {
+        let mut hole = self.hole;
+        for (place, _) in core.settings.axes.iter() {
+            hole[place] = core.clean(hole[place] + f64::from(self.repeats - 1) * self.step[place]);
+        }
+        hole
+    }
+}
+
+/// The tool on its way through a cycle, in machine coordinates.
+struct Way<'c, T> {
+    core: &'c Core,
+    at: Position,
+    rate: MmPerMin,
+    tell: &'c mut T,
+}
+
+impl<T: FnMut(EventKind, f64)> Way<'_, T> {
+    fn rapid(&mut self, to: Position) {
+        if to != self.at {
+            (self.tell)(EventKind::Rapid { to }, self.core.rapid_seconds(&self.at, &to));
+            self.at = to;
+        }
+    }
+
+    /// Along the drilling axis only: the plane keeps its shift.
+    fn shifted_to(&mut self, to: Position, axis: Axis) {
+        let mut there = self.at;
+        there[axis] = to[axis];
+        self.rapid(there);
+    }
+
+    fn feed(&mut self, to: Position) {
+        if to != self.at {
+            let squares: f64 = (0..to.0.len()).map(|a| (to[a] - self.at[a]) * (to[a] - self.at[a])).sum();
+            (self.tell)(EventKind::Feed { to, rate: self.rate }, squares.sqrt() / self.rate.0 * 60.0);
+            self.at = to;
+        }
+    }
+
+    fn dwell(&mut self, seconds: f64) {
+        if seconds > 0.0 {
+            (self.tell)(EventKind::Dwell { time: Seconds(seconds) }, seconds);
+        }
+    }
+}

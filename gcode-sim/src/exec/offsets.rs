@@ -1,0 +1,172 @@
+//! The offset tables: work coordinate systems and tool offsets, held in increments as a control holds them.
+use super::Core;
+use super::state::State;
+use crate::alarm::Alarm;
+use crate::motion::{Axis, MAX_AXES, Position};
+use crate::program::modes::{Length, Unit, WorkSystem};
+
+/// Additional work coordinate systems G54.1 P1…P300.
+const ADDITIONAL: usize = 300;
+
+/// Tool offset memory C: H and D, geometry and wear.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Register {
+    HGeometry,
+    HWear,
+    DGeometry,
+    DWear,
+}
+
+/// All offsets; lengths in mm.
+#[derive(Clone, Debug)]
+pub(super) struct Offsets {
+    external: Position,
+    /// G54 to G59.
+    standard: [Position; 6],
+    pub(super) additional: Vec<Position>,
+    h_geometry: Vec<f64>,
+    h_wear: Vec<f64>,
+    d_geometry: Vec<f64>,
+    d_wear: Vec<f64>,
+}
+
+impl Offsets {
+    pub(super) fn new(tools: usize) -> Self {
+        let empty = vec![0.0; tools + 1];
+        Self {
+            external: Position::default(),
+            standard: [Position::default(); 6],
+            additional: vec![Position::default(); ADDITIONAL],
+            h_geometry: empty.clone(),
+            h_wear: empty.clone(),
+            d_geometry: empty.clone(),
+            d_wear: empty,
+        }
+    }
+
+    pub(super) fn register(&mut self, register: Register) -> &mut Vec<f64> {
+        match register {
+            Register::HGeometry => &mut self.h_geometry,
+            Register::HWear => &mut self.h_wear,
+            Register::DGeometry => &mut self.d_geometry,
+            Register::DWear => &mut self.d_wear,
+        }
+    }
+
+    pub(super) fn tool(&self, register: Register, number: u32) -> Result<f64, Alarm> {
+        let table = match register {
+            Register::HGeometry => &self.h_geometry,
+            Register::HWear => &self.h_wear,
+            Register::DGeometry => &self.d_geometry,
+            Register::DWear => &self.d_wear,
+        };
+        let unknown = || Alarm::OffsetNumber { number: i64::from(number) };
+        table.get(number as usize).copied().ok_or_else(unknown)
+    }
+
+    /// Geometry and wear of an H number; H0 is no offset.
+    pub(super) fn length(&self, h: u32) -> Result<f64, Alarm> {
+        Ok(self.tool(Register::HGeometry, h)? + self.tool(Register::HWear, h)?)
+    }
+
+    fn system(&self, work: WorkSystem) -> &Position {
+        match work {
+            WorkSystem::Standard(number) => &self.standard[usize::from(number) - 1],
+            WorkSystem::Additional(number) => &self.additional[usize::from(number) - 1],
+        }
+    }
+}
+
+impl Core {
+    /// The zero of the active work coordinate system in machine coordinates.
+    pub(super) fn zero(&self, state: &State, axis: Axis) -> f64 {
+        let system = self.offsets.system(state.modal.work);
+        self.offsets.external[axis] + system[axis] + state.local[axis] + state.shift[axis]
+    }
+
+    /// A programmed point in machine coordinates, tool length included.
+    pub(super) fn to_machine(&self, state: &State, point: Position) -> Position {
+        let mut machine = state.transform.forward(point);
+        for axis in 0..self.settings.axes.len() {
+            machine[axis] = self.clean(machine[axis] + self.zero(state, axis) + state.length[axis]);
+        }
+        machine
+    }
+
+    /// Where the program stands after something other than a move changed its coordinates.
+    pub(super) fn recompute(&self, state: &mut State) {
+        let mut work = Position::default();
+        for axis in 0..self.settings.axes.len() {
+            let at = state.machine[axis] - self.zero(state, axis) - state.length[axis];
+            work[axis] = self.rolled(axis, self.clean(at));
+        }
+        state.programmed = state.transform.backward(work);
+        if !state.transform.is_none() {
+            for axis in 0..MAX_AXES {
+                state.programmed[axis] = self.clean(state.programmed[axis]);
+            }
+        }
+    }
+
+    /// A coordinate without the residues of adding: a hundredth of the increment carries both mm and inches exactly.
+    pub(super) fn clean(&self, value: f64) -> f64 {
+        let grid = self.settings.increment.per_unit() * 100.0;
+        (value * grid).round() / grid
+    }
+
+    /// A work coordinate from 0 to 360 on an axis that rolls over.
+    pub(super) fn rolled(&self, axis: Axis, value: f64) -> f64 {
+        if self.settings.roll_over[axis] { self.clean(value.rem_euclid(360.0)) } else { value }
+    }
+
+    /// What is stored of an offset that is written in the unit in force: mm, a multiple of the increment.
+    pub(super) fn stored(&self, state: &State, axis: Option<Axis>, value: f64) -> f64 {
+        let turns = axis.is_some_and(|axis| self.settings.axes.is_rotary(axis));
+        let increment = self.settings.increment;
+        match state.modal.unit {
+            Unit::Inch if !turns => {
+                let tenths = increment.per_unit() * 10.0;
+                self.clean((value * tenths).round() / tenths * 25.4)
+            }
+            Unit::Inch | Unit::Metric => increment.round(value),
+        }
+    }
+
+    /// A length in mm as a program reads it: in the unit in force.
+    pub(super) fn shown(&self, state: &State, axis: Option<Axis>, value: f64) -> f64 {
+        let turns = axis.is_some_and(|axis| self.settings.axes.is_rotary(axis));
+        if state.modal.unit == Unit::Inch && !turns { value / 25.4 } else { value }
+    }
+
+    /// The length offset that the modal state asks for on its axis, Z.
+    pub(super) fn length_offset(&self, state: &State) -> Result<Position, Alarm> {
+        let mut offset = Position::default();
+        let sign = match state.modal.length {
+            Length::Plus => 1.0,
+            Length::Minus => -1.0,
+            Length::Off => return Ok(offset),
+        };
+        let axis = self.settings.axes.find(b'Z').ok_or(Alarm::ImproperAddress { letter: 'Z' })?;
+        offset[axis] = sign * self.offsets.length(state.codes.h)?;
+        Ok(offset)
+    }
+}
+
+impl Offsets {
+    /// System 0 is the external one, 1 to 6 are G54 to G59, 7 and up G54.1 P1….
+    pub(super) fn work(&self, system: usize) -> &Position {
+        match system {
+            0 => &self.external,
+            1..=6 => &self.standard[system - 1],
+            _ => &self.additional[system - 7],
+        }
+    }
+
+    pub(super) fn work_mut(&mut self, system: usize) -> &mut Position {
+        match system {
+            0 => &mut self.external,
+            1..=6 => &mut self.standard[system - 1],
+            _ => &mut self.additional[system - 7],
+        }
+    }
+}

@@ -1,0 +1,327 @@
+//! Codes that act in their own block only: dwell, G10, coordinate systems, reference return, skip.
+use super::Core;
+use super::block::{Act, not_simulated};
+use super::eval::{Checked, at};
+use super::offsets::Register;
+use super::plan::{Plan, Write};
+use super::state::State;
+use super::transform::{Scale, Turn};
+use super::words::Given;
+use crate::alarm::Alarm;
+use crate::motion::{EventKind, MAX_AXES, Position};
+use crate::program::codes::OneShot;
+use crate::program::modes::{CutterSide, Distance, Length, Mirror, WorkSystem};
+use crate::source::Span;
+use crate::units::Seconds;
+
+impl Core {
+    /// 4. What a block does instead of moving by its modal codes.
+    pub(super) fn act(&self, act: Act, given: &Given, plan: &mut Plan, span: Span) -> Checked<()> {
+        match act {
+            Act::OneShot(one) => self.one_shot(one, given, plan, span),
+            Act::AdditionalWork => {
+                let number = given.count(b'P')?.unwrap_or(1);
+                if number == 0 || number as usize > self.offsets.additional.len() {
+                    return Err(Alarm::OffsetNumber { number: i64::from(number) }.at(span));
+                }
+                plan.state.modal.work = WorkSystem::Additional(number as u16);
+                self.recompute(&mut plan.state);
+                self.motion(given, plan, false, span)
+            }
+            Act::Scale => self.scale(given, plan, span),
+            Act::Rotate => self.rotate(given, plan, span),
+            Act::MirrorOn | Act::MirrorOff => self.mirror(act == Act::MirrorOn, given, plan),
+        }
+    }
+
+    fn one_shot(&self, one: OneShot, given: &Given, plan: &mut Plan, span: Span) -> Checked<()> {
+        let cycle = plan.state.modal.cycle.is_some();
+        match one {
+            OneShot::Dwell => self.dwell(given, plan),
+            OneShot::DataInput => self.data_input(given, plan, span),
+            OneShot::DataInputEnd => Ok(()),
+            OneShot::CheckReference
+            | OneShot::Reference
+            | OneShot::FromReference
+            | OneShot::SecondReference
+                if cycle =>
+            {
+                Err(Alarm::ReferenceReturnInCycle.at(span))
+            }
+            OneShot::CheckReference => self.check_reference(given, plan, span),
+            OneShot::Reference => self.reference(given, plan, Position::default()),
+            OneShot::SecondReference => {
+                let p = given.count(b'P')?.unwrap_or(2);
+                match p {
+                    2 => self.reference(given, plan, self.settings.second_reference),
+                    3 | 4 => Err(not_simulated(300, "third and fourth reference position").at(span)),
+                    _ => Err(Alarm::ReferenceReturnP { p: i64::from(p) }.at(span)),
+                }
+            }
+            OneShot::FromReference => self.leave_reference(given, plan, span),
+            OneShot::Skip => self.skip(given, plan, span),
+            OneShot::LocalSystem => {
+                self.each_axis(given, plan, |_, state, axis, value| state.local[axis] = value)?;
+                self.recompute(&mut plan.state);
+                Ok(())
+            }
+            OneShot::SetSystem => {
+                // The point where the program stands gets these coordinates; the length offset stays out of it.
+                self.each_axis(given, plan, |core, state, axis, value| {
+                    let work = state.transform.forward(state.programmed)[axis];
+                    state.shift[axis] = core.clean(state.shift[axis] + work - value);
+                })?;
+                self.recompute(&mut plan.state);
+                Ok(())
+            }
+            OneShot::PresetSystem => {
+                self.each_axis(given, plan, |_, state, axis, _| {
+                    state.shift[axis] = 0.0;
+                    state.local[axis] = 0.0;
+                })?;
+                self.recompute(&mut plan.state);
+                Ok(())
+            }
+            OneShot::MachineSystem => self.machine_system(given, plan),
+        }
+    }
+
+    /// Every axis the block names, with its value.
+    fn each_axis(
+        &self,
+        given: &Given,
+        plan: &mut Plan,
+        mut with: impl FnMut(&Self, &mut State, usize, f64),
+    ) -> Checked<()> {
+        for (axis, letter) in self.settings.axes.iter() {
+            if let Some(value) = self.dimension(given, letter as u8, &plan.state)? {
+                with(self, &mut plan.state, axis, value);
+            }
+        }
+        Ok(())
+    }
+
+    fn dwell(&self, given: &Given, plan: &mut Plan) -> Checked<()> {
+        let seconds = if let Some(milliseconds) = given.count(b'P')? {
+            f64::from(milliseconds) / 1000.0
+        } else {
+            let x = self.seconds(given, b'X')?;
+            let u = if x.is_none() { self.seconds(given, b'U')? } else { None };
+            x.or(u).unwrap_or(0.0)
+        };
+        if seconds > 0.0 {
+            plan.events.push((EventKind::Dwell { time: Seconds(seconds) }, seconds));
+        }
+        Ok(())
+    }
+
+    /// G28 and G30: by rapid over the intermediate point to the reference position, the named axes only.
+    fn reference(&self, given: &Given, plan: &mut Plan, reference: Position) -> Checked<()> {
+        let goal = self.goal(given, &mut plan.state)?;
+        self.rapid(plan, goal.machine);
+        let mut home = plan.state.machine;
+        for (axis, letter) in self.settings.axes.iter() {
+            if given.has(letter as u8) {
+                plan.state.intermediate[axis] = goal.machine[axis];
+                plan.state.has_intermediate |= 1 << axis;
+                home[axis] = reference[axis];
+            }
+        }
+        self.rapid(plan, home);
+        // The length offset is cancelled where its axis reaches the reference position.
+        let z = self.settings.axes.find(b'Z');
+        if z.is_some_and(|z| plan.state.length[z] != 0.0 && given.has(b'Z')) {
+            plan.state.length = Position::default();
+            plan.state.modal.length = Length::Off;
+            plan.tell(EventKind::ToolLength { offset: Position::default() });
+        }
+        self.recompute(&mut plan.state);
+        plan.moved = true;
+        Ok(())
+    }
+
+    /// G29: over the intermediate point of the last G28 to the given point.
+    fn leave_reference(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<()> {
+        let mut over = plan.state.machine;
+        for (axis, letter) in self.settings.axes.iter() {
+            if !given.has(letter as u8) {
+                continue;
+            }
+            if plan.state.has_intermediate >> axis & 1 == 0 {
+                return Err(Alarm::NoIntermediatePoint.at(span));
+            }
+            over[axis] = plan.state.intermediate[axis];
+        }
+        self.rapid(plan, over);
+        self.recompute(&mut plan.state);
+        let goal = self.goal(given, &mut plan.state)?;
+        self.rapid(plan, goal.machine);
+        plan.state.programmed = goal.programmed;
+        plan.moved = true;
+        Ok(())
+    }
+
+    fn check_reference(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<()> {
+        let goal = self.goal(given, &mut plan.state)?;
+        self.rapid(plan, goal.machine);
+        plan.state.programmed = goal.programmed;
+        for (axis, letter) in self.settings.axes.iter() {
+            if given.has(letter as u8) && plan.state.machine[axis] != 0.0 {
+                return Err(Alarm::NotAtReference { letter }.at(span));
+            }
+        }
+        Ok(())
+    }
+
+    /// G53: by rapid to machine coordinates, without the length offset.
+    fn machine_system(&self, given: &Given, plan: &mut Plan) -> Checked<()> {
+        let mut to = plan.state.machine;
+        let incremental = plan.state.modal.distance == Distance::Incremental;
+        if incremental && !self.settings.unsure.g53_moves_in_g91 {
+            return Ok(());
+        }
+        for (axis, letter) in self.settings.axes.iter() {
+            if let Some(value) = self.dimension(given, letter as u8, &plan.state)? {
+                to[axis] = if incremental { self.clean(to[axis] + value) } else { value };
+            }
+        }
+        self.rapid(plan, to);
+        self.recompute(&mut plan.state);
+        plan.moved = true;
+        Ok(())
+    }
+
+    /// G31: a straight cut that ends where the skip signal comes.
+    fn skip(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<()> {
+        if plan.state.modal.cutter != CutterSide::Off {
+            return Err(Alarm::SkipInCompensation.at(span));
+        }
+        if given.has_any(b"PQ") {
+            return Err(not_simulated(310, "multi-step and torque limit skip").at(span));
+        }
+        let goal = self.goal(given, &mut plan.state)?;
+        let from = plan.state.machine;
+        let mut to = goal.machine;
+        if let Some(part) = self.settings.skip_signal {
+            for axis in 0..MAX_AXES {
+                to[axis] = self.clean(from[axis] + part * (goal.machine[axis] - from[axis]));
+            }
+        }
+        let (rate, seconds) = at(self.feed_seconds(&plan.state, &from, &to, given.has(b'F')), span)?;
+        let touched = self.settings.skip_signal.is_some();
+        plan.events.push((EventKind::Skip { to, rate, touched }, seconds));
+        plan.state.machine = to;
+        plan.state.skip = to;
+        if touched && !self.settings.unsure.skip_keeps_end {
+            self.recompute(&mut plan.state);
+        } else {
+            plan.state.programmed = goal.programmed;
+        }
+        plan.moved = true;
+        Ok(())
+    }
+
+    /// G10: L2 and L20 work offsets, L10 to L13 tool offsets.
+    fn data_input(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<()> {
+        let format = |what: &str| Alarm::G10Format { what: what.to_owned() }.at(span);
+        let adds = plan.state.modal.distance == Distance::Incremental;
+        let p = given.count(b'P')?;
+        let l = given.count(b'L')?.ok_or_else(|| format("L is missing"))?;
+        match l {
+            2 | 20 => {
+                let p = p.ok_or_else(|| format("P is missing"))? as usize;
+                let system = match l {
+                    2 if p <= 6 => p,
+                    20 if (1..=self.offsets.additional.len()).contains(&p) => 6 + p,
+                    _ => return Err(Alarm::OffsetNumber { number: p as i64 }.at(span)),
+                };
+                for (axis, letter) in self.settings.axes.iter() {
+                    let Some(value) = self.dimension(given, letter as u8, &plan.state)? else { continue };
+                    let old = if adds { self.offsets.work(system)[axis] } else { 0.0 };
+                    plan.writes.push(Write::Work { system, axis, value: self.clean(old + value) });
+                }
+                Ok(())
+            }
+            1 | 10..=13 => {
+                let register = match l {
+                    10 => Register::HGeometry,
+                    12 => Register::DGeometry,
+                    13 => Register::DWear,
+                    _ => Register::HWear,
+                };
+                let number = p.ok_or_else(|| format("P is missing"))?;
+                let old = at(self.offsets.tool(register, number), span)?;
+                if number == 0 {
+                    return Err(Alarm::OffsetNumber { number: 0 }.at(span));
+                }
+                let value =
+                    self.dimension(given, b'R', &plan.state)?.ok_or_else(|| format("R is missing"))?;
+                let value = self.clean(if adds { old + value } else { value });
+                plan.writes.push(Write::Tool { register, number, value });
+                Ok(())
+            }
+            3 | 14 | 50 | 52 | 85 => Err(Alarm::NotSimulated { what: format!("G10 L{l}") }.at(span)),
+            _ => Err(format(&format!("L{l} is not known"))),
+        }
+    }
+
+    /// G68: the plane turns about a point.
+    fn rotate(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<()> {
+        let state = &mut plan.state;
+        let plane = at(self.plane_axes(state.modal.plane), span)?;
+        let letter = |axis| self.settings.axes.letter(axis) as u8;
+        let first = self.dimension(given, letter(plane.0), state)?.unwrap_or(state.programmed[plane.0]);
+        let second = self.dimension(given, letter(plane.1), state)?.unwrap_or(state.programmed[plane.1]);
+        let angle = self.angle(given, b'R')?.unwrap_or(0.0);
+        state.transform.rotation = Some(Turn::new(plane, (first, second), angle));
+        self.recompute(state);
+        Ok(())
+    }
+
+    /// G51: by P, or by I J K for X Y Z, in 0.001 or 0.00001.
+    fn scale(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<()> {
+        let unit = if self.settings.coarse_scaling { 1000.0 } else { 100_000.0 };
+        let mut scale = Scale { centre: plan.state.programmed, factor: Position([1.0; MAX_AXES]) };
+        for (axis, letter) in self.settings.axes.iter() {
+            if let Some(value) = self.dimension(given, letter as u8, &plan.state)? {
+                scale.centre[axis] = value;
+            }
+            let own = match letter {
+                'X' => self.factor(given, b'I')?,
+                'Y' => self.factor(given, b'J')?,
+                'Z' => self.factor(given, b'K')?,
+                _ => continue,
+            };
+            let common = given.count(b'P')?.map(f64::from);
+            let factor = own.or(common).ok_or_else(|| {
+                Alarm::NotSimulated { what: "G51 without P (parameter 5411)".into() }.at(span)
+            })?;
+            if factor == 0.0 || factor.abs() > 999_999_999.0 {
+                return Err(Alarm::ScaleRate { value: factor }.at(span));
+            }
+            scale.factor[axis] = factor / unit;
+        }
+        plan.state.transform.scaling = Some(scale);
+        self.recompute(&mut plan.state);
+        Ok(())
+    }
+
+    /// G51.1 mirrors the named axes, G50.1 no longer; G50.1 alone ends all of it.
+    fn mirror(&self, on: bool, given: &Given, plan: &mut Plan) -> Checked<()> {
+        let state = &mut plan.state;
+        if !on && !self.names_axis(given) {
+            state.transform.mirrored = 0;
+        }
+        for (axis, letter) in self.settings.axes.iter() {
+            let Some(value) = self.dimension(given, letter as u8, state)? else { continue };
+            state.transform.mirrored &= !(1 << axis);
+            if on {
+                state.transform.mirrored |= 1 << axis;
+                state.transform.mirror[axis] = value;
+            }
+        }
+        state.modal.mirror = if state.transform.mirrored == 0 { Mirror::Off } else { Mirror::On };
+        self.recompute(state);
+        Ok(())
+    }
+}

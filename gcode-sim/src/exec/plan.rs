@@ -1,0 +1,100 @@
+//! What a block is going to do: made without touching the control, carried out afterwards without failing.
+use super::cycles::Drill;
+use super::offsets::Register;
+use super::state::State;
+use super::vars::Locals;
+use crate::motion::{EventKind, StopKind};
+use crate::program::{OpIndex, ProgramId};
+use crate::source::Span;
+
+/// Everything one block of words changes. Kept between blocks, so that none of them allocates.
+#[derive(Debug, Default)]
+pub(super) struct Plan {
+    pub(super) state: State,
+    /// What the machine is told, with the seconds it takes.
+    pub(super) events: Vec<(EventKind, f64)>,
+    /// Told after the motion: spindle and coolant off.
+    pub(super) after: Vec<(EventKind, f64)>,
+    /// A drilling cycle is expanded while it is told: its length has no bound.
+    pub(super) drill: Option<Drill>,
+    pub(super) writes: Vec<Write>,
+    /// Axes were commanded: what a modal macro call waits for.
+    pub(super) moved: bool,
+    pub(super) stop: Option<StopKind>,
+    pub(super) flow: Flow,
+}
+
+/// G10.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Write {
+    /// System 0 is the external one, 1 to 6 are G54 to G59, 7 and up G54.1 P1….
+    Work {
+        system: usize,
+        axis: usize,
+        value: f64,
+    },
+    Tool {
+        register: Register,
+        number: u32,
+        value: f64,
+    },
+}
+
+/// Where the program goes after the block.
+#[derive(Clone, Debug, Default)]
+pub(super) enum Flow {
+    #[default]
+    Next,
+    Call(Box<CallPlan>),
+    Return(Option<u32>),
+    /// G67.
+    CancelModal,
+    End,
+}
+
+/// A call with everything it needs.
+#[derive(Clone, Debug)]
+pub(super) struct CallPlan {
+    pub(super) kind: CallKind,
+    pub(super) target: Target,
+    pub(super) repeats: u32,
+    /// `M98 P Q`: the sequence number to start at.
+    pub(super) start: Option<u32>,
+    pub(super) locals: Locals,
+    pub(super) span: Span,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum CallKind {
+    Macro,
+    Subprogram,
+    /// G66: stored, not called.
+    Modal,
+    /// A G or M code that calls a macro.
+    Code,
+}
+
+#[derive(Clone, Debug)]
+pub(super) enum Target {
+    Number(u32),
+    Name(String),
+    /// Found in memory.
+    Found(ProgramId, OpIndex),
+}
+
+impl Plan {
+    pub(super) fn begin(&mut self, state: &State) {
+        self.state = *state;
+        self.events.clear();
+        self.after.clear();
+        self.writes.clear();
+        self.drill = None;
+        self.moved = false;
+        self.stop = None;
+        self.flow = Flow::Next;
+    }
+
+    pub(super) fn tell(&mut self, kind: EventKind) {
+        self.events.push((kind, 0.0));
+    }
+}

@@ -1,0 +1,79 @@
+//! What one block can change besides variables and offset tables: small enough to copy, so that a block that alarms
+//! leaves no trace.
+use super::modal::Modal;
+use super::transform::Transform;
+use crate::motion::{Position, Spindle};
+
+/// The control between two blocks. Lengths in mm, whatever G20 says.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct State {
+    pub modal: Modal,
+    /// Where the program stands in its work coordinate system, before mirror, scaling and rotation, without the
+    /// tool length.
+    pub programmed: Position,
+    /// The same in machine coordinates, tool length included.
+    pub machine: Position,
+    /// G52.
+    pub local: Position,
+    /// G92.
+    pub shift: Position,
+    /// The tool length offset in effect on each axis.
+    pub length: Position,
+    /// G28: the intermediate point in machine coordinates, for G29; and the axes that have one.
+    pub intermediate: Position,
+    pub has_intermediate: u8,
+    /// #5061…: where the last G31 ended, in machine coordinates.
+    pub skip: Position,
+    pub transform: Transform,
+    pub drilling: Drilling,
+    pub codes: Codes,
+    /// The last radius and angle of G16.
+    pub polar: (f64, f64),
+    pub spindle: Spindle,
+    pub coolant: bool,
+    /// The tool in the spindle.
+    pub tool: u32,
+}
+
+/// Codes with a number that stays: #4107…#4130.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Codes {
+    /// In the unit and mode it was commanded in.
+    pub f: f64,
+    pub s: f64,
+    pub b: f64,
+    pub d: u32,
+    pub h: u32,
+    pub m: u32,
+    pub t: u32,
+    pub n: u32,
+    pub o: u32,
+}
+
+/// The modal data of a drilling cycle; G80 and group 01 clear it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Drilling {
+    /// The drilling axis when the cycle began.
+    pub initial: f64,
+    pub r: Level,
+    pub z: Level,
+    pub p: f64,
+    pub q: Option<f64>,
+}
+
+/// A level as commanded: G91 counts R from the initial level and Z from R.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Level {
+    pub value: f64,
+    pub incremental: bool,
+}
+
+impl Drilling {
+    pub(super) fn r_level(&self) -> f64 {
+        if self.r.incremental { self.initial + self.r.value } else { self.r.value }
+    }
+
+    pub(super) fn z_level(&self) -> f64 {
+        if self.z.incremental { self.r_level() + self.z.value } else { self.z.value }
+    }
+}

@@ -1,0 +1,139 @@
+//! Macro statements: assignments, branches and loops. They never tell the machine anything, but for #3000 and #3006.
+use super::eval::{Checked, index, integer};
+use super::vars::{self, Kind, Value};
+use super::{Core, Outcome};
+use crate::alarm::Alarm;
+use crate::motion::{EventKind, Sink, StopKind};
+use crate::program::{Operand, Program, Statement};
+use crate::source::{Span, Spanned};
+
+impl Core {
+    /// Does one statement. The frame already stands at the next block; jumps change that.
+    pub(super) fn statement<S: Sink>(
+        &mut self,
+        program: &Program,
+        statement: &Statement,
+        span: Span,
+        sink: &mut S,
+    ) -> Checked<Option<Outcome>> {
+        match statement {
+            Statement::Assign { target, target_span, value, text } => {
+                let number = self.target(program, *target).map_err(|a| a.at(*target_span))?;
+                let value = self.operand(program, *value)?;
+                self.write(number, value, text.as_deref(), *target_span, sink)?;
+            }
+            Statement::Goto(to) => self.goto(program, to)?,
+            Statement::IfGoto { condition, to } => {
+                if self.holds(program, *condition)? {
+                    self.goto(program, to)?;
+                }
+            }
+            Statement::IfThen { condition, then } => {
+                let allowed = self.settings.unsure.then_takes_goto;
+                if matches!(**then, Statement::Goto(_)) && !allowed {
+                    return Err(Alarm::IfFormat.at(span));
+                }
+                if self.holds(program, *condition)? {
+                    // An assignment or a GOTO: lowering lets nothing else stand here.
+                    return self.statement(program, then, span, sink);
+                }
+            }
+            Statement::While { condition, number, end } => {
+                let start = self.frame().next - 1;
+                if self.holds(program, *condition)? {
+                    self.frame_mut().loops[usize::from(*number) - 1] = Some((start, *end));
+                } else {
+                    self.frame_mut().jump(end + 1);
+                    self.frame_mut().loops[usize::from(*number) - 1] = None;
+                }
+            }
+            Statement::Do { number, end } => {
+                let start = self.frame().next - 1;
+                self.frame_mut().loops[usize::from(*number) - 1] = Some((start, *end));
+            }
+            Statement::End { number, start } => {
+                let open = self.frame().loops[usize::from(*number) - 1];
+                if open.is_none_or(|(first, _)| first != *start) {
+                    return Err(Alarm::MissingDo { number: *number }.at(span));
+                }
+                self.frame_mut().next = *start;
+            }
+            Statement::SetNames { first, names } => {
+                let first = index(self.operand(program, *first)?).map_err(|a| a.at(span))?;
+                self.set_names(first, names).map_err(|a| a.at(span))?;
+            }
+            Statement::Print { .. } | Statement::OpenOutput | Statement::CloseOutput => {
+                return Err(
+                    Alarm::NotSimulated { what: "output (POPEN, DPRNT, BPRNT, PCLOS)".into() }.at(span)
+                );
+            }
+            Statement::Alarm(alarm) => return Err((**alarm).clone()),
+        }
+        Ok(None)
+    }
+
+    fn target(&self, program: &Program, target: Operand) -> Result<u32, Alarm> {
+        let value = self.operand(program, target).map_err(|alarm| alarm.node)?;
+        index(value)
+    }
+
+    fn goto(&mut self, program: &Program, to: &Spanned<Operand>) -> Checked<()> {
+        let value = self.operand(program, to.node)?.number();
+        let number = integer(value).map_err(|alarm| alarm.at(to.span))?;
+        if !(1..=99_999_999).contains(&number) {
+            return Err(Alarm::SequenceNumberRange { number }.at(to.span));
+        }
+        let number = number as u32;
+        let from = if self.settings.unsure.first_stored_number { 0 } else { self.frame().next };
+        let Some(target) = program.find_number(number, from) else {
+            return Err(Alarm::JumpTargetNotFound { number }.at(to.span));
+        };
+        self.frame_mut().jump(target);
+        Ok(())
+    }
+
+    /// Writes a variable of any kind.
+    pub(super) fn write<S: Sink>(
+        &mut self,
+        number: u32,
+        value: Value,
+        text: Option<&[u8]>,
+        span: Span,
+        sink: &mut S,
+    ) -> Checked<()> {
+        match vars::kind(number) {
+            Kind::Local(index) => self.vars.locals_mut()[index] = value,
+            Kind::Common(index) => self.vars.set_common(index, value),
+            Kind::Vacant => return Err(Alarm::WriteProtected { number }.at(span)),
+            Kind::System if number == 3000 => {
+                let number = integer(value.number()).map_err(|alarm| alarm.at(span))?;
+                let text = shown(text);
+                let plain = self.settings.plain_macro_alarms;
+                let number =
+                    u16::try_from(number).map_err(|_| Alarm::NoSuchVariable { number: 3000 }.at(span))?;
+                return Err(Alarm::Raised { number, text, plain }.at(span));
+            }
+            Kind::System if number == 3006 => self.message(&shown(text), span, sink),
+            Kind::System => self.write_system(number, value.number()).map_err(|alarm| alarm.at(span))?,
+        }
+        Ok(())
+    }
+
+    /// `#3006=1(TEXT)`: the program waits, and the operator reads the text and the variables it names.
+    fn message<S: Sink>(&mut self, text: &str, _: Span, sink: &mut S) {
+        let mut named = Vec::new();
+        for part in text.split('#').skip(1) {
+            let digits: String = part.chars().take_while(char::is_ascii_digit).collect();
+            if let Some(value) = digits.parse().ok().and_then(|n| Some((n, self.read(n).ok()?))) {
+                named.push((value.0, value.1.number()));
+            }
+        }
+        let text = text.to_owned();
+        self.tell(EventKind::Stop { kind: StopKind::Message, text, named }, 0.0, sink);
+    }
+}
+
+/// A comment's bytes as a text for people.
+fn shown(text: Option<&[u8]>) -> String {
+    text.map_or_else(String::new, |bytes| String::from_utf8_lossy(bytes).trim().to_owned())
+}

@@ -1,0 +1,249 @@
+//! The system variables: one row per range, how it is read and how it is written.
+use super::Core;
+use super::offsets::Register;
+use super::vars::Value;
+use crate::alarm::Alarm;
+use crate::motion::Axis;
+
+type Read = fn(&Core, u32) -> Result<f64, Alarm>;
+type Write = fn(&mut Core, u32, f64) -> Result<(), Alarm>;
+
+/// A range of variables; reading and writing take the place in the range, counted from 0.
+struct Row {
+    from: u32,
+    to: u32,
+    read: Option<Read>,
+    write: Option<Write>,
+}
+
+const fn row(from: u32, to: u32, read: Option<Read>, write: Option<Write>) -> Row {
+    Row { from, to, read, write }
+}
+
+/// All ranges in ascending order. A number in none of them is PS0115; without a way to read PS1115, to write PS0116.
+#[rustfmt::skip]
+const ROWS: &[Row] = &[
+    // Interface signals.
+    row(1000, 1031, Some(|c, n| Ok(f64::from(c.settings.inputs >> n & 1))), None),
+    row(1032, 1035, Some(|c, n| Ok(if n == 0 { f64::from(c.settings.inputs as i32) } else { 0.0 })), None),
+    row(1100, 1131, Some(|c, n| Ok(f64::from(c.outputs >> n & 1))), Some(|c, n, v| { c.set_output(n, v != 0.0); Ok(()) })),
+    row(1132, 1135, Some(|c, n| Ok(if n == 0 { f64::from(c.outputs as i32) } else { 0.0 })), Some(|c, n, v| c.set_outputs(n, v))),
+    // Tool offsets, memory C.
+    row(2001, 2200, Some(|c, n| c.tool_offset(Register::HWear, n)), Some(|c, n, v| c.set_tool_offset(Register::HWear, n, v))),
+    row(2201, 2400, Some(|c, n| c.tool_offset(Register::HGeometry, n)), Some(|c, n, v| c.set_tool_offset(Register::HGeometry, n, v))),
+    // Alarm, clocks, switches, message.
+    row(3000, 3000, None, None),
+    row(3001, 3001, Some(|c, _| Ok(c.clock_1())), Some(|c, _, v| { c.clocks.0 = v - c.seconds * 1000.0; Ok(()) })),
+    row(3002, 3002, Some(|c, _| Ok(c.clocks.1 + c.seconds / 3600.0)), Some(|c, _, v| { c.clocks.1 = v - c.seconds / 3600.0; Ok(()) })),
+    row(3003, 3004, Some(|c, n| Ok(c.switches[n as usize])), Some(|c, n, v| c.set_switch(n, v))),
+    row(3006, 3006, None, None),
+    row(3007, 3007, Some(|c, _| Ok(f64::from(c.state.transform.mirrored))), None),
+    row(3008, 3008, Some(|_, _| Ok(0.0)), None),
+    row(3011, 3011, Some(|c, _| Ok(f64::from(c.settings.date))), None),
+    row(3012, 3012, Some(|c, _| Ok(c.time_of_day())), None),
+    row(3101, 3101, Some(|_, _| Ok(std::f64::consts::PI)), None),
+    row(3102, 3102, Some(|_, _| Ok(std::f64::consts::E)), None),
+    row(3901, 3902, Some(|c, n| Ok(c.parts[n as usize])), Some(|c, n, v| c.set_parts(n, v))),
+    // Modal information: of the block before, and of the block at work. Here they are the same.
+    row(4001, 4130, Some(|c, n| c.modal_information(n + 1)), None),
+    row(4201, 4330, Some(|c, n| c.modal_information(n + 1)), None),
+    // Positions.
+    row(5001, 5020, Some(|c, n| c.position(n, |c, axis| c.state.programmed[axis])), None),
+    row(5021, 5040, Some(|c, n| c.position(n, |c, axis| c.rolled(axis, c.state.machine[axis]))), None),
+    row(5041, 5060, Some(|c, n| c.position(n, |c, axis| c.in_work(axis, c.state.machine[axis]))), None),
+    row(5061, 5080, Some(|c, n| c.position(n, |c, axis| c.in_work(axis, c.state.skip[axis]))), None),
+    row(5081, 5100, Some(|c, n| c.position(n, |c, axis| c.state.length[axis])), None),
+    row(5101, 5140, Some(|c, n| c.position(n % 20, |_, _| 0.0)), None),
+    row(5181, 5200, Some(|c, n| c.position(n, |_, _| 0.0)), None),
+    // Work offsets.
+    row(5201, 5340, Some(|c, n| c.work_offset((n / 20) as usize, n % 20)), Some(|c, n, v| c.set_work_offset((n / 20) as usize, n % 20, v))),
+    row(7001, 7960, Some(|c, n| c.work_offset((7 + n / 20) as usize, n % 20)), Some(|c, n, v| c.set_work_offset((7 + n / 20) as usize, n % 20, v))),
+    row(10001, 10999, Some(|c, n| c.tool_offset(Register::HWear, n)), Some(|c, n, v| c.set_tool_offset(Register::HWear, n, v))),
+    row(11001, 11999, Some(|c, n| c.tool_offset(Register::HGeometry, n)), Some(|c, n, v| c.set_tool_offset(Register::HGeometry, n, v))),
+    row(12001, 12999, Some(|c, n| c.tool_offset(Register::DWear, n)), Some(|c, n, v| c.set_tool_offset(Register::DWear, n, v))),
+    row(13001, 13999, Some(|c, n| c.tool_offset(Register::DGeometry, n)), Some(|c, n, v| c.set_tool_offset(Register::DGeometry, n, v))),
+    row(14001, 20000, Some(|c, n| c.work_offset((7 + n / 20) as usize, n % 20)), Some(|c, n, v| c.set_work_offset((7 + n / 20) as usize, n % 20, v))),
+];
+
+fn find(number: u32) -> Result<&'static Row, Alarm> {
+    let place = ROWS.partition_point(|row| row.to < number);
+    let row = ROWS.get(place).filter(|row| row.from <= number);
+    row.ok_or(Alarm::NoSuchVariable { number: i64::from(number) })
+}
+
+impl Core {
+    pub(super) fn read_system(&self, number: u32) -> Result<Value, Alarm> {
+        if number == 3100 {
+            return Ok(Value::Vacant);
+        }
+        let row = find(number)?;
+        let read = row.read.ok_or(Alarm::ReadProtected { number })?;
+        read(self, number - row.from).map(Value::Number)
+    }
+
+    pub(super) fn write_system(&mut self, number: u32, value: f64) -> Result<(), Alarm> {
+        if number == 3100 {
+            return Err(Alarm::WriteProtected { number });
+        }
+        let row = find(number)?;
+        let write = row.write.ok_or(Alarm::WriteProtected { number })?;
+        write(self, number - row.from, value)
+    }
+
+    fn set_output(&mut self, bit: u32, on: bool) {
+        self.outputs = if on { self.outputs | 1 << bit } else { self.outputs & !(1 << bit) };
+    }
+
+    fn set_outputs(&mut self, word: u32, value: f64) -> Result<(), Alarm> {
+        let value = super::eval::integer(value)?;
+        if word == 0 {
+            self.outputs = value as u32;
+        }
+        Ok(())
+    }
+
+    /// #3001: milliseconds; wraps as the control's does.
+    fn clock_1(&self) -> f64 {
+        (self.seconds * 1000.0 + self.clocks.0).trunc().rem_euclid(2_147_483_648.0)
+    }
+
+    /// #3012 as hhmmss: the setting's time and what the run has taken since.
+    fn time_of_day(&self) -> f64 {
+        let start = self.settings.time;
+        let seconds = f64::from(start / 10_000 * 3600 + start / 100 % 100 * 60 + start % 100) + self.seconds;
+        let seconds = seconds.rem_euclid(86_400.0) as u32;
+        f64::from(seconds / 3600 * 10_000 + seconds / 60 % 60 * 100 + seconds % 60)
+    }
+
+    fn set_switch(&mut self, switch: u32, value: f64) -> Result<(), Alarm> {
+        self.switches[switch as usize] = value.round();
+        Ok(())
+    }
+
+    fn set_parts(&mut self, counter: u32, value: f64) -> Result<(), Alarm> {
+        if value < 0.0 {
+            return Err(Alarm::OutOfRange { function: format!("#{}", 3901 + counter), value });
+        }
+        self.parts[counter as usize] = value.round();
+        Ok(())
+    }
+
+    fn modal_information(&self, item: u32) -> Result<f64, Alarm> {
+        let codes = &self.state.codes;
+        Ok(match item {
+            102 => codes.b,
+            107 => f64::from(codes.d),
+            108 => 0.0,
+            109 => codes.f,
+            111 => f64::from(codes.h),
+            113 => f64::from(codes.m),
+            114 => f64::from(codes.n),
+            115 => f64::from(codes.o),
+            119 => codes.s,
+            120 => f64::from(codes.t),
+            130 => match self.state.modal.work {
+                crate::program::modes::WorkSystem::Additional(p) => f64::from(p),
+                crate::program::modes::WorkSystem::Standard(_) => 0.0,
+            },
+            group => {
+                let unknown = Alarm::NoSuchVariable { number: i64::from(4000 + group) };
+                f64::from(self.state.modal.code(group).ok_or(unknown)?) / 10.0
+            }
+        })
+    }
+
+    /// A position of axis 1…; axes that the control doesn't have stand at 0.
+    fn position(&self, axis: u32, of: impl Fn(&Self, Axis) -> f64) -> Result<f64, Alarm> {
+        let axis = axis as usize;
+        if axis >= self.settings.axes.len() {
+            return Ok(0.0);
+        }
+        Ok(self.shown(&self.state, Some(axis), of(self, axis)))
+    }
+
+    /// A machine position in the work coordinate system, tool length included.
+    fn in_work(&self, axis: Axis, machine: f64) -> f64 {
+        self.rolled(axis, self.clean(machine - self.zero(&self.state, axis)))
+    }
+
+    fn work_offset(&self, system: usize, axis: u32) -> Result<f64, Alarm> {
+        self.position(axis, |core, axis| core.offsets.work(system)[axis])
+    }
+
+    fn set_work_offset(&mut self, system: usize, axis: u32, value: f64) -> Result<(), Alarm> {
+        let axis = axis as usize;
+        if axis >= self.settings.axes.len() {
+            return Ok(());
+        }
+        let value = self.stored(&self.state, Some(axis), value);
+        self.offsets.work_mut(system)[axis] = value;
+        self.offsets_changed();
+        Ok(())
+    }
+
+    /// The active system's zero has moved, the machine hasn't.
+    pub(super) fn offsets_changed(&mut self) {
+        let mut state = self.state;
+        self.recompute(&mut state);
+        self.state = state;
+    }
+
+    fn register(&self, register: Register) -> Register {
+        match (self.settings.series_15_offsets, register) {
+            (false, same) => same,
+            (true, Register::HGeometry) => Register::HWear,
+            (true, Register::HWear) => Register::HGeometry,
+            (true, Register::DGeometry) => Register::DWear,
+            (true, Register::DWear) => Register::DGeometry,
+        }
+    }
+
+    fn tool_offset(&self, register: Register, place: u32) -> Result<f64, Alarm> {
+        let value = self.offsets.tool(self.register(register), place + 1)?;
+        Ok(self.shown(&self.state, None, value))
+    }
+
+    fn set_tool_offset(&mut self, register: Register, place: u32, value: f64) -> Result<(), Alarm> {
+        let register = self.register(register);
+        self.offsets.tool(register, place + 1)?;
+        let value = self.stored(&self.state, None, value);
+        self.offsets.register(register)[place as usize + 1] = value;
+        Ok(())
+    }
+
+    /// Geometry and wear of a D number, or `None` where it isn't in the table.
+    pub(super) fn offset_radius(&self, d: u32) -> Option<f64> {
+        let geometry = self.offsets.tool(Register::DGeometry, d).ok()?;
+        Some(geometry + self.offsets.tool(Register::DWear, d).ok()?)
+    }
+
+    /// `PRM[n]`: the parameters that are settings here.
+    pub(super) fn parameter(&self, number: f64) -> Result<f64, Alarm> {
+        let settings = &self.settings;
+        Ok(match number.round() as i64 {
+            3410 => settings.arc_tolerance,
+            5114 => settings.g73_retract,
+            5115 => settings.g83_clearance,
+            other => return Err(Alarm::NotSimulated { what: format!("PRM[{other}]") }),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_ascend_and_do_not_overlap() {
+        for pair in ROWS.windows(2) {
+            assert!(pair[0].to < pair[1].from, "#{}", pair[1].from);
+        }
+    }
+
+    #[test]
+    fn numbers_between_the_ranges_do_not_exist() {
+        for number in [34, 99, 200, 499, 5401, 9_999_999] {
+            assert!(find(number).is_err(), "#{number}");
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! From programmed to work coordinates: mirror (G51.1), then scaling (G51), then rotation (G68).
+use crate::motion::{Axis, MAX_AXES, Position};
+use crate::units::Deg;
+
+/// What stands between the programmed point and the work coordinate system.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Transform {
+    /// The axes that are mirrored, as bits, and where.
+    pub mirrored: u8,
+    pub mirror: Position,
+    pub scaling: Option<Scale>,
+    pub rotation: Option<Turn>,
+}
+
+/// G51.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale {
+    pub centre: Position,
+    pub factor: Position,
+}
+
+/// G68: a turn in the plane of two axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Turn {
+    pub plane: (Axis, Axis),
+    pub centre: (f64, f64),
+    pub angle: f64,
+    sine: f64,
+    cosine: f64,
+}
+
+impl Turn {
+    pub(super) fn new(plane: (Axis, Axis), centre: (f64, f64), angle: f64) -> Self {
+        // Quarter turns are exact: a control has no residue there.
+        let (sine, cosine) = match angle.rem_euclid(360.0) {
+            0.0 => (0.0, 1.0),
+            90.0 => (1.0, 0.0),
+            180.0 => (0.0, -1.0),
+            270.0 => (-1.0, 0.0),
+            _ => (Deg(angle).sin(), Deg(angle).cos()),
+        };
+        Self { plane, centre, angle, sine, cosine }
+    }
+
+    fn apply(&self, point: &mut Position, sine: f64) {
+        let (a, b) = (point[self.plane.0] - self.centre.0, point[self.plane.1] - self.centre.1);
+        point[self.plane.0] = self.centre.0 + a * self.cosine - b * sine;
+        point[self.plane.1] = self.centre.1 + a * sine + b * self.cosine;
+    }
+}
+
+impl Transform {
+    pub fn is_none(&self) -> bool {
+        self.mirrored == 0 && self.scaling.is_none() && self.rotation.is_none()
+    }
+
+    pub(super) fn forward(&self, mut point: Position) -> Position {
+        if self.is_none() {
+            return point;
+        }
+        self.reflect(&mut point);
+        if let Some(scale) = &self.scaling {
+            for axis in 0..MAX_AXES {
+                point[axis] = scale.centre[axis] + (point[axis] - scale.centre[axis]) * scale.factor[axis];
+            }
+        }
+        if let Some(turn) = &self.rotation {
+            turn.apply(&mut point, turn.sine);
+        }
+        point
+    }
+
+    pub(super) fn backward(&self, mut point: Position) -> Position {
+        if self.is_none() {
+            return point;
+        }
+        if let Some(turn) = &self.rotation {
+            turn.apply(&mut point, -turn.sine);
+        }
+        if let Some(scale) = &self.scaling {
+            for axis in 0..MAX_AXES {
+                point[axis] = scale.centre[axis] + (point[axis] - scale.centre[axis]) / scale.factor[axis];
+            }
+        }
+        self.reflect(&mut point);
+        point
+    }
+
+    fn reflect(&self, point: &mut Position) {
+        for axis in (0..MAX_AXES).filter(|axis| self.mirrored >> axis & 1 == 1) {
+            point[axis] = 2.0 * self.mirror[axis] - point[axis];
+        }
+    }
+
+    /// Whether arcs in this plane change their sense, and whether they stay circles.
+    pub(super) fn on_arcs(&self, plane: (Axis, Axis)) -> (bool, bool) {
+        let bit = |axis: Axis| self.mirrored >> axis & 1 == 1;
+        let factor = |axis: Axis| self.scaling.as_ref().map_or(1.0, |s| s.factor[axis]);
+        let (a, b) = (factor(plane.0), factor(plane.1));
+        let turned = bit(plane.0) ^ bit(plane.1) ^ (a < 0.0) ^ (b < 0.0);
+        (turned, a.abs() == b.abs())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_quarter_turn_takes_x_to_y() {
+        let turn = Turn::new((0, 1), (0.0, 0.0), 90.0);
+        let transform = Transform { rotation: Some(turn), ..Transform::default() };
+        let mut point = Position::default();
+        point[0] = 10.0;
+        let turned = transform.forward(point);
+        assert_eq!((turned[0], turned[1]), (0.0, 10.0));
+        assert_eq!(transform.backward(turned), point);
+    }
+}

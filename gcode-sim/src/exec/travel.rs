@@ -1,0 +1,198 @@
+//! Straight moves: where a block's axis words lead, and how long the way takes.
+use super::Core;
+use super::eval::Checked;
+use super::plan::Plan;
+use super::state::State;
+use super::words::Given;
+use crate::alarm::Alarm;
+use crate::motion::{Axis, EventKind, MAX_AXES, Position};
+use crate::program::modes::{Distance, FeedMode, Plane, Polar, Unit};
+use crate::units::{Deg, MmPerMin};
+
+/// Where a move ends: as programmed, and in machine coordinates.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Goal {
+    pub(super) programmed: Position,
+    pub(super) machine: Position,
+}
+
+impl Core {
+    /// Whether a block names an axis.
+    pub(super) fn names_axis(&self, given: &Given) -> bool {
+        self.settings.axes.iter().any(|(_, letter)| given.has(letter as u8))
+    }
+
+    /// The two axes of the plane, first axis first.
+    pub(super) fn plane_axes(&self, plane: Plane) -> Result<(Axis, Axis), Alarm> {
+        let (first, second) = match plane {
+            Plane::Xy => (b'X', b'Y'),
+            Plane::Zx => (b'Z', b'X'),
+            Plane::Yz => (b'Y', b'Z'),
+        };
+        let find = |letter: u8| {
+            let missing = Alarm::ImproperAddress { letter: char::from(letter) };
+            self.settings.axes.find(letter).ok_or(missing)
+        };
+        Ok((find(first)?, find(second)?))
+    }
+
+    /// The end point of the block's axis words, from where `state` stands.
+    pub(super) fn goal(&self, given: &Given, state: &mut State) -> Checked<Goal> {
+        let mut programmed = state.programmed;
+        let mut turned = [None; MAX_AXES];
+        for (axis, letter) in self.settings.axes.iter() {
+            if state.modal.polar == Polar::On && self.in_plane(state, axis) {
+                continue;
+            }
+            let Some(value) = self.dimension(given, letter as u8, state)? else { continue };
+            let from = programmed[axis];
+            let incremental = state.modal.distance == Distance::Incremental;
+            if self.settings.roll_over[axis] {
+                let way = if incremental { value } else { shorter_way(from, value) };
+                turned[axis] = Some(way);
+                programmed[axis] = self.rolled(axis, from + way);
+            } else {
+                programmed[axis] = if incremental { self.clean(from + value) } else { value };
+            }
+        }
+        if state.modal.polar == Polar::On {
+            self.polar(given, state, &mut programmed)?;
+        }
+        let mut machine = self.to_machine(state, programmed);
+        for (axis, way) in turned.iter().enumerate() {
+            if let Some(way) = way {
+                machine[axis] = self.clean(state.machine[axis] + way);
+            } else if self.settings.roll_over[axis] {
+                machine[axis] = state.machine[axis];
+            }
+        }
+        Ok(Goal { programmed, machine })
+    }
+
+    fn in_plane(&self, state: &State, axis: Axis) -> bool {
+        self.plane_axes(state.modal.plane).is_ok_and(|(first, second)| axis == first || axis == second)
+    }
+
+    /// G16: the plane's first axis is the radius, the second the angle.
+    fn polar(&self, given: &Given, state: &mut State, point: &mut Position) -> Checked<()> {
+        let Ok((first, second)) = self.plane_axes(state.modal.plane) else { return Ok(()) };
+        let letter = |axis| self.settings.axes.letter(axis) as u8;
+        let radius = self.dimension(given, letter(first), state)?;
+        let angle = self.angle(given, letter(second))?;
+        if radius.is_none() && angle.is_none() {
+            return Ok(());
+        }
+        let incremental = state.modal.distance == Distance::Incremental;
+        let centre = if incremental { (point[first], point[second]) } else { (0.0, 0.0) };
+        let (last_radius, last_angle) = state.polar;
+        let radius = radius.unwrap_or(last_radius);
+        let angle = angle.map_or(last_angle, |a| if incremental { last_angle + a } else { a });
+        state.polar = (radius, angle);
+        point[first] = self.clean(centre.0 + radius * Deg(angle).cos());
+        point[second] = self.clean(centre.1 + radius * Deg(angle).sin());
+        Ok(())
+    }
+
+    /// Tells a rapid to a point in machine coordinates; nothing where the tool already is there.
+    pub(super) fn rapid(&self, plan: &mut Plan, to: Position) {
+        let from = plan.state.machine;
+        if to != from {
+            plan.events.push((EventKind::Rapid { to }, self.rapid_seconds(&from, &to)));
+            plan.state.machine = to;
+        }
+    }
+
+    /// Tells a straight cut; alarms where there is no feed, even if it leads nowhere.
+    pub(super) fn feed(&self, plan: &mut Plan, to: Position, given: &Given) -> Result<(), Alarm> {
+        let from = plan.state.machine;
+        let (rate, seconds) = self.feed_seconds(&plan.state, &from, &to, given.has(b'F'))?;
+        if to != from {
+            plan.events.push((EventKind::Feed { to, rate }, seconds));
+            plan.state.machine = to;
+        }
+        Ok(())
+    }
+
+    /// All axes start together at their own rapid rates; the slowest decides.
+    pub(super) fn rapid_seconds(&self, from: &Position, to: &Position) -> f64 {
+        let mut minutes = 0.0_f64;
+        for axis in 0..self.settings.axes.len() {
+            let rotary = self.settings.axes.is_rotary(axis);
+            let rate = if rotary { self.settings.rapid_rotary } else { self.settings.rapid.0 };
+            minutes = minutes.max((to[axis] - from[axis]).abs() / rate);
+        }
+        minutes * 60.0
+    }
+
+    /// The rate along the path and the time of a straight cut: the composite of all axes, mm and degrees as equal
+    /// numbers (operator's manual, feed rate in G94).
+    pub(super) fn feed_seconds(
+        &self,
+        state: &State,
+        from: &Position,
+        to: &Position,
+        f_in_block: bool,
+    ) -> Result<(MmPerMin, f64), Alarm> {
+        let (mut sliding, mut turning) = (0.0, 0.0);
+        for axis in 0..self.settings.axes.len() {
+            let way = to[axis] - from[axis];
+            if self.settings.axes.is_rotary(axis) {
+                turning += way * way;
+            } else {
+                sliding += way * way;
+            }
+        }
+        self.time_along(state, (sliding + turning).sqrt(), sliding.sqrt(), turning, f_in_block)
+    }
+
+    /// The rate and the time for a path of `length`, of which `sliding` mm are linear and the rest turns.
+    pub(super) fn time_along(
+        &self,
+        state: &State,
+        length: f64,
+        sliding: f64,
+        turning: f64,
+        f_in_block: bool,
+    ) -> Result<(MmPerMin, f64), Alarm> {
+        let f = state.codes.f;
+        if state.modal.feed_mode == FeedMode::InverseTime {
+            if f <= 0.0 || !f_in_block {
+                return Err(Alarm::FeedZero);
+            }
+            return Ok((MmPerMin(length * f), 60.0 / f));
+        }
+        let per_minute = match state.modal.feed_mode {
+            FeedMode::PerRevolution => f * state.codes.s,
+            FeedMode::PerMinute | FeedMode::InverseTime => f,
+        };
+        if per_minute <= 0.0 {
+            return Err(Alarm::FeedZero);
+        }
+        // In inches the composite is of inches and degrees.
+        let counted = match state.modal.unit {
+            Unit::Metric => length,
+            Unit::Inch => (sliding / 25.4 * (sliding / 25.4) + turning).sqrt(),
+        };
+        let minutes = counted / per_minute;
+        let rate = if minutes > 0.0 { length / minutes } else { per_minute };
+        Ok((MmPerMin(rate), minutes * 60.0))
+    }
+}
+
+/// How an axis that rolls over gets from one angle to another: the shorter way, half a turn in the plus direction.
+fn shorter_way(from: f64, to: f64) -> f64 {
+    let way = (to - from).rem_euclid(360.0);
+    if way > 180.0 { way - 360.0 } else { way }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::shorter_way;
+
+    #[test]
+    fn a_rotary_axis_takes_the_shorter_way() {
+        assert_eq!(shorter_way(0.0, -150.0), -150.0);
+        assert_eq!(shorter_way(210.0, 540.0), -30.0);
+        assert_eq!(shorter_way(0.0, 180.0), 180.0);
+    }
+}

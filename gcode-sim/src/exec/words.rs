@@ -1,0 +1,289 @@
+//! The words of the block at hand, evaluated: what is vacant is not there, and numbers become lengths, angles,
+//! times or counts only where the block asks for them.
+use super::Core;
+use super::eval::{Checked, at, integer};
+use super::state::State;
+use crate::alarm::Alarm;
+use crate::program::codes::{self, Row};
+use crate::program::modes::{FeedMode, Unit};
+use crate::program::{Coded, Input, Program, Words};
+use crate::source::Span;
+use crate::syntax::ast::Decimal;
+
+/// The value of a word before anything is made of it.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Raw {
+    Literal(Decimal),
+    Computed(f64),
+}
+
+const G_CODES: usize = 12;
+const M_CODES: usize = 3;
+
+/// The words of a block by letter. Kept between blocks and cleared by its mask, so that it costs nothing.
+#[derive(Clone, Debug)]
+pub(super) struct Given {
+    present: u32,
+    values: [(Raw, Span); 26],
+    g: [Option<&'static Row>; G_CODES],
+    g_count: usize,
+    pub(super) m: [Option<(u32, Span)>; M_CODES],
+    pub(super) m_count: usize,
+}
+
+impl Default for Given {
+    fn default() -> Self {
+        Self {
+            present: 0,
+            values: [(Raw::Computed(0.0), Span::default()); 26],
+            g: [None; G_CODES],
+            g_count: 0,
+            m: [None; M_CODES],
+            m_count: 0,
+        }
+    }
+}
+
+const POWERS: [f64; 8] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7];
+
+impl Given {
+    pub(super) fn has(&self, letter: u8) -> bool {
+        self.present >> (letter - b'A') & 1 == 1
+    }
+
+    pub(super) fn has_any(&self, letters: &[u8]) -> bool {
+        letters.iter().any(|letter| self.has(*letter))
+    }
+
+    fn get(&self, letter: u8) -> Option<(Raw, Span)> {
+        self.has(letter).then(|| self.values[usize::from(letter - b'A')])
+    }
+
+    pub(super) fn span(&self, letter: u8) -> Span {
+        self.values[usize::from(letter - b'A')].1
+    }
+
+    pub(super) fn g_codes(&self) -> impl Iterator<Item = &'static Row> + '_ {
+        self.g[..self.g_count].iter().flatten().copied()
+    }
+
+    /// A count or a number: no point, no minus; a computed value is rounded.
+    pub(super) fn count(&self, letter: u8) -> Checked<Option<u32>> {
+        let Some((raw, span)) = self.get(letter) else { return Ok(None) };
+        at(count(raw, letter), span).map(Some)
+    }
+}
+
+/// A value where only a whole number may stand.
+pub(super) fn count(raw: Raw, letter: u8) -> Result<u32, Alarm> {
+    let letter = char::from(letter);
+    let number = match raw {
+        Raw::Literal(number) if number.places.is_some() => {
+            return Err(Alarm::IllegalPoint { letter: Some(letter) });
+        }
+        Raw::Literal(number) if number.negative && number.digits > 0 => {
+            return Err(Alarm::IllegalMinus { letter });
+        }
+        Raw::Literal(number) => i64::try_from(number.digits).map_err(|_| Alarm::TooManyDigits)?,
+        Raw::Computed(value) => integer(value)?,
+    };
+    if number < 0 {
+        return Err(Alarm::IllegalMinus { letter });
+    }
+    u32::try_from(number).map_err(|_| Alarm::TooManyDigits)
+}
+
+impl Core {
+    /// Evaluates every word of a block into `given`.
+    pub(super) fn collect(&self, program: &Program, words: &Words, given: &mut Given) -> Checked<()> {
+        given.present = 0;
+        given.g_count = 0;
+        given.m_count = 0;
+        for word in &words.list {
+            let Some(raw) = self.raw(program, word)? else { continue };
+            if word.comma {
+                let what = format!("corner rounding and chamfer (,{})", char::from(word.letter));
+                return Err(Alarm::NotSimulated { what }.at(word.span));
+            }
+            match word.letter {
+                b'G' => {
+                    let row = at(g_row(&word.value, raw), word.span)?;
+                    if given.g_count == G_CODES {
+                        let what = "too many G codes in one block".into();
+                        return Err(Alarm::MacroFormat { what }.at(word.span));
+                    }
+                    given.g[given.g_count] = Some(row);
+                    given.g_count += 1;
+                }
+                b'M' => {
+                    let code = at(count(raw, b'M'), word.span)?;
+                    let most = if self.settings.three_m_codes { M_CODES } else { 1 };
+                    // Without M3B the last M code of a block counts.
+                    let place = given.m_count.min(most - 1);
+                    given.m[place] = Some((code, word.span));
+                    given.m_count = place + 1;
+                }
+                letter => {
+                    if self.settings.no_repeated_address && given.has(letter) {
+                        return Err(Alarm::RepeatedAddress { letter: char::from(letter) }.at(word.span));
+                    }
+                    given.present |= 1 << (letter - b'A');
+                    given.values[usize::from(letter - b'A')] = (raw, word.span);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The value of a word, or `None` where it is vacant and the word therefore not there.
+    pub(super) fn raw(&self, program: &Program, word: &Coded) -> Checked<Option<Raw>> {
+        Ok(match word.value {
+            Input::Literal(number) => Some(Raw::Literal(number)),
+            Input::G(code, _) => Some(Raw::Computed(f64::from(code) / 10.0)),
+            Input::Operand(operand) => self.operand(program, operand)?.given().map(Raw::Computed),
+        })
+    }
+
+    /// How many decimals the least increment of an address has in the unit in force.
+    fn decimals(&self, letter: u8, unit: Unit) -> usize {
+        let metric = match self.settings.increment {
+            crate::control::Increment::IsA => 2,
+            crate::control::Increment::IsB => 3,
+            crate::control::Increment::IsC => 4,
+        };
+        if unit == Unit::Inch && !turns(letter) { metric + 1 } else { metric }
+    }
+
+    /// ROUND inside an address.
+    pub(super) fn round_to(&self, letter: u8, value: f64) -> f64 {
+        match letter {
+            b'A'..=b'C' | b'I'..=b'K' | b'Q' | b'R' | b'U'..=b'Z' => {
+                let scale = POWERS[self.decimals(letter, self.state.modal.unit)];
+                (value * scale).round() / scale
+            }
+            b'F' | b'E' => value,
+            _ => value.round(),
+        }
+    }
+
+    /// A length in mm or an angle in degrees, a multiple of the increment of its address.
+    pub(super) fn dimension(&self, given: &Given, letter: u8, state: &State) -> Checked<Option<f64>> {
+        let Some((raw, span)) = given.get(letter) else { return Ok(None) };
+        let decimals = self.decimals(letter, state.modal.unit);
+        let value = at(self.increments(raw, decimals), span)? / POWERS[decimals];
+        let inch = state.modal.unit == Unit::Inch && !turns(letter);
+        Ok(Some(if inch { self.clean(value * 25.4) } else { value }))
+    }
+
+    /// An angle at an address that is a length elsewhere: R of G68.
+    pub(super) fn angle(&self, given: &Given, letter: u8) -> Checked<Option<f64>> {
+        let Some((raw, span)) = given.get(letter) else { return Ok(None) };
+        let decimals = self.decimals(b'A', Unit::Metric);
+        Ok(Some(at(self.increments(raw, decimals), span)? / POWERS[decimals]))
+    }
+
+    /// Whole increments: literals are cut off (or rounded, by setting), computed values rounded half away from 0.
+    fn increments(&self, raw: Raw, decimals: usize) -> Result<f64, Alarm> {
+        let number = match raw {
+            Raw::Computed(value) => (value * POWERS[decimals]).round(),
+            Raw::Literal(Decimal { digits, places, negative }) => {
+                let places = match places {
+                    // Without a point the digits count increments, or whole units in calculator notation.
+                    None if self.settings.calculator_input => 0,
+                    None => decimals,
+                    Some(places) => usize::from(places),
+                };
+                let magnitude = if places <= decimals {
+                    digits as f64 * POWERS[decimals - places]
+                } else {
+                    let unit = 10_u64.saturating_pow((places - decimals) as u32);
+                    let half = if self.settings.unsure.round_literals { unit / 2 } else { 0 };
+                    (digits.saturating_add(half) / unit) as f64
+                };
+                if negative { -magnitude } else { magnitude }
+            }
+        };
+        // Nine digits in increments (8.1, PS0003).
+        if number.abs() > 999_999_999.0 { Err(Alarm::TooManyDigits) } else { Ok(number + 0.0) }
+    }
+
+    /// A time in seconds: X and U count increments of 0.001 s without a point.
+    pub(super) fn seconds(&self, given: &Given, letter: u8) -> Checked<Option<f64>> {
+        let Some((raw, span)) = given.get(letter) else { return Ok(None) };
+        let decimals = self.decimals(b'A', Unit::Metric);
+        let value = at(self.increments(raw, decimals), span)? / POWERS[decimals];
+        if value < 0.0 {
+            return Err(Alarm::IllegalMinus { letter: char::from(letter) }.at(span));
+        }
+        Ok(Some(value))
+    }
+
+    /// F in the unit of the feed mode.
+    pub(super) fn feed_word(&self, given: &Given, state: &State) -> Checked<Option<f64>> {
+        let Some((raw, span)) = given.get(b'F') else { return Ok(None) };
+        let value = match raw {
+            Raw::Literal(number)
+                if number.places.is_none() && state.modal.feed_mode == FeedMode::PerRevolution =>
+            {
+                number.value() / if state.modal.unit == Unit::Inch { 10_000.0 } else { 100.0 }
+            }
+            Raw::Literal(number) => number.value(),
+            Raw::Computed(value) => value,
+        };
+        if value < 0.0 {
+            return Err(Alarm::IllegalMinus { letter: 'F' }.at(span));
+        }
+        Ok(Some(value))
+    }
+
+    /// An argument of a macro call: computed values and points as they are, otherwise counted in the increments of
+    /// the address (6007#4 CVA = 0).
+    pub(super) fn argument(&self, raw: Raw, letter: u8) -> f64 {
+        let number = match raw {
+            Raw::Computed(value) => return value,
+            Raw::Literal(number) => number,
+        };
+        let counts = number.places.is_none() && !self.settings.calculator_input;
+        match letter {
+            b'D' | b'E' | b'F' | b'H' | b'M' | b'S' | b'T' | b'L' | b'N' | b'P' => number.value(),
+            _ if counts => number.value() / POWERS[self.decimals(letter, self.state.modal.unit)],
+            _ => number.value(),
+        }
+    }
+}
+
+/// Rotary axes are not affected by G20 and G21.
+fn turns(letter: u8) -> bool {
+    matches!(letter, b'A' | b'B' | b'C')
+}
+
+fn g_row(input: &Input, raw: Raw) -> Result<&'static Row, Alarm> {
+    let code = match (input, raw) {
+        (Input::G(_, Some(row)), _) => return Ok(row),
+        (Input::G(code, None), _) => *code,
+        (_, Raw::Computed(value)) => {
+            // A computed code keeps one decimal.
+            let tenths = (value * 10.0).round();
+            if !(0.0..=9999.0).contains(&tenths) {
+                return Err(Alarm::ImproperGCode { code: value.to_string() });
+            }
+            tenths as u16
+        }
+        (_, Raw::Literal(number)) => return Err(Alarm::ImproperGCode { code: number.value().to_string() }),
+    };
+    codes::find(code).ok_or_else(|| Alarm::ImproperGCode { code: codes::spelled(code) })
+}
+
+impl Core {
+    /// A whole number with a sign: I J K of G51.
+    pub(super) fn factor(&self, given: &Given, letter: u8) -> Checked<Option<f64>> {
+        let Some((raw, span)) = given.get(letter) else { return Ok(None) };
+        match raw {
+            Raw::Literal(number) if number.places.is_some() => {
+                Err(Alarm::IllegalPoint { letter: Some(char::from(letter)) }.at(span))
+            }
+            Raw::Literal(number) => Ok(Some(number.value())),
+            Raw::Computed(value) => Ok(Some(value.round())),
+        }
+    }
+}

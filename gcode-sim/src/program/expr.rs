@@ -1,0 +1,232 @@
+//! Expressions in postfix order, so that evaluating one needs neither recursion nor memory of its own.
+use super::lower::Lowering;
+use crate::alarm::Alarm;
+use crate::source::{Span, Spanned};
+use crate::syntax::ast::{BinaryOp, CallForm, Condition, Expr, ExprKind, Function, Name, Relation};
+
+/// A value: known, one variable, or code to evaluate. The first two are most of what programs contain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Operand {
+    Number(f64),
+    /// `#n` with a literal n.
+    Variable {
+        number: u32,
+        span: Span,
+    },
+    Code(Code),
+}
+
+/// A range of a program's instructions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Code {
+    pub start: u32,
+    pub end: u32,
+    pub span: Span,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Instruction {
+    pub operation: Operation,
+    pub span: Span,
+}
+
+/// Acts on a stack of values. Conditions are numbers here, 0 or 1; the tree keeps them apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Operation {
+    Push(f64),
+    Load(u32),
+    /// Takes a variable's number, gives its value.
+    LoadIndirect,
+    Negate,
+    Plus,
+    Bracket,
+    Binary(BinaryOp),
+    Function(Function),
+    /// ATAN of two values.
+    Atan2,
+    Power,
+    /// ROUND in a word: to the increment of that address.
+    RoundTo(u8),
+    Compare(Relation),
+    Logic(BinaryOp),
+    /// `PRM[n]`: takes the number.
+    Parameter,
+    /// A variable named by SETVN: an index into the program's names.
+    Named(u32),
+}
+
+/// How deep brackets may stand in one another (operator's manual, custom macro: five levels).
+pub(super) const BRACKETS: usize = 5;
+
+/// What an expression can need on the stack: five brackets, each with a sum, a product and an index pending.
+pub const STACK: usize = 32;
+
+/// What an expression stands in.
+#[derive(Clone, Copy)]
+pub(super) enum Context {
+    Macro,
+    /// The value of an address.
+    Address(u8),
+}
+
+type Lowered<T> = Result<T, Spanned<Alarm>>;
+
+impl Lowering {
+    pub(super) fn operand(&mut self, expr: &Expr, context: Context) -> Lowered<Operand> {
+        match &expr.kind {
+            ExprKind::Literal(number) => return Ok(Operand::Number(number.value())),
+            ExprKind::Variable(index) => {
+                if let Some(number) = literal_index(index) {
+                    return Ok(Operand::Variable { number, span: expr.span });
+                }
+            }
+            _ => {}
+        }
+        self.code(expr.span, |this| this.expr(expr, context, 0)).map(Operand::Code)
+    }
+
+    pub(super) fn condition(&mut self, condition: &Condition, span: Span) -> Lowered<Code> {
+        self.code(span, |this| this.test(condition))
+    }
+
+    fn code(&mut self, span: Span, write: impl FnOnce(&mut Self) -> Lowered<usize>) -> Lowered<Code> {
+        let start = self.instructions.len();
+        let written = write(self)
+            .and_then(|depth| if depth > STACK { Err(Alarm::TooManyBrackets.at(span)) } else { Ok(()) });
+        if let Err(alarm) = written {
+            self.instructions.truncate(start);
+            return Err(alarm);
+        }
+        Ok(Code { start: start as u32, end: self.instructions.len() as u32, span })
+    }
+
+    fn emit(&mut self, operation: Operation, span: Span) {
+        self.instructions.push(Instruction { operation, span });
+    }
+
+    /// Writes the code of `expr`; the answer is how many values it needs on the stack at once.
+    fn expr(&mut self, expr: &Expr, context: Context, brackets: usize) -> Lowered<usize> {
+        let span = expr.span;
+        if brackets > BRACKETS {
+            return Err(Alarm::TooManyBrackets.at(span));
+        }
+        Ok(match &expr.kind {
+            ExprKind::Literal(number) => {
+                self.emit(Operation::Push(number.value()), span);
+                1
+            }
+            ExprKind::Variable(index) => {
+                if let Some(number) = literal_index(index) {
+                    self.emit(Operation::Load(number), span);
+                    1
+                } else {
+                    let depth = self.expr(index, Context::Macro, brackets)?;
+                    self.emit(Operation::LoadIndirect, span);
+                    depth
+                }
+            }
+            ExprKind::Named(name) => self.named(name, span)?,
+            ExprKind::Negate(inner) => self.unary(inner, Operation::Negate, span, context, brackets)?,
+            ExprKind::Plus(inner) => self.unary(inner, Operation::Plus, span, context, brackets)?,
+            ExprKind::Bracket(inner) => self.unary(inner, Operation::Bracket, span, context, brackets + 1)?,
+            ExprKind::Binary(op, left, right) => {
+                let left = self.expr(left, context, brackets)?;
+                let right = self.expr(right, context, brackets)?;
+                self.emit(Operation::Binary(*op), span);
+                left.max(right + 1)
+            }
+            ExprKind::Call(function, form) => self.call(*function, form, span, context, brackets + 1)?,
+            ExprKind::Parameter { number, bit: None, axis: None } => {
+                let depth = self.expr(number, Context::Macro, brackets + 1)?;
+                self.emit(Operation::Parameter, span);
+                depth
+            }
+            ExprKind::Parameter { .. } => {
+                return Err(Alarm::NotSimulated { what: "PRM of a bit or an axis".into() }.at(span));
+            }
+        })
+    }
+
+    fn unary(
+        &mut self,
+        inner: &Expr,
+        operation: Operation,
+        span: Span,
+        context: Context,
+        brackets: usize,
+    ) -> Lowered<usize> {
+        let depth = self.expr(inner, context, brackets)?;
+        self.emit(operation, span);
+        Ok(depth)
+    }
+
+    fn call(
+        &mut self,
+        function: Function,
+        form: &CallForm,
+        span: Span,
+        context: Context,
+        brackets: usize,
+    ) -> Lowered<usize> {
+        let two = |this: &mut Self, a: &Expr, b: &Expr, operation| {
+            let first = this.expr(a, context, brackets)?;
+            let second = this.expr(b, context, brackets)?;
+            this.emit(operation, span);
+            Ok(first.max(second + 1))
+        };
+        match (function, form, context) {
+            (Function::Atan, CallForm::Slash(a, b) | CallForm::Comma(a, b), _) => {
+                two(self, a, b, Operation::Atan2)
+            }
+            (Function::Pow, CallForm::Comma(a, b), _) => two(self, a, b, Operation::Power),
+            (Function::Pow, CallForm::One(_), _) => Err(Alarm::MissingComma.at(span)),
+            (Function::Round, CallForm::One(inner), Context::Address(letter)) => {
+                self.unary(inner, Operation::RoundTo(letter), span, context, brackets)
+            }
+            (_, CallForm::One(inner), _) => {
+                self.unary(inner, Operation::Function(function), span, context, brackets)
+            }
+            (_, CallForm::Slash(..) | CallForm::Comma(..), _) => {
+                Err(Alarm::ArgumentFormat { function: format!("{function:?}").to_uppercase() }.at(span))
+            }
+        }
+    }
+
+    fn named(&mut self, name: &Name, span: Span) -> Lowered<usize> {
+        if name.index.is_some() || name.text.starts_with('_') {
+            return Err(Alarm::NotSimulated { what: format!("the variable name #{}", name.text) }.at(span));
+        }
+        let place = self.names.iter().position(|n| *n == name.text).unwrap_or_else(|| {
+            self.names.push(name.text.clone());
+            self.names.len() - 1
+        });
+        self.emit(Operation::Named(place as u32), span);
+        Ok(1)
+    }
+
+    fn test(&mut self, condition: &Condition) -> Lowered<usize> {
+        match condition {
+            Condition::Compare { left, relation, right, span } => {
+                let left = self.expr(left, Context::Macro, 1)?;
+                let right = self.expr(right, Context::Macro, 1)?;
+                self.emit(Operation::Compare(*relation), *span);
+                Ok(left.max(right + 1))
+            }
+            Condition::Logic(op, first, second) => {
+                let left = self.test(first)?;
+                let right = self.test(second)?;
+                let span = self.instructions.last().map_or_else(Span::default, |i| i.span);
+                self.emit(Operation::Logic(*op), span);
+                Ok(left.max(right + 1))
+            }
+            Condition::Bracket(inner) => self.test(inner),
+        }
+    }
+}
+
+/// `#5`: a variable whose number is written out. `#5.4` is #5, as any number used as an integer.
+fn literal_index(index: &Expr) -> Option<u32> {
+    let ExprKind::Literal(number) = index.kind else { return None };
+    let value = number.value().round();
+    (0.0..=999_999_999.0).contains(&value).then_some(value as u32)
+}

@@ -1,0 +1,171 @@
+//! Lowers a tree to operations, block by block; what can't run becomes the alarm it raises when it is reached.
+use super::expr::{Context, Instruction};
+use super::{Op, OpKind, PrintPart, Program, Statement, flow};
+use crate::alarm::Alarm;
+use crate::source::{Span, Spanned};
+use crate::syntax::ast;
+
+/// What grows while a program is lowered.
+#[derive(Default)]
+pub(super) struct Lowering {
+    pub(super) instructions: Vec<Instruction>,
+    /// Variables called by names that SETVN gives.
+    pub(super) names: Vec<String>,
+}
+
+pub(super) fn lower(tree: &ast::Program) -> Program {
+    let mut lowering = Lowering::default();
+    let mut ops: Vec<Op> = tree.blocks.iter().map(|block| lowering.block(block)).collect();
+    flow::pair_loops(&mut ops);
+    let end = tree.blocks.last().map_or(tree.span.end, |b| b.span.end.max(tree.span.end));
+    Program {
+        name: tree.name.clone(),
+        span: Span { end, ..tree.span },
+        numbers: flow::numbers(&ops),
+        ops,
+        instructions: lowering.instructions,
+        names: lowering.names,
+    }
+}
+
+type Lowered<T> = Result<T, Spanned<Alarm>>;
+
+impl Lowering {
+    fn block(&mut self, block: &ast::Block) -> Op {
+        let kind = self.kind(block).unwrap_or_else(|alarm| OpKind::Alarm(Box::new(alarm)));
+        Op {
+            span: block.span,
+            skip: block.skip.as_ref().map(|s| s.node),
+            number: block.number.as_ref().map(|n| n.node),
+            kind,
+        }
+    }
+
+    fn kind(&mut self, block: &ast::Block) -> Lowered<OpKind> {
+        let mut words = Vec::new();
+        let mut skips = Vec::new();
+        let mut statement = None;
+        for item in &block.items {
+            match item {
+                ast::Item::Word(word) => words.push(word.clone()),
+                ast::Item::Skip(switch) => skips.push((switch.node, words.len())),
+                ast::Item::Unreadable(alarm) => return Err(alarm.clone()),
+                ast::Item::Statement(_) if statement.is_some() => {
+                    let what = "two statements in one block".into();
+                    return Err(Alarm::MacroFormat { what }.at(block.span));
+                }
+                ast::Item::Statement(found) => statement = Some(found),
+            }
+        }
+        match (statement, words.is_empty()) {
+            (Some(_), false) => Err(Alarm::MixedStatements.at(block.span)),
+            (Some(found), true) => self.statement(&found.node, found.span, block).map(OpKind::Statement),
+            (None, true) => Ok(OpKind::Empty),
+            (None, false) => {
+                let first = skips.first().map_or(words.len(), |(_, at)| *at);
+                let tails: Vec<_> = skips
+                    .iter()
+                    .enumerate()
+                    .map(|(i, (switch, from))| {
+                        let to = skips.get(i + 1).map_or(words.len(), |(_, at)| *at);
+                        (*switch, &words[*from..to])
+                    })
+                    .collect();
+                self.words(&words[..first], &tails).map(OpKind::from)
+            }
+        }
+    }
+
+    fn statement(
+        &mut self,
+        statement: &ast::Statement,
+        span: Span,
+        block: &ast::Block,
+    ) -> Lowered<Statement> {
+        Ok(match statement {
+            ast::Statement::Assign { target, value } => self.assign(target, value, span, block)?,
+            ast::Statement::Goto(to) => Statement::Goto(self.place(to)?),
+            ast::Statement::IfGoto { condition, to } => {
+                Statement::IfGoto { condition: self.condition(condition, span)?, to: self.place(to)? }
+            }
+            ast::Statement::IfThen { condition, then } => {
+                let condition = self.condition(condition, span)?;
+                let then = match &**then {
+                    ast::Statement::Assign { .. } | ast::Statement::Goto(_) => {
+                        self.statement(then, span, block)?
+                    }
+                    _ => Statement::Alarm(Box::new(Alarm::IfFormat.at(span))),
+                };
+                Statement::IfThen { condition, then: Box::new(then) }
+            }
+            ast::Statement::While { condition, number } => {
+                let number = loop_number(number)?;
+                Statement::While { condition: self.condition(condition, span)?, number, end: 0 }
+            }
+            ast::Statement::Do(number) => Statement::Do { number: loop_number(number)?, end: 0 },
+            ast::Statement::End(number) => Statement::End { number: loop_number(number)?, start: 0 },
+            ast::Statement::SetNames { first, names } => {
+                let first = self.operand(first, Context::Macro)?;
+                Statement::SetNames { first, names: names.clone() }
+            }
+            ast::Statement::Print { kind, parts } => self.print(*kind, parts, span)?,
+            ast::Statement::OpenOutput => Statement::OpenOutput,
+            ast::Statement::CloseOutput => Statement::CloseOutput,
+        })
+    }
+
+    fn assign(
+        &mut self,
+        target: &ast::Expr,
+        value: &ast::Expr,
+        span: Span,
+        block: &ast::Block,
+    ) -> Lowered<Statement> {
+        let index = match &target.kind {
+            ast::ExprKind::Variable(index) => self.operand(index, Context::Macro)?,
+            _ => {
+                return Err(
+                    Alarm::NotSimulated { what: "writing a variable by its name".into() }.at(target.span)
+                );
+            }
+        };
+        let text = block.comments.iter().find(|c| c.span.start >= span.start);
+        Ok(Statement::Assign {
+            target: index,
+            target_span: target.span,
+            value: self.operand(value, Context::Macro)?,
+            text: text.map(|c| c.text.clone().into_boxed_slice()),
+        })
+    }
+
+    fn place(&mut self, to: &ast::Expr) -> Lowered<Spanned<super::Operand>> {
+        Ok(Spanned::new(self.operand(to, Context::Macro)?, to.span))
+    }
+
+    fn print(&mut self, kind: ast::PrintKind, parts: &[ast::PrintPart], span: Span) -> Lowered<Statement> {
+        let mut lowered = Vec::new();
+        for part in parts {
+            lowered.push(match part {
+                ast::PrintPart::Text(text) => PrintPart::Text(text.clone()),
+                ast::PrintPart::Value { variable, format } => {
+                    let digits: Vec<u8> = format.bytes().map(|b| b.wrapping_sub(b'0')).collect();
+                    let (whole, decimals) = match digits[..] {
+                        [whole @ 0..=9, decimals @ 0..=9] => (whole, decimals),
+                        [decimals @ 0..=9] => (0, decimals),
+                        _ => return Err(Alarm::MacroFormat { what: format!("format [{format}]") }.at(span)),
+                    };
+                    let value = self.operand(variable, Context::Macro)?;
+                    PrintPart::Value { value, whole, decimals }
+                }
+            });
+        }
+        Ok(Statement::Print { kind, parts: lowered })
+    }
+}
+
+fn loop_number(number: &Spanned<i64>) -> Lowered<u8> {
+    match number.node {
+        1..=3 => Ok(number.node as u8),
+        other => Err(Alarm::LoopNumber { number: other }.at(number.span)),
+    }
+}

@@ -1,0 +1,108 @@
+//! A control's program memory: the texts, and the programs in them by number.
+use std::collections::BTreeMap;
+
+use super::{Program, lower};
+use crate::source::{SourceId, Sources, Span};
+use crate::syntax::ast::ProgramName;
+
+/// A program in [`Memory`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub struct ProgramId(pub(crate) u32);
+
+/// Where a called program comes from that isn't in memory. The command line looks in folders, tests in a map.
+pub trait Library {
+    /// The file that holds program O`number`: its name and its bytes.
+    fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)>;
+}
+
+/// Nothing but what is in memory.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NoLibrary;
+
+impl Library for NoLibrary {
+    fn program(&mut self, _: u32) -> Option<(String, Vec<u8>)> {
+        None
+    }
+}
+
+impl<L: Library + ?Sized> Library for &mut L {
+    fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)> {
+        (**self).program(number)
+    }
+}
+
+/// Programs by number and by name.
+#[derive(Debug, Default)]
+pub struct Memory {
+    sources: Sources,
+    programs: Vec<Program>,
+    numbers: BTreeMap<u32, ProgramId>,
+    names: BTreeMap<String, ProgramId>,
+}
+
+impl Memory {
+    /// Reads and lowers a file. Of two programs with one number the first stays, as on a control, which refuses
+    /// the second.
+    pub fn load(&mut self, name: impl Into<String>, bytes: impl Into<Vec<u8>>) -> SourceId {
+        let source = self.sources.add(name, bytes);
+        let bytes = &self.sources.get(source).bytes;
+        for tree in crate::syntax::parse(source, bytes) {
+            let id = ProgramId(self.programs.len() as u32);
+            let program = lower::lower(&tree);
+            match &program.name {
+                ProgramName::Number(number) => {
+                    self.numbers.entry(*number).or_insert(id);
+                }
+                ProgramName::Name(name) => {
+                    self.names.entry(name.clone()).or_insert(id);
+                }
+                ProgramName::Unnamed => {}
+            }
+            self.programs.push(program);
+        }
+        source
+    }
+
+    pub fn sources(&self) -> &Sources {
+        &self.sources
+    }
+
+    pub fn programs(&self) -> &[Program] {
+        &self.programs
+    }
+
+    pub(crate) fn get(&self, id: ProgramId) -> &Program {
+        &self.programs[id.0 as usize]
+    }
+
+    /// The program with this O number.
+    pub fn find(&self, number: u32) -> Option<ProgramId> {
+        self.numbers.get(&number).copied()
+    }
+
+    pub fn find_name(&self, name: &str) -> Option<ProgramId> {
+        self.names.get(name).copied()
+    }
+
+    /// The program with this O number, asked of the library where it isn't in memory yet.
+    pub fn fetch(&mut self, number: u32, library: &mut impl Library) -> Option<ProgramId> {
+        if let Some(id) = self.find(number) {
+            return Some(id);
+        }
+        let (name, bytes) = library.program(number)?;
+        let first = self.programs.len();
+        self.load(name, bytes);
+        if self.find(number).is_none() && self.programs.get(first)?.name == ProgramName::Unnamed {
+            // A file named after its program that leaves the O word out.
+            self.numbers.insert(number, ProgramId(first as u32));
+        }
+        self.find(number)
+    }
+
+    /// The program that a place belongs to.
+    pub fn program_at(&self, span: Span) -> Option<&Program> {
+        self.programs
+            .iter()
+            .find(|p| p.span.source == span.source && (p.span.start..=p.span.end).contains(&span.start))
+    }
+}

@@ -1,0 +1,75 @@
+//! The states of the modal groups: one type per group, each state with its G code × 10 as #4001… shows it.
+
+macro_rules! group {
+    ($(#[$doc:meta])* $name:ident { $($(#[$default:ident])? $state:ident = $code:literal,)+ }) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        pub enum $name {
+            $($(#[$default])? $state,)+
+        }
+
+        impl $name {
+            /// The G code × 10 that this state stands for.
+            pub fn code(self) -> u16 {
+                match self {
+                    $(Self::$state => $code,)+
+                }
+            }
+        }
+    };
+}
+
+group!(/// Group 01.
+    Motion { #[default] Rapid = 0, Linear = 10, Clockwise = 20, Counterclockwise = 30, });
+group!(/// Group 02: the plane of arcs and drilling.
+    Plane { #[default] Xy = 170, Zx = 180, Yz = 190, });
+group!(/// Group 03.
+    Distance { #[default] Absolute = 900, Incremental = 910, });
+group!(/// Group 04: stored stroke check.
+    StrokeCheck { #[default] On = 220, Off = 230, });
+group!(/// Group 05.
+    FeedMode { InverseTime = 930, #[default] PerMinute = 940, PerRevolution = 950, });
+group!(/// Group 06.
+    Unit { Inch = 200, #[default] Metric = 210, });
+group!(/// Group 07: cutter compensation.
+    CutterSide { #[default] Off = 400, Left = 410, Right = 420, });
+group!(/// Group 08: tool length compensation.
+    Length { Plus = 430, Minus = 440, #[default] Off = 490, });
+group!(/// Group 10: where a drilling cycle returns to.
+    ReturnTo { #[default] Initial = 980, R = 990, });
+group!(/// Group 11.
+    Scaling { #[default] Off = 500, On = 510, });
+group!(/// Group 12: modal macro calls.
+    ModalCall { #[default] Off = 670, AfterMoves = 660, EveryBlock = 661, });
+group!(/// Group 13.
+    SpindleMode { SurfaceSpeed = 960, #[default] Speed = 970, });
+group!(/// Group 15.
+    CuttingMode { ExactStop = 610, CornerOverride = 620, Tapping = 630, #[default] Cutting = 640, });
+group!(/// Group 16.
+    Rotation { On = 680, #[default] Off = 690, Tilted = 682, });
+group!(/// Group 17.
+    Polar { #[default] Off = 150, On = 160, });
+group!(/// Group 22.
+    Mirror { #[default] Off = 501, On = 511, });
+
+/// Group 14: G54 to G59 as 1 to 6, or G54.1 with its P.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WorkSystem {
+    Standard(u8),
+    Additional(u16),
+}
+
+impl Default for WorkSystem {
+    fn default() -> Self {
+        Self::Standard(1)
+    }
+}
+
+impl WorkSystem {
+    pub fn code(self) -> u16 {
+        match self {
+            Self::Standard(number) => 530 + 10 * u16::from(number),
+            Self::Additional(_) => 541,
+        }
+    }
+}

@@ -1,0 +1,234 @@
+//! Blocks of words: codes looked up, calls taken out, the rest left for the run to evaluate.
+use super::codes::{self, Row};
+use super::expr::Context;
+use super::lower::Lowering;
+use super::{OpKind, Operand};
+use crate::alarm::Alarm;
+use crate::source::{Span, Spanned};
+use crate::syntax::ast::{Decimal, Word, WordValue};
+
+/// The words of one block.
+#[derive(Debug)]
+pub struct Words {
+    pub list: Vec<Coded>,
+    pub call: Option<CallOp>,
+    /// `/n` inside the block: what is left of it while switch n is on.
+    pub short: Option<(u8, Box<Words>)>,
+}
+
+/// A word ready to be evaluated.
+#[derive(Clone, Debug)]
+pub struct Coded {
+    pub letter: u8,
+    /// `,R` and `,C`.
+    pub comma: bool,
+    pub value: Input,
+    pub span: Span,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub enum Input {
+    /// Its meaning depends on the increment and on units: decided when it runs.
+    Literal(Decimal),
+    Operand(Operand),
+    /// A G code × 10 written as a number, with its row.
+    G(u16, Option<&'static Row>),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Calling {
+    /// G65.
+    Macro,
+    /// G66.
+    AfterMoves,
+    /// G66.1.
+    EveryBlock,
+    /// G67.
+    Cancel,
+    /// M98.
+    Subprogram,
+    /// M99.
+    Return,
+}
+
+#[derive(Clone, Debug)]
+pub enum CallTarget {
+    Number(Coded),
+    Name(String),
+    None,
+}
+
+/// A call or a return.
+#[derive(Debug)]
+pub struct CallOp {
+    pub kind: Calling,
+    /// P: the program, or the sequence number of `M99 P`.
+    pub target: CallTarget,
+    /// L.
+    pub repeats: Option<Coded>,
+    /// Q of M98: the sequence number to start at.
+    pub start: Option<Coded>,
+    pub arguments: Vec<Coded>,
+    pub span: Span,
+}
+
+impl Lowering {
+    /// A block of words; `rest` is what follows a `/n` inside it.
+    pub(super) fn words(&mut self, words: &[Word], rest: &[(u8, &[Word])]) -> Result<Words, Spanned<Alarm>> {
+        let Some(((switch, _), before)) = rest.split_last() else { return self.plain_words(words) };
+        let short = self.words(words, before)?;
+        let whole: Vec<Word> =
+            words.iter().chain(rest.iter().flat_map(|(_, tail)| tail.iter())).cloned().collect();
+        let mut whole = self.plain_words(&whole)?;
+        whole.short = Some((*switch, Box::new(short)));
+        Ok(whole)
+    }
+
+    fn plain_words(&mut self, words: &[Word]) -> Result<Words, Spanned<Alarm>> {
+        let mut list = Vec::with_capacity(words.len());
+        for word in words {
+            list.push(self.word(word)?);
+        }
+        let is = |coded: &Coded, code: u16| matches!(coded.value, Input::G(c, _) if c == code);
+        let call = [(650, Calling::Macro), (660, Calling::AfterMoves), (661, Calling::EveryBlock)];
+        for (code, kind) in call {
+            if let Some(at) = list.iter().position(|w| is(w, code)) {
+                return macro_call(list, at, kind, words);
+            }
+        }
+        if let Some(at) = list.iter().position(|w| is(w, 670)) {
+            let span = list.remove(at).span;
+            let call = CallOp {
+                kind: Calling::Cancel,
+                target: CallTarget::None,
+                repeats: None,
+                start: None,
+                arguments: Vec::new(),
+                span,
+            };
+            return Ok(Words { list, call: Some(call), short: None });
+        }
+        subprogram(list, words)
+    }
+
+    fn word(&mut self, word: &Word) -> Result<Coded, Spanned<Alarm>> {
+        let letter = word.address.letter;
+        let value = match &word.value {
+            WordValue::Literal(number) if letter == b'G' => match g_code(*number) {
+                Some(code) => Input::G(code, codes::find(code)),
+                None => {
+                    return Err(Alarm::ImproperGCode { code: number.value().to_string() }.at(word.span));
+                }
+            },
+            WordValue::Literal(number) => Input::Literal(*number),
+            WordValue::Expr(expr) => Input::Operand(self.operand(expr, Context::Address(letter))?),
+            // Taken up by the call in the same block.
+            WordValue::Name(_) => Input::Literal(Decimal { negative: false, digits: 0, places: None }),
+        };
+        Ok(Coded { letter, comma: word.address.comma, value, span: word.span })
+    }
+}
+
+/// G code × 10 of a literal with at most one decimal.
+fn g_code(number: Decimal) -> Option<u16> {
+    let tenths = match number.places {
+        None => number.digits.checked_mul(10)?,
+        Some(places) => {
+            let unit = 10_u64.checked_pow(u32::from(places))?;
+            let tenths = number.digits.checked_mul(10)?;
+            if tenths % unit != 0 {
+                return None;
+            }
+            tenths / unit
+        }
+    };
+    if number.negative { None } else { u16::try_from(tenths).ok() }
+}
+
+/// G65, G66, G66.1: everything behind the code is for the macro.
+fn macro_call(
+    mut list: Vec<Coded>,
+    at: usize,
+    kind: Calling,
+    words: &[Word],
+) -> Result<Words, Spanned<Alarm>> {
+    let span = list[at].span;
+    if at > 0 {
+        let what = "words before the macro call".into();
+        return Err(Alarm::MacroFormat { what }.at(list[0].span));
+    }
+    list.remove(0);
+    let mut call =
+        CallOp { kind, target: CallTarget::None, repeats: None, start: None, arguments: Vec::new(), span };
+    for (coded, word) in list.into_iter().zip(&words[1..]) {
+        match (coded.letter, &word.value) {
+            (b'P', WordValue::Name(name)) => call.target = CallTarget::Name(name.clone()),
+            (b'P', _) => call.target = CallTarget::Number(coded),
+            (_, WordValue::Name(_)) => {
+                return Err(Alarm::NotAWord { text: "a name without P".into() }.at(coded.span));
+            }
+            (b'L', _) => call.repeats = Some(coded),
+            (b'G', _) if matches!(coded.value, Input::G(650 | 660 | 661, _)) => {
+                return Err(Alarm::TwoMacroCalls.at(coded.span));
+            }
+            (b'M', WordValue::Literal(number)) if number.places.is_none() && number.digits == 98 => {
+                return Err(Alarm::TwoMacroCalls.at(coded.span));
+            }
+            (b'G', _) if kind != Calling::EveryBlock => return Err(Alarm::GAsArgument.at(coded.span)),
+            _ => call.arguments.push(coded),
+        }
+    }
+    Ok(Words { list: Vec::new(), call: Some(call), short: None })
+}
+
+/// M98 and M99 with their P, L and Q; the other words act first.
+fn subprogram(list: Vec<Coded>, words: &[Word]) -> Result<Words, Spanned<Alarm>> {
+    let code = |word: &Word| match word.value {
+        WordValue::Literal(Decimal { negative: false, digits, places: None })
+            if word.address.letter == b'M' =>
+        {
+            Some(digits)
+        }
+        _ => None,
+    };
+    let mut calls = words.iter().filter(|w| matches!(code(w), Some(98 | 99)));
+    let Some(call) = calls.next() else {
+        if let Some(word) = words.iter().find(|w| matches!(w.value, WordValue::Name(_))) {
+            return Err(Alarm::NotAWord { text: "a name without M98 or G65".into() }.at(word.span));
+        }
+        return Ok(Words { list, call: None, short: None });
+    };
+    if let Some(second) = calls.next() {
+        return Err(Alarm::TwoSubprogramCalls.at(second.span));
+    }
+    let kind = if code(call) == Some(98) { Calling::Subprogram } else { Calling::Return };
+    let mut op = CallOp {
+        kind,
+        target: CallTarget::None,
+        repeats: None,
+        start: None,
+        arguments: Vec::new(),
+        span: call.span,
+    };
+    let mut left = Vec::with_capacity(list.len());
+    for (coded, word) in list.into_iter().zip(words) {
+        match (coded.letter, &word.value) {
+            (b'M', _) if matches!(code(word), Some(98 | 99)) => {}
+            (b'P', WordValue::Name(name)) => op.target = CallTarget::Name(name.clone()),
+            (_, WordValue::Name(_)) => {
+                return Err(Alarm::NotAWord { text: "a name without P".into() }.at(coded.span));
+            }
+            (b'P', _) => op.target = CallTarget::Number(coded),
+            (b'L', _) if kind == Calling::Subprogram => op.repeats = Some(coded),
+            (b'Q', _) if kind == Calling::Subprogram => op.start = Some(coded),
+            _ => left.push(coded),
+        }
+    }
+    Ok(Words { list: left, call: Some(op), short: None })
+}
+
+impl From<Words> for OpKind {
+    fn from(words: Words) -> Self {
+        Self::Words(Box::new(words))
+    }
+}

@@ -1,0 +1,50 @@
+//! A list of holes as a table and as CSV.
+use std::fmt::Write;
+
+use crate::part::hole::HoleList;
+
+/// One line a hole, lengths in mm.
+pub fn text(list: &HoleList) -> String {
+    let mut text = String::new();
+    let _ = writeln!(
+        text,
+        "{:<6}{:>11}{:>11}{:>11}  {:>9}{:>9}{:>9}{:>9}{:>8}  from",
+        "hole", "x", "y", "z", "i", "j", "k", "depth", "Φ"
+    );
+    for (index, hole) in list.holes.iter().enumerate() {
+        let name = hole.id.clone().unwrap_or_else(|| (index + 1).to_string());
+        let [x, y, z] = hole.entry.map(plain);
+        let [i, j, k] = hole.axis.map(plain);
+        let diameter = hole.diameter.map_or_else(|| "-".to_owned(), |d| format!("{d:.2}"));
+        let from = hole.from.as_ref().map_or_else(String::new, |from| {
+            let tool = from.tool.map(|tool| format!(" T{tool}")).unwrap_or_default();
+            format!("{}:{}{tool}", from.program, from.line)
+        });
+        let _ = writeln!(
+            text,
+            "{name:<6}{x:>11.4}{y:>11.4}{z:>11.4}  {i:>9.5}{j:>9.5}{k:>9.5}{:>9.3}{diameter:>8}  {from}",
+            hole.depth
+        );
+    }
+    let _ = writeln!(text, "{} holes, mm, in the part's frame", list.holes.len());
+    text
+}
+
+/// The columns that a reference in CSV has, and where each hole comes from.
+pub fn csv(list: &HoleList) -> String {
+    let mut text = String::from("id,x,y,z,i,j,k,depth,diameter\n");
+    for (index, hole) in list.holes.iter().enumerate() {
+        let id = hole.id.clone().unwrap_or_else(|| (index + 1).to_string());
+        let quoted =
+            if id.contains([',', '"', '\n']) { format!("\"{}\"", id.replace('"', "\"\"")) } else { id };
+        let numbers = hole.entry.iter().chain(&hole.axis).map(|v| plain(*v).to_string()).collect::<Vec<_>>();
+        let diameter = hole.diameter.map(|d| d.to_string()).unwrap_or_default();
+        let _ = writeln!(text, "{quoted},{},{},{diameter}", numbers.join(","), hole.depth);
+    }
+    text
+}
+
+/// Nobody wants to read −0, nor a residue of 1e-14 as one.
+fn plain(value: f64) -> f64 {
+    if value.abs() < 5e-13 { 0.0 } else { value }
+}

@@ -1,0 +1,243 @@
+//! What `run` answers: the end state of a control, its operator stops, and if asked for every move.
+use std::fmt::Write;
+
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+
+use crate::exec::{Outcome, Value};
+use crate::motion::{Axes, Event, EventKind, Position, Sink, StopKind};
+use crate::session::Run;
+use crate::source::Span;
+
+/// The document of `run --format json`.
+#[derive(Debug, Serialize)]
+pub struct RunReport {
+    pub outcome: &'static str,
+    pub alarm: Option<AlarmReport>,
+    pub stops: Vec<StopReport>,
+    #[serde(serialize_with = "variables")]
+    pub variables: Vec<(u32, f64)>,
+    /// What `--show` asked for; null is vacant.
+    #[serde(skip_serializing_if = "Vec::is_empty", serialize_with = "shown")]
+    pub system: Vec<(u32, Option<f64>)>,
+    /// The end point in the active work coordinate system.
+    pub position: Coordinates,
+    pub machine: Coordinates,
+    pub blocks: u64,
+    pub moves: u64,
+    pub seconds: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub path: Option<Vec<MoveReport>>,
+}
+
+#[derive(Debug, Serialize)]
+pub struct AlarmReport {
+    pub number: u32,
+    pub code: String,
+    pub message: String,
+    pub program: String,
+    pub line: u32,
+    pub column: u32,
+    pub block: String,
+    pub help: Option<String>,
+    /// The calls that led there, innermost first.
+    pub calls: Vec<CallReport>,
+}
+
+#[derive(Debug, Serialize)]
+pub struct CallReport {
+    pub program: String,
+    pub line: u32,
+    pub block: String,
+}
+
+#[derive(Debug, Serialize)]
+pub struct StopReport {
+    pub kind: &'static str,
+    pub text: String,
+}
+
+#[derive(Debug, Serialize)]
+pub struct MoveReport {
+    pub kind: &'static str,
+    pub to: Coordinates,
+    pub seconds: f64,
+    pub feed: Option<f64>,
+    pub program: String,
+    pub line: u32,
+}
+
+/// Letter and value of every axis, in the order of the control's axis table.
+#[derive(Debug)]
+pub struct Coordinates(pub Vec<(char, f64)>);
+
+impl Coordinates {
+    fn new(axes: &Axes, value: impl Fn(usize) -> f64) -> Self {
+        Self(axes.iter().map(|(axis, letter)| (letter, plain(value(axis)))).collect())
+    }
+}
+
+impl Serialize for Coordinates {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.0.len()))?;
+        for (letter, value) in &self.0 {
+            map.serialize_entry(letter, value)?;
+        }
+        map.end()
+    }
+}
+
+impl std::fmt::Display for Coordinates {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        for (index, (letter, value)) in self.0.iter().enumerate() {
+            let gap = if index == 0 { "" } else { "  " };
+            write!(f, "{gap}{letter} {value:.4}")?;
+        }
+        Ok(())
+    }
+}
+
+/// Nobody wants to read −0.
+fn plain(value: f64) -> f64 {
+    if value == 0.0 { 0.0 } else { value }
+}
+
+fn variables<S: Serializer>(all: &[(u32, f64)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(all.iter().map(|(number, value)| (format!("#{number}"), plain(*value))))
+}
+
+fn shown<S: Serializer>(all: &[(u32, Option<f64>)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(all.iter().map(|(number, value)| (format!("#{number}"), value.map(plain))))
+}
+
+/// Writes down every move that goes somewhere, and every dwell.
+#[derive(Debug, Default)]
+pub struct Moves {
+    at: Position,
+    found: Vec<(&'static str, Position, f64, Option<f64>, Span)>,
+}
+
+impl Sink for Moves {
+    fn event(&mut self, event: &Event<'_>) {
+        let (kind, to, feed) = match &event.kind {
+            EventKind::Rapid { to } => ("rapid", *to, None),
+            EventKind::Feed { to, rate } | EventKind::Skip { to, rate, .. } => ("feed", *to, Some(rate.0)),
+            EventKind::Arc { to, rate, .. } => ("arc", *to, Some(rate.0)),
+            EventKind::Dwell { .. } => ("dwell", self.at, None),
+            EventKind::Tool { .. }
+            | EventKind::ToolLength { .. }
+            | EventKind::Spindle { .. }
+            | EventKind::Coolant { .. }
+            | EventKind::Stop { .. } => return,
+        };
+        if to != self.at || matches!(kind, "arc" | "dwell") {
+            self.found.push((kind, to, event.seconds.0, feed, event.block));
+        }
+        self.at = to;
+    }
+}
+
+impl RunReport {
+    /// The end state of a run; `path` and the values of `system` variables are there if asked for.
+    pub fn new(run: &Run, moves: Option<&Moves>, system: Vec<(u32, Value)>) -> Self {
+        let control = &run.control;
+        let axes = &control.settings().axes;
+        let machine = control.machine_position();
+        let path = moves.map(|moves| {
+            let report =
+                |(kind, to, seconds, feed, block): &(&'static str, Position, f64, Option<f64>, Span)| {
+                    let (program, line) = run.locate(*block);
+                    let to = Coordinates::new(axes, |axis| to[axis]);
+                    MoveReport { kind, to, seconds: *seconds, feed: *feed, program, line }
+                };
+            moves.found.iter().map(report).collect()
+        });
+        Self {
+            outcome: match run.outcome {
+                Outcome::End => "end",
+                Outcome::Alarm(_) => "alarm",
+                Outcome::Limit => "limit",
+            },
+            alarm: alarm(run),
+            stops: control
+                .stops()
+                .iter()
+                .map(|stop| StopReport { kind: stop_name(stop.kind), text: stop.text.clone() })
+                .collect(),
+            variables: control.variables().collect(),
+            system: system.into_iter().map(|(number, value)| (number, value.given())).collect(),
+            position: Coordinates::new(axes, |axis| control.work_position(axis)),
+            machine: Coordinates::new(axes, |axis| machine[axis]),
+            blocks: control.blocks(),
+            moves: control.moves(),
+            seconds: control.seconds().0,
+            path,
+        }
+    }
+
+    /// The same for people.
+    pub fn text(&self) -> String {
+        let mut text = String::new();
+        let word = match self.outcome {
+            "end" => "ended",
+            "limit" => "not ended: a limit was reached",
+            _ => "stopped by an alarm",
+        };
+        let _ = writeln!(text, "outcome    {word}");
+        let _ = writeln!(text, "position   {}", self.position);
+        let _ = writeln!(text, "machine    {}", self.machine);
+        let _ = writeln!(text, "executed   {} blocks, {} moves", self.blocks, self.moves);
+        let _ = writeln!(text, "time       {:.1} s (paths and rapid rates, no acceleration)", self.seconds);
+        for stop in &self.stops {
+            let _ = writeln!(text, "stop       {} {}", stop.kind, stop.text);
+        }
+        for (number, value) in &self.variables {
+            let _ = writeln!(text, "{:<11}{}", format!("#{number}"), plain(*value));
+        }
+        for (number, value) in &self.system {
+            let value = value.map_or_else(|| "vacant".to_owned(), |v| plain(v).to_string());
+            let _ = writeln!(text, "{:<11}{value}", format!("#{number}"));
+        }
+        for step in self.path.iter().flatten() {
+            let feed = step.feed.map(|f| format!("  F{f}")).unwrap_or_default();
+            let place = format!("{}:{}", step.program, step.line);
+            let _ = writeln!(text, "{place:<14} {:<6} {}{feed}  {:.2} s", step.kind, step.to, step.seconds);
+        }
+        text
+    }
+}
+
+fn stop_name(kind: StopKind) -> &'static str {
+    match kind {
+        StopKind::M00 => "M00",
+        StopKind::M01 => "M01",
+        StopKind::Message => "#3006",
+    }
+}
+
+fn alarm(run: &Run) -> Option<AlarmReport> {
+    let Outcome::Alarm(stopped) = &run.outcome else { return None };
+    let row = stopped.alarm.row();
+    let sources = run.control.memory().sources();
+    let (program, _) = run.locate(stopped.place.block);
+    let at = sources.place(stopped.span);
+    let block = |span| sources.text(span).trim().to_owned();
+    let mut calls = Vec::new();
+    let mut next = &stopped.place.calls;
+    while let Some(call) = next {
+        let (program, line) = run.locate(call.from);
+        calls.push(CallReport { program, line, block: block(call.from) });
+        next = &call.outer;
+    }
+    Some(AlarmReport {
+        number: row.code.number(),
+        code: row.code.to_string(),
+        message: row.message,
+        program,
+        line: at.line,
+        column: at.column,
+        block: block(stopped.place.block),
+        help: row.help,
+        calls,
+    })
+}

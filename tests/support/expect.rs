@@ -1,0 +1,180 @@
+//! Runs a program on a control and holds the end of the run against what was worked out for it.
+//!
+//! What is expected is a list with `; ` between its items:
+//!
+//! | item | holds when |
+//! |---|---|
+//! | `end=normal` | M30, M02 or the end of the program was reached without an alarm |
+//! | `alarm=PS0112` | the control stopped with this alarm; several with `\|`, `ANY` for some alarm |
+//! | `msg="TEXT"` | the alarm's text |
+//! | `stop=TEXT` | an operator stop with this text |
+//! | `#100=1.5`, `#100=vacant` | the variable at the end; locals are those of the main program |
+//! | `abs.X=1`, `mach.X=1` | work and machine position |
+//! | `path=R(x,y,z) F(…) A(…) D(s)` | all rapids, cutting feeds, arcs (by their ends, machine X Y Z) and dwells |
+//! | `time_min=0.5` | the time of all blocks in minutes |
+//! | `amove=-10,20` | the ways of the A axis |
+//!
+//! A comment `(@KEY=VALUE)` in the program is a setting of the control, by the name it has on the command line.
+use std::fmt::Write as _;
+
+use gcode_sim::control::Settings;
+use gcode_sim::exec::{Control, Limits, Outcome, Value};
+use gcode_sim::motion::{Event, EventKind, Position, Sink};
+use gcode_sim::program::{Memory, NoLibrary};
+
+/// Everything the machine was told, and a control at the end of its run.
+pub struct Ran {
+    pub control: Control,
+    pub outcome: Outcome,
+    path: Path,
+}
+
+/// The default control with the settings that the program's comments name.
+pub fn settings(program: &[u8]) -> Settings {
+    let text = String::from_utf8_lossy(program);
+    let mut settings = Settings::default();
+    for directive in text.split("(@").skip(1) {
+        let inside = directive.split(')').next().unwrap();
+        let (key, value) = inside.split_once('=').unwrap();
+        settings.set(key.trim(), value.trim()).unwrap_or_else(|e| panic!("{e}"));
+    }
+    settings
+}
+
+/// Runs a program to its end.
+pub fn run(program: &[u8]) -> Ran {
+    let mut memory = Memory::default();
+    memory.load("case.nc", program);
+    let mut control = Control::new(memory, settings(program));
+    let mut path = Path::default();
+    let outcome = control.run(Limits { blocks: 100_000 }, &mut NoLibrary, &mut path);
+    Ran { control, outcome, path }
+}
+
+impl Ran {
+    /// What differs from `expected`, one line each.
+    pub fn differences(&self, expected: &str, tolerance: f64) -> Vec<String> {
+        items(expected).filter_map(|(key, value)| self.difference(key, value, tolerance)).collect()
+    }
+
+    fn difference(&self, key: &str, wanted: &str, tolerance: f64) -> Option<String> {
+        let found = match key {
+            "end" => return self.not(matches!(self.outcome, Outcome::End), "end=normal"),
+            "alarm" => {
+                let code = match &self.outcome {
+                    Outcome::Alarm(stopped) => stopped.alarm.code().to_string(),
+                    Outcome::End | Outcome::Limit => String::new(),
+                };
+                let holds = wanted.split('|').any(|w| w == code || (w == "ANY" && !code.is_empty()));
+                return self.not(holds, &format!("alarm={wanted}"));
+            }
+            "msg" => {
+                let holds =
+                    matches!(&self.outcome, Outcome::Alarm(s) if format!("\"{}\"", s.alarm) == wanted);
+                return self.not(holds, &format!("msg={wanted}"));
+            }
+            "stop" => {
+                let holds = self.control.stops().iter().any(|s| s.text == wanted.trim_matches('"'));
+                return self.not(holds, &format!("stop={wanted}"));
+            }
+            "path" => return self.path.difference(wanted, tolerance),
+            "amove" => self.path.ways(3),
+            "time_min" => vec![self.control.seconds().0 / 60.0],
+            _ if key.starts_with('#') => match self.variable(key[1..].parse().unwrap()) {
+                Value::Number(number) => vec![number],
+                Value::Vacant if wanted == "vacant" => return None,
+                Value::Vacant => return Some(format!("{key} is vacant, {wanted} is wanted")),
+            },
+            _ => {
+                let (frame, letter) = key.split_once('.').unwrap_or_else(|| panic!("item {key}"));
+                let axis = self.control.settings().axes.find(letter.as_bytes()[0]).unwrap();
+                vec![match frame {
+                    "abs" => self.control.work_position(axis),
+                    "mach" => self.control.machine_position()[axis],
+                    _ => panic!("item {key}"),
+                }]
+            }
+        };
+        let wanted_numbers: Option<Vec<f64>> = wanted.split(',').map(|w| w.parse().ok()).collect();
+        let holds = wanted_numbers.is_some_and(|wanted| close(&found, &wanted, tolerance));
+        (!holds).then(|| format!("{key} is {found:?}, {wanted} is wanted"))
+    }
+
+    /// A variable at the end; locals are those of the main program.
+    fn variable(&self, number: u32) -> Value {
+        if (1..=33).contains(&number) {
+            let known = self.control.variables().find(|(n, _)| *n == number);
+            return known.map_or(Value::Vacant, |(_, value)| Value::Number(value));
+        }
+        self.control.variable(number).unwrap()
+    }
+
+    fn not(&self, holds: bool, wanted: &str) -> Option<String> {
+        let ended = match &self.outcome {
+            Outcome::End => "the run ended normally".to_owned(),
+            Outcome::Limit => "the run was ended by its limit of blocks".to_owned(),
+            Outcome::Alarm(stopped) => format!("{} {}", stopped.alarm.code(), stopped.alarm),
+        };
+        (!holds).then(|| format!("{ended}; {wanted} is wanted"))
+    }
+}
+
+/// The items of an expectation. A semicolon inside quotes belongs to its item.
+fn items(expected: &str) -> impl Iterator<Item = (&str, &str)> {
+    expected.split("; ").map(|item| item.trim().split_once('=').unwrap_or_else(|| panic!("item {item}")))
+}
+
+fn close(found: &[f64], wanted: &[f64], tolerance: f64) -> bool {
+    found.len() == wanted.len() && found.iter().zip(wanted).all(|(f, w)| (f - w).abs() <= tolerance)
+}
+
+/// One thing the machine was told, by its letter and its numbers.
+type Told = (char, Vec<f64>);
+
+#[derive(Default)]
+struct Path {
+    told: Vec<Told>,
+    stations: Vec<Position>,
+}
+
+impl Sink for Path {
+    fn event(&mut self, event: &Event<'_>) {
+        let (letter, to) = match &event.kind {
+            EventKind::Rapid { to } => ('R', to),
+            EventKind::Feed { to, .. } | EventKind::Skip { to, .. } => ('F', to),
+            EventKind::Arc { to, .. } => ('A', to),
+            EventKind::Dwell { time } => return self.told.push(('D', vec![time.0])),
+            _ => return,
+        };
+        self.told.push((letter, to.0[..3].to_vec()));
+        self.stations.push(*to);
+    }
+}
+
+impl Path {
+    fn ways(&self, axis: usize) -> Vec<f64> {
+        let places: Vec<f64> = std::iter::once(0.0).chain(self.stations.iter().map(|p| p[axis])).collect();
+        places.windows(2).map(|pair| pair[1] - pair[0]).filter(|way| *way != 0.0).collect()
+    }
+
+    fn difference(&self, wanted: &str, tolerance: f64) -> Option<String> {
+        let wanted_path: Vec<Told> = wanted
+            .split_whitespace()
+            .map(|step| {
+                let (letter, rest) = step.split_once('(').unwrap();
+                let numbers = rest.trim_end_matches(')').split(',').map(|n| n.parse().unwrap());
+                (letter.chars().next().unwrap(), numbers.collect())
+            })
+            .collect();
+        let same = |(a, b): (&Told, &Told)| a.0 == b.0 && close(&a.1, &b.1, tolerance);
+        let holds = wanted_path.len() == self.told.len() && self.told.iter().zip(&wanted_path).all(same);
+        (!holds).then(|| {
+            let mut found = String::new();
+            for (letter, numbers) in &self.told {
+                let numbers: Vec<_> = numbers.iter().map(f64::to_string).collect();
+                write!(found, "{letter}({}) ", numbers.join(",")).unwrap();
+            }
+            format!("path is {found}, {wanted} is wanted")
+        })
+    }
+}
