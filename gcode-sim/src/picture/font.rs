@@ -39,14 +39,20 @@ impl Font {
         format!("{}…", short.trim_end())
     }
 
-    /// Lines of at most `width`, broken at spaces (not at no-break spaces); a word that is too long for a line of its own is cut short.
-    pub(super) fn wrapped(&self, text: &str, size: f64, width: f64) -> Vec<String> {
+    /// Lines of at most `width`, broken at spaces (not at no-break spaces); a word that is too long for a line of
+    /// its own is cut short, and so is the last line if there are more than `most`.
+    pub(super) fn wrapped(&self, text: &str, size: f64, width: f64, most: usize) -> Vec<String> {
         let mut lines: Vec<String> = Vec::new();
         for word in text.split(' ').filter(|word| !word.is_empty()) {
+            let lines_full = most <= lines.len();
             match lines.last_mut() {
                 Some(line) if self.width(&format!("{line} {word}"), size) <= width => {
                     line.push(' ');
                     line.push_str(word);
+                }
+                Some(line) if lines_full => {
+                    *line = self.fitted(&format!("{line} {word}"), size, width);
+                    break;
                 }
                 _ => lines.push(self.fitted(word, size, width)),
             }
@@ -103,7 +109,9 @@ mod tests {
     fn long_text_is_broken_or_cut() {
         let font = Font::embedded();
         let width = font.width("predicted by", 12.0);
-        assert_eq!(font.wrapped("predicted by simulation", 12.0, width), ["predicted by", "simulation"]);
+        assert_eq!(font.wrapped("predicted by simulation", 12.0, width, 3), ["predicted by", "simulation"]);
+        let cut = font.wrapped("predicted by simulation", 12.0, width, 1);
+        assert!(cut.len() == 1 && cut[0].ends_with('…'), "{cut:?}");
         let cut = font.fitted("a_very_long_programme_name.nc", 12.0, 60.0);
         assert!(cut.ends_with('…') && font.width(&cut, 12.0) <= 60.0, "{cut}");
     }

@@ -27,15 +27,25 @@ pub(super) struct Symbol {
     pub(super) at: Px,
     /// Labels keep this far from it.
     pub(super) clear: f64,
-    /// Others are so close that a line must lead to the very place.
-    pub(super) pinned: bool,
+    pub(super) way: Way,
+}
+
+/// What a leader may pass over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Way {
+    /// Nothing; it ends at the symbol's rim.
+    Clear,
+    /// The symbols of the crowd it starts in; it ends in the very place.
+    OutOfCrowd,
+    /// All symbols, but no label.
+    ThroughAll,
 }
 
 impl Symbol {
     fn leader(&self, rect: &Rect) -> (Px, Px) {
         let end = rect.nearest(self.at);
         let length = self.at.distance(end).max(1e-9);
-        let start = if self.pinned { 0.0 } else { self.clear };
+        let start = if self.way == Way::OutOfCrowd { 0.0 } else { self.clear };
         (self.at.toward([(end.x - self.at.x) / length, (end.y - self.at.y) / length], start), end)
     }
 }
@@ -59,8 +69,10 @@ pub(super) struct Field {
 }
 
 const DIRECTIONS: u32 = 24;
-/// Distances between symbol and label, in heights of a line; from the second on there is a leader.
-const DISTANCES: [f64; 8] = [0.2, 0.7, 1.2, 1.8, 2.6, 3.6, 5.0, 6.5];
+/// Distances between symbol and label, in heights of a line; from the third on there is a leader.
+const DISTANCES: [f64; 12] = [0.2, 0.7, 1.2, 1.8, 2.6, 3.6, 5.0, 6.5, 9.0, 12.0, 16.0, 21.0];
+/// A label whose leader may not pass over other symbols stays within so many distances.
+const NEAR: usize = 8;
 
 impl Field {
     pub(super) fn new(area: Rect, cell: f64) -> Self {
@@ -89,9 +101,10 @@ impl Field {
 
     /// Puts a label of this size beside a symbol and blocks its place; `line` is the height of a line of text.
     pub(super) fn place(&mut self, symbol: Symbol, (width, height): (f64, f64), line: f64) -> Option<Spot> {
-        let Symbol { at, clear, pinned } = symbol;
+        let Symbol { at, clear, .. } = symbol;
+        let reach = if symbol.way == Way::ThroughAll { DISTANCES.len() } else { NEAR };
         let mut best: Option<(f64, Spot)> = None;
-        for (step, distance) in DISTANCES.iter().enumerate() {
+        for (step, distance) in DISTANCES.iter().take(reach).enumerate() {
             for turn in 0..DIRECTIONS {
                 // From the upper right, alternately to both sides: where a reader expects a number.
                 let side = if turn % 2 == 0 { 1.0 } else { -1.0 };
@@ -113,7 +126,7 @@ impl Field {
                 if !self.is_free(&rect) {
                     continue;
                 }
-                let leader = (pinned || 1 < step).then(|| symbol.leader(&rect));
+                let leader = (symbol.way != Way::Clear || 1 < step).then(|| symbol.leader(&rect));
                 if leader.is_some_and(|leader| self.is_crossed(leader, symbol)) {
                     continue;
                 }
@@ -144,20 +157,21 @@ impl Field {
         Some(Spot { rect, leader: None })
     }
 
-    /// Whether something lies in the leader's way. A crowd is left through the other symbols.
+    /// Whether something lies in the leader's way.
     fn is_crossed(&self, (from, to): (Px, Px), symbol: Symbol) -> bool {
-        let in_crowd = |o: &Obstacle| match *o {
-            Obstacle::Disc { centre, radius } => {
-                symbol.pinned && centre.distance(symbol.at) < symbol.clear + radius
+        let passable = |o: &Obstacle| match (symbol.way, *o) {
+            (Way::Clear, _) | (_, Obstacle::Box(_) | Obstacle::Ring { .. }) => false,
+            (Way::ThroughAll, Obstacle::Disc { .. } | Obstacle::Segment(..)) => true,
+            (Way::OutOfCrowd, Obstacle::Disc { centre, radius }) => {
+                centre.distance(symbol.at) < symbol.clear + radius
             }
-            Obstacle::Segment(a, b) => {
-                symbol.pinned && a.distance(symbol.at).min(b.distance(symbol.at)) < 2.0 * symbol.clear
+            (Way::OutOfCrowd, Obstacle::Segment(a, b)) => {
+                a.distance(symbol.at).min(b.distance(symbol.at)) < 2.0 * symbol.clear
             }
-            Obstacle::Box(_) | Obstacle::Ring { .. } => false,
         };
         let bounds = Obstacle::Segment(from, to).bounds();
         let cells = self.touched(&bounds);
-        cells.into_iter().any(|i| self.cells[i].iter().any(|o| o.crosses(from, to) && !in_crowd(o)))
+        cells.into_iter().any(|i| self.cells[i].iter().any(|o| o.crosses(from, to) && !passable(o)))
     }
 
     fn touched(&self, rect: &Rect) -> Vec<usize> {
@@ -243,7 +257,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn symbol(x: f64, y: f64, clear: f64) -> Symbol {
-        Symbol { at: px(x, y), clear, pinned: false }
+        Symbol { at: px(x, y), clear, way: Way::Clear }
     }
 
     fn field() -> Field {

@@ -1,10 +1,10 @@
 //! Letters holes and lines: as many lines of every label as there is room for, and a note of what had none.
 use super::font::{ASCENT, DESCENT};
 use super::ink::{Ink, Px, Rect, px};
-use super::labels::{Field, Spot, Symbol};
+use super::labels::{Field, Spot, Symbol, Way};
 use super::marks::Drawn;
 use super::palette;
-use super::scene::{Scene, Shape};
+use super::scene::{Mark, Scene, Shape};
 use super::sheet::Frame;
 use super::symbol;
 use crate::units::Deg;
@@ -63,14 +63,24 @@ impl Lettering {
         for i in order {
             let (mark, hole) = (&scene.marks[*i], &drawn[*i]);
             let full = if mark.standing.is_good() { lines.min(mark.label.len()) } else { mark.label.len() };
-            let symbol = Symbol { at: hole.centre, clear: hole.clear, pinned: hole.crowded };
-            let found = (1..=full).rev().find_map(|n| {
-                let size = text_box(&mark.label[..n], frame);
-                Some((n, trial.field.place(symbol, size, frame.text * LEADING)?))
-            });
+            let way = if hole.crowded { Way::OutOfCrowd } else { Way::Clear };
+            let found = trial.place(mark, full, Symbol { at: hole.centre, clear: hole.clear, way }, frame);
+            // What is wrong must be found again: its number may stand far off, on a line over other holes.
+            let far = Symbol { at: hole.centre, clear: hole.clear, way: Way::ThroughAll };
+            let found = match found {
+                None if !mark.standing.is_good() => trial.place(mark, full, far, frame),
+                found => found,
+            };
             trial.labels.extend(found.map(|(lines, spot)| Label { mark: *i, spot, lines }));
         }
         trial
+    }
+
+    fn place(&mut self, mark: &Mark, lines: usize, symbol: Symbol, frame: &Frame) -> Option<(usize, Spot)> {
+        (1..=lines).rev().find_map(|n| {
+            let size = text_box(&mark.label[..n], frame);
+            Some((n, self.field.place(symbol, size, frame.text * LEADING)?))
+        })
     }
 
     /// How many holes that have a label are drawn without one.

@@ -19,6 +19,10 @@ pub(super) struct Drawn {
     pub(super) inks: Vec<Ink>,
     /// Its misfit is longer than the sheet shows.
     pub(super) cut: bool,
+    /// A line leads to where it is instead.
+    pub(super) strayed: bool,
+    /// Its axis is drawn.
+    pub(super) directed: bool,
 }
 
 /// A misfit is drawn up to this many radii of its zone.
@@ -58,10 +62,11 @@ fn draw_dial(
         ring(centre, zone, thin, palette::THIN),
         ring(centre, hole, thin, palette::TEXT),
     ];
-    let mut cut = false;
+    let (mut cut, mut strayed) = (false, false);
     match mark.found.map(|found| frame.scale.px(found)) {
         Some(found) if 2.0 * zone < centre.distance(found) => {
-            inks.extend(strayed(centre, found, hole, text, field));
+            inks.extend(line_astray(centre, found, hole, text, field));
+            strayed = true;
         }
         _ => {
             let enlarge = times * frame.scale.factor;
@@ -74,6 +79,7 @@ fn draw_dial(
         }
     }
     let mut rim = Deg(45.0);
+    let directed = across(mark).is_some();
     if let Some((along, projected)) = across(mark) {
         inks.extend(axis_arrow(centre, along, projected, zone, text, field));
         rim = badge_angle(Deg::atan2(-along[1], along[0]));
@@ -81,11 +87,11 @@ fn draw_dial(
     let at = centre.toward(symbol::direction(rim), zone);
     inks.extend(symbol::standing(mark.standing, at, badge));
     field.block(Obstacle::Disc { centre: at, radius: badge * 1.2 });
-    Drawn { centre, clear: zone + 0.15 * text, crowded: false, inks, cut }
+    Drawn { centre, clear: zone + 0.15 * text, crowded: false, inks, cut, strayed, directed }
 }
 
 /// A hole so far from its place that it needs no enlarging: a dotted line to where it is.
-fn strayed(centre: Px, found: Px, hole: f64, text: f64, field: &mut Field) -> [Ink; 2] {
+fn line_astray(centre: Px, found: Px, hole: f64, text: f64, field: &mut Field) -> [Ink; 2] {
     let radius = hole.max(0.3 * text);
     field.block(Obstacle::Disc { centre: found, radius: radius + 0.1 * text });
     field.block(Obstacle::Segment(centre, found));
@@ -159,19 +165,19 @@ fn draw_sign(
     if radius < true_radius {
         inks.push(ring(place, true_radius, thin(text), palette::TEXT));
     }
-    if let Some(found) = mark.found.map(|found| frame.scale.px(found))
-        && text < place.distance(found)
-    {
-        inks.extend(strayed(place, found, true_radius, text, field));
+    let far = mark.found.map(|found| frame.scale.px(found)).filter(|found| text < place.distance(*found));
+    let strayed = far.is_some();
+    if let Some(found) = far {
+        inks.extend(line_astray(place, found, true_radius, text, field));
     }
     inks.extend(symbol::standing(mark.standing, centre, radius));
-    if let Some((along, projected)) = across(mark)
-        && dials.detail != Detail::SignsWithoutAxes
-    {
+    let direction = across(mark).filter(|_| dials.detail != Detail::SignsWithoutAxes);
+    let directed = direction.is_some();
+    if let Some((along, projected)) = direction {
         inks.extend(axis_arrow(centre, along, projected, radius * 1.15, text, field));
     }
     let crowded = dials.is_crowded(index, text);
-    Drawn { centre, clear: radius * 1.2 + 0.15 * text, crowded, inks, cut: false }
+    Drawn { centre, clear: radius * 1.2 + 0.15 * text, crowded, inks, cut: false, strayed, directed }
 }
 
 /// The direction on the sheet of an axis that doesn't point at the reader, and how much of it is seen.

@@ -4,7 +4,7 @@ use super::ink::{Dash, Ink, Px, Rect, Rgb, px};
 use super::measure::plain;
 use super::palette;
 use super::scene::{LegendItem, Sample, Scene, Standing};
-use super::sheet::Frame;
+use super::sheet::{Frame, Shown};
 use super::symbol;
 
 /// Where the drawing goes, and the columns beside it or below it.
@@ -22,6 +22,7 @@ enum Row {
         text: String,
         size: f64,
         color: Rgb,
+        important: bool,
     },
     Verdict(Standing, String),
     /// ⌖ | Φ0.1 as a feature control frame has it.
@@ -29,7 +30,30 @@ enum Row {
     Sample(Sample, String),
     Gap,
     Rule,
+    /// Something is left out.
+    Dots,
 }
+
+impl Row {
+    /// The higher, the later it is left out.
+    fn importance(&self) -> u8 {
+        match self {
+            Self::Gap => 0,
+            Self::Sample(Sample::Pen(_), _) => 1,
+            Self::Sample(Sample::Direction | Sample::Astray, _) => 2,
+            Self::Text { important: false, .. } => 3,
+            Self::Rule => 4,
+            Self::Sample(Sample::Misfit | Sample::Standing(_), _) => 5,
+            Self::Text { important: true, .. } => 6,
+            Self::Zone(_) => 7,
+            Self::Verdict(..) => 8,
+            Self::Dots => 9,
+        }
+    }
+}
+
+/// A text of more lines than this is cut short.
+const MOST_LINES: usize = 3;
 
 impl Panel {
     /// Beside the drawing on a wide page, below it on a tall one.
@@ -50,8 +74,9 @@ impl Panel {
         let column = Rect::new(0.0, 0.0, page.width() / 2.0 - 2.0 * space, 0.0);
         // Two lines are kept for notes, which are known only when everything has its place.
         let notes = vec!["n".to_owned(), "n".to_owned()];
+        let all = Shown { magnification: Some(1000.0), directions: true, astray: true };
         let (_, title) = flow(&title_rows(scene, text), column, font, text);
-        let (_, legend) = flow(&legend_rows(scene, Some(1000.0), &notes, text), column, font, text);
+        let (_, legend) = flow(&legend_rows(scene, all, &notes, text), column, font, text);
         let height = title.max(legend) + 2.0 * space;
         let top = (page.bottom - height).max(page.top + 0.4 * page.height()).round();
         let column = |left: f64, right: f64| Rect {
@@ -68,13 +93,7 @@ impl Panel {
         }
     }
 
-    pub(super) fn inks(
-        &self,
-        scene: &Scene,
-        frame: &Frame,
-        magnified: Option<f64>,
-        notes: &[String],
-    ) -> Vec<Ink> {
+    pub(super) fn inks(&self, scene: &Scene, frame: &Frame, shown: Shown, notes: &[String]) -> Vec<Ink> {
         let rule = |from: Px, to: Px| Ink::line(from, to, 1.0, palette::RULE);
         let page = self.page;
         let corners = [
@@ -95,13 +114,13 @@ impl Panel {
             inks.push(rule(px(drawing.left, drawing.bottom), px(drawing.right, drawing.bottom)));
             inks.push(rule(px(page.centre().x, drawing.bottom), px(page.centre().x, page.bottom)));
             inks.extend(fitted(self.title, frame, |text| title_rows(scene, text)));
-            inks.extend(fitted(legend, frame, |text| legend_rows(scene, magnified, notes, text)));
+            inks.extend(fitted(legend, frame, |text| legend_rows(scene, shown, notes, text)));
         } else {
             inks.push(rule(px(drawing.right, drawing.top), px(drawing.right, drawing.bottom)));
             inks.extend(fitted(self.title, frame, |text| {
                 let mut rows = title_rows(scene, text);
                 rows.push(Row::Rule);
-                rows.extend(legend_rows(scene, magnified, notes, text));
+                rows.extend(legend_rows(scene, shown, notes, text));
                 rows
             }));
         }
@@ -109,51 +128,69 @@ impl Panel {
     }
 }
 
-/// The rows in the largest text that the column has room for.
+/// The rows in the largest text that the column has room for; what finds none even in the smallest is left out, the
+/// least important first, and a row of dots says so.
 fn fitted(column: Rect, frame: &Frame, rows: impl Fn(f64) -> Vec<Row>) -> Vec<Ink> {
     let least = 9.5f64.min(frame.text);
     let mut text = frame.text;
-    loop {
-        let (inks, height) = flow(&rows(text), column, &frame.font, text);
-        if height <= column.height() || text <= least {
-            return inks;
-        }
+    let (mut inks, mut height) = flow(&rows(text), column, &frame.font, text);
+    while column.height() < height && least < text {
         text = (text - 0.5).max(least);
+        (inks, height) = flow(&rows(text), column, &frame.font, text);
     }
+    let mut left = rows(text);
+    while column.height() < height
+        && let Some((index, _)) = left.iter().enumerate().rev().min_by_key(|(_, row)| row.importance())
+    {
+        left.remove(index);
+        left.retain(|row| !matches!(row, Row::Dots));
+        left.push(Row::Dots);
+        (inks, height) = flow(&left, column, &frame.font, text);
+    }
+    inks
 }
 
 fn title_rows(scene: &Scene, text: f64) -> Vec<Row> {
     let title = &scene.title;
-    let line = |t: &str, size: f64, color: Rgb| Row::Text { text: t.to_owned(), size, color };
+    let line = |words: &str, size: f64, color: Rgb, important: bool| Row::Text {
+        text: words.to_owned(),
+        size,
+        color,
+        important,
+    };
     let mut rows = vec![
-        line(&title.name, 1.25 * text, palette::TEXT),
-        line(&title.view, text, palette::SOFT_TEXT),
+        line(&title.name, 1.25 * text, palette::TEXT, true),
+        line(&title.view, text, palette::SOFT_TEXT, true),
         Row::Gap,
     ];
     if let Some((standing, words)) = &title.verdict {
         rows.push(Row::Verdict(*standing, words.clone()));
     }
     rows.extend(title.position.map(Row::Zone));
-    rows.extend(title.lines.iter().map(|t| line(t, text, palette::TEXT)));
+    rows.extend(title.lines.iter().enumerate().map(|(n, words)| line(words, text, palette::TEXT, n == 0)));
     if !title.caution.is_empty() {
-        rows.push(line(&title.caution, text, palette::SOFT_TEXT));
+        rows.push(line(&title.caution, text, palette::SOFT_TEXT, true));
     }
     rows
 }
 
-fn legend_rows(scene: &Scene, magnified: Option<f64>, notes: &[String], text: f64) -> Vec<Row> {
-    let item = |item: &LegendItem| match (item.sample, magnified) {
-        (Sample::Misfit, None) => None,
-        (Sample::Misfit, Some(times)) => {
-            Some(Row::Sample(item.sample, format!("{} ×{}", item.text, plain(times))))
-        }
-        _ => Some(Row::Sample(item.sample, item.text.clone())),
+fn legend_rows(scene: &Scene, shown: Shown, notes: &[String], text: f64) -> Vec<Row> {
+    let item = |item: &LegendItem| {
+        let words = match item.sample {
+            Sample::Misfit => format!("{} ×{}", item.text, plain(shown.magnification?)),
+            Sample::Direction if !shown.directions => return None,
+            Sample::Astray if !shown.astray => return None,
+            Sample::Direction | Sample::Astray | Sample::Pen(_) | Sample::Standing(_) => item.text.clone(),
+        };
+        Some(Row::Sample(item.sample, words))
     };
     let mut rows: Vec<Row> = scene.legend.iter().filter_map(item).collect();
     if !notes.is_empty() {
         rows.push(Row::Rule);
     }
-    rows.extend(notes.iter().map(|n| Row::Text { text: n.clone(), size: text, color: palette::SOFT_TEXT }));
+    let note =
+        |n: &String| Row::Text { text: n.clone(), size: text, color: palette::SOFT_TEXT, important: true };
+    rows.extend(notes.iter().map(note));
     rows
 }
 
@@ -176,8 +213,12 @@ fn flow(rows: &[Row], column: Rect, font: &Font, text: f64) -> (Vec<Ink>, f64) {
                 ));
                 y += 0.55 * text;
             }
-            Row::Text { text: words, size, color } => {
-                for line in font.wrapped(words, *size, column.width()) {
+            Row::Dots => {
+                inks.push(Ink::text(px(column.left, y + ASCENT * text), text, "…", palette::TEXT));
+                y += leading * text;
+            }
+            Row::Text { text: words, size, color, .. } => {
+                for line in font.wrapped(words, *size, column.width(), MOST_LINES) {
                     inks.push(Ink::text(px(column.left, y + ASCENT * size), *size, line, *color));
                     y += leading * size;
                 }
@@ -201,7 +242,7 @@ fn flow(rows: &[Row], column: Rect, font: &Font, text: f64) -> (Vec<Ink>, f64) {
 }
 
 fn indented(words: &str, at: Px, right: f64, font: &Font, text: f64, inks: &mut Vec<Ink>) -> f64 {
-    let lines = font.wrapped(words, text, right - at.x);
+    let lines = font.wrapped(words, text, right - at.x, MOST_LINES);
     let height = 1.28 * text * lines.len().max(1) as f64;
     for (n, line) in lines.into_iter().enumerate() {
         inks.push(Ink::text(px(at.x, at.y + text * (ASCENT + 1.28 * n as f64)), text, line, palette::TEXT));
@@ -241,6 +282,14 @@ fn sample_inks(sample: Sample, middle: Px, text: f64) -> Vec<Ink> {
             vec![Ink::Line { points: vec![left, right], closed: false, width: width.max(1.0), dash, color }]
         }
         Sample::Direction => symbol::arrow(left, right, (0.08 * text).max(1.0), 0.5 * text, palette::TEXT),
+        Sample::Astray => {
+            let (width, dash) = ((0.06 * text).max(1.0), Dash::Pattern([0.15 * text, 0.2 * text]));
+            let color = palette::TEXT;
+            vec![
+                Ink::Line { points: vec![left, right], closed: false, width, dash, color },
+                Ink::Ring { centre: right, radius: 0.3 * text, width, dash: Dash::Solid, color },
+            ]
+        }
         Sample::Misfit => {
             let thin = (0.06 * text).max(1.0);
             let end = px(middle.x + 0.3 * text, middle.y - 0.2 * text);

@@ -119,7 +119,10 @@ pub struct LegendItem {
 pub enum Sample {
     Standing(Standing),
     Pen(Pen),
+    /// Left out by the sheet where no axis is drawn.
     Direction,
-    /// The sheet adds how many times it is magnified, or leaves the line out if none is drawn.
+    /// The sheet adds how many times it is magnified, or leaves the line out where none is drawn.
     Misfit,
+    /// A line to where a hole is instead. Left out by the sheet where none is drawn.
+    Astray,
 }

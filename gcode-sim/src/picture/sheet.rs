@@ -65,10 +65,18 @@ pub fn lay_out(scene: &Scene, size: Size) -> Result<Sheet, PictureError> {
             best = plan;
         }
     }
-    let Plan { mut inks, labels, notes, magnification, .. } = best;
+    let Plan { mut inks, labels, notes, shown, .. } = best;
     inks.extend(scale_bar(&frame, Rect { top: drawing.bottom, ..panel.drawing }));
-    inks.extend(panel.inks(scene, &frame, magnification, &notes));
-    Ok(Sheet { size, inks, labels, notes, magnification })
+    inks.extend(panel.inks(scene, &frame, shown, &notes));
+    Ok(Sheet { size, inks, labels, notes, magnification: shown.magnification })
+}
+
+/// Which signs the drawing really has, for the legend.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shown {
+    pub(super) magnification: Option<f64>,
+    pub(super) directions: bool,
+    pub(super) astray: bool,
 }
 
 /// The drawing with some of the detail there could be.
@@ -76,7 +84,7 @@ struct Plan {
     inks: Vec<Ink>,
     labels: Vec<(Rect, Vec<String>)>,
     notes: Vec<String>,
-    magnification: Option<f64>,
+    shown: Shown,
     /// Holes without a number.
     unlabelled: usize,
 }
@@ -102,7 +110,15 @@ impl Plan {
         }
         notes.extend(lettering.notes(scene));
         let unlabelled = lettering.unlabelled(scene);
-        Self { inks, labels, notes, magnification: dials.magnification(), unlabelled }
+        let shown = Shown {
+            magnification: dials.magnification(),
+            directions: drawn.iter().any(|d| d.directed),
+            astray: drawn.iter().any(|d| d.strayed),
+        };
+        if detail == Detail::SignsWithoutAxes {
+            notes.push("Axes of the holes not drawn: no room.".to_owned());
+        }
+        Self { inks, labels, notes, shown, unlabelled }
     }
 }
 

@@ -227,6 +227,9 @@ fn legend(view: &TopView, marks: &[Mark], has_circles: bool) -> Vec<LegendItem> 
     if marks.iter().any(|m| m.direction.is_some_and(|d| 0.02 < libm::hypot(d[0], d[1]))) {
         add(Sample::Direction, "hole axis, outwards");
     }
+    if marks.iter().any(|m| m.found.is_some()) {
+        add(Sample::Astray, "to where the hole is instead");
+    }
     if view.outline.is_some() {
         add(Sample::Pen(Pen::Outline), "part outline");
     }
