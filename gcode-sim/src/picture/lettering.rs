@@ -30,15 +30,17 @@ struct Label {
 }
 
 impl Lettering {
-    /// As many lines for every good hole as all good holes have room for; the others get all they can.
+    /// As many lines for every good hole as all good holes have room for; the others get all they can, unless that
+    /// costs others their number.
     pub(super) fn of(scene: &Scene, drawn: &[Drawn], frame: &Frame, field: &Field) -> Self {
         let mut order: Vec<usize> = (0..scene.marks.len()).collect();
         order.sort_by_key(|i| (scene.marks[*i].standing, *i));
         order.truncate(LABEL_LIMIT);
         let most = scene.marks.iter().map(|m| m.label.len()).max().unwrap_or(0);
         let mut best = Self { field: field.clone(), labels: Vec::new() };
-        for lines in (1..=most).rev() {
-            let trial = Self::with_lines(lines, &order, scene, drawn, frame, field.clone());
+        let fewer_for_bad_ones = (1..most).rev().map(|bad| (1, bad));
+        for (lines, bad) in (1..=most).rev().map(|good| (good, most)).chain(fewer_for_bad_ones) {
+            let trial = Self::with_lines((lines, bad), &order, scene, drawn, frame, field.clone());
             let short = |l: &Label| l.lines < lines.min(scene.marks[l.mark].label.len());
             let complete = trial.labels.len() == order.len() && !trial.labels.iter().any(short);
             if complete || best.labels.len() < trial.labels.len() {
@@ -52,7 +54,7 @@ impl Lettering {
     }
 
     fn with_lines(
-        lines: usize,
+        (good, bad): (usize, usize),
         order: &[usize],
         scene: &Scene,
         drawn: &[Drawn],
@@ -62,7 +64,7 @@ impl Lettering {
         let mut trial = Self { field, labels: Vec::new() };
         for i in order {
             let (mark, hole) = (&scene.marks[*i], &drawn[*i]);
-            let full = if mark.standing.is_good() { lines.min(mark.label.len()) } else { mark.label.len() };
+            let full = if mark.standing.is_good() { good } else { bad }.min(mark.label.len());
             let way = if hole.crowded { Way::OutOfCrowd } else { Way::Clear };
             let found = trial.place(mark, full, Symbol { at: hole.centre, clear: hole.clear, way }, frame);
             // What is wrong must be found again: its number may stand far off, on a line over other holes.
@@ -114,8 +116,10 @@ impl Lettering {
             notes.push(format!("{without} of {} holes without a number: no room.", scene.marks.len()));
         }
         let cut = self.labels.iter().filter(|l| l.lines < scene.marks[l.mark].label.len()).count();
-        if 0 < cut {
-            notes.push(format!("{cut} labels shortened: no room."));
+        match cut {
+            0 => {}
+            1 => notes.push("1 label shortened: no room.".to_owned()),
+            _ => notes.push(format!("{cut} labels shortened: no room.")),
         }
         notes
     }

@@ -78,13 +78,17 @@ fn draw_dial(
             }
         }
     }
-    let mut rim = Deg(45.0);
     let directed = across(mark).is_some();
+    let mut taken = Vec::new();
+    let [right, up] = misfit.entry;
+    if zone / 3.0 < libm::hypot(right, up) * times * frame.scale.factor {
+        taken.push(Deg::atan2(up, right));
+    }
     if let Some((along, projected)) = across(mark) {
         inks.extend(axis_arrow(centre, along, projected, zone, text, field));
-        rim = badge_angle(Deg::atan2(-along[1], along[0]));
+        taken.push(Deg::atan2(-along[1], along[0]));
     }
-    let at = centre.toward(symbol::direction(rim), zone);
+    let at = centre.toward(symbol::direction(badge_angle(&taken)), zone);
     inks.extend(symbol::standing(mark.standing, at, badge));
     field.block(Obstacle::Disc { centre: at, radius: badge * 1.2 });
     Drawn { centre, clear: zone + 0.15 * text, crowded: false, inks, cut, strayed, directed }
@@ -202,14 +206,16 @@ fn axis_arrow(
     symbol::arrow(start, end, (0.08 * text).max(1.0), 0.5 * text, palette::TEXT)
 }
 
-/// A place for the verdict on the dial's rim that the arrow at `arrow` leaves free: upper right if possible.
-fn badge_angle(arrow: Deg) -> Deg {
-    let apart = |angle: f64| {
-        let turn = (angle - arrow.0).rem_euclid(360.0);
+/// A place for the verdict on the dial's rim that covers neither arrow nor misfit: upper right if possible.
+fn badge_angle(taken: &[Deg]) -> Deg {
+    let apart = |angle: f64, other: &Deg| {
+        let turn = (angle - other.0).rem_euclid(360.0);
         turn.min(360.0 - turn)
     };
-    let choices = [45.0, 135.0, -45.0, -135.0];
-    Deg(choices.into_iter().find(|a| 60.0 <= apart(*a)).unwrap_or(45.0))
+    let free = |angle: f64| taken.iter().map(|other| apart(angle, other)).fold(60.0, f64::min);
+    let choices = [45.0, 135.0, -45.0, -135.0, 0.0, 180.0, 90.0, -90.0];
+    // The first of the freest.
+    Deg(choices.into_iter().fold(45.0, |best, angle| if free(best) < free(angle) { angle } else { best }))
 }
 
 fn ring(centre: Px, radius: f64, width: f64, color: Rgb) -> Ink {
@@ -218,4 +224,17 @@ fn ring(centre: Px, radius: f64, width: f64, color: Rgb) -> Ink {
 
 fn thin(text: f64) -> f64 {
     (0.06 * text).max(1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_verdict_covers_neither_arrow_nor_misfit() {
+        assert_eq!(badge_angle(&[]), Deg(45.0));
+        assert_eq!(badge_angle(&[Deg(10.0)]), Deg(135.0));
+        assert_eq!(badge_angle(&[Deg(10.0), Deg(100.0)]), Deg(-135.0));
+        assert_eq!(badge_angle(&[Deg(-170.0)]), Deg(45.0));
+    }
 }

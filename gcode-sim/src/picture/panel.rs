@@ -78,7 +78,7 @@ impl Panel {
         let (_, title) = flow(&title_rows(scene, text), column, font, text);
         let (_, legend) = flow(&legend_rows(scene, all, &notes, text), column, font, text);
         let height = title.max(legend) + 2.0 * space;
-        let top = (page.bottom - height).max(page.top + 0.4 * page.height()).round();
+        let top = (page.bottom - height).max(page.top + 0.55 * page.height()).round();
         let column = |left: f64, right: f64| Rect {
             left: left + space,
             top: top + space,

@@ -174,3 +174,149 @@ fn extent(scene: &Scene) -> (Point, Point) {
     let grow = ((least - widest) / 2.0).max(0.0);
     (low.map(|v| v - grow), high.map(|v| v + grow))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::picture::scene::{Axis, LegendItem, Mark, Misfit, Pen, Sample, Standing, Stroke, Title};
+    use proptest::prelude::*;
+
+    fn scene(marks: Vec<Mark>) -> Scene {
+        let circle = |radius: f64, pen: Pen| Stroke {
+            shape: Shape::Circle { centre: [0.0, 0.0], radius },
+            pen,
+            caption: Some(format!("r {radius}")),
+        };
+        let axis = |name: &str, direction: Point| Axis { name: name.to_owned(), direction };
+        let item = |sample: Sample| LegendItem { sample, text: "what this sign means".to_owned() };
+        Scene {
+            title: Title {
+                name: "A part with quite a long name indeed, such as drawings have, and a revision"
+                    .to_owned(),
+                view: "Top view".to_owned(),
+                position: Some(0.1),
+                verdict: Some((Standing::Bad, "FAIL: 2 of 5 good, 2 bad, 1 missing, 2 extra".to_owned())),
+                lines: (0..6).map(|i| format!("another line about the part, number {i}")).collect(),
+                caution: "Predicted by simulation, not measured".to_owned(),
+            },
+            axes: vec![axis("x", [1.0, 0.0]), axis("z", [0.0, -1.0])],
+            strokes: vec![circle(500.0, Pen::Outline), circle(300.0, Pen::Construction)],
+            marks,
+            zone: Some(0.1),
+            legend: vec![
+                item(Sample::Standing(Standing::Good)),
+                item(Sample::Standing(Standing::Bad)),
+                item(Sample::Misfit),
+                item(Sample::Direction),
+                item(Sample::Pen(Pen::Outline)),
+                item(Sample::Pen(Pen::Construction)),
+            ],
+        }
+    }
+
+    fn mark(index: usize, at: Point) -> Mark {
+        let standing =
+            [Standing::Good, Standing::Good, Standing::Bad, Standing::Missing, Standing::Extra][index % 5];
+        let off = 0.01 * index as f64;
+        let judged = matches!(standing, Standing::Good | Standing::Bad);
+        Mark {
+            at,
+            radius: 3.0,
+            standing,
+            label: vec![format!("{}", index + 1), format!("B {index}°"), "Φ0.020".to_owned()],
+            direction: Some([at[0] / 800.0, at[1] / 800.0]),
+            misfit: judged.then_some(Misfit { entry: [off, 0.01], bottom: [off, -0.01] }),
+            found: judged.then_some([at[0] + off, at[1]]),
+        }
+    }
+
+    /// How far an ink reaches, pixels.
+    fn reach(ink: &Ink, font: &Font) -> Rect {
+        match ink {
+            Ink::Line { points, .. } | Ink::Area { points, .. } => {
+                points.iter().fold(Rect::new(points[0].x, points[0].y, 0.0, 0.0), |rect, p| Rect {
+                    left: rect.left.min(p.x),
+                    top: rect.top.min(p.y),
+                    right: rect.right.max(p.x),
+                    bottom: rect.bottom.max(p.y),
+                })
+            }
+            Ink::Ring { centre, radius, .. } | Ink::Disc { centre, radius, .. } => {
+                Rect::new(centre.x - radius, centre.y - radius, 2.0 * radius, 2.0 * radius)
+            }
+            Ink::Text { at, size, text, .. } => {
+                Rect::new(at.x, at.y - 0.76 * size, font.width(text, *size), 0.98 * size)
+            }
+        }
+    }
+
+    fn holds(scene: &Scene, size: Size) -> Result<(), TestCaseError> {
+        let sheet = lay_out(scene, size).unwrap();
+        let page = Rect::new(0.0, 0.0, f64::from(size.width()), f64::from(size.height()));
+        for ink in &sheet.inks {
+            prop_assert!(page.contains(&reach(ink, &Font::embedded())), "{size:?} {ink:?}");
+        }
+        for (i, (rect, lines)) in sheet.labels.iter().enumerate() {
+            for (other, _) in &sheet.labels[i + 1..] {
+                prop_assert!(!rect.overlaps(other), "{size:?} {lines:?}");
+            }
+        }
+        Ok(())
+    }
+
+    const SIZES: [(u32, u32); 5] = [(480, 360), (360, 480), (800, 600), (1600, 1200), (900, 500)];
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(24))]
+
+        #[test]
+        fn nothing_is_clipped_and_no_label_covers_another(
+            places in prop::collection::vec((-480.0f64..480.0, -480.0f64..480.0), 0..40),
+            which in 0usize..5,
+        ) {
+            let marks = places.iter().enumerate().map(|(i, (x, y))| mark(i, [*x, *y])).collect();
+            let (width, height) = SIZES[which];
+            holds(&scene(marks), Size::new(width, height).unwrap())?;
+        }
+    }
+
+    #[test]
+    fn every_hole_of_a_ring_of_24_has_its_number() {
+        let places = (0..24).map(|i| {
+            let angle = crate::units::Deg(15.0 * f64::from(i));
+            [300.0 * angle.cos(), 300.0 * angle.sin()]
+        });
+        let scene = scene(places.enumerate().map(|(i, at)| mark(i, at)).collect());
+        for (width, height) in SIZES {
+            let sheet = lay_out(&scene, Size::new(width, height).unwrap()).unwrap();
+            let numbered = sheet.labels.iter().filter(|(_, lines)| lines[0].parse::<u32>().is_ok()).count();
+            assert_eq!(numbered, 24, "{width}x{height}: {:?}", sheet.notes);
+        }
+    }
+
+    #[test]
+    fn too_many_holes_for_their_numbers_are_said_to_be() {
+        let places = (0..900).map(|i| [f64::from(i % 30) * 30.0 - 435.0, f64::from(i / 30) * 30.0 - 435.0]);
+        let scene = scene(
+            places.enumerate().map(|(i, at)| Mark { standing: Standing::Good, ..mark(i, at) }).collect(),
+        );
+        let sheet = lay_out(&scene, Size::new(480, 360).unwrap()).unwrap();
+        let numbered = sheet.labels.iter().filter(|(_, lines)| lines[0].parse::<u32>().is_ok()).count();
+        let note = format!("{} of 900 holes without a number: no room.", 900 - numbered);
+        assert!(sheet.notes.contains(&note), "{note} {:?}", sheet.notes);
+    }
+
+    #[test]
+    fn a_coordinate_that_is_no_number_is_refused() {
+        for at in [[f64::NAN, 0.0], [0.0, f64::INFINITY], [2e6, 0.0]] {
+            let error = lay_out(&scene(vec![mark(6, at)]), Size::default()).unwrap_err().to_string();
+            assert!(error.starts_with("hole 7 has a coordinate that is no number"), "{error}");
+        }
+    }
+
+    #[test]
+    fn an_empty_scene_is_a_sheet_with_its_title() {
+        let sheet = lay_out(&Scene::default(), Size::default()).unwrap();
+        assert!(sheet.labels.is_empty() && sheet.notes.is_empty());
+    }
+}
