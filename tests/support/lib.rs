@@ -7,6 +7,7 @@
 mod cli;
 pub mod expect;
 mod r#gen;
+mod picture;
 pub mod programs;
 
 use std::path::{Path, PathBuf};
@@ -15,7 +16,7 @@ use std::path::{Path, PathBuf};
 type Run = fn(&Case);
 
 /// The kinds of cases by their folder under `suite/`.
-pub const KINDS: &[(&str, Run)] = &[("cli", cli::run), ("gen", r#gen::run)];
+pub const KINDS: &[(&str, Run)] = &[("cli", cli::run), ("gen", r#gen::run), ("picture", picture::run)];
 
 /// The folder of one case.
 pub struct Case {

@@ -15,7 +15,8 @@ pub struct Difference {
     pub bounds: Option<[u32; 4]>,
     /// Width and height of both pictures.
     pub sizes: [(u32, u32); 2],
-    /// The first picture faded, with what differs in red and a frame round it.
+    /// The first picture faded. Where they differ, what is darker in the first is blue, what is darker in the second
+    /// is vermilion; a frame goes round it.
     pub picture: RgbImage,
 }
 
@@ -33,6 +34,11 @@ impl Difference {
         raster::encode(self.picture.as_raw(), self.picture.width(), self.picture.height())
     }
 }
+
+/// Colours of Okabe and Ito's palette.
+const ONLY_FIRST: Rgb<u8> = Rgb([0, 114, 178]);
+const ONLY_SECOND: Rgb<u8> = Rgb([213, 94, 0]);
+const FRAME: Rgb<u8> = Rgb([204, 121, 167]);
 
 /// Compares two PNG files pixel by pixel; channels that differ by at most `tolerance` are equal.
 ///
@@ -55,8 +61,11 @@ pub fn compare(first: &[u8], second: &[u8], tolerance: u8) -> Result<Difference,
                 pixels += 1;
                 let [left, top, right, bottom] = bounds.unwrap_or([x, y, x, y]);
                 bounds = Some([left.min(x), top.min(y), right.max(x), bottom.max(y)]);
-                // Deeper red for a larger difference, never so pale that it is overlooked.
-                picture.put_pixel(x, y, Rgb([213, 94 - off.min(188) / 2, 60 - off.min(240) / 4]));
+                picture.put_pixel(
+                    x,
+                    y,
+                    if darkness(in_a) < darkness(in_b) { ONLY_SECOND } else { ONLY_FIRST },
+                );
             } else if let Some(pixel) = in_a {
                 picture.put_pixel(x, y, Rgb(pixel.0.map(|v| 170 + v / 3)));
             }
@@ -69,13 +78,18 @@ pub fn compare(first: &[u8], second: &[u8], tolerance: u8) -> Result<Difference,
     Ok(Difference { pixels, largest, bounds, sizes, picture })
 }
 
+/// How dark a pixel is; paper that isn't there counts as paper.
+fn darkness(pixel: Option<&Rgb<u8>>) -> u32 {
+    pixel.map_or(0, |p| p.0.iter().map(|v| u32::from(u8::MAX - v)).sum())
+}
+
 fn decode(which: &str, bytes: &[u8]) -> Result<RgbImage, PictureError> {
     image::load_from_memory_with_format(bytes, ImageFormat::Png)
         .map(|picture| picture.to_rgb8())
         .map_err(|error| PictureError::Decode { which: which.to_owned(), reason: error.to_string() })
 }
 
-/// Two pixels of blue, three pixels off what differs, as far as the picture reaches.
+/// A line of two pixels, three pixels off what differs, as far as the picture reaches.
 fn frame(picture: &mut RgbImage, [left, top, right, bottom]: [u32; 4]) {
     for off in [3, 4] {
         let (l, t, r, b) = (left.checked_sub(off), top.checked_sub(off), right + off, bottom + off);
@@ -85,7 +99,7 @@ fn frame(picture: &mut RgbImage, [left, top, right, bottom]: [u32; 4]) {
         let upright = rows.flat_map(|y| [l, Some(r)].into_iter().flatten().map(move |x| (x, y)));
         for (x, y) in level.chain(upright) {
             if let Some(pixel) = picture.get_pixel_mut_checked(x, y) {
-                *pixel = Rgb([0, 114, 178]);
+                *pixel = FRAME;
             }
         }
     }
@@ -117,8 +131,9 @@ mod tests {
         assert_eq!(difference.pixels, 2);
         assert_eq!(difference.largest, 200);
         assert_eq!(difference.bounds, Some([12, 8, 15, 10]));
-        assert_ne!(difference.picture.get_pixel(12, 10), difference.picture.get_pixel(13, 10));
-        assert_eq!(difference.picture.get_pixel(9, 9), &Rgb([0, 114, 178]), "framed");
+        assert_eq!(difference.picture.get_pixel(12, 10), &ONLY_SECOND);
+        assert_eq!(compare(&b, &a, 1).unwrap().picture.get_pixel(12, 10), &ONLY_FIRST);
+        assert_eq!(difference.picture.get_pixel(9, 9), &FRAME);
         assert_eq!(compare(&a, &b, 0).unwrap().pixels, 3);
     }
 

@@ -40,19 +40,20 @@ pub(super) struct Dials {
 }
 
 impl Dials {
-    /// As large as the distances of three in four holes allow; a hole that is closer to a neighbour has none.
+    /// As large as the distances of three in four holes allow, but legible; a hole closer to a neighbour has none.
     pub(super) fn choose(scene: &Scene, frame: &Frame, detail: Detail) -> Self {
         let gaps = gaps(scene, frame);
         let wanted: Vec<bool> = scene.marks.iter().map(|mark| detail.shows_misfit(mark)).collect();
         let mut room: Vec<f64> = gaps.iter().zip(&wanted).filter(|(_, w)| **w).map(|(gap, _)| *gap).collect();
         room.sort_by(f64::total_cmp);
-        let most = room.get(room.len() / 4).map_or(0.0, |gap| (0.42 * gap).min(frame.largest_dial));
-        let shown = scene.zone.filter(|zone| 0.0 < *zone && 0.8 * frame.text <= most).map(|zone| {
+        let quarter = room.get(room.len() / 4).copied().unwrap_or(0.0);
+        let most = (0.42 * quarter).min(frame.largest_dial).max(0.8 * frame.text);
+        let shown = scene.zone.filter(|zone| 0.0 < *zone).map(|zone| {
             let times = magnification(most / (zone / 2.0 * frame.scale.factor));
             (times, times * zone / 2.0 * frame.scale.factor)
         });
         let radius = shown.map_or(f64::INFINITY, |(_, radius)| radius);
-        let has = wanted.iter().zip(&gaps).map(|(wanted, gap)| *wanted && 2.0 * radius <= *gap).collect();
+        let has: Vec<bool> = wanted.iter().zip(&gaps).map(|(w, gap)| *w && 2.0 * radius <= *gap).collect();
         Self { shown, has, gaps, detail }
     }
 

@@ -1,0 +1,172 @@
+//! Draws the top view a `case.toml` describes and holds it against `expected.png`, one step per channel allowed.
+//!
+//! `says.snap` beside it has the picture's words. With an `other.toml` the picture is the comparison of both. What
+//! was drawn instead, and where it differs, is left in `target/pictures/`.
+use gcode_sim::part::hole::Hole;
+use gcode_sim::picture::{
+    Difference, DrawnHole, PathPiece, Sheet, Size, Standing, TopView, compare, lay_out, paint, png, top_view,
+};
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::{ImageFormat, RgbImage};
+use serde::Deserialize;
+
+use crate::{Case, root};
+
+/// A picture that people look at in a review is small.
+const MOST_BYTES: usize = 20 * 1024;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Picture {
+    size: String,
+    /// Left, top, width, height of what `expected.png` shows of it.
+    crop: [u32; 4],
+    name: String,
+    outline: Option<f64>,
+    tolerance: Option<f64>,
+    #[serde(default)]
+    hole: Vec<HoleCase>,
+    #[serde(default)]
+    path: Vec<PathCase>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct HoleCase {
+    id: String,
+    at: [f64; 3],
+    axis: [f64; 3],
+    /// Actual − nominal of the entry; a missing hole has none, and neither has one without a reference.
+    off: Option<[f64; 3]>,
+    #[serde(default = "six")]
+    diameter: f64,
+    standing: String,
+    phi: Option<f64>,
+    turn: Option<f64>,
+    remark: Option<String>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PathCase {
+    points: Vec<[f64; 3]>,
+    rapid: bool,
+}
+
+fn six() -> f64 {
+    6.0
+}
+
+pub(crate) fn run(case: &Case) {
+    let (picture, sheet) = draw(&case.text("case.toml"));
+    let bytes = png(&paint(&sheet)).unwrap();
+    let Some(other) = case.optional("other.toml") else {
+        case.snapshot("says", &words(&sheet));
+        return hold(case, &cropped(&bytes, picture.crop));
+    };
+    let (_, other) = draw(&other);
+    let difference = compare(&bytes, &png(&paint(&other)).unwrap(), 1).unwrap();
+    case.snapshot("says", &told(&difference));
+    hold(case, &cropped(&difference.png().unwrap(), picture.crop));
+}
+
+fn draw(text: &str) -> (Picture, Sheet) {
+    let picture: Picture = toml::from_str(text).unwrap();
+    let size: Size = picture.size.parse().unwrap();
+    let view = TopView {
+        name: picture.name.clone(),
+        outline: picture.outline,
+        tolerance: picture.tolerance,
+        rotary: "B".to_owned(),
+        holes: picture.hole.iter().map(drawn).collect(),
+        path: picture.path.iter().map(|p| PathPiece { points: p.points.clone(), rapid: p.rapid }).collect(),
+        lines: Vec::new(),
+    };
+    let sheet = lay_out(&top_view(&view), size).unwrap();
+    (picture, sheet)
+}
+
+fn drawn(case: &HoleCase) -> DrawnHole {
+    let standing = match case.standing.as_str() {
+        "good" => Standing::Good,
+        "bad" => Standing::Bad,
+        "missing" => Standing::Missing,
+        "extra" => Standing::Extra,
+        "unjudged" => Standing::Unjudged,
+        other => panic!("a hole is good, bad, missing, extra or unjudged, not {other}"),
+    };
+    let length = case.axis.iter().map(|v| v * v).sum::<f64>().sqrt();
+    let at = |off: [f64; 3]| Hole {
+        id: None,
+        entry: [case.at[0] + off[0], case.at[1] + off[1], case.at[2] + off[2]],
+        axis: case.axis.map(|v| v / length),
+        depth: 15.0,
+        diameter: Some(case.diameter),
+        from: None,
+    };
+    let wanted = matches!(standing, Standing::Good | Standing::Bad | Standing::Missing);
+    DrawnHole {
+        id: case.id.clone(),
+        nominal: wanted.then(|| at([0.0; 3])),
+        found: (standing != Standing::Missing).then(|| at(case.off.unwrap_or_default())),
+        standing,
+        phi: case.phi,
+        turn: case.turn,
+        remark: case.remark.clone(),
+    }
+}
+
+/// What the picture says in words.
+fn words(sheet: &Sheet) -> String {
+    let mut lines: Vec<String> =
+        sheet.labels.iter().map(|(_, lines)| format!("label: {}", lines.join(" | "))).collect();
+    lines.extend(sheet.magnification.map(|times| format!("misfits: ×{times:.0}")));
+    lines.extend(sheet.notes.iter().map(|note| format!("note: {note}")));
+    lines.join("\n")
+}
+
+fn told(difference: &Difference) -> String {
+    match difference.bounds {
+        Some([left, top, right, bottom]) => format!(
+            "{} pixels differ, by {} at most, from {left},{top} to {right},{bottom}",
+            difference.pixels, difference.largest
+        ),
+        None => "no pixel differs".to_owned(),
+    }
+}
+
+fn cropped(bytes: &[u8], [left, top, width, height]: [u32; 4]) -> Vec<u8> {
+    let whole = image::load_from_memory_with_format(bytes, ImageFormat::Png).unwrap().to_rgb8();
+    assert!(left + width <= whole.width() && top + height <= whole.height(), "the crop leaves the picture");
+    let part: RgbImage = image::imageops::crop_imm(&whole, left, top, width, height).to_image();
+    let mut bytes = Vec::new();
+    part.write_with_encoder(PngEncoder::new_with_quality(
+        &mut bytes,
+        CompressionType::Best,
+        FilterType::NoFilter,
+    ))
+    .unwrap();
+    bytes
+}
+
+/// `INSTA_UPDATE=always` accepts what is new, as for snapshots.
+fn hold(case: &Case, actual: &[u8]) {
+    assert!(actual.len() <= MOST_BYTES, "{} bytes are more than {MOST_BYTES}: crop it", actual.len());
+    let expected = case.dir.join("expected.png");
+    let accepts = std::env::var("INSTA_UPDATE").is_ok_and(|v| v == "always");
+    let difference = expected.exists().then(|| compare(&case.bytes("expected.png"), actual, 1).unwrap());
+    if difference.as_ref().is_some_and(Difference::is_none) {
+        return;
+    }
+    if accepts {
+        return std::fs::write(expected, actual).unwrap();
+    }
+    let left = root().join("../../target/pictures").join(case.name());
+    std::fs::create_dir_all(&left).unwrap();
+    std::fs::write(left.join("actual.png"), actual).unwrap();
+    let Some(difference) = difference else {
+        panic!("there is no expected.png; what was drawn is in {}", left.display())
+    };
+    std::fs::write(left.join("difference.png"), difference.png().unwrap()).unwrap();
+    panic!("{}; see {}", told(&difference), left.display());
+}
