@@ -3,6 +3,8 @@ mod checks;
 mod matching;
 pub mod position;
 mod rounding;
+#[cfg(test)]
+mod tests;
 mod verdict;
 
 pub use matching::{Comparison, Pair};
