@@ -7,6 +7,7 @@ use crate::diag::Diagnostic;
 use crate::machine::HeadKind;
 use crate::machine::path::Travel;
 use crate::motion::{Event, Position};
+use crate::part::surface::Surface;
 use crate::units::Deg;
 
 /// A feed may differ from the tool's direction by this much and by what rounding explains.
@@ -156,14 +157,10 @@ impl Extractor<'_> {
 
     /// A motion that is curved on the part: a rapid must stay outside, a feed is no hole.
     pub(super) fn check_curved(&mut self, event: &Event<'_>, travel: &Travel<'_>, kind: Curved) {
-        let mut deepest = f64::NEG_INFINITY;
-        if let (Some(surface), true) = (self.surface, self.outside) {
-            let mut last: Option<Point3<f64>> = None;
-            self.machine.follow(travel, &self.setup, TOUCH, |pose| {
-                let from = last.replace(pose.tip).unwrap_or(pose.tip);
-                deepest = deepest.max(surface.depth(&surface.deepest_between(&from, &pose.tip)));
-            });
-        }
+        let deepest = match self.surface {
+            Some(surface) if self.outside => self.deepest_on(&surface, travel),
+            _ => f64::NEG_INFINITY,
+        };
         let in_part = deepest > 2.0 * TOUCH;
         match kind {
             Curved::Rapid if in_part => self.findings.add("rapid-into-part", &event.place(), 0, || {
@@ -188,6 +185,30 @@ impl Extractor<'_> {
             }
             Curved::Rapid | Curved::Feed => {}
         }
+    }
+
+    /// How far below the surface a curved way goes; below 0 outside. Coarse chords first: most ways stay far away.
+    fn deepest_on(&self, surface: &Surface, travel: &Travel<'_>) -> f64 {
+        for tolerance in [40.0, 5.0, 0.5] {
+            let mut last: Option<Point3<f64>> = None;
+            let mut clear = true;
+            self.machine.follow(travel, &self.setup, tolerance, |pose| {
+                let from = last.replace(pose.tip).unwrap_or(pose.tip);
+                clear = clear && surface.clearance(&from, &pose.tip) > tolerance;
+            });
+            if clear {
+                return f64::NEG_INFINITY;
+            }
+        }
+        let mut last: Option<Point3<f64>> = None;
+        let mut deepest = f64::NEG_INFINITY;
+        self.machine.follow(travel, &self.setup, TOUCH, |pose| {
+            let from = last.replace(pose.tip).unwrap_or(pose.tip);
+            if surface.clearance(&from, &pose.tip) <= 0.0 {
+                deepest = deepest.max(surface.depth(&surface.deepest_between(&from, &pose.tip)));
+            }
+        });
+        deepest
     }
 
     /// An axis that the control has and the machine doesn't use was told to move.

@@ -50,6 +50,24 @@ impl Surface {
         Some(at(bisect(innermost, beyond, |t| self.value(&at(t)) > 0.0)))
     }
 
+    /// At least this far from a straight way; below 0 where that can't be said.
+    ///
+    /// For a convex function no value between two points is below both tangents, and the way to a point of the
+    /// body is at least the value over the slope.
+    pub fn clearance(&self, from: &Point3<f64>, to: &Point3<f64>) -> f64 {
+        let along = to - from;
+        let (low, high) = (self.value(from), self.value(to));
+        let (at_from, at_to) = (self.gradient(from), self.gradient(to));
+        let (falling, rising) = (at_from.dot(&along), at_to.dot(&along));
+        let least = if falling >= 0.0 || rising <= 0.0 {
+            low.min(high)
+        } else {
+            // Where the tangents low + falling·t and high − rising·(1 − t) meet.
+            low + falling * ((high - low - rising) / (falling - rising))
+        };
+        least / at_from.norm().max(at_to.norm())
+    }
+
     /// The deepest point of a straight way; of one that only touches the body at an end, that end.
     pub fn deepest_between(&self, from: &Point3<f64>, to: &Point3<f64>) -> Point3<f64> {
         let Some(along) = Unit::try_new(to - from, 1e-9) else { return *from };
@@ -129,6 +147,22 @@ mod tests {
     }
 
     proptest! {
+        /// The bound on the distance never promises too much: no point of the body is nearer.
+        #[test]
+        fn clearance_is_kept(
+            (a, b) in (1.0..50.0, 1.0..50.0f64),
+            ends in prop::array::uniform6(-120.0..120.0),
+            (t, latitude, azimuth) in (0.0..1.0, -1.57..1.57, -4.0..4.0f64),
+        ) {
+            let (a, b): (f64, f64) = (a, b);
+            let surface = Surface::Ellipsoid { a, b };
+            let (from, to) = (Point3::new(ends[0], ends[1], ends[2]), Point3::new(ends[3], ends[4], ends[5]));
+            let r = a * libm::cos(latitude);
+            let body = Point3::new(r * libm::cos(azimuth), b * libm::sin(latitude), r * libm::sin(azimuth));
+            let way: Point3<f64> = from + (to - from) * t;
+            prop_assert!(surface.clearance(&from, &to) <= (way - body).norm() + 1e-9);
+        }
+
         /// A line through a point of the surface given by its latitude is left there.
         #[test]
         fn a_line_is_left_at_the_point_it_was_laid_through(
