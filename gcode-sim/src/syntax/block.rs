@@ -141,7 +141,7 @@ fn skip<'a>(line: Line, at: Input<'a>, after: Input<'a>) -> Read<'a, Spanned<u8>
             let rest = &spaces(after)[1..];
             Ok((rest, line.spanned(digit - b'0', at, rest)))
         }
-        Some(b'0' | b'#' | b'[') => fail(at, Alarm::NotAWord { text: shown(at) }),
+        Some(b'0') => fail(at, Alarm::NotAWord { text: shown(at) }),
         _ => Ok((after, line.spanned(1, at, after))),
     }
 }
