@@ -1,15 +1,20 @@
-//! Cases of kind `gen`: the programs that `job.toml` becomes, as one snapshot of all files.
+//! Cases of kind `gen`: the main program and the machine file that `job.toml` becomes. The resident macros stand in
+//! `macros/` and `examples/`, where they are held byte for byte.
 use std::fmt::Write;
 
 use gcode_sim::job::Job;
 
 use crate::Case;
 
-/// Emits `job.toml` and holds every file against `emitted.snap`; nothing is run here.
+/// Emits `job.toml` and holds what belongs to it alone against `emitted.snap`; nothing is run here.
 pub(crate) fn run(case: &Case) {
     let job = Job::parse(&case.text("job.toml")).unwrap_or_else(|error| panic!("{}: {error}", case.name()));
     let mut shown = String::new();
-    for (name, text) in gcode_gen::families::emit(&job).files() {
+    let package = gcode_gen::families::emit(&job);
+    let main = gcode_gen::package::file_name(package.main);
+    for (name, text) in
+        package.files().into_iter().filter(|(name, _)| *name == main || name == "machine.toml")
+    {
         let _ = write!(shown, "==== {name}\n{text}");
     }
     case.snapshot("emitted", &shown);

@@ -1,19 +1,16 @@
 //! Numbers as a control reads them: always with a point, never more digits than it takes.
-use gcode_sim::control::Increment;
 
-/// Digits a control takes in one number (0i-F, 30i; the older ones take one fewer).
+/// Digits that all three dialects take in one number.
 const DIGITS: usize = 9;
 
-/// A value in mm, degrees or mm/min, one digit finer than the increment: macro arguments keep it, and the control
-/// rounds once, where the axis moves. `1158.8` becomes `1158.8`, `420` becomes `420.`.
-pub fn number(value: f64, increment: Increment) -> String {
-    let finest = match increment {
-        Increment::IsA => 3,
-        Increment::IsB => 4,
-        Increment::IsC => 5,
-    };
+/// Six places are a nanometre, or 0.02 µm at the end of a radius of 1000 mm: nothing is rounded here that matters,
+/// and the control rounds once, where the axis moves.
+const PLACES: usize = 6;
+
+/// A value in mm, degrees or mm/min: `1158.8` stays `1158.8`, `420` becomes `420.`.
+pub fn number(value: f64) -> String {
     let whole = format!("{:.0}", value.abs().trunc()).len();
-    let places = finest.min(DIGITS.saturating_sub(whole));
+    let places = PLACES.min(DIGITS.saturating_sub(whole));
     let text = format!("{value:.places$}");
     let text = if text.contains('.') { text.trim_end_matches('0').to_owned() } else { text + "." };
     if text == "-0." { "0.".to_owned() } else { text }
@@ -25,15 +22,14 @@ mod tests {
 
     #[test]
     fn a_number_has_a_point_and_no_digits_too_many() {
-        let shown = |value| number(value, Increment::IsB);
-        assert_eq!(shown(420.0), "420.");
-        assert_eq!(shown(1158.8), "1158.8");
-        assert_eq!(shown(0.1), "0.1");
-        assert_eq!(shown(-720.0), "-720.");
-        assert_eq!(shown(-0.000_01), "0.");
-        assert_eq!(shown(100.0 / 3.0), "33.3333");
-        assert_eq!(number(100.0 / 3.0, Increment::IsA), "33.333");
-        assert_eq!(number(100.0 / 3.0, Increment::IsC), "33.33333");
-        assert_eq!(number(99_998.765_432, Increment::IsC), "99998.7654", "nine digits");
+        assert_eq!(number(420.0), "420.");
+        assert_eq!(number(1158.8), "1158.8");
+        assert_eq!(number(0.1), "0.1");
+        assert_eq!(number(-720.0), "-720.");
+        assert_eq!(number(-0.000_000_1), "0.");
+        assert_eq!(number(100.0 / 3.0), "33.333333");
+        assert_eq!(number(10_000.0 / 3.0), "3333.33333", "nine digits");
+        assert_eq!(number(99_998.765_432), "99998.7654", "nine digits");
+        assert_eq!(number(240_000.0), "240000.");
     }
 }

@@ -62,7 +62,7 @@ impl Resident {
             ("{rotary}", self.rotary.to_string()),
             ("{angle}", self.common.to_string()),
             ("{set}", self.set().to_string()),
-            ("{per_degree}", number(self.increment.per_unit(), self.increment)),
+            ("{per_degree}", number(self.increment.per_unit())),
             ("{set_head}", set_head),
             ("{spindle_note}", spindle_note.to_owned()),
         ];

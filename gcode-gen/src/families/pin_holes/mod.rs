@@ -55,14 +55,10 @@ impl<'j> Main<'j> {
         self.text.finish()
     }
 
-    fn number(&self, value: f64) -> String {
-        number(value, self.job.control.increment)
-    }
-
     /// The program's contract with whoever runs it.
     fn header(&mut self, passes: &[ToolPass<'_>]) {
         let job = self.job;
-        let (a, b) = (self.number(job.surface.a), self.number(job.surface.b));
+        let (a, b) = (number(job.surface.a), number(job.surface.b));
         let holes = job.holes.len();
         let rotary = job.machine.rotary;
         let sign = if rotary.sign < 0 { "-" } else { "" };
@@ -73,7 +69,7 @@ impl<'j> Main<'j> {
         let control = control_name(job);
         let common = self.resident.common;
         let lines = [
-            format!("{holes} HOLES, SURFACE [X*X+Z*Z]/A/A+Y*Y/B/B = 1, A {a} B {b}"),
+            format!("HOLES {holes}, SURFACE [X*X+Z*Z]/A/A+Y*Y/B/B = 1, A {a} B {b}"),
             "NUMBERS ARE MILLIMETRES AND DEGREES, FEEDS MM/MIN".to_owned(),
             format!("CONTROL {control}, MACHINE FILE MACHINE.TOML"),
             "WORK ZERO G54 IS THE CENTRE OF THE ELLIPSOID, Y ITS AXIS".to_owned(),
@@ -96,7 +92,7 @@ impl<'j> Main<'j> {
             self.text.remark(line);
         }
         for ToolPass { tool, .. } in passes {
-            let (diameter, length) = (self.number(tool.diameter), self.number(tool.length));
+            let (diameter, length) = (number(tool.diameter), number(tool.length));
             self.text.remark(format!("T{} {} DIAMETER {diameter} LENGTH {length}", tool.number, tool.name));
         }
     }
@@ -109,7 +105,7 @@ impl<'j> Main<'j> {
 
     fn tool(&mut self, pass: &ToolPass<'_>) {
         let tool = pass.tool;
-        let diameter = self.number(tool.diameter);
+        let diameter = number(tool.diameter);
         self.text.remark(format!("T{} {} DIAMETER {diameter}", tool.number, tool.name));
         self.text.block(Block::of(format!("T{} M06", tool.number)));
         self.text.block(Block::of(format!("S{:.0} M03", tool.speed)));
@@ -124,7 +120,7 @@ impl<'j> Main<'j> {
         }
         self.text.block(Block::of("M09"));
         // The tip is then V above the pole or higher, whatever the angle of the head: see O8102.
-        let height = [self.job.surface.b, self.reach(pass), self.job.machine.retract].map(|v| self.number(v));
+        let height = [self.job.surface.b, self.reach(pass), self.job.machine.retract].map(number);
         self.text
             .block(Block::of(format!("G90 G00 Y[{}]", height.join("+"))).comment("B+Q+V, CLEAR OF THE PART"));
         self.text.block(Block::of("M05"));
@@ -138,30 +134,30 @@ impl<'j> Main<'j> {
     fn head_call(&self, pass: &ToolPass<'_>, setting: &HeadSetting<'_>) -> Block {
         let job = self.job;
         Block::call(HEAD)
-            .word('A', self.number(job.surface.a))
-            .word('B', self.number(job.surface.b))
-            .word('R', self.number(setting.radius))
+            .word('A', number(job.surface.a))
+            .word('B', number(job.surface.b))
+            .word('R', number(setting.radius))
             .word('H', flag(setting.axis))
-            .word('Q', self.number(self.reach(pass)))
-            .word('V', self.number(job.machine.retract))
+            .word('Q', number(self.reach(pass)))
+            .word('V', number(job.machine.retract))
             .comment("HEAD")
     }
 
     fn hole_call(&self, pass: &ToolPass<'_>, hole: &HoleWanted) -> Block {
         let job = self.job;
         Block::call(HOLE)
-            .word('A', self.number(job.surface.a))
-            .word('B', self.number(job.surface.b))
-            .word('R', self.number(hole.radius))
-            .word('W', self.number(hole.azimuth))
+            .word('A', number(job.surface.a))
+            .word('B', number(job.surface.b))
+            .word('R', number(hole.radius))
+            .word('W', number(hole.azimuth))
             .word('H', flag(hole.axis))
-            .word('D', self.number(hole.depth))
-            .word('C', self.number(job.machine.clearance))
-            .word('V', self.number(job.machine.retract))
-            .word('F', self.number(pass.tool.feed))
-            .word('E', self.number(pass.tool.retract_feed))
-            .word('U', self.number(f64::from(job.machine.rotary.sign)))
-            .word('Q', self.number(self.reach(pass)))
+            .word('D', number(hole.depth))
+            .word('C', number(job.machine.clearance))
+            .word('V', number(job.machine.retract))
+            .word('F', number(pass.tool.feed))
+            .word('E', number(pass.tool.retract_feed))
+            .word('U', number(f64::from(job.machine.rotary.sign)))
+            .word('Q', number(self.reach(pass)))
             .comment(format!("HOLE {}", hole.id))
     }
 }
