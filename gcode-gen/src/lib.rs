@@ -9,3 +9,7 @@ pub mod package;
 pub mod order;
 
 pub mod families;
+
+pub mod check;
+
+pub mod cli;

@@ -1,2 +1,6 @@
 //! Arguments to the command line, its exit status to the shell.
-fn main() {}
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    gcode_gen::cli::main(std::env::args_os()).into()
+}

@@ -1,0 +1,98 @@
+//! The only place of the generator that prints and opens files: arguments in, exit status out.
+mod emit;
+mod new;
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use clap::{Parser, Subcommand, ValueEnum};
+use gcode_sim::cli::{Refusal, Status, output};
+
+/// Emits parametric Fanuc macro programs in which the control itself computes the geometry.
+#[derive(Debug, Parser)]
+#[command(name = "gcode-gen", version, max_term_width = 100, after_help = EXIT_CODES)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+
+    /// Colours on the terminal; NO_COLOR is obeyed
+    #[arg(long, global = true, value_enum, default_value_t = Color::Auto)]
+    color: Color,
+}
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0  done
+  1  refused: the programs of this job would not hold; nothing is written
+  2  the request can't be used: bad flag, unreadable or malformed job, unwritable folder
+
+Every program is simulated and held against the job's geometry before a file is written. That is a
+prediction, not a measurement.";
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Color {
+    Auto,
+    Always,
+    Never,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Write a commented job file that works as it is
+    #[command(after_help = "\
+Examples:
+  gcode-gen new pin-holes
+  gcode-gen new pin-holes -o job.toml")]
+    New {
+        /// The part family
+        #[arg(value_parser = families())]
+        family: String,
+        /// Where to write it; without it, standard output
+        #[arg(short, long, value_name = "JOB.toml")]
+        output: Option<PathBuf>,
+    },
+
+    /// Write the O-programs and the machine file of a job
+    #[command(after_help = "\
+Examples:
+  gcode-gen emit job.toml --out nc
+  gcode-sim verify nc/O8100.nc --reference job.toml --machine nc/machine.toml")]
+    Emit {
+        /// The job file; '-' reads standard input
+        #[arg(value_name = "JOB.toml")]
+        job: PathBuf,
+        /// The folder for the programs; made if it isn't there
+        #[arg(short, long, value_name = "DIR")]
+        out: PathBuf,
+    },
+}
+
+fn families() -> clap::builder::PossibleValuesParser {
+    crate::families::ALL.iter().map(|family| family.name).collect::<Vec<_>>().into()
+}
+
+/// Does what the command line asks for.
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Status {
+    let arguments = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            let asked = !error.use_stderr();
+            let text = error.render().ansi().to_string();
+            let told = if asked { output::print(&text) } else { Ok(output::tell(&text)) };
+            return if asked && told.is_ok() { Status::Holds } else { Status::Refused };
+        }
+    };
+    match arguments.color {
+        Color::Auto => {}
+        Color::Always => anstream::ColorChoice::Always.write_global(),
+        Color::Never => anstream::ColorChoice::Never.write_global(),
+    }
+    let done = match &arguments.command {
+        Command::New { family, output } => new::run(family, output.as_deref()),
+        Command::Emit { job, out } => emit::run(job, out),
+    };
+    done.unwrap_or_else(|refusal: Refusal| {
+        output::tell(&format!("error: {refusal}\n"));
+        Status::Refused
+    })
+}

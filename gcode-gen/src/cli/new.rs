@@ -1,0 +1,21 @@
+//! `gcode-gen new`: a job file to start from.
+use std::path::Path;
+
+use gcode_sim::cli::{Refusal, Status, output};
+
+pub(super) fn run(family: &str, path: Option<&Path>) -> Result<Status, Refusal> {
+    let known = crate::families::ALL.iter().find(|known| known.name == family);
+    let Some(known) = known else {
+        return Err(Refusal::new(format!("no family '{family}'")));
+    };
+    match path {
+        None => output::print(known.new_job)?,
+        // A job that somebody has filled in is worth more than a new one.
+        Some(path) if path.is_file() => {
+            let name = path.display();
+            return Err(Refusal::new(format!("{name} is there already: remove it, or name another file")));
+        }
+        Some(path) => output::write(path, known.new_job.as_bytes())?,
+    }
+    Ok(Status::Holds)
+}
