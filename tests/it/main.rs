@@ -2,4 +2,5 @@
 #![expect(clippy::unwrap_used, clippy::disallowed_methods, reason = "tests read files and may panic")]
 
 mod emitted;
+mod round_trip;
 mod tidy;

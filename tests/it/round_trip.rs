@@ -1,0 +1,126 @@
+//! Random pin-hole jobs: what is generated from a job, run as the control would, makes the job's holes.
+use std::fmt::Write;
+
+use gcode_gen::check::{Checked, check};
+use gcode_gen::families;
+use gcode_sim::job::Job;
+use gcode_sim::verify::Answer;
+use proptest::prelude::*;
+
+/// Everything a job can differ in; numbers as a drawing has them, with more digits than the control's increment.
+#[derive(Clone, Debug)]
+struct Wanted {
+    increment: &'static str,
+    dialect: &'static str,
+    sign: i8,
+    /// Letter and pivot of a head that is an axis.
+    head: Option<(char, f64)>,
+    lengths: [f64; 2],
+    a: f64,
+    b: f64,
+    clearance: f64,
+    retract: f64,
+    /// Radius as a part of a, azimuth, axial, depth.
+    holes: Vec<(f64, f64, bool, f64)>,
+}
+
+impl Wanted {
+    fn text(&self) -> String {
+        let mut text = format!(
+            "family = \"pin-holes\"\n[control]\ndialect = \"{}\"\nincrement = \"{}\"\n[machine]\n\
+             rotary = {{ letter = \"B\", sign = {} }}\nclearance = {:?}\nretract = {:?}\n",
+            self.dialect,
+            self.increment,
+            self.sign,
+            self.clearance,
+            self.clearance + self.retract
+        );
+        match self.head {
+            Some((letter, pivot)) => {
+                let _ = write!(text, "[machine.head]\nkind = \"axis\"\nletter = \"{letter}\"\npivot = {pivot:?}\n");
+            }
+            None => text.push_str("[machine.head]\nkind = \"manual\"\n"),
+        }
+        let _ = write!(
+            text,
+            "[surface]\nkind = \"ellipsoid\"\na = {:?}\nb = {:?}\n[tolerance]\nposition = 0.1\n",
+            self.a, self.b
+        );
+        for (index, (diameter, length)) in [(7.8, self.lengths[0]), (8.0, self.lengths[1])].iter().enumerate() {
+            let _ = write!(
+                text,
+                "[[tool]]\nnumber = {}\ndiameter = {diameter:?}\nlength = {length:?}\nspeed = 1500\nfeed = 10.0\n",
+                index + 1
+            );
+        }
+        for (index, (radius, azimuth, axial, depth)) in self.holes.iter().enumerate() {
+            let axis = if *axial { "axial" } else { "normal" };
+            let radius = radius * self.a;
+            let _ = write!(
+                text,
+                "[[hole]]\nid = \"{index}\"\nradius = {radius:?}\nazimuth = {azimuth:?}\naxis = \"{axis}\"\n\
+                 diameter = 8.0\ndepth = {depth:?}\n"
+            );
+        }
+        text
+    }
+}
+
+/// 24 holes on five radii from near 0 to 0.97·a, 15° apart in an arbitrary order of turns, so that no two meet.
+fn holes() -> impl Strategy<Value = Vec<(f64, f64, bool, f64)>> {
+    let hole = (0usize..5, -2i32..2, 0.0..6.0f64, any::<bool>(), 3.0..40.0f64);
+    (prop::collection::vec(hole, 24), 0.12..0.2f64).prop_map(|(holes, inner)| {
+        let on_radius = |(index, (ring, turn, jitter, axial, depth)): (usize, (usize, i32, f64, bool, f64))| {
+            // One hole may stand near the axis, where all azimuths meet.
+            let radius = if index == 0 { 1e-3 } else { inner + (0.97 - inner) * ring as f64 / 4.0 };
+            let azimuth = f64::from(turn) * 360.0 + index as f64 * 15.0 + jitter;
+            (radius, azimuth, axial, depth)
+        };
+        holes.into_iter().enumerate().map(on_radius).collect()
+    })
+}
+
+fn wanted() -> impl Strategy<Value = Wanted> {
+    let control = (
+        prop::sample::select(vec!["IS-B", "IS-C"]),
+        prop::sample::select(vec!["fanuc-31i", "fanuc-0i-f", "haas-ngc"]),
+        prop::sample::select(vec![1i8, -1]),
+    );
+    let head = prop::option::of((prop::sample::select(vec!['A', 'C']), 0.0..250.0f64));
+    let lengths = prop_oneof![Just([0.0, 0.0]), [0.0..200.0f64, 0.0..200.0f64]];
+    let surface = (150.0..1200.0f64, prop_oneof![Just(1.0), 0.4..1.0f64, 1.0..2.5f64]);
+    (control, head, lengths, surface, 0.5..5.0f64, 0.0..80.0f64, holes()).prop_map(
+        |((increment, dialect, sign), head, lengths, (a, ratio), clearance, retract, holes)| Wanted {
+            increment,
+            dialect,
+            sign,
+            head,
+            lengths,
+            a,
+            b: a * ratio,
+            clearance,
+            retract,
+            holes,
+        },
+    )
+}
+
+fn checked(text: &str) -> Checked {
+    let job = Job::parse(text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    check(&job, &families::emit(&job)).unwrap()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+
+    #[test]
+    fn a_random_job_makes_its_holes(wanted in wanted()) {
+        let text = wanted.text();
+        let checked = checked(&text);
+        prop_assert!(checked.refusals.is_empty(), "{}\n{text}", checked.refusals.concat());
+        prop_assert!(checked.verdict.verdict == Answer::Pass);
+        prop_assert!(checked.verdict.holes.len() == 24 && checked.verdict.extra.is_empty());
+        let (worst, rounding) = (checked.verdict.worst.unwrap(), checked.verdict.rounding.unwrap());
+        prop_assert!(worst <= rounding + 0.0005, "Φ{worst} where rounding explains Φ{rounding}\n{text}");
+    }
+}
