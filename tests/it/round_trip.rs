@@ -37,7 +37,10 @@ impl Wanted {
         );
         match self.head {
             Some((letter, pivot)) => {
-                let _ = write!(text, "[machine.head]\nkind = \"axis\"\nletter = \"{letter}\"\npivot = {pivot:?}\n");
+                let _ = write!(
+                    text,
+                    "[machine.head]\nkind = \"axis\"\nletter = \"{letter}\"\npivot = {pivot:?}\n"
+                );
             }
             None => text.push_str("[machine.head]\nkind = \"manual\"\n"),
         }
@@ -46,7 +49,8 @@ impl Wanted {
             "[surface]\nkind = \"ellipsoid\"\na = {:?}\nb = {:?}\n[tolerance]\nposition = 0.1\n",
             self.a, self.b
         );
-        for (index, (diameter, length)) in [(7.8, self.lengths[0]), (8.0, self.lengths[1])].iter().enumerate() {
+        for (index, (diameter, length)) in [(7.8, self.lengths[0]), (8.0, self.lengths[1])].iter().enumerate()
+        {
             let _ = write!(
                 text,
                 "[[tool]]\nnumber = {}\ndiameter = {diameter:?}\nlength = {length:?}\nspeed = 1500\nfeed = 10.0\n",
@@ -70,12 +74,13 @@ impl Wanted {
 fn holes() -> impl Strategy<Value = Vec<(f64, f64, bool, f64)>> {
     let hole = (0usize..5, -2i32..2, 0.0..6.0f64, any::<bool>(), 3.0..40.0f64);
     (prop::collection::vec(hole, 24), 0.12..0.2f64).prop_map(|(holes, inner)| {
-        let on_radius = |(index, (ring, turn, jitter, axial, depth)): (usize, (usize, i32, f64, bool, f64))| {
-            // One hole may stand near the axis, where all azimuths meet.
-            let radius = if index == 0 { 1e-3 } else { inner + (0.97 - inner) * ring as f64 / 4.0 };
-            let azimuth = f64::from(turn) * 360.0 + index as f64 * 15.0 + jitter;
-            (radius, azimuth, axial, depth)
-        };
+        let on_radius =
+            |(index, (ring, turn, jitter, axial, depth)): (usize, (usize, i32, f64, bool, f64))| {
+                // One hole may stand near the axis, where all azimuths meet.
+                let radius = if index == 0 { 1e-3 } else { inner + (0.97 - inner) * ring as f64 / 4.0 };
+                let azimuth = f64::from(turn) * 360.0 + index as f64 * 15.0 + jitter;
+                (radius, azimuth, axial, depth)
+            };
         holes.into_iter().enumerate().map(on_radius).collect()
     })
 }
