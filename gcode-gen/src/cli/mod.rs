@@ -76,10 +76,13 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Status {
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(error) => {
-            let asked = !error.use_stderr();
             let text = error.render().ansi().to_string();
-            let told = if asked { output::print(&text) } else { Ok(output::tell(&text)) };
-            return if asked && told.is_ok() { Status::Holds } else { Status::Refused };
+            // Help and version are results; everything else is a request that can't be used.
+            if !error.use_stderr() && output::print(&text).is_ok() {
+                return Status::Holds;
+            }
+            output::tell(&text);
+            return Status::Refused;
         }
     };
     match arguments.color {
