@@ -42,6 +42,8 @@ pub enum Alarm {
     NotAWord {
         text: String,
     },
+    /// A `;`, and behind it what could be a block or a remark.
+    TwoBlocksInOneLine,
     NoDataAfterAddress {
         letter: char,
     },
@@ -88,6 +90,7 @@ pub enum Alarm {
     ReferenceReturnP {
         p: i64,
     },
+    ProgramNumber,
     /// M98 or G65 without P.
     ProgramNotNamed,
     ProgramNotFound {
@@ -119,6 +122,7 @@ pub enum Alarm {
         function: String,
         value: f64,
     },
+    NameFormat,
     TooManyMacroCalls {
         limit: usize,
     },
@@ -156,11 +160,23 @@ pub enum Alarm {
         number: i64,
     },
     MissingOpenBracket,
+    /// A comment stands where a value or `[` must, after an address or in an expression.
+    RoundBrackets {
+        letter: Option<char>,
+    },
+    /// `<=` and the like.
+    RelationSymbol,
     MissingCloseBracket,
     MissingEquals,
     MissingComma,
     IfFormat,
     WhileFormat,
+    SetNamesFormat,
+    NameCharacter,
+    NameTooLong {
+        name: String,
+    },
+    PrintFormat,
     PositionOverflow {
         letter: char,
         value: f64,

@@ -49,7 +49,7 @@ impl Lowering {
             match item {
                 ast::Item::Word(word) => words.push(word.clone()),
                 ast::Item::Skip(switch) => skips.push((switch.node, words.len())),
-                ast::Item::Unreadable(alarm) => return Err(alarm.clone()),
+                ast::Item::Unreadable(unreadable) => return Err(unreadable.alarm.clone()),
                 ast::Item::Statement(_) if statement.is_some() => {
                     let what = "two statements in one block".into();
                     return Err(Alarm::MacroFormat { what }.at(block.span));

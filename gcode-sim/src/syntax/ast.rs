@@ -45,16 +45,41 @@ pub enum Item {
     Statement(Spanned<Statement>),
     /// `/n` inside a block: the rest is skipped when the switch is on.
     Skip(Spanned<u8>),
-    /// The rest of the line can't be read; the alarm is raised if the block is reached.
-    Unreadable(Spanned<Alarm>),
+    /// The rest of the line can't be read.
+    Unreadable(Unreadable),
 }
 
-/// `(TEXT)`: the bytes between the brackets, whatever their encoding.
+/// The rest of a line from the word or statement that can't be read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Unreadable {
+    /// Raised if the block is reached; its place is where reading failed.
+    pub alarm: Spanned<Alarm>,
+    pub span: Span,
+    /// As written, comments included.
+    pub text: Vec<u8>,
+}
+
+/// A comment: its bytes, whatever their encoding.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Comment {
     /// Brackets included.
     pub span: Span,
+    /// What stands between the brackets or after the sign.
     pub text: Vec<u8>,
+    pub mark: CommentMark,
+}
+
+/// What makes a comment one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CommentMark {
+    /// `(TEXT)`.
+    Round,
+    /// `(TEXT` up to the end of the line.
+    Unclosed,
+    /// `; TEXT`.
+    Semicolon,
+    /// `// TEXT`.
+    Slashes,
 }
 
 /// An address and its value: `X10.`, `X-#1`, `F[#7/3.]`, `,R10.`

@@ -1,8 +1,11 @@
 //! A whole file: lines, `%` sections, and the programs in them.
-use super::ast::{Block, Program, ProgramName};
+use super::ast::{Block, Comment, Item, Program, ProgramName, Unreadable};
 use super::block::{begins_program, block};
+use super::comment::blank;
 use super::number::integer;
 use super::token::{Input, Line, spaces};
+use super::word::program_name;
+use crate::alarm::Alarm;
 use crate::source::{SourceId, Span, end_of_line};
 
 /// What a file is made of, line by line, so that nobody has to hold all of it.
@@ -22,38 +25,138 @@ pub enum Piece {
 #[derive(Debug)]
 pub struct Pieces<'a> {
     source: SourceId,
-    total: usize,
-    rest: Input<'a>,
-    /// What is left of a line that a piece ended within.
-    within: Option<(Line, Input<'a>)>,
+    bytes: &'a [u8],
+    /// Where the next line begins.
+    next: usize,
+    /// The line in hand: what is left to read, and where the line itself and its code end.
+    at: usize,
+    end: usize,
+    code_end: usize,
+    /// The line's code where comments had to be blanked, and where it begins.
+    blanked: Option<usize>,
+    code: Vec<u8>,
+    /// The line's comments that no piece has taken yet.
+    comments: Vec<Comment>,
 }
 
 impl<'a> Pieces<'a> {
     pub fn new(source: SourceId, bytes: &'a [u8]) -> Self {
-        let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-        let end = text.iter().position(|b| *b == 0x1a).unwrap_or(text.len());
-        Self { source, total: bytes.len(), rest: &text[..end], within: None }
-            .behind_leader(bytes.len() - text.len() + end)
+        // Senders end a file with 0x1A or with blank tape.
+        let kept = bytes.iter().rposition(|b| !matches!(b, 0 | 0x1a | b' ' | b'\t' | b'\r' | b'\n'));
+        let bytes = &bytes[..kept.map_or(0, |last| last + 1)];
+        let next = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
+        Self::starting(source, bytes, next).behind_leader()
     }
 
-    /// The offsets count from the file's first byte, whatever was cut off behind.
-    fn behind_leader(mut self, end: usize) -> Self {
-        self.total = end;
-        if let Some(at) = leader(self.rest) {
-            self.rest = &self.rest[at..];
+    fn starting(source: SourceId, bytes: &'a [u8], next: usize) -> Self {
+        let (code, comments) = (Vec::new(), Vec::new());
+        Self { source, bytes, next, at: 0, end: 0, code_end: 0, blanked: None, code, comments }
+    }
+
+    /// What stands before the first `%` is a leader, which a control ignores, if nothing in it can be read.
+    fn behind_leader(mut self) -> Self {
+        let text = &self.bytes[self.next..];
+        let begins_line = |at: usize| text[..at].last().is_none_or(|b| matches!(b, b'\n' | b'\r'));
+        let mark = text.iter().enumerate().find(|(at, byte)| **byte == b'%' && begins_line(*at));
+        let Some((mark, _)) = mark else { return self };
+        let mut leader = Pieces::starting(self.source, &self.bytes[..self.next + mark], self.next);
+        if !leader.any(|piece| !matches!(piece, Piece::Block(block) if says_nothing(&block))) {
+            self.next += mark;
         }
         self
     }
 
-    fn next_line(&mut self) -> Option<(Line, Input<'a>)> {
-        if self.rest.is_empty() {
+    /// Takes the next line in hand. Folder lines of memory dumps, `&F=//CNC_MEM/…`, say nothing to the control.
+    fn next_line(&mut self) -> Option<()> {
+        loop {
+            let text = self.bytes.get(self.next..).filter(|text| !text.is_empty())?;
+            let mut plain = true;
+            let mut length = 0;
+            for byte in text {
+                match byte {
+                    b'\n' | b'\r' => break,
+                    b'(' | b';' | b'/' => plain = false,
+                    _ => {}
+                }
+                length += 1;
+            }
+            self.at = self.next;
+            self.end = self.next + length;
+            self.code_end = self.end;
+            self.blanked = None;
+            self.next = self.end + end_of_line(&text[length..]);
+            let line = &text[..length];
+            if spaces(line).starts_with(b"&F=") {
+                continue;
+            }
+            if !plain {
+                self.blank_comments(line);
+            }
+            return Some(());
+        }
+    }
+
+    fn blank_comments(&mut self, text: &[u8]) {
+        let Self { source, at, code, comments, .. } = self;
+        blank(*source, *at as u32, text, code, comments, |text| {
+            let (block, left) = block(Line { source: SourceId(0), end: text.len() as u32 }, text);
+            !left.is_empty() || !says_nothing(&block) && !block.items.iter().any(is_unreadable)
+        });
+        self.code_end = *at + code.len();
+        self.blanked = Some(*at);
+    }
+
+    /// Reads the next piece of the line in hand; `None` at its end.
+    fn piece(&mut self) -> Option<Piece> {
+        let text = match self.blanked {
+            Some(begin) => &self.code[self.at - begin..],
+            None => &self.bytes[self.at..self.code_end],
+        };
+        let line = Line { source: self.source, end: self.code_end as u32 };
+        let from = self.at;
+        let at = spaces(text);
+        let left = |rest: Input<'_>| self.code_end - rest.len();
+        if at.is_empty() && self.comments.is_empty() {
             return None;
         }
-        let length = self.rest.iter().position(|b| matches!(b, b'\n' | b'\r')).unwrap_or(self.rest.len());
-        let text = &self.rest[..length];
-        let end = self.total - (self.rest.len() - length);
-        self.rest = &self.rest[length + end_of_line(&self.rest[length..])..];
-        Some((Line { source: self.source, end: end as u32 }, text))
+        if let Some(behind) = at.strip_prefix(b"%") {
+            // `%O0003(…)` goes on with the program; any other text behind the sign is a leader.
+            let behind = spaces(behind);
+            let goes_on = begins_program(behind) || behind.first() == Some(&b'<');
+            self.at = if goes_on { left(behind) } else { self.code_end };
+            if !goes_on {
+                self.comments.clear();
+            }
+            return Some(Piece::Section);
+        }
+        if let Some((rest, name)) = program_word(at) {
+            let span = line.span(at, rest);
+            self.at = left(rest);
+            return Some(Piece::Program { name, span });
+        }
+        let (mut block, rest) = block(line, text);
+        let to = left(rest);
+        self.at = to;
+        self.finish(&mut block, from, to);
+        Some(Piece::Block(block))
+    }
+
+    /// Gives the block its comments and its place, and what can't be read its text as written.
+    fn finish(&mut self, block: &mut Block, from: usize, to: usize) {
+        let last = to == self.code_end;
+        let end = if last { self.end } else { to };
+        if last {
+            block.comments = std::mem::take(&mut self.comments);
+        } else if !self.comments.is_empty() {
+            let own = self.comments.iter().take_while(|c| (c.span.start as usize) < to).count();
+            block.comments.extend(self.comments.drain(..own));
+        }
+        block.span = trimmed(self.source, self.bytes, from, end);
+        if let Some(Item::Unreadable(unreadable)) = block.items.last_mut() {
+            show(unreadable, self.bytes, end);
+            let begin = unreadable.span.start;
+            block.comments.retain(|c| c.span.start < begin);
+        }
     }
 }
 
@@ -62,77 +165,59 @@ impl Iterator for Pieces<'_> {
 
     fn next(&mut self) -> Option<Piece> {
         loop {
-            let (line, text) = match self.within.take() {
-                Some(left) => left,
-                None => self.next_line()?,
-            };
-            let at = spaces(text);
-            match at.first() {
-                None => {}
-                Some(b'%') => {
-                    // `%O0003(…)` goes on with the program; any other text behind the sign is a leader.
-                    let behind = spaces(&at[1..]);
-                    if begins_program(behind) || behind.first() == Some(&b'<') {
-                        self.within = Some((line, behind));
-                    }
-                    return Some(Piece::Section);
-                }
-                // `&F=//CNC_MEM/…`: the folder line of a memory dump says nothing to the control.
-                Some(b'&') => {}
-                Some(_) => {
-                    if let Some((rest, name)) = program_name(at) {
-                        self.within = Some((line, rest));
-                        return Some(Piece::Program { name, span: line.span(at, rest) });
-                    }
-                    let (block, left) = block(line, text);
-                    if !left.is_empty() {
-                        self.within = Some((line, left));
-                    }
-                    return Some(Piece::Block(block));
-                }
+            if let Some(piece) = self.piece() {
+                return Some(piece);
             }
+            self.next_line()?;
         }
     }
 }
 
-/// Where the text after a leader begins: what stands before the first `%` is ignored if a program begins behind it
-/// and none before it.
-fn leader(bytes: &[u8]) -> Option<usize> {
-    let first = bytes.iter().position(|b| *b == b'%')?;
-    let starts_line = first == 0 || matches!(bytes[first - 1], b'\n' | b'\r');
-    if !starts_line || !bytes[..first].iter().any(|b| !b.is_ascii_whitespace()) {
-        return None;
-    }
-    let has_program = |text: &[u8]| {
-        let mut lines = text.split(|b| matches!(b, b'\n' | b'\r'));
-        lines.any(|line| {
-            let line = spaces(line.strip_prefix(b"%").unwrap_or(line));
-            begins_program(line) || line.first() == Some(&b'<')
-        })
-    };
-    (!has_program(&bytes[..first]) && has_program(&bytes[first..])).then_some(first)
+/// The place of what stands between two offsets, spaces around it left out.
+fn trimmed(source: SourceId, bytes: &[u8], from: usize, to: usize) -> Span {
+    let text = &bytes[from..to];
+    let begin = text.iter().position(|b| !b.is_ascii_whitespace()).unwrap_or(text.len());
+    let end = text.iter().rposition(|b| !b.is_ascii_whitespace()).map_or(begin, |last| last + 1);
+    Span { source, start: (from + begin) as u32, end: (from + end) as u32 }
 }
 
-fn program_name(at: Input<'_>) -> Option<(Input<'_>, ProgramName)> {
+/// Fills in what is shown of a text that can't be read.
+fn show(unreadable: &mut Unreadable, bytes: &[u8], end: usize) {
+    let Unreadable { alarm, span, text } = unreadable;
+    *span = trimmed(span.source, bytes, span.start as usize, end);
+    *text = bytes[span.start as usize..span.end as usize].to_vec();
+    alarm.span.end = span.end.max(alarm.span.start);
+    if let Alarm::NotAWord { text } | Alarm::Expression { text } = &mut alarm.node {
+        let rest = String::from_utf8_lossy(&bytes[alarm.span.start as usize..alarm.span.end as usize]);
+        let shown: String = rest.chars().take(12).collect();
+        *text = shown.trim_end().to_owned();
+    }
+}
+
+fn is_unreadable(item: &Item) -> bool {
+    matches!(item, Item::Unreadable(_))
+}
+
+/// No word and no statement that can be read: a comment, or text that was never meant for a control.
+fn says_nothing(block: &Block) -> bool {
+    block.items.iter().all(is_unreadable) && block.number.is_none() && block.skip.is_none()
+}
+
+/// `O0001`, `:0007`, `<NAME>`, `O9123<NAME>`, where the number is the name and the rest a title.
+fn program_word(at: Input<'_>) -> Option<(Input<'_>, ProgramName)> {
     if begins_program(at) {
         let (rest, number) = integer(spaces(&at[1..])).ok()?;
-        let number = u32::try_from(number).ok().filter(|n| *n <= 99_999_999)?;
-        // `O9123<NAME>`: the number is the name, the rest a title.
-        let rest = match spaces(rest) {
-            [b'<', title @ ..] => title.iter().position(|b| *b == b'>').map_or(rest, |end| &title[end + 1..]),
-            _ => rest,
-        };
+        let number = u32::try_from(number).ok().filter(|n| (1..=99_999_999).contains(n))?;
+        let rest = program_name(spaces(rest)).map_or(rest, |(rest, _)| rest);
         return Some((rest, ProgramName::Number(number)));
     }
-    let (b'<', inside) = at.split_first()? else { return None };
-    let end = inside.iter().position(|b| *b == b'>')?;
-    let text = String::from_utf8_lossy(&inside[..end]).trim().to_ascii_uppercase();
+    let (rest, text) = program_name(at).ok()?;
     let number = text.strip_prefix('O').and_then(|digits| digits.parse().ok());
-    let name = number.map_or(ProgramName::Name(text), ProgramName::Number);
-    Some((&inside[end + 1..], name))
+    Some((rest, number.map_or(ProgramName::Name(text), ProgramName::Number)))
 }
 
-/// All programs of a file. Blocks before the first O word of a section are a program without a name.
+/// All programs of a file. Blocks before the first O word of a section are a program without a name; where nothing in
+/// it can be read and the file has other programs, it is the text around a tape and left out.
 pub fn parse(source: SourceId, bytes: &[u8]) -> Vec<Program> {
     let mut programs: Vec<Program> = Vec::new();
     let mut open = false;
@@ -145,11 +230,8 @@ pub fn parse(source: SourceId, bytes: &[u8]) -> Vec<Program> {
             }
             Piece::Block(block) => {
                 if !open {
-                    programs.push(Program {
-                        name: ProgramName::Unnamed,
-                        span: block.span,
-                        blocks: Vec::new(),
-                    });
+                    let (name, span) = (ProgramName::Unnamed, block.span);
+                    programs.push(Program { name, span, blocks: Vec::new() });
                     open = true;
                 }
                 if let Some(program) = programs.last_mut() {
@@ -157,6 +239,9 @@ pub fn parse(source: SourceId, bytes: &[u8]) -> Vec<Program> {
                 }
             }
         }
+    }
+    if programs.len() > 1 {
+        programs.retain(|p| p.name != ProgramName::Unnamed || !p.blocks.iter().all(says_nothing));
     }
     programs
 }
@@ -175,7 +260,7 @@ mod tests {
         let blocks = programs(text.as_bytes()).into_iter().flat_map(|p| p.blocks);
         let items = blocks.flat_map(|b| b.items);
         items
-            .filter_map(|item| if let Item::Unreadable(a) = item { Some(a.node.code()) } else { None })
+            .filter_map(|item| if let Item::Unreadable(a) = item { Some(a.alarm.node.code()) } else { None })
             .collect()
     }
 

@@ -1,10 +1,18 @@
 //! Text to tree: reading never fails, and nothing but this module knows the parser library.
+//!
+//! A file is read line by line ([`Pieces`]): the line's comments are found and blanked (`comment`), then its
+//! block is read (`block`) from words (`word`) and statements (`statement`, `output`), which hold expressions (`expr`,
+//! `function`) and numbers (`number`). What can't be read stays in its block as text with its alarm.
 pub mod ast;
 mod block;
+mod comment;
 mod expr;
 mod file;
+mod function;
 mod number;
+mod output;
 mod statement;
 mod token;
+mod word;
 
 pub use file::{Piece, Pieces, parse};

@@ -1,11 +1,13 @@
 //! Literal numbers: digits with at most one point, spaces anywhere between them.
 use super::ast::Decimal;
-use super::token::{Input, Read, fail, is_space, other, shown};
+use super::token::{Input, Read, fail, is_space, other};
 use crate::alarm::Alarm;
 
 /// Digits a literal may have in a macro expression, and after an address.
 pub(super) const EXPRESSION_DIGITS: u32 = 12;
 pub(super) const WORD_DIGITS: u32 = 9;
+/// Zeros behind the point don't count as digits; beyond this many no control has a use for them.
+const MOST_PLACES: u8 = 18;
 
 /// An unsigned literal of at most `most` digits, leading zeros not counted.
 pub(super) fn decimal(input: Input<'_>, negative: bool, most: u32) -> Read<'_, Decimal> {
@@ -18,34 +20,21 @@ pub(super) fn decimal(input: Input<'_>, negative: bool, most: u32) -> Read<'_, D
         match byte {
             b'0'..=b'9' => {
                 any = true;
-                if digits > 0 || *byte != b'0' {
-                    significant += 1;
-                }
-                if significant > most {
+                significant += u32::from(digits > 0 || *byte != b'0');
+                if significant > most || places == Some(MOST_PLACES) {
                     return fail(input, Alarm::TooManyDigits);
                 }
                 digits = digits * 10 + u64::from(byte - b'0');
-                places = match places {
-                    Some(n) if n >= 18 => return fail(input, Alarm::TooManyDigits),
-                    Some(n) => Some(n + 1),
-                    None => None,
-                };
-                used = at + 1;
+                places = places.map(|n| n + 1);
             }
             b'.' if places.is_some() => return fail(input, Alarm::IllegalPoint { letter: None }),
-            b'.' => {
-                places = Some(0);
-                used = at + 1;
-            }
-            byte if is_space(*byte) => {}
+            b'.' => places = Some(0),
+            byte if is_space(*byte) => continue,
             _ => break,
         }
+        used = at + 1;
     }
-    match (any, places) {
-        (true, _) => Ok((&input[used..], Decimal { negative, digits, places })),
-        (false, Some(_)) => fail(input, Alarm::NotAWord { text: shown(input) }),
-        (false, None) => other(input),
-    }
+    if any { Ok((&input[used..], Decimal { negative, digits, places })) } else { other(input) }
 }
 
 /// A whole number without a point, as after N, O, DO and `/`.
@@ -54,5 +43,28 @@ pub(super) fn integer(input: Input<'_>) -> Read<'_, u64> {
     match number.places {
         None => Ok((rest, number.digits)),
         Some(_) => fail(input, Alarm::IllegalPoint { letter: None }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Option<(u64, Option<u8>, usize)> {
+        let (rest, number) = decimal(text.as_bytes(), false, WORD_DIGITS).ok()?;
+        Some((number.digits, number.places, rest.len()))
+    }
+
+    #[test]
+    fn points_zeros_and_spaces() {
+        assert_eq!(read("12.50"), Some((1250, Some(2), 0)));
+        assert_eq!(read(".5"), Some((5, Some(1), 0)));
+        assert_eq!(read("5."), Some((5, Some(0), 0)));
+        assert_eq!(read("0000000000012"), Some((12, None, 0)), "leading zeros are no digits");
+        assert_eq!(read("1 0. 5 Y"), Some((105, Some(1), 2)), "the space before Y is left");
+        assert_eq!(read("123456789"), Some((123_456_789, None, 0)));
+        assert_eq!(read("."), None);
+        assert_eq!(read("1234567890"), None, "nine digits at most");
+        assert_eq!(read("1..5"), None);
     }
 }

@@ -1,8 +1,12 @@
-//! Macro statements: assignment, GOTO, IF, WHILE, DO, END, and the output statements.
-use super::ast::{BinaryOp, Condition, Expr, PrintKind, PrintPart, Statement};
-use super::expr::{condition, expr, starts_with, target};
+//! Macro statements: assignment, GOTO, IF, WHILE, DO, END.
+use super::ast::{Expr, PrintKind, Statement};
+use super::expr::{condition, expr, variable, wanted};
 use super::number::integer;
-use super::token::{Input, Line, Read, fail, other, shown, spaces};
+use super::output::{print, set_names};
+use super::token::{
+    Input, Line, Read, comment_before, fail, is_space, letters, must, next, no_expression, other, sign,
+    spaces,
+};
 use crate::alarm::Alarm;
 use crate::source::Spanned;
 
@@ -21,57 +25,33 @@ pub(super) enum Keyword {
     Close,
 }
 
-/// Statement words, and how many of their letters are enough.
-const KEYWORDS: [(&[u8], usize, Keyword); 11] = [
-    (b"IF", 2, Keyword::If),
-    (b"WHILE", 2, Keyword::While),
-    (b"GOTO", 2, Keyword::Goto),
-    (b"DO", 2, Keyword::Do),
-    (b"END", 2, Keyword::End),
-    (b"THEN", 2, Keyword::Then),
-    (b"SETVN", 5, Keyword::SetNames),
-    (b"DPRNT", 2, Keyword::Decimal),
-    (b"BPRNT", 2, Keyword::Binary),
-    (b"POPEN", 2, Keyword::Open),
-    (b"PCLOS", 2, Keyword::Close),
+/// Statement words. Their first two letters are enough (WH, GO, EN …), and no two begin alike.
+const KEYWORDS: [(&str, Keyword); 11] = [
+    ("IF", Keyword::If),
+    ("GOTO", Keyword::Goto),
+    ("WHILE", Keyword::While),
+    ("DO", Keyword::Do),
+    ("END", Keyword::End),
+    ("THEN", Keyword::Then),
+    ("SETVN", Keyword::SetNames),
+    ("DPRNT", Keyword::Decimal),
+    ("BPRNT", Keyword::Binary),
+    ("POPEN", Keyword::Open),
+    ("PCLOS", Keyword::Close),
 ];
 
-/// The statement word that the input begins with; what is left stands after it.
+/// The statement word that the input begins with; what is left stands after it. Two letters one after the other are
+/// never words, so a single look at the second one settles most blocks.
 pub(super) fn keyword(input: Input<'_>) -> Option<(Input<'_>, Keyword)> {
-    let length = input.iter().take_while(|b| b.is_ascii_alphabetic()).count();
-    if length < 2 {
+    let (_, after) = input.split_first()?;
+    let second = after.iter().find(|b| !is_space(**b))?;
+    if !second.is_ascii_alphabetic() {
         return None;
     }
-    let (word, rest) = input.split_at(length);
-    let fits = |(text, least, _): &&(&[u8], usize, Keyword)| length >= *least && starts_with(text, word);
-    KEYWORDS.iter().find(fits).map(|(_, _, keyword)| (rest, *keyword))
-}
-
-/// `#n=value`; the input begins with `#` or with a name in brackets.
-pub(super) fn assignment(line: Line, input: Input<'_>) -> Read<'_, Statement> {
-    let (rest, target) = target(line, input)?;
-    let at = spaces(rest);
-    let Some((b'=', after)) = at.split_first() else { return fail(at, Alarm::MissingEquals) };
-    let (rest, value) = wanted(expr(line, after, 0), after)?;
-    Ok((not_followed_by_bracket(rest)?.0, Statement::Assign { target, value }))
-}
-
-/// A `]` too many tells that an opening one is missing.
-fn not_followed_by_bracket(rest: Input<'_>) -> Read<'_, ()> {
-    match spaces(rest).first() {
-        Some(b']') => fail(spaces(rest), Alarm::MissingOpenBracket),
-        Some(b'[' | b'=' | b'*' | b'+' | b'-') => {
-            fail(spaces(rest), Alarm::Expression { text: shown(spaces(rest)) })
-        }
-        _ => Ok((rest, ())),
-    }
-}
-
-fn wanted<'a, T>(read: Read<'a, T>, at: Input<'a>) -> Read<'a, T> {
-    match read {
-        Err(nom::Err::Error(_)) => fail(spaces(at), Alarm::Expression { text: shown(spaces(at)) }),
-        read => read,
-    }
+    KEYWORDS.iter().find_map(|(text, keyword)| {
+        let (rest, count) = letters(input, text);
+        (count >= 2).then_some((rest, *keyword))
+    })
 }
 
 /// The statement after its keyword.
@@ -91,39 +71,37 @@ pub(super) fn statement<'a>(line: Line, rest: Input<'a>, keyword: Keyword) -> Re
     }
 }
 
-fn goto(line: Line, rest: Input<'_>) -> Read<'_, Expr> {
-    let (rest, to) = match expr(line, rest, 0) {
-        Err(nom::Err::Error(_)) => {
-            return fail(rest, Alarm::MacroFormat { what: "GOTO needs a sequence number".into() });
-        }
-        read => read?,
-    };
-    Ok((not_followed_by_bracket(rest)?.0, to))
+/// `#n=value`; the input begins with `#` or with a name in brackets.
+pub(super) fn assignment(line: Line, input: Input<'_>) -> Read<'_, Statement> {
+    let (rest, target) = must(|input| variable(line, input), not_a_word)(input)?;
+    let (after, ()) = must(sign(b'='), || Alarm::MissingEquals)(rest)?;
+    let (rest, value) = wanted(expr(line, after, 0), after)?;
+    let (rest, ()) = whole(rest)?;
+    Ok((rest, Statement::Assign { target, value }))
 }
 
-/// `[c1]`, and `[c1]AND[c2]` as some programs write it without the outer brackets.
-fn conditions<'a>(line: Line, rest: Input<'a>, alarm: &Alarm) -> Read<'a, Condition> {
-    let one = |input: Input<'a>| match condition(line, input) {
-        Err(nom::Err::Error(_)) => fail(spaces(input), alarm.clone()),
-        read => read,
-    };
-    let (mut rest, mut found) = one(rest)?;
-    loop {
-        let at = spaces(rest);
-        let words: [(&[u8], BinaryOp); 3] =
-            [(b"AND", BinaryOp::And), (b"OR", BinaryOp::Or), (b"XOR", BinaryOp::Xor)];
-        let Some((text, op)) = words.into_iter().find(|(text, _)| starts_with(at, text)) else {
-            return Ok((rest, found));
-        };
-        let (after, right) = one(&at[text.len()..])?;
-        let bracketed = |c| Box::new(Condition::Bracket(Box::new(c)));
-        found = Condition::Logic(op, bracketed(found), bracketed(right));
-        rest = after;
+fn not_a_word() -> Alarm {
+    Alarm::NotAWord { text: String::new() }
+}
+
+/// What may not follow an expression: a `]` too many tells that an opening one is missing.
+fn whole(rest: Input<'_>) -> Read<'_, ()> {
+    match next(rest) {
+        Some((b']', _)) => fail(spaces(rest), Alarm::MissingOpenBracket),
+        Some((b'[' | b'=' | b'<' | b'>' | b'.' | b'0'..=b'9', _)) => no_expression(spaces(rest)),
+        _ => Ok((rest, ())),
     }
 }
 
-fn if_statement(line: Line, rest: Input<'_>) -> Read<'_, Statement> {
-    let (rest, condition) = conditions(line, rest, &Alarm::IfFormat)?;
+fn goto(line: Line, input: Input<'_>) -> Read<'_, Expr> {
+    let what = || Alarm::MacroFormat { what: "GOTO needs a sequence number".into() };
+    let (rest, to) = must(|input| expr(line, input, 0), what)(input)?;
+    let (rest, ()) = whole(rest)?;
+    Ok((rest, to))
+}
+
+fn if_statement(line: Line, input: Input<'_>) -> Read<'_, Statement> {
+    let (rest, condition) = must(|input| condition(line, input), || format(input, Alarm::IfFormat))(input)?;
     let at = spaces(rest);
     match keyword(at) {
         Some((after, Keyword::Goto)) => {
@@ -131,23 +109,31 @@ fn if_statement(line: Line, rest: Input<'_>) -> Read<'_, Statement> {
             Ok((rest, Statement::IfGoto { condition, to }))
         }
         Some((after, Keyword::Then)) => {
-            let at = spaces(after);
-            let (rest, then) = match keyword(at) {
-                Some((after, Keyword::Goto)) => statement(line, after, Keyword::Goto)?,
-                None if at.first() == Some(&b'#') || at.first() == Some(&b'[') => assignment(line, at)?,
-                _ => return fail(at, Alarm::IfFormat),
-            };
+            let (rest, then) = must(|input| then(line, input), || Alarm::IfFormat)(after)?;
             Ok((rest, Statement::IfThen { condition, then: Box::new(then) }))
         }
         _ => fail(at, Alarm::IfFormat),
     }
 }
 
-fn while_statement(line: Line, rest: Input<'_>) -> Read<'_, Statement> {
-    let (rest, condition) = conditions(line, rest, &Alarm::WhileFormat)?;
+/// One assignment, or a GOTO, which some controls take.
+fn then(line: Line, input: Input<'_>) -> Read<'_, Statement> {
+    let at = spaces(input);
+    match at.first() {
+        Some(b'#' | b'[') => assignment(line, at),
+        _ => match keyword(at) {
+            Some((after, Keyword::Goto)) => statement(line, after, Keyword::Goto),
+            _ => other(at),
+        },
+    }
+}
+
+fn while_statement(line: Line, input: Input<'_>) -> Read<'_, Statement> {
+    let (rest, condition) =
+        must(|input| condition(line, input), || format(input, Alarm::WhileFormat))(input)?;
     let at = spaces(rest);
     match keyword(at) {
-        Some((after, Keyword::Do)) => {
+        Some((after, Keyword::Do)) if matches!(next(after), Some((b'0'..=b'9', _))) => {
             let (rest, number) = loop_number(line, after)?;
             Ok((rest, Statement::While { condition, number }))
         }
@@ -155,76 +141,14 @@ fn while_statement(line: Line, rest: Input<'_>) -> Read<'_, Statement> {
     }
 }
 
-fn loop_number(line: Line, rest: Input<'_>) -> Read<'_, Spanned<i64>> {
-    let at = spaces(rest);
-    match integer(at) {
-        Ok((rest, number)) => Ok((rest, line.spanned(number as i64, at, rest))),
-        Err(nom::Err::Error(_)) => {
-            fail(at, Alarm::MacroFormat { what: "DO and END need the loop's number, 1, 2 or 3".into() })
-        }
-        Err(error) => Err(error),
-    }
+/// `IF(…)` has a comment where its condition should be.
+fn format(input: Input<'_>, otherwise: Alarm) -> Alarm {
+    if comment_before(input) { Alarm::RoundBrackets { letter: None } } else { otherwise }
 }
 
-/// `SETVN 510[TOOL_NO, WORK]`.
-fn set_names(line: Line, rest: Input<'_>) -> Read<'_, Statement> {
-    let what = || Alarm::MacroFormat { what: "write SETVN 510[NAME,NAME]".into() };
-    let (rest, first) = match expr(line, spaces(rest), 0) {
-        Err(nom::Err::Error(_)) => return fail(rest, what()),
-        read => read?,
-    };
-    let at = spaces(rest);
-    let Some((b'[', inside)) = at.split_first() else { return fail(at, what()) };
-    let Some(end) = inside.iter().position(|b| *b == b']') else {
-        return fail(at, Alarm::MissingCloseBracket);
-    };
-    let text = String::from_utf8_lossy(&inside[..end]).to_ascii_uppercase();
-    let names = text.split(',').map(|name| name.trim().to_owned()).collect();
-    Ok((&inside[end + 1..], Statement::SetNames { first, names }))
-}
-
-/// `DPRNT[TEXT#1[44]*#[#2][30]]`.
-fn print(line: Line, rest: Input<'_>, kind: PrintKind) -> Read<'_, Statement> {
-    let at = spaces(rest);
-    let Some((b'[', mut rest)) = at.split_first() else { return other(at) };
-    let mut parts = Vec::new();
-    let mut text = Vec::new();
-    loop {
-        match rest.first() {
-            None => return fail(rest, Alarm::MissingCloseBracket),
-            Some(b']') => {
-                push_text(&mut parts, &mut text);
-                return Ok((&rest[1..], Statement::Print { kind, parts }));
-            }
-            Some(b'#') => {
-                push_text(&mut parts, &mut text);
-                let (after, variable) = target(line, rest)?;
-                let bracket = spaces(after);
-                let Some((b'[', inside)) = bracket.split_first() else {
-                    return fail(
-                        bracket,
-                        Alarm::MacroFormat { what: "a variable in DPRNT needs its digits: #1[44]".into() },
-                    );
-                };
-                let digits = inside.iter().take_while(|b| b.is_ascii_digit()).count();
-                let format = String::from_utf8_lossy(&inside[..digits]).into_owned();
-                let Some((b']', after)) = inside[digits..].split_first() else {
-                    return fail(&inside[digits..], Alarm::MissingCloseBracket);
-                };
-                parts.push(PrintPart::Value { variable, format });
-                rest = after;
-            }
-            Some(byte) => {
-                text.push(*byte);
-                rest = &rest[1..];
-            }
-        }
-    }
-}
-
-fn push_text(parts: &mut Vec<PrintPart>, text: &mut Vec<u8>) {
-    if !text.is_empty() {
-        parts.push(PrintPart::Text(String::from_utf8_lossy(text).into_owned()));
-        text.clear();
-    }
+fn loop_number(line: Line, input: Input<'_>) -> Read<'_, Spanned<i64>> {
+    let what = || Alarm::MacroFormat { what: "DO and END need the loop's number, 1, 2 or 3".into() };
+    let at = spaces(input);
+    let (rest, number) = must(integer, what)(at)?;
+    Ok((rest, line.spanned(i64::try_from(number).unwrap_or(i64::MAX), at, rest)))
 }

@@ -1,6 +1,6 @@
-//! The smallest pieces of a line: spaces, digits, brackets, letters; and how reading fails.
+//! The smallest pieces of a line: spaces, words of letters, places; and how reading fails.
 use nom::error::{ErrorKind, ParseError};
-use nom::{Err, IResult};
+use nom::{Err, IResult, Parser};
 
 use crate::alarm::Alarm;
 use crate::source::{SourceId, Span, Spanned};
@@ -8,7 +8,12 @@ use crate::source::{SourceId, Span, Spanned};
 pub(super) type Input<'a> = &'a [u8];
 pub(super) type Read<'a, T> = IResult<Input<'a>, T, Fault>;
 
-/// Why a piece can't be read, and how much of the line was left there.
+/// Every byte of a comment is overwritten with this one before a line is read (see [`super::comment`]), so that a
+/// comment may stand between any two words, numbers and brackets. No other byte of a line's code is a `(`.
+pub(super) const COMMENT: u8 = b'(';
+
+/// Why a piece can't be read, and how much of the line was left there. The text that an alarm shows is filled in
+/// once it is known that the line can't be read in another way.
 #[derive(Debug)]
 pub(super) struct Fault {
     pub alarm: Alarm,
@@ -17,7 +22,7 @@ pub(super) struct Fault {
 
 impl ParseError<Input<'_>> for Fault {
     fn from_error_kind(input: Input<'_>, _: ErrorKind) -> Self {
-        Self { alarm: Alarm::NotAWord { text: shown(input) }, left: input.len() }
+        Self { alarm: Alarm::NotAWord { text: String::new() }, left: input.len() }
     }
 
     fn append(_: Input<'_>, _: ErrorKind, other: Self) -> Self {
@@ -30,22 +35,32 @@ pub(super) fn fail<T>(input: Input<'_>, alarm: Alarm) -> Read<'_, T> {
     Err(Err::Failure(Fault { alarm, left: input.len() }))
 }
 
-/// This isn't the piece looked for; another may be.
-pub(super) fn other<T>(input: Input<'_>) -> Read<'_, T> {
-    Err(Err::Error(Fault { alarm: Alarm::NotAWord { text: shown(input) }, left: input.len() }))
+/// Neither a number nor anything else an expression may have here.
+pub(super) fn no_expression<T>(input: Input<'_>) -> Read<'_, T> {
+    fail(input, Alarm::Expression { text: String::new() })
 }
 
-/// The first few characters of what is left, for a message.
-pub(super) fn shown(input: Input<'_>) -> String {
-    let piece: Vec<u8> = input.iter().copied().take_while(|b| !matches!(b, b'\r' | b'\n')).take(12).collect();
-    String::from_utf8_lossy(&piece).trim_end().to_owned()
+/// This isn't the piece looked for; another may be.
+pub(super) fn other<T>(input: Input<'_>) -> Read<'_, T> {
+    Err(Err::Error(Fault::from_error_kind(input, ErrorKind::Alt)))
+}
+
+/// What must follow: where it isn't there, the line can't be read.
+pub(super) fn must<'a, T>(
+    mut parser: impl Parser<Input<'a>, Output = T, Error = Fault>,
+    alarm: impl Fn() -> Alarm,
+) -> impl FnMut(Input<'a>) -> Read<'a, T> {
+    move |input| match parser.parse(input) {
+        Err(Err::Error(_)) => fail(spaces(input), alarm()),
+        read => read,
+    }
 }
 
 /// Where the line stands, so that what is left of it tells a place.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Line {
     pub source: SourceId,
-    /// The offset of the byte after the line's last.
+    /// The offset of the byte after the last one of the line's code.
     pub end: u32,
 }
 
@@ -63,8 +78,47 @@ pub(super) fn is_space(byte: u8) -> bool {
     matches!(byte, b' ' | b'\t')
 }
 
-/// What is left after spaces.
+/// What is left after spaces and comments.
 pub(super) fn spaces(input: Input<'_>) -> Input<'_> {
-    let count = input.iter().take_while(|b| is_space(**b)).count();
+    let count = input.iter().take_while(|b| is_space(**b) || **b == COMMENT).count();
     &input[count..]
+}
+
+/// Whether a comment stands before the next piece: round brackets where square ones may have been meant.
+pub(super) fn comment_before(input: Input<'_>) -> bool {
+    input.iter().find(|b| !is_space(**b)) == Some(&COMMENT)
+}
+
+/// The next byte after spaces, and what is left after it.
+pub(super) fn next(input: Input<'_>) -> Option<(u8, Input<'_>)> {
+    spaces(input).split_first().map(|(byte, rest)| (*byte, rest))
+}
+
+/// One sign such as `[`, spaces before it.
+pub(super) fn sign<'a>(wanted: u8) -> impl Fn(Input<'a>) -> Read<'a, ()> {
+    move |input| match next(input) {
+        Some((byte, rest)) if byte == wanted => Ok((rest, ())),
+        _ => other(input),
+    }
+}
+
+/// A word of letters in either case, spaces before and between them.
+pub(super) fn word<'a>(text: &'static str) -> impl Fn(Input<'a>) -> Read<'a, ()> {
+    move |input| match letters(spaces(input), text) {
+        (rest, count) if count == text.len() => Ok((rest, ())),
+        _ => other(input),
+    }
+}
+
+/// How many letters of `text` the input begins with, and what is left after them.
+pub(super) fn letters<'a>(input: Input<'a>, text: &str) -> (Input<'a>, usize) {
+    let mut rest = input;
+    for (count, wanted) in text.bytes().enumerate() {
+        let gap = rest.iter().take_while(|b| is_space(**b)).count();
+        match rest[gap..].split_first() {
+            Some((byte, after)) if byte.to_ascii_uppercase() == wanted => rest = after,
+            _ => return (rest, count),
+        }
+    }
+    (rest, text.len())
 }
