@@ -11,8 +11,10 @@ mod file;
 mod function;
 mod number;
 mod output;
+pub mod print;
 mod statement;
 mod token;
 mod word;
 
 pub use file::{Piece, Pieces, parse};
+pub use print::print;
