@@ -99,6 +99,7 @@ pub enum Dash {
 pub enum Align {
     Left,
     Centre,
+    Right,
 }
 
 /// One thing to paint. Later ones cover earlier ones.

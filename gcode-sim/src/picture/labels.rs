@@ -2,24 +2,9 @@
 //!
 //! Greedy and deterministic: the most important label first, each at its cheapest free place. A label is only put
 //! where it covers nothing that is in the field, so two labels can never overlap.
-use super::ink::{Px, Rect, px};
+use super::ink::{Align, Px, Rect, px};
+use super::obstacle::Obstacle;
 use crate::units::Deg;
-
-/// Something a label must keep off.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Obstacle {
-    Box(Rect),
-    Disc {
-        centre: Px,
-        radius: f64,
-    },
-    /// A circle's line; its inside is free.
-    Ring {
-        centre: Px,
-        radius: f64,
-    },
-    Segment(Px, Px),
-}
 
 /// What a label belongs to.
 #[derive(Clone, Copy, Debug)]
@@ -42,6 +27,15 @@ pub(super) enum Way {
 }
 
 impl Symbol {
+    fn align(&self, rect: &Rect) -> Align {
+        let aside = rect.centre().x - self.at.x;
+        match rect.width() / 4.0 {
+            middle if middle < aside => Align::Left,
+            middle if aside < -middle => Align::Right,
+            _ => Align::Centre,
+        }
+    }
+
     fn leader(&self, rect: &Rect) -> (Px, Px) {
         let end = rect.nearest(self.at);
         let length = self.at.distance(end).max(1e-9);
@@ -55,6 +49,8 @@ impl Symbol {
 pub(super) struct Spot {
     pub(super) rect: Rect,
     pub(super) leader: Option<(Px, Px)>,
+    /// The side of the box that is towards the symbol: lines of unequal length keep to it.
+    pub(super) align: Align,
 }
 
 /// The area for labels and what is already in it, sorted into cells so that asking stays cheap.
@@ -69,7 +65,7 @@ pub(super) struct Field {
 }
 
 const DIRECTIONS: u32 = 24;
-/// Distances between symbol and label, in heights of a line; from the third on there is a leader.
+/// Distances between symbol and label, in heights of a line; from the second on there is a leader.
 const DISTANCES: [f64; 12] = [0.2, 0.7, 1.2, 1.8, 2.6, 3.6, 5.0, 6.5, 9.0, 12.0, 16.0, 21.0];
 /// A label whose leader may not pass over other symbols stays within so many distances.
 const NEAR: usize = 8;
@@ -126,13 +122,17 @@ impl Field {
                 if !self.is_free(&rect) {
                     continue;
                 }
-                let leader = (symbol.way != Way::Clear || 1 < step).then(|| symbol.leader(&rect));
+                let leader =
+                    (symbol.way != Way::Clear || 0 < step || self.is_nearer_to_another(&rect, symbol))
+                        .then(|| symbol.leader(&rect));
                 if leader.is_some_and(|leader| self.is_crossed(leader, symbol)) {
                     continue;
                 }
-                let cost = cost + 2.0 * self.soft.iter().filter(|o| o.hits(&rect)).count() as f64;
+                let doubtful =
+                    if leader.is_some() && self.is_nearer_to_another(&rect, symbol) { 3.0 } else { 0.0 };
+                let cost = cost + doubtful + 2.0 * self.soft.iter().filter(|o| o.hits(&rect)).count() as f64;
                 if best.is_none_or(|(least, _)| cost < least) {
-                    best = Some((cost, Spot { rect, leader }));
+                    best = Some((cost, Spot { rect, leader, align: symbol.align(&rect) }));
                 }
             }
         }
@@ -154,7 +154,20 @@ impl Field {
             middles.into_iter().map(|m| Rect::new(m.x - width / 2.0, m.y - height / 2.0, width, height));
         let rect = rects.into_iter().find(|rect| self.is_free(rect))?;
         self.block(Obstacle::Box(rect));
-        Some(Spot { rect, leader: None })
+        Some(Spot { rect, leader: None, align: Align::Centre })
+    }
+
+    /// Whether a reader would take the label for another symbol's.
+    fn is_nearer_to_another(&self, rect: &Rect, symbol: Symbol) -> bool {
+        let own = rect.nearest(symbol.at).distance(symbol.at) - symbol.clear;
+        let cells = self.touched(&rect.grown(1.5 * own.max(0.0)));
+        cells.into_iter().flat_map(|i| &self.cells[i]).any(|o| match *o {
+            Obstacle::Disc { centre, radius } => {
+                symbol.clear < centre.distance(symbol.at)
+                    && rect.nearest(centre).distance(centre) - radius < 1.5 * own
+            }
+            Obstacle::Box(_) | Obstacle::Ring { .. } | Obstacle::Segment(..) => false,
+        })
     }
 
     /// Whether something lies in the leader's way.
@@ -184,71 +197,6 @@ impl Field {
         let (top, bottom) = (clamp(rect.top - self.area.top, rows), clamp(rect.bottom - self.area.top, rows));
         (top..=bottom).flat_map(|row| (left..=right).map(move |column| row * self.columns + column)).collect()
     }
-}
-
-impl Obstacle {
-    fn bounds(&self) -> Rect {
-        match *self {
-            Self::Box(rect) => rect,
-            Self::Disc { centre, radius } | Self::Ring { centre, radius } => {
-                Rect::new(centre.x - radius, centre.y - radius, 2.0 * radius, 2.0 * radius)
-            }
-            Self::Segment(a, b) => {
-                Rect { left: a.x.min(b.x), top: a.y.min(b.y), right: a.x.max(b.x), bottom: a.y.max(b.y) }
-            }
-        }
-    }
-
-    pub(super) fn hits(&self, rect: &Rect) -> bool {
-        match *self {
-            Self::Box(other) => other.overlaps(rect),
-            Self::Disc { centre, radius } => rect.nearest(centre).distance(centre) < radius,
-            Self::Ring { centre, radius } => {
-                rect.nearest(centre).distance(centre) <= radius && radius <= rect.farthest(centre)
-            }
-            Self::Segment(a, b) => enters(rect, a, b),
-        }
-    }
-
-    /// A leader may pass over the thin line of a circle, over nothing else.
-    fn crosses(&self, from: Px, to: Px) -> bool {
-        match *self {
-            Self::Box(rect) => enters(&rect, from, to),
-            Self::Disc { centre, radius } => distance_to(centre, from, to) < radius * 0.98,
-            Self::Ring { .. } => false,
-            Self::Segment(a, b) => {
-                let side = |p: Px, q: Px, r: Px| (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
-                side(a, b, from) * side(a, b, to) <= 0.0 && side(from, to, a) * side(from, to, b) <= 0.0
-            }
-        }
-    }
-}
-
-/// Whether a segment has points inside the rectangle (Liang and Barsky's clipping).
-fn enters(rect: &Rect, a: Px, b: Px) -> bool {
-    let (dx, dy) = (b.x - a.x, b.y - a.y);
-    let (mut first, mut last) = (0.0f64, 1.0f64);
-    for (slope, room) in
-        [(-dx, a.x - rect.left), (dx, rect.right - a.x), (-dy, a.y - rect.top), (dy, rect.bottom - a.y)]
-    {
-        if slope == 0.0 {
-            if room < 0.0 {
-                return false;
-            }
-        } else if slope < 0.0 {
-            first = first.max(room / slope);
-        } else {
-            last = last.min(room / slope);
-        }
-    }
-    first < last
-}
-
-fn distance_to(point: Px, a: Px, b: Px) -> f64 {
-    let (dx, dy) = (b.x - a.x, b.y - a.y);
-    let square = (dx * dx + dy * dy).max(1e-12);
-    let along = (((point.x - a.x) * dx + (point.y - a.y) * dy) / square).clamp(0.0, 1.0);
-    point.distance(px(a.x + along * dx, a.y + along * dy))
 }
 
 #[cfg(test)]

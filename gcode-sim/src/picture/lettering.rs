@@ -1,6 +1,6 @@
 //! Letters holes and lines: as many lines of every label as there is room for, and a note of what had none.
 use super::font::{ASCENT, DESCENT};
-use super::ink::{Ink, Px, Rect, px};
+use super::ink::{Align, Ink, Px, Rect, px};
 use super::labels::{Field, Spot, Symbol, Way};
 use super::marks::Drawn;
 use super::palette;
@@ -102,7 +102,7 @@ impl Lettering {
         let mut labels = Vec::new();
         for label in &self.labels {
             let lines = scene.marks[label.mark].label[..label.lines].to_vec();
-            write(&lines, label.spot.rect, frame, inks);
+            write(&lines, &label.spot, frame, inks);
             labels.push((label.spot.rect, lines));
         }
         labels
@@ -125,14 +125,16 @@ impl Lettering {
     }
 }
 
-/// Radii and the like, on their lines: somewhere round a circle, from the lower left on, or on a straight line.
+/// Radii and the like, on their lines: somewhere round a circle, from the lower left on, or on a straight line. Gives
+/// back those that found no room.
 pub(super) fn caption_strokes(
     scene: &Scene,
     frame: &Frame,
     field: &mut Field,
     inks: &mut Vec<Ink>,
     labels: &mut Vec<(Rect, Vec<String>)>,
-) {
+) -> Vec<String> {
+    let mut left = Vec::new();
     for stroke in &scene.strokes {
         let Some(caption) = &stroke.caption else { continue };
         let lines = vec![caption.clone()];
@@ -150,10 +152,13 @@ pub(super) fn caption_strokes(
         };
         let size = text_box(&lines, frame);
         if let Some(spot) = field.place_on(places, size) {
-            write(&lines, spot.rect, frame, inks);
+            write(&lines, &spot, frame, inks);
             labels.push((spot.rect, lines));
+        } else {
+            left.push(caption.clone());
         }
     }
+    left
 }
 
 fn text_box(lines: &[String], frame: &Frame) -> (f64, f64) {
@@ -163,11 +168,17 @@ fn text_box(lines: &[String], frame: &Frame) -> (f64, f64) {
 }
 
 /// The lines in a box that interrupts what is below it, as a dimension interrupts its line.
-fn write(lines: &[String], rect: Rect, frame: &Frame, inks: &mut Vec<Ink>) {
+fn write(lines: &[String], spot: &Spot, frame: &Frame, inks: &mut Vec<Ink>) {
+    let (rect, size, align) = (spot.rect, frame.text, spot.align);
     inks.push(Ink::area(rect, palette::PAPER));
+    let x = match align {
+        Align::Left => rect.left + 0.15 * size,
+        Align::Centre => rect.centre().x,
+        Align::Right => rect.right - 0.15 * size,
+    };
     for (n, line) in lines.iter().enumerate() {
-        let y = rect.top + frame.text * (0.05 + ASCENT + LEADING * n as f64);
+        let at = px(x, rect.top + size * (0.05 + ASCENT + LEADING * n as f64));
         let color = if n == 0 { palette::TEXT } else { palette::SOFT_TEXT };
-        inks.push(Ink::text(px(rect.left + 0.15 * frame.text, y), frame.text, line.clone(), color));
+        inks.push(Ink::Text { at, align, size, text: line.clone(), color });
     }
 }

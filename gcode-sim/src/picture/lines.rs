@@ -1,7 +1,8 @@
 //! The drawing's own lines: edges and circles, axes through the origin, the scale bar.
 use super::ink::{Align, Dash, Ink, Px, Rect, px};
-use super::labels::{Field, Obstacle};
+use super::labels::Field;
 use super::measure::{bar_length, plain};
+use super::obstacle::Obstacle;
 use super::palette;
 use super::scene::{Pen, Point, Scene, Shape, Stroke};
 use super::sheet::Frame;

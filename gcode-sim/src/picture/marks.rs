@@ -1,7 +1,8 @@
 //! Holes on the sheet: symbol, direction of the axis, and round it the dial that shows the misfit enlarged.
 use super::dials::{Detail, Dials};
 use super::ink::{Dash, Ink, Px, Rgb};
-use super::labels::{Field, Obstacle};
+use super::labels::Field;
+use super::obstacle::Obstacle;
 use super::palette;
 use super::scene::{Mark, Misfit, Scene, Standing};
 use super::sheet::Frame;
@@ -56,7 +57,7 @@ fn draw_dial(
     let text = frame.text;
     let centre = frame.scale.px(mark.at);
     let thin = thin(text);
-    let hole = (mark.radius * frame.scale.factor).max(0.2 * text);
+    let hole = (mark.radius * frame.scale.factor).max(0.28 * text);
     let mut inks = vec![
         Ink::Disc { centre, radius: zone, color: palette::PAPER },
         ring(centre, zone, thin, palette::THIN),
@@ -116,7 +117,7 @@ fn misfit_inks(
     text: f64,
 ) -> (Vec<Ink>, Option<Px>) {
     let color = palette::standing(standing);
-    let width = (0.13 * text).max(1.5);
+    let width = (0.12 * text).max(1.4);
     let mut inks = Vec::new();
     let mut beyond = None;
     let ends = [misfit.entry, misfit.bottom].map(|[right, up]| {
@@ -134,7 +135,7 @@ fn misfit_inks(
     });
     inks.push(Ink::line(ends[0], ends[1], width, color));
     if beyond.is_none() {
-        inks.push(Ink::Disc { centre: ends[0], radius: (0.17 * text).max(1.8), color });
+        inks.push(Ink::Disc { centre: ends[0], radius: (0.14 * text).max(1.6), color });
     }
     (inks, beyond)
 }

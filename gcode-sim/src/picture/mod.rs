@@ -12,6 +12,7 @@ mod lettering;
 mod lines;
 mod marks;
 mod measure;
+mod obstacle;
 mod palette;
 mod panel;
 mod raster;

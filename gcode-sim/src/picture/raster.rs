@@ -56,6 +56,7 @@ fn put(pixmap: &mut Pixmap, font: &Font, ink: &Ink) {
             let left = match align {
                 Align::Left => at.x,
                 Align::Centre => at.x - font.width(text, *size) / 2.0,
+                Align::Right => at.x - font.width(text, *size),
             };
             // A base line on whole pixels keeps small text sharp.
             let at = Px { x: left, y: at.y.round() };

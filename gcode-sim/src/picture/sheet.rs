@@ -103,12 +103,15 @@ impl Plan {
         inks.extend(drawn.iter().flat_map(|d| d.inks.iter().cloned()));
         let mut lettering = Lettering::of(scene, &drawn, frame, &field);
         let mut labels = lettering.write(scene, frame, &mut inks);
-        caption_strokes(scene, frame, &mut lettering.field, &mut inks, &mut labels);
+        let bare = caption_strokes(scene, frame, &mut lettering.field, &mut inks, &mut labels);
         let mut notes: Vec<String> = dials.note(scene).into_iter().collect();
         if drawn.iter().any(|d| d.cut) {
             notes.push("Misfit with an arrow: longer than drawn.".to_owned());
         }
         notes.extend(lettering.notes(scene));
+        if !bare.is_empty() {
+            notes.push(format!("Not written on its line: {}.", bare.join(", ")));
+        }
         let unlabelled = lettering.unlabelled(scene);
         let shown = Shown {
             magnification: dials.magnification(),
@@ -178,6 +181,7 @@ fn extent(scene: &Scene) -> (Point, Point) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::picture::ink::Align;
     use crate::picture::scene::{Axis, LegendItem, Mark, Misfit, Pen, Sample, Standing, Stroke, Title};
     use proptest::prelude::*;
 
@@ -244,8 +248,14 @@ mod tests {
             Ink::Ring { centre, radius, .. } | Ink::Disc { centre, radius, .. } => {
                 Rect::new(centre.x - radius, centre.y - radius, 2.0 * radius, 2.0 * radius)
             }
-            Ink::Text { at, size, text, .. } => {
-                Rect::new(at.x, at.y - 0.76 * size, font.width(text, *size), 0.98 * size)
+            Ink::Text { at, align, size, text, .. } => {
+                let width = font.width(text, *size);
+                let part = match align {
+                    Align::Left => 0.0,
+                    Align::Centre => 0.5,
+                    Align::Right => 1.0,
+                };
+                Rect::new(at.x - part * width, at.y - 0.76 * size, width, 0.98 * size)
             }
         }
     }

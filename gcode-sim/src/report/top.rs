@@ -2,7 +2,6 @@
 use crate::holes::Found;
 use crate::machine::{Link, LinkMotion, Machine};
 use crate::motion::Axis;
-use crate::part::hole::Hole;
 use crate::part::reference::Reference;
 use crate::part::surface::Surface;
 use crate::picture::{DrawnHole, Standing, TopView};
@@ -39,11 +38,7 @@ pub fn of_verdict(
     let judged = verdict.holes.iter().map(|hole| DrawnHole {
         id: hole.id.clone(),
         nominal: wanted(&hole.id).cloned(),
-        found: Some(Hole {
-            entry: hole.actual.entry,
-            axis: hole.actual.axis,
-            ..found[hole.found].hole(nowhere)
-        }),
+        found: Some(found[hole.found].hole(nowhere)),
         standing: if hole.ok { Standing::Good } else { Standing::Bad },
         phi: Some(hole.phi),
         turn: rotary.turn(&found[hole.found]),
@@ -59,7 +54,11 @@ pub fn of_verdict(
         remark: None,
     });
     let extra = verdict.extra.iter().map(|extra| DrawnHole {
-        id: "+".to_owned(),
+        id: extra
+            .hole
+            .from
+            .as_ref()
+            .map_or_else(String::new, |from| format!("{}:{}", from.program, from.line)),
         nominal: None,
         found: Some(extra.hole.clone()),
         standing: Standing::Extra,

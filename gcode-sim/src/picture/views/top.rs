@@ -234,7 +234,9 @@ fn legend(view: &TopView, marks: &[Mark], has_circles: bool) -> Vec<LegendItem> 
         add(Sample::Pen(Pen::Outline), "part outline");
     }
     if has_circles {
-        add(Sample::Pen(Pen::Construction), "radius r, mm");
+        let wanted = view.holes.iter().any(|h| h.nominal.is_some());
+        let text = if wanted { "radius r, mm" } else { "radius r where the feed begins, mm" };
+        add(Sample::Pen(Pen::Construction), text);
     }
     for (rapid, pen, text) in [(false, Pen::Feed, "tool path, feed"), (true, Pen::Rapid, "tool path, rapid")]
     {
