@@ -65,6 +65,9 @@ Examples:
   gcode-sim render O8100.nc --reference job.toml -o top.png --size 1600x1200")]
     Render(RenderArguments),
 
+    /// List the settings of the control that --control takes
+    Settings,
+
     /// Compare two pictures and mark what differs
     #[command(after_help = "\
 Example:
@@ -112,7 +115,7 @@ pub(super) struct ProgramArguments {
     pub(super) code: Vec<String>,
 
     /// G31 stops after this part of its path, 0 to 1
-    #[arg(long, value_name = "PART")]
+    #[arg(long, value_name = "PART", allow_negative_numbers = true)]
     pub(super) skip: Option<f64>,
 
     /// End the run at the main program's N-th M99
@@ -169,11 +172,11 @@ pub(super) struct VerifyArguments {
     pub(super) reference: PathBuf,
 
     /// Diameter of the tolerance zone, mm [default: the job's, or 0.1]
-    #[arg(long, value_name = "MM")]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     pub(super) tolerance: Option<f64>,
 
     /// How far a hole's depth may be off, mm [default: the job's, or 0.1]
-    #[arg(long, value_name = "MM")]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     pub(super) depth_tolerance: Option<f64>,
 
     /// List the worst hole first
@@ -207,7 +210,7 @@ pub(super) struct RenderArguments {
     pub(super) reference: Option<PathBuf>,
 
     /// Diameter of the tolerance zone, mm [default: the job's, or 0.1]
-    #[arg(long, value_name = "MM")]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     pub(super) tolerance: Option<f64>,
 
     /// Which way to look

@@ -9,6 +9,7 @@ pub mod output;
 mod reference;
 mod render;
 mod run;
+mod settings;
 mod verify;
 
 use std::ffi::OsString;
@@ -83,6 +84,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Status {
         Command::Reference(arguments) => reference::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),
         Command::Render(arguments) => render::run(&arguments),
+        Command::Settings => settings::run(),
         Command::Compare(arguments) => compare::run(&arguments),
     };
     done.unwrap_or_else(|refusal| {
