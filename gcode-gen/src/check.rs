@@ -4,8 +4,9 @@ use gcode_sim::diag::Severity;
 use gcode_sim::job::Job;
 use gcode_sim::machine::Machine;
 use gcode_sim::part::reference::Reference;
+use gcode_sim::picture::TopView;
 use gcode_sim::program::Library;
-use gcode_sim::report::diagnostic;
+use gcode_sim::report::{diagnostic, top};
 use gcode_sim::session::{Request, Simulation, simulate};
 use gcode_sim::verify::{Answer, Tolerances, Verdict};
 
@@ -24,6 +25,8 @@ pub struct Checked {
     pub refusals: Vec<String>,
     /// Predicted running time, operator stops left out.
     pub seconds: f64,
+    /// The holes on the part, for a picture.
+    pub top: TopView,
 }
 
 /// The package's programs as the control's program memory.
@@ -50,7 +53,8 @@ pub fn check(job: &Job, package: &Package) -> Result<Checked, CheckError> {
     let tolerances = Tolerances::of(&reference, None);
     let verdict = simulation.verify(&reference, tolerances, &machine);
     let refusals = refusals(job, &simulation, &verdict);
-    Ok(Checked { refusals, seconds: simulation.run.control.seconds().0, verdict })
+    let top = top::of_verdict(&file_name(main.number), &simulation, &reference, &verdict, &machine);
+    Ok(Checked { refusals, seconds: simulation.run.control.seconds().0, top, verdict })
 }
 
 /// Every reason with its block; then what rounding has to do with it.

@@ -4,9 +4,12 @@ use std::path::{Path, PathBuf};
 
 use gcode_sim::cli::{Refusal, Status, input, output};
 use gcode_sim::job::Job;
+use gcode_sim::picture::{self, PictureError, Size};
+use gcode_sim::report::verdict_table::{Layout, table};
 
 use crate::check::{Checked, check};
 use crate::families;
+use crate::package::file_name;
 
 pub(super) fn run(path: &Path, out: &Path) -> Result<Status, Refusal> {
     let text = input::text(path)?;
@@ -19,18 +22,28 @@ pub(super) fn run(path: &Path, out: &Path) -> Result<Status, Refusal> {
         output::tell(&format!("{reasons}error: nothing is written, for the programs of {job} don't hold\n"));
         return Ok(Status::Fails);
     }
+    let picture = picture(&checked)?;
     make_folder(out)?;
-    let files: Vec<(PathBuf, &str)> =
-        package.files().into_iter().map(|(name, text)| (out.join(name), text)).collect();
-    let bytes: Vec<_> = files.iter().map(|(path, text)| (path.as_path(), text.as_bytes())).collect();
-    output::write_all(&bytes)?;
-    let mut list = String::new();
+    let mut files: Vec<(PathBuf, &[u8])> =
+        package.files().into_iter().map(|(name, text)| (out.join(name), text.as_bytes())).collect();
+    files.push((out.join(file_name(package.main)).with_extension("png"), &picture));
+    let written: Vec<_> = files.iter().map(|(path, bytes)| (path.as_path(), *bytes)).collect();
+    output::write_all(&written)?;
+    let mut text = table(&checked.verdict, Layout::default());
+    let minutes = checked.seconds / 60.0;
+    let _ = writeln!(text, "running time {minutes:.0} min without the operator's stops\n");
     for (path, _) in &files {
-        let _ = writeln!(list, "{}", path.display());
+        let _ = writeln!(text, "written: {}", path.display());
     }
-    output::print(&list)?;
-    output::tell(&summary(&checked));
+    output::print(&text)?;
     Ok(Status::Holds)
+}
+
+/// The top view of what was simulated, as PNG.
+fn picture(checked: &Checked) -> Result<Vec<u8>, Refusal> {
+    let refused = |error: PictureError| Refusal::new(error.to_string());
+    let size = Size::new(1600, 1200).map_err(refused)?;
+    picture::draw(&picture::top_view(&checked.top), size).map_err(refused)
 }
 
 /// The folder, and those it stands in.
@@ -41,18 +54,4 @@ fn make_folder(out: &Path) -> Result<(), Refusal> {
         return Err(told(&"it is a file, and the programs need a folder"));
     }
     std::fs::create_dir_all(out).map_err(|error| told(&error))
-}
-
-fn summary(checked: &Checked) -> String {
-    let verdict = &checked.verdict;
-    let minutes = checked.seconds / 60.0;
-    let mut text = format!(
-        "{} holes in Φ{} by simulation, {minutes:.0} min without the operator's stops\n",
-        verdict.holes.len(),
-        verdict.tolerance
-    );
-    if let (Some(worst), Some(from)) = (verdict.worst, &verdict.worst_from) {
-        let _ = writeln!(text, "worst Φ{worst:.4}: {from}");
-    }
-    text
 }

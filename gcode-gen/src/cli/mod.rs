@@ -5,7 +5,8 @@ mod new;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use clap::{Parser, Subcommand, ValueEnum};
+use clap::{Parser, Subcommand};
+use gcode_sim::cli::front::{self, Colours};
 use gcode_sim::cli::{Refusal, Status, output};
 
 /// Emits parametric Fanuc macro programs in which the control itself computes the geometry.
@@ -15,9 +16,8 @@ struct Arguments {
     #[command(subcommand)]
     command: Command,
 
-    /// Colours on the terminal; NO_COLOR is obeyed
-    #[arg(long, global = true, value_enum, default_value_t = Color::Auto)]
-    color: Color,
+    #[command(flatten)]
+    colours: Colours,
 }
 
 const EXIT_CODES: &str = "\
@@ -28,13 +28,6 @@ Exit codes:
 
 Every program is simulated and held against the job's geometry before a file is written. That is a
 prediction, not a measurement.";
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Color {
-    Auto,
-    Always,
-    Never,
-}
 
 #[derive(Debug, Subcommand)]
 enum Command {
@@ -73,23 +66,11 @@ fn families() -> clap::builder::PossibleValuesParser {
 
 /// Does what the command line asks for.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Status {
-    let arguments = match Arguments::try_parse_from(arguments) {
+    let arguments: Arguments = match front::parse(arguments) {
         Ok(arguments) => arguments,
-        Err(error) => {
-            let text = error.render().ansi().to_string();
-            // Help and version are results; everything else is a request that can't be used.
-            if !error.use_stderr() && output::print(&text).is_ok() {
-                return Status::Holds;
-            }
-            output::tell(&text);
-            return Status::Refused;
-        }
+        Err(status) => return status,
     };
-    match arguments.color {
-        Color::Auto => {}
-        Color::Always => anstream::ColorChoice::Always.write_global(),
-        Color::Never => anstream::ColorChoice::Never.write_global(),
-    }
+    arguments.colours.obey();
     let done = match &arguments.command {
         Command::New { family, output } => new::run(family, output.as_deref()),
         Command::Emit { job, out } => emit::run(job, out),

@@ -3,6 +3,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use super::front::Colours;
+
 /// Executes Fanuc Custom Macro B programs as the control would, follows the tool on the part, and holds the
 /// holes against a reference.
 #[derive(Debug, Parser)]
@@ -11,9 +13,8 @@ pub(super) struct Arguments {
     #[command(subcommand)]
     pub(super) command: Command,
 
-    /// Colours on the terminal; NO_COLOR is obeyed
-    #[arg(long, global = true, value_enum, default_value_t = Color::Auto)]
-    pub(super) color: Color,
+    #[command(flatten)]
+    pub(super) colours: Colours,
 }
 
 const EXIT_CODES: &str = "\
@@ -258,11 +259,4 @@ pub(super) enum ListFormat {
 pub(super) enum View {
     /// Along the axis of revolution
     Top,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Color {
-    Auto,
-    Always,
-    Never,
 }

@@ -1,6 +1,7 @@
 //! The only place that prints and opens files: arguments in, exit status out.
 mod args;
 mod compare;
+pub mod front;
 mod holes;
 pub mod input;
 pub mod library;
@@ -15,9 +16,7 @@ mod verify;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-use clap::Parser;
-
-use args::{Arguments, Color, Command};
+use args::{Arguments, Command};
 
 use crate::diag::{Diagnostic, Severity};
 use crate::report::diagnostic;
@@ -60,24 +59,11 @@ impl Refusal {
 
 /// Does what the command line asks for.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Status {
-    let arguments = match Arguments::try_parse_from(arguments) {
+    let arguments: Arguments = match front::parse(arguments) {
         Ok(arguments) => arguments,
-        Err(error) => {
-            // Help and version are results; everything else is a request that can't be used.
-            let asked = !error.use_stderr();
-            let text = error.render().ansi().to_string();
-            if asked && output::print(&text).is_ok() {
-                return Status::Holds;
-            }
-            output::tell(&text);
-            return Status::Refused;
-        }
+        Err(status) => return status,
     };
-    match arguments.color {
-        Color::Auto => {}
-        Color::Always => anstream::ColorChoice::Always.write_global(),
-        Color::Never => anstream::ColorChoice::Never.write_global(),
-    }
+    arguments.colours.obey();
     let done = match arguments.command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Holes(arguments) => holes::run(&arguments),

@@ -1,0 +1,107 @@
+//! The sessions shown in README.md and docs/ are run: what stands there is what comes out.
+use std::path::{Path, PathBuf};
+
+use gcode_tests::programs;
+
+fn workspace() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
+}
+
+/// A command of a ```` ```console ```` block and the lines under it; a line `...` stands for any lines.
+struct Shown {
+    command: String,
+    output: Vec<String>,
+}
+
+fn sessions(text: &str) -> Vec<Shown> {
+    let mut found: Vec<Shown> = Vec::new();
+    let mut inside = false;
+    for line in text.lines() {
+        if line.starts_with("```") {
+            inside = line == "```console";
+        } else if let (true, Some(command)) = (inside, line.strip_prefix("$ ")) {
+            found.push(Shown { command: command.to_owned(), output: Vec::new() });
+        } else if inside {
+            found.last_mut().expect("a console block begins with a command").output.push(line.to_owned());
+        }
+    }
+    found
+}
+
+/// The program a line runs, as `cargo run` or by its own name; `None` for what no test may run (the tests themselves).
+fn as_program(command: &str) -> Option<String> {
+    for name in ["gcode-sim", "gcode-gen"] {
+        if let Some(rest) = command.strip_prefix(&format!("cargo run --release --quiet --bin {name} -- ")) {
+            return Some(format!("{name} {rest}"));
+        }
+        if command.starts_with(&format!("{name} ")) {
+            return Some(command.to_owned());
+        }
+    }
+    None
+}
+
+/// `shown` lines match `real` ones, `...` any number of them.
+fn matches(shown: &[String], real: &[&str]) -> bool {
+    match shown.split_first() {
+        None => real.is_empty(),
+        Some((line, rest)) if line == "..." => (0..=real.len()).any(|n| matches(rest, &real[n..])),
+        Some((line, rest)) => real.split_first().is_some_and(|(first, others)| line.trim_end() == first.trim_end() && matches(rest, others)),
+    }
+}
+
+fn copy(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).unwrap();
+    for entry in std::fs::read_dir(from).unwrap() {
+        let path = entry.unwrap().path();
+        let target = to.join(path.file_name().unwrap());
+        if path.is_dir() { copy(&path, &target) } else { std::fs::copy(&path, target).map(drop).unwrap() }
+    }
+}
+
+/// Runs a page's sessions in order in a copy of what they may read.
+fn check(page: &Path) {
+    let place = tempfile::tempdir().unwrap();
+    for folder in ["examples", "macros"] {
+        copy(&workspace().join(folder), &place.path().join(folder));
+    }
+    for shown in sessions(&std::fs::read_to_string(page).unwrap()) {
+        let Some(line) = as_program(&shown.command) else {
+            assert!(shown.command.starts_with("cargo "), "{}: '{}' is run by nothing", page.display(), shown.command);
+            continue;
+        };
+        let done = programs::run_line(&line, place.path());
+        let mut said = String::from_utf8_lossy(&done.stderr).into_owned();
+        said.push_str(&String::from_utf8_lossy(&done.stdout));
+        let real: Vec<_> = said.lines().collect();
+        assert!(
+            matches(&shown.output, &real),
+            "{}: '{}' prints something else now:\n{said}",
+            page.display(),
+            shown.command
+        );
+    }
+}
+
+#[test]
+fn the_readme_shows_what_happens() {
+    check(&workspace().join("README.md"));
+}
+
+#[test]
+fn the_pages_in_docs_show_what_happens() {
+    fn pages(dir: &Path, found: &mut Vec<PathBuf>) {
+        for entry in std::fs::read_dir(dir).into_iter().flatten() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                pages(&path, found);
+            } else if path.extension().is_some_and(|e| e == "md") {
+                found.push(path);
+            }
+        }
+    }
+    let mut found = Vec::new();
+    pages(&workspace().join("docs"), &mut found);
+    pages(&workspace().join("examples"), &mut found);
+    found.iter().for_each(|page| check(page));
+}
