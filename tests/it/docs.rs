@@ -46,7 +46,9 @@ fn matches(shown: &[String], real: &[&str]) -> bool {
     match shown.split_first() {
         None => real.is_empty(),
         Some((line, rest)) if line == "..." => (0..=real.len()).any(|n| matches(rest, &real[n..])),
-        Some((line, rest)) => real.split_first().is_some_and(|(first, others)| line.trim_end() == first.trim_end() && matches(rest, others)),
+        Some((line, rest)) => real
+            .split_first()
+            .is_some_and(|(first, others)| line.trim_end() == first.trim_end() && matches(rest, others)),
     }
 }
 
@@ -67,7 +69,12 @@ fn check(page: &Path) {
     }
     for shown in sessions(&std::fs::read_to_string(page).unwrap()) {
         let Some(line) = as_program(&shown.command) else {
-            assert!(shown.command.starts_with("cargo "), "{}: '{}' is run by nothing", page.display(), shown.command);
+            assert!(
+                shown.command.starts_with("cargo "),
+                "{}: '{}' is run by nothing",
+                page.display(),
+                shown.command
+            );
             continue;
         };
         let done = programs::run_line(&line, place.path());
