@@ -13,6 +13,7 @@
 //! | `path=R(x,y,z) F(…) A(…) D(s)` | all rapids, cutting feeds, arcs (by their ends, machine X Y Z) and dwells |
 //! | `time_min=0.5` | the time of all blocks in minutes |
 //! | `amove=-10,20` | the ways of the A axis |
+//! | `within=0.001` | the tolerance of all numbers, 1e-6 where it isn't said |
 //!
 //! A comment `(@KEY=VALUE)` in the program is a setting of the control, by the name it has on the command line.
 use std::fmt::Write as _;
@@ -21,11 +22,14 @@ use gcode_sim::control::Settings;
 use gcode_sim::exec::{Control, Limits, Outcome, Value};
 use gcode_sim::motion::{Event, EventKind, Position, Sink};
 use gcode_sim::program::{Memory, NoLibrary};
+use gcode_sim::source::Span;
 
 /// Everything the machine was told, and a control at the end of its run.
 pub struct Ran {
     pub control: Control,
     pub outcome: Outcome,
+    /// What was told, each with its block.
+    pub events: Vec<(Span, EventKind)>,
     path: Path,
 }
 
@@ -48,13 +52,19 @@ pub fn run(program: &[u8]) -> Ran {
     let mut control = Control::new(memory, settings(program));
     let mut path = Path::default();
     let outcome = control.run(Limits { blocks: 100_000 }, &mut NoLibrary, &mut path);
-    Ran { control, outcome, path }
+    let events = std::mem::take(&mut path.events);
+    Ran { control, outcome, events, path }
 }
 
 impl Ran {
     /// What differs from `expected`, one line each.
-    pub fn differences(&self, expected: &str, tolerance: f64) -> Vec<String> {
-        items(expected).filter_map(|(key, value)| self.difference(key, value, tolerance)).collect()
+    pub fn differences(&self, expected: &str) -> Vec<String> {
+        let within = items(expected).find(|(key, _)| *key == "within");
+        let tolerance = within.map_or(1e-6, |(_, value)| value.parse().unwrap());
+        items(expected)
+            .filter(|(key, _)| *key != "within")
+            .filter_map(|(key, value)| self.difference(key, value, tolerance))
+            .collect()
     }
 
     fn difference(&self, key: &str, wanted: &str, tolerance: f64) -> Option<String> {
@@ -135,10 +145,12 @@ type Told = (char, Vec<f64>);
 struct Path {
     told: Vec<Told>,
     stations: Vec<Position>,
+    events: Vec<(Span, EventKind)>,
 }
 
 impl Sink for Path {
     fn event(&mut self, event: &Event<'_>) {
+        self.events.push((event.block, event.kind.clone()));
         let (letter, to) = match &event.kind {
             EventKind::Rapid { to } => ('R', to),
             EventKind::Feed { to, .. } | EventKind::Skip { to, .. } => ('F', to),

@@ -5,6 +5,8 @@
 #![expect(clippy::unwrap_used, clippy::disallowed_methods, reason = "tests read files and may panic")]
 
 mod cli;
+mod control;
+mod exec;
 pub mod expect;
 mod r#gen;
 mod picture;
@@ -16,7 +18,14 @@ use std::path::{Path, PathBuf};
 type Run = fn(&Case);
 
 /// The kinds of cases by their folder under `suite/`.
-pub const KINDS: &[(&str, Run)] = &[("cli", cli::run), ("gen", r#gen::run), ("picture", picture::run)];
+pub const KINDS: &[(&str, Run)] = &[
+    ("alarm", exec::alarm),
+    ("cli", cli::run),
+    ("control", control::run),
+    ("exec", exec::run),
+    ("gen", r#gen::run),
+    ("picture", picture::run),
+];
 
 /// The folder of one case.
 pub struct Case {

@@ -68,6 +68,9 @@ impl Core {
     ) -> Checked<()> {
         let state = &plan.state;
         let (mirrored, round) = state.transform.on_arcs(plane);
+        if state.transform.tilt.is_some() {
+            return Err(Alarm::NotSimulated { what: "an arc in a tilted plane".into() }.at(span));
+        }
         if !round {
             return Err(Alarm::NotSimulated { what: "an arc scaled to an ellipse".into() }.at(span));
         }

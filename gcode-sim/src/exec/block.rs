@@ -31,6 +31,7 @@ pub(super) enum Act {
     MirrorOn,
     MirrorOff,
     Rotate,
+    Tilt,
 }
 
 impl Core {
@@ -80,7 +81,7 @@ impl Core {
                 Effect::Mirror(Mirror::On) => Some(Act::MirrorOn),
                 Effect::Mirror(Mirror::Off) => Some(Act::MirrorOff),
                 Effect::Rotation(Rotation::On) => Some(Act::Rotate),
-                Effect::Rotation(Rotation::Tilted) => return Err(not_simulated(row.code, row.help).at(span)),
+                Effect::Rotation(Rotation::Tilted) => Some(Act::Tilt),
                 _ => None,
             };
             if new.is_some() && act.is_some() && new != act {
@@ -99,6 +100,7 @@ impl Core {
         }
         if modal.rotation == Rotation::Off {
             state.transform.rotation = None;
+            state.transform.tilt = None;
         }
         if modal.polar == Polar::On && before.polar == Polar::Off {
             state.polar = (0.0, 0.0);

@@ -44,6 +44,11 @@ impl Core {
     ) -> Checked<()> {
         let missing = Alarm::ImproperAddress { letter: 'Z' };
         let axis = at(self.settings.axes.find(b'Z').ok_or(missing), span)?;
+        let scaled = plan.state.transform.scaling.is_some_and(|s| s.factor[axis] != 1.0);
+        if plan.state.transform.tilt.is_some() || scaled || plan.state.transform.mirrored >> axis & 1 == 1 {
+            let what = "a drilling cycle whose axis is tilted, scaled or mirrored".into();
+            return Err(Alarm::NotSimulated { what }.at(span));
+        }
         let repeats = given.count(b'K')?.unwrap_or(1);
         let incremental = plan.state.modal.distance == Distance::Incremental;
         let from = plan.state;

@@ -5,7 +5,7 @@ use super::eval::{Checked, at};
 use super::offsets::Register;
 use super::plan::{Plan, Write};
 use super::state::State;
-use super::transform::{Scale, Turn};
+use super::transform::{Scale, Tilt, Turn};
 use super::words::Given;
 use crate::alarm::Alarm;
 use crate::motion::{EventKind, MAX_AXES, Position};
@@ -30,6 +30,7 @@ impl Core {
             }
             Act::Scale => self.scale(given, plan, span),
             Act::Rotate => self.rotate(given, plan, span),
+            Act::Tilt => self.tilt(given, plan, span),
             Act::MirrorOn | Act::MirrorOff => self.mirror(act == Act::MirrorOn, given, plan),
         }
     }
@@ -275,6 +276,23 @@ impl Core {
         let angle = self.angle(given, b'R')?.unwrap_or(0.0);
         state.transform.rotation = Some(Turn::new(plane, (first, second), angle));
         self.recompute(state);
+        Ok(())
+    }
+
+    /// G68.2 by Euler angles; its other forms have a P.
+    fn tilt(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<()> {
+        if given.has_any(b"PQR") {
+            return Err(not_simulated(682, "tilted plane other than by Euler angles").at(span));
+        }
+        let (mut axes, mut origin, mut angles) = ([0; 3], [0.0; 3], [0.0; 3]);
+        for (place, (letter, angle)) in [(b'X', b'I'), (b'Y', b'J'), (b'Z', b'K')].into_iter().enumerate() {
+            let missing = Alarm::ImproperAddress { letter: char::from(letter) };
+            axes[place] = at(self.settings.axes.find(letter).ok_or(missing), span)?;
+            origin[place] = self.dimension(given, letter, &plan.state)?.unwrap_or(0.0);
+            angles[place] = self.angle(given, angle)?.unwrap_or(0.0);
+        }
+        plan.state.transform.tilt = Some(Tilt::new(axes, origin, angles));
+        self.recompute(&mut plan.state);
         Ok(())
     }
 

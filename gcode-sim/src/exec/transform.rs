@@ -1,4 +1,4 @@
-//! From programmed to work coordinates: mirror (G51.1), then scaling (G51), then rotation (G68).
+//! From programmed to work coordinates: mirror (G51.1), then scaling (G51), then rotation (G68) or tilt (G68.2).
 use crate::motion::{Axis, MAX_AXES, Position};
 use crate::units::Deg;
 
@@ -10,6 +10,53 @@ pub struct Transform {
     pub mirror: Position,
     pub scaling: Option<Scale>,
     pub rotation: Option<Turn>,
+    pub tilt: Option<Tilt>,
+}
+
+/// G68.2: p = o + Rz(I)·Rx(J)·Rz(K)·q in the coordinates of X, Y and Z.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tilt {
+    axes: [Axis; 3],
+    origin: [f64; 3],
+    rows: [[f64; 3]; 3],
+}
+
+impl Tilt {
+    pub(super) fn new(axes: [Axis; 3], origin: [f64; 3], angles: [f64; 3]) -> Self {
+        let [(si, ci), (sj, cj), (sk, ck)] = angles.map(sine_cosine);
+        let rows = [
+            [ci * ck - si * cj * sk, -ci * sk - si * cj * ck, si * sj],
+            [si * ck + ci * cj * sk, -si * sk + ci * cj * ck, -ci * sj],
+            [sj * sk, sj * ck, cj],
+        ];
+        Self { axes, origin, rows }
+    }
+
+    fn forward(&self, point: &mut Position) {
+        let feature = self.axes.map(|axis| point[axis]);
+        for (i, axis) in self.axes.into_iter().enumerate() {
+            let turned: f64 = (0..3).map(|k| self.rows[i][k] * feature[k]).sum();
+            point[axis] = self.origin[i] + turned;
+        }
+    }
+
+    fn backward(&self, point: &mut Position) {
+        let from = [0, 1, 2].map(|i| point[self.axes[i]] - self.origin[i]);
+        for (i, axis) in self.axes.into_iter().enumerate() {
+            point[axis] = (0..3).map(|k| self.rows[k][i] * from[k]).sum();
+        }
+    }
+}
+
+/// Quarter turns are exact: a control has no residue there.
+fn sine_cosine(angle: f64) -> (f64, f64) {
+    match angle.rem_euclid(360.0) {
+        0.0 => (0.0, 1.0),
+        90.0 => (1.0, 0.0),
+        180.0 => (0.0, -1.0),
+        270.0 => (-1.0, 0.0),
+        _ => (Deg(angle).sin(), Deg(angle).cos()),
+    }
 }
 
 /// G51.
@@ -31,14 +78,7 @@ pub struct Turn {
 
 impl Turn {
     pub(super) fn new(plane: (Axis, Axis), centre: (f64, f64), angle: f64) -> Self {
-        // Quarter turns are exact: a control has no residue there.
-        let (sine, cosine) = match angle.rem_euclid(360.0) {
-            0.0 => (0.0, 1.0),
-            90.0 => (1.0, 0.0),
-            180.0 => (0.0, -1.0),
-            270.0 => (-1.0, 0.0),
-            _ => (Deg(angle).sin(), Deg(angle).cos()),
-        };
+        let (sine, cosine) = sine_cosine(angle);
         Self { plane, centre, angle, sine, cosine }
     }
 
@@ -51,7 +91,7 @@ impl Turn {
 
 impl Transform {
     pub fn is_none(&self) -> bool {
-        self.mirrored == 0 && self.scaling.is_none() && self.rotation.is_none()
+        self.mirrored == 0 && self.scaling.is_none() && self.rotation.is_none() && self.tilt.is_none()
     }
 
     pub(super) fn forward(&self, mut point: Position) -> Position {
@@ -67,12 +107,18 @@ impl Transform {
         if let Some(turn) = &self.rotation {
             turn.apply(&mut point, turn.sine);
         }
+        if let Some(tilt) = &self.tilt {
+            tilt.forward(&mut point);
+        }
         point
     }
 
     pub(super) fn backward(&self, mut point: Position) -> Position {
         if self.is_none() {
             return point;
+        }
+        if let Some(tilt) = &self.tilt {
+            tilt.backward(&mut point);
         }
         if let Some(turn) = &self.rotation {
             turn.apply(&mut point, -turn.sine);

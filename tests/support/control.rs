@@ -1,0 +1,33 @@
+//! Cases of kind `control`: many small programs in one file, each with the end that was worked out for it.
+//!
+//! `cases.txt` has, after a line that says what it is about, cases of the form
+//!
+//! ```text
+//! == vacant equals vacant
+//! IF[#1 EQ #0]THEN #100=1
+//! M30
+//! -- end=normal; #100=1
+//! ```
+//!
+//! A program that doesn't begin with O, `:` or `%` is O0001. [`crate::expect`] has the words behind `--`.
+use crate::{Case, expect};
+
+pub(crate) fn run(case: &Case) {
+    let text = case.text("cases.txt");
+    let mut wrong = String::new();
+    let mut names: Vec<&str> = Vec::new();
+    for entry in text.split("== ").skip(1) {
+        let (name, rest) = entry.split_once('\n').unwrap();
+        let (program, expected) =
+            rest.rsplit_once("-- ").unwrap_or_else(|| panic!("{name}: no end is expected"));
+        assert!(!names.contains(&name), "{}: two cases are called '{name}'", case.name());
+        names.push(name);
+        let head = if program.starts_with(['O', ':', '%']) { "" } else { "O0001\n" };
+        let program = format!("{head}{program}");
+        for difference in expect::run(program.as_bytes()).differences(expected.trim()) {
+            wrong.push_str(&format!("{name}: {difference}\n"));
+        }
+    }
+    assert!(!names.is_empty(), "{}: no cases", case.name());
+    assert!(wrong.is_empty(), "{}:\n{wrong}", case.name());
+}

@@ -1,0 +1,97 @@
+//! Cases of kinds `exec` and `alarm`: what a control tells the machine, block by block, and how the run ends.
+//!
+//! `case.nc` is run; the snapshot `events` has a line per event with the line of its block. `expect.txt`, where there
+//! is one, is the end as it was worked out by hand, in the words of [`crate::expect`].
+use std::fmt::Write as _;
+
+use gcode_sim::exec::{Outcome, Stopped};
+use gcode_sim::motion::{Call, EventKind};
+use gcode_sim::source::Span;
+
+use crate::Case;
+use crate::expect::{self, Ran};
+
+/// What the control tells the machine.
+pub(crate) fn run(case: &Case) {
+    let program = case.bytes("case.nc");
+    let ran = expect::run(&program);
+    let wrong: Vec<String> = case
+        .optional("expect.txt")
+        .iter()
+        .flat_map(|e| ran.differences(&e.trim().replace('\n', "; ")))
+        .collect();
+    assert!(wrong.is_empty(), "{}: {wrong:#?}", case.name());
+    case.snapshot("events", &shown(&ran));
+}
+
+/// The same, and the run must end in the alarm whose code begins the folder's name.
+pub(crate) fn alarm(case: &Case) {
+    run(case);
+    let code = case.dir.file_name().unwrap().to_str().unwrap().split('_').next().unwrap().to_uppercase();
+    let ran = expect::run(&case.bytes("case.nc"));
+    let found = match ran.outcome {
+        Outcome::Alarm(stopped) => stopped.alarm.code().to_string(),
+        Outcome::End | Outcome::Limit => "no alarm".into(),
+    };
+    assert_eq!(found, code, "{}", case.name());
+}
+
+fn shown(ran: &Ran) -> String {
+    let mut text = String::new();
+    for (span, kind) in &ran.events {
+        writeln!(text, "{:>3}  {}", line(ran, *span), event(ran, kind)).unwrap();
+    }
+    match &ran.outcome {
+        Outcome::End => text.push_str("end\n"),
+        Outcome::Limit => text.push_str("limit of blocks\n"),
+        Outcome::Alarm(stopped) => alarmed(ran, stopped, &mut text),
+    }
+    text
+}
+
+fn alarmed(ran: &Ran, stopped: &Stopped, text: &mut String) {
+    let sources = ran.control.memory().sources();
+    let place = sources.place(stopped.span);
+    let code = stopped.alarm.code();
+    writeln!(text, "{:>3}  {code} {}, at column {}", place.line, stopped.alarm, place.column).unwrap();
+    let mut call: Option<&Call> = stopped.place.calls.as_deref();
+    while let Some(inner) = call {
+        writeln!(text, "     called in line {}: {}", line(ran, inner.from), sources.text(inner.from).trim())
+            .unwrap();
+        call = inner.outer.as_deref();
+    }
+}
+
+fn line(ran: &Ran, span: Span) -> u32 {
+    ran.control.memory().sources().place(span).line
+}
+
+fn event(ran: &Ran, kind: &EventKind) -> String {
+    let axes = &ran.control.settings().axes;
+    let at = |to: &gcode_sim::motion::Position| {
+        let moved = axes.iter().filter(|(axis, letter)| "XYZ".contains(*letter) || to[*axis] != 0.0);
+        let words: Vec<_> = moved.map(|(axis, letter)| format!("{letter}{:.4}", to[axis])).collect();
+        words.join(" ")
+    };
+    match kind {
+        EventKind::Rapid { to } => format!("rapid {}", at(to)),
+        EventKind::Feed { to, rate } => format!("feed  {} at {:.1}", at(to), rate.0),
+        EventKind::Arc { to, arc, rate } => {
+            let (a, b) = (axes.letter(arc.plane.0), axes.letter(arc.plane.1));
+            let centre = format!("{a}{:.4} {b}{:.4}", arc.centre.0, arc.centre.1);
+            format!("arc   {} at {:.1}, {:.3} degrees round {centre}", at(to), rate.0, arc.sweep.0)
+        }
+        EventKind::Skip { to, rate, touched } => {
+            format!("skip  {} at {:.1}, {}", at(to), rate.0, if *touched { "signal" } else { "no signal" })
+        }
+        EventKind::Dwell { time } => format!("dwell {:.3} s", time.0),
+        EventKind::Tool { number } => format!("tool {number}"),
+        EventKind::ToolLength { offset } => format!("tool length {}", at(offset)),
+        EventKind::Spindle { turning, speed } => format!("spindle {turning:?} {}", speed.0).to_lowercase(),
+        EventKind::Coolant { on } => format!("coolant {}", if *on { "on" } else { "off" }),
+        EventKind::Stop { kind, text, named } => {
+            let named: Vec<_> = named.iter().map(|(n, value)| format!(" #{n} is {value:.4}")).collect();
+            format!("stop {kind:?} {text}{}", named.concat()).trim_end().to_owned()
+        }
+    }
+}
