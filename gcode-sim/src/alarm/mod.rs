@@ -67,6 +67,7 @@ pub enum Alarm {
     },
     PlaneSelect,
     NoRadiusOrCentre,
+    ArcFeedZero,
     OffsetNumber {
         number: i64,
     },

@@ -24,6 +24,7 @@ impl Alarm {
             Self::RadiusTolerance { start, end, allowed } => (Ps(20), format!("the arc starts {start:.4} mm from its centre and ends {end:.4} mm from it ({allowed} allowed)"), Some("correct I, J, K or the end point")),
             Self::PlaneSelect => (Ps(21), "the arc's centre is not in the plane".into(), Some("select the plane with G17, G18 or G19")),
             Self::NoRadiusOrCentre => (Ps(22), "arc without R and without I, J, K".into(), None),
+            Self::ArcFeedZero => (Ps(25), "an arc without a feed rate".into(), Some("command F before or in this block")),
             Self::OffsetNumber { number } => (Ps(30), format!("no offset number {number}"), None),
             Self::SkipInCompensation => (Ps(35), "G31 while cutter compensation is on".into(), Some("command G40 first")),
             Self::G10Format { what } => (Ps(1144), format!("G10: {what}"), None),

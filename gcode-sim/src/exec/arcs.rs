@@ -80,7 +80,8 @@ impl Core {
         let factor = state.transform.scaling.as_ref().map_or(1.0, |s| s.factor[plane.0].abs());
         let length = radius * factor * sweep.abs().to_radians();
         // F is along the arc; all other axes follow (1403#5 HTG = 0).
-        let (rate, seconds) = at(self.time_along(state, length, length, 0.0, given.has(b'F')), span)?;
+        let timed = self.time_along(state, length, length, 0.0, given.has(b'F'));
+        let (rate, seconds) = timed.map_err(|_| Alarm::ArcFeedZero.at(span))?;
         let arc = Arc2 {
             plane,
             centre: (middle[plane.0], middle[plane.1]),

@@ -1,0 +1,7 @@
+%
+O0001 (R BEYOND THE EDGE OF THE PART)
+#1=400.
+#2=420.
+#3=SQRT[1-[#2*#2]/[#1*#1]]
+M30
+%
