@@ -56,6 +56,12 @@ impl Link {
 }
 
 impl Chain {
+    /// The table of the paper's machine: B turns the part about y through its origin, if the control has a B.
+    pub fn of_the_paper(axes: &Axes, origin: Point3<f64>) -> Self {
+        let b = axes.find(b'B').map(|axis| Link::turn(axis, Vector3::y_axis(), origin, 1.0));
+        Self(b.into_iter().collect())
+    }
+
     /// X Y Z along their own directions, without those that carry the part.
     pub fn slides(axes: &Axes, table: &Chain) -> Self {
         let letters = [(b'X', Vector3::x_axis()), (b'Y', Vector3::y_axis()), (b'Z', Vector3::z_axis())];

@@ -16,7 +16,7 @@ use crate::units::Deg;
 #[serde(deny_unknown_fields)]
 struct File {
     control: Option<FileControl>,
-    table: Vec<FileLink>,
+    table: Option<Vec<FileLink>>,
     head: Option<FileHead>,
     tool: Option<Vec<FileTool>>,
     offsets: Option<Spanned<Table>>,
@@ -84,11 +84,17 @@ impl Machine {
         let control = file.control.unwrap_or_default();
         let axes = control.axes(&reader)?;
         let part = file.part.unwrap_or_default().check(&reader)?;
-        let mut table = Chain::default();
-        for link in &file.table {
-            let link = link.check(&reader, &axes, &table, part.origin)?;
-            table.0.push(link);
-        }
+        let table = match &file.table {
+            Some(links) => {
+                let mut table = Chain::default();
+                for link in links {
+                    let link = link.check(&reader, &axes, &table, part.origin)?;
+                    table.0.push(link);
+                }
+                table
+            }
+            None => Chain::of_the_paper(&axes, part.origin),
+        };
         let head = match &file.head {
             Some(head) => head.check(&reader, &axes, &table)?,
             None => Head { kind: HeadKind::Free, pivot: 0.0 },

@@ -84,10 +84,9 @@ impl Default for Machine {
     /// at machine zero; A and C are axes of the control that carry nothing. How the head stands is not known.
     fn default() -> Self {
         let axes = Axes::default();
-        let b = axes.find(b'B').map(|axis| Link::turn(axis, Vector3::y_axis(), Point3::origin(), 1.0));
         Self {
             slides: Chain::slides(&axes, &Chain::default()),
-            table: Chain(b.into_iter().collect()),
+            table: Chain::of_the_paper(&axes, Point3::origin()),
             axes,
             dialect: Dialect::default(),
             increment: Increment::default(),
