@@ -437,13 +437,20 @@ tilt = [0.0, 0.0, 1.0]
     }
 
     #[test]
+    fn what_is_left_out_is_as_on_the_machine_of_the_paper() {
+        let machine = Machine::parse("[part]\nshift = [0.3, 0, 0]\n").unwrap();
+        let part = Placement { shift: Vector3::new(0.3, 0.0, 0.0), ..Placement::default() };
+        assert_eq!(machine, Machine { part, ..Machine::default() });
+        assert_eq!(Machine::parse("").unwrap(), Machine::default());
+    }
+
+    #[test]
     fn what_cannot_be_used_is_named_with_its_line() {
         let cases = [
             (
                 "tables = []\n",
                 "line 1: key 'tables' is not known; allowed: control, table, head, tool, offsets, part",
             ),
-            ("[control]\n", "line 1: key 'table' is missing"),
             ("[[table]]\nletter = \"B\"\nturns = \"y\"\n", "line 1: key 'table.sign' is missing"),
             (
                 "[[table]]\nletter = \"B\"\nturns = \"q\"\nsign = 1\n",
