@@ -3,5 +3,6 @@
 
 mod docs;
 mod emitted;
+mod pin_holes;
 mod round_trip;
 mod tidy;
