@@ -1,5 +1,6 @@
 //! How much can be shown of each hole: where there is room for a dial with the misfit, how large, how enlarged.
 use super::ink::Px;
+use super::lettering::LABEL_LIMIT;
 use super::measure::magnification;
 use super::scene::{Mark, Scene, Standing};
 use super::sheet::Frame;
@@ -36,6 +37,8 @@ pub(super) struct Dials {
     has: Vec<bool>,
     /// Distance of each hole to its nearest neighbour, pixels.
     gaps: Vec<f64>,
+    /// Whether a hole may shrink to a dot.
+    dots: Vec<bool>,
     pub(super) detail: Detail,
 }
 
@@ -54,7 +57,9 @@ impl Dials {
         });
         let radius = shown.map_or(f64::INFINITY, |(_, radius)| radius);
         let has: Vec<bool> = wanted.iter().zip(&gaps).map(|(w, gap)| *w && 2.0 * radius <= *gap).collect();
-        Self { shown, has, gaps, detail }
+        let many = LABEL_LIMIT < scene.marks.len();
+        let dots = scene.marks.iter().map(|mark| many && mark.standing.is_good()).collect();
+        Self { shown, has, gaps, dots, detail }
     }
 
     /// Times enlarged and radius of the circle, for a hole that has a dial.
@@ -67,9 +72,11 @@ impl Dials {
         self.shown.filter(|_| self.has.contains(&true)).map(|(times, _)| times)
     }
 
-    /// Radius of a hole's sign.
+    /// Radius of a hole's sign: as large as its neighbours allow, but legible. Among thousands a good hole may be a
+    /// mere dot, so that those that aren't good stand out.
     pub(super) fn badge(&self, index: usize, text: f64) -> f64 {
-        (0.36 * self.gaps[index]).min(0.55 * text).max(0.28 * text)
+        let least = if self.dots[index] { 1.2 } else { 0.28 * text };
+        (0.36 * self.gaps[index]).min(0.55 * text).max(least)
     }
 
     /// Signs that lie on each other: a label beside them could belong to either.

@@ -10,7 +10,7 @@ use super::symbol;
 use crate::units::Deg;
 
 /// Beyond so many holes labels could not be told apart: the most important ones get theirs.
-const LABEL_LIMIT: usize = 400;
+pub(super) const LABEL_LIMIT: usize = 400;
 
 /// Height of a line of text in parts of its size.
 const LEADING: f64 = 1.18;

@@ -156,8 +156,9 @@ fn draw_sign(
     let radius = true_radius.min(1.2 * text).max(badge);
     let mut inks = Vec::new();
     let mut centre = place;
-    let below = before.iter().find(|d| d.centre.distance(place) < 0.3 * text);
-    if let (Some(other), Standing::Extra) = (below, mark.standing) {
+    if mark.standing == Standing::Extra
+        && let Some(other) = before.iter().find(|d| d.centre.distance(place) < 0.3 * text)
+    {
         let step = other.clear + radius + 0.3 * text;
         let free = |c: &Px| before.iter().all(|d| d.clear + radius <= c.distance(d.centre));
         let mut around =

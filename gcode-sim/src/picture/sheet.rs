@@ -61,7 +61,7 @@ pub fn lay_out(scene: &Scene, size: Size) -> Result<Sheet, PictureError> {
         if best.unlabelled == 0 {
             break;
         }
-        if plan.unlabelled < best.unlabelled {
+        if plan.unlabelled <= best.unlabelled {
             best = plan;
         }
     }
@@ -100,7 +100,11 @@ impl Plan {
         inks.extend(axes(scene, frame, extent, drawing, &mut field));
         let dials = Dials::choose(scene, frame, detail);
         let drawn = draw_marks(scene, frame, &dials, &mut field);
-        inks.extend(drawn.iter().flat_map(|d| d.inks.iter().cloned()));
+        // What isn't good comes last, on top.
+        for good in [true, false] {
+            let holes = scene.marks.iter().zip(&drawn).filter(|(mark, _)| mark.standing.is_good() == good);
+            inks.extend(holes.flat_map(|(_, hole)| hole.inks.iter().cloned()));
+        }
         let mut lettering = Lettering::of(scene, &drawn, frame, &field);
         let mut labels = lettering.write(scene, frame, &mut inks);
         let bare = caption_strokes(scene, frame, &mut lettering.field, &mut inks, &mut labels);

@@ -10,6 +10,8 @@ pub(super) fn standing(standing: Standing, at: Px, radius: f64) -> Vec<Ink> {
     let color = palette::standing(standing);
     let stroke = (radius * 0.3).max(1.2);
     match standing {
+        // A dot has no room for a mark.
+        Standing::Good if radius < 2.5 => vec![Ink::Disc { centre: at, radius, color }],
         Standing::Good => vec![
             Ink::Disc { centre: at, radius, color },
             path(at, radius, &[[-0.5, 0.02], [-0.14, 0.42], [0.52, -0.4]], stroke, palette::PAPER),
