@@ -68,9 +68,12 @@ fn line_starts(bytes: &[u8]) -> Vec<u32> {
     starts
 }
 
+/// No sender puts more CRs than this around a LF; the limit keeps reading linear in a file of nothing but CRs.
+const MOST_RETURNS: usize = 4;
+
 /// The length of the end of line that `rest` begins with: CRs with at most one LF among them, 0 if none.
 pub fn end_of_line(rest: &[u8]) -> usize {
-    let before = rest.iter().take_while(|b| **b == b'\r').count();
+    let before = rest.iter().take(MOST_RETURNS).take_while(|b| **b == b'\r').count();
     match rest.get(before) {
         Some(b'\n') => before + 1 + stray_returns(&rest[before + 1..]),
         _ => usize::from(before > 0),
@@ -79,7 +82,7 @@ pub fn end_of_line(rest: &[u8]) -> usize {
 
 /// CRs after a LF that don't begin the next CR LF.
 fn stray_returns(rest: &[u8]) -> usize {
-    let count = rest.iter().take_while(|b| **b == b'\r').count();
+    let count = rest.iter().take(MOST_RETURNS).take_while(|b| **b == b'\r').count();
     if rest.get(count) == Some(&b'\n') { 0 } else { count }
 }
 

@@ -1,4 +1,6 @@
 //! Comments: found in a line before anything else of it is read, kept byte for byte, and blanked in its code.
+use std::collections::VecDeque;
+
 use super::ast::{Comment, CommentMark};
 use super::token::{COMMENT, is_space};
 use crate::source::{SourceId, Span};
@@ -11,14 +13,18 @@ pub(super) fn blank(
     start: u32,
     line: &[u8],
     code: &mut Vec<u8>,
-    comments: &mut Vec<Comment>,
+    comments: &mut VecDeque<Comment>,
     reads: impl Fn(&[u8]) -> bool,
 ) {
     code.clear();
     code.extend_from_slice(line);
     let mut keep = |from: usize, to: usize, text: &[u8], mark| {
+        // At the end of a line nobody means spaces.
+        let kept =
+            text.iter().rposition(|b| mark == CommentMark::Round || !is_space(*b)).map_or(0, |last| last + 1);
+        let text = &text[..kept];
         let span = Span { source, start: start + from as u32, end: start + to as u32 };
-        comments.push(Comment { span, text: text.to_vec(), mark });
+        comments.push_back(Comment { span, text: text.to_vec(), mark });
     };
     let mut pairs: Option<Vec<usize>> = None;
     let mut depth = 0u32;
@@ -103,7 +109,7 @@ mod tests {
     use super::*;
 
     fn blanked(line: &str) -> (String, Vec<String>) {
-        let (mut code, mut comments) = (Vec::new(), Vec::new());
+        let (mut code, mut comments) = (Vec::new(), VecDeque::new());
         blank(SourceId(0), 0, line.as_bytes(), &mut code, &mut comments, |text| text.starts_with(b" G"));
         let comments = comments.into_iter().map(|c| String::from_utf8(c.text).unwrap()).collect();
         (String::from_utf8(code).unwrap(), comments)

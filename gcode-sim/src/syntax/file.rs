@@ -1,9 +1,11 @@
 //! A whole file: lines, `%` sections, and the programs in them.
+use std::collections::VecDeque;
+
 use super::ast::{Block, Comment, Item, Program, ProgramName, Unreadable};
 use super::block::{begins_program, block};
 use super::comment::blank;
 use super::number::integer;
-use super::token::{Input, Line, spaces};
+use super::token::{Input, Line, is_space, spaces};
 use super::word::program_name;
 use crate::alarm::Alarm;
 use crate::source::{SourceId, Span, end_of_line};
@@ -36,7 +38,7 @@ pub struct Pieces<'a> {
     blanked: Option<usize>,
     code: Vec<u8>,
     /// The line's comments that no piece has taken yet.
-    comments: Vec<Comment>,
+    comments: VecDeque<Comment>,
 }
 
 impl<'a> Pieces<'a> {
@@ -49,7 +51,7 @@ impl<'a> Pieces<'a> {
     }
 
     fn starting(source: SourceId, bytes: &'a [u8], next: usize) -> Self {
-        let (code, comments) = (Vec::new(), Vec::new());
+        let (code, comments) = (Vec::new(), VecDeque::new());
         Self { source, bytes, next, at: 0, end: 0, code_end: 0, blanked: None, code, comments }
     }
 
@@ -86,7 +88,7 @@ impl<'a> Pieces<'a> {
             self.blanked = None;
             self.next = self.end + end_of_line(&text[length..]);
             let line = &text[..length];
-            if spaces(line).starts_with(b"&F=") {
+            if unspaced(line).starts_with(b"&F=") {
                 continue;
             }
             if !plain {
@@ -146,7 +148,7 @@ impl<'a> Pieces<'a> {
         let last = to == self.code_end;
         let end = if last { self.end } else { to };
         if last {
-            block.comments = std::mem::take(&mut self.comments);
+            block.comments = self.comments.drain(..).collect();
         } else if !self.comments.is_empty() {
             let own = self.comments.iter().take_while(|c| (c.span.start as usize) < to).count();
             block.comments.extend(self.comments.drain(..own));
@@ -176,9 +178,14 @@ impl Iterator for Pieces<'_> {
 /// The place of what stands between two offsets, spaces around it left out.
 fn trimmed(source: SourceId, bytes: &[u8], from: usize, to: usize) -> Span {
     let text = &bytes[from..to];
-    let begin = text.iter().position(|b| !b.is_ascii_whitespace()).unwrap_or(text.len());
-    let end = text.iter().rposition(|b| !b.is_ascii_whitespace()).map_or(begin, |last| last + 1);
-    Span { source, start: (from + begin) as u32, end: (from + end) as u32 }
+    let start = from + text.len() - unspaced(text).len();
+    let end = text.iter().rposition(|b| !is_space(*b)).map_or(start, |last| from + last + 1);
+    Span { source, start: start as u32, end: end as u32 }
+}
+
+/// Spaces, but no comment, left out.
+fn unspaced(text: &[u8]) -> &[u8] {
+    &text[text.iter().take_while(|b| is_space(**b)).count()..]
 }
 
 /// Fills in what is shown of a text that can't be read.

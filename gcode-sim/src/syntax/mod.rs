@@ -9,6 +9,8 @@ mod comment;
 mod expr;
 mod file;
 mod function;
+#[cfg(test)]
+mod laws;
 mod number;
 mod output;
 pub mod print;
