@@ -11,6 +11,7 @@ pub mod expect;
 mod r#gen;
 mod picture;
 pub mod programs;
+mod syntax;
 
 use std::path::{Path, PathBuf};
 
@@ -25,6 +26,7 @@ pub const KINDS: &[(&str, Run)] = &[
     ("exec", exec::run),
     ("gen", r#gen::run),
     ("picture", picture::run),
+    ("syntax", syntax::run),
 ];
 
 /// The folder of one case.

@@ -40,6 +40,7 @@ impl Alarm {
             Self::IntegerOverflow => (Ps(110), "the number is too large for an integer".into(), None),
             Self::FloatOverflow => (Ps(111), "the result is out of the range of numbers".into(), None),
             Self::DivideByZero => (Ps(112), "division by zero".into(), Some("a vacant variable counts as 0 here")),
+            Self::Expression { text } if text.is_empty() => (Ps(1125), "a value is missing".into(), None),
             Self::Expression { text } => (Ps(1125), format!("the expression can't be read at '{text}'"), None),
             Self::NoSuchVariable { number } => (Ps(115), format!("no variable #{number} on this control"), None),
             Self::WriteProtected { number } => (Ps(116), format!("#{number} can't be written"), None),

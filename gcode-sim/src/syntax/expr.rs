@@ -10,7 +10,8 @@ use super::ast::{BinaryOp, Condition, Expr, ExprKind, Relation};
 use super::function::{call, is_name, named};
 use super::number::{EXPRESSION_DIGITS, decimal};
 use super::token::{
-    Input, Line, Read, comment_before, fail, must, next, no_expression, other, sign, spaces, word,
+    Input, Line, Read, comment_before, fail, must, next, no_expression, other, round_brackets, sign, spaces,
+    word,
 };
 use crate::alarm::Alarm;
 
@@ -109,7 +110,7 @@ fn chain<'a>(line: Line, input: Input<'a>, depth: u8, operator: Operator, part: 
             let what = format!("an expression of more than {MOST_OPERATORS} operators");
             return fail(at, Alarm::NotSimulated { what });
         }
-        let (after, right) = wanted(part(line, after, depth), at)?;
+        let (after, right) = wanted(part(line, after, depth), after)?;
         left = match (left, right) {
             (Mixed::Number(left), Mixed::Number(right)) => Mixed::Number(Expr {
                 kind: ExprKind::Binary(op, Box::new(left), Box::new(right)),
@@ -130,13 +131,8 @@ fn chain<'a>(line: Line, input: Input<'a>, depth: u8, operator: Operator, part: 
 /// Where a value must follow, round brackets, which are a comment, get an alarm of their own.
 pub(super) fn wanted<'a, T>(read: Read<'a, T>, at: Input<'a>) -> Read<'a, T> {
     match read {
-        Err(nom::Err::Error(fault)) => {
-            let failed = &at[at.len() - fault.left.min(at.len())..];
-            if comment_before(failed) || comment_before(at) {
-                return fail(failed, Alarm::RoundBrackets { letter: None });
-            }
-            no_expression(at)
-        }
+        Err(nom::Err::Error(_)) if comment_before(at) => round_brackets(at, None),
+        Err(nom::Err::Error(_)) => no_expression(spaces(at)),
         read => read,
     }
 }
@@ -148,7 +144,7 @@ fn signed(line: Line, input: Input<'_>, depth: u8) -> Read<'_, Mixed> {
         Some(b'+') => ExprKind::Plus,
         _ => return primary(line, input, depth),
     };
-    let (rest, mixed) = wanted(primary(line, &start[1..], depth), start)?;
+    let (rest, mixed) = wanted(primary(line, &start[1..], depth), &start[1..])?;
     let (rest, inner) = number(rest, start, mixed)?;
     Ok((rest, Mixed::Number(Expr { kind: wrap(Box::new(inner)), span: line.span(start, rest) })))
 }
@@ -176,7 +172,7 @@ fn bracket(line: Line, input: Input<'_>, depth: u8) -> Read<'_, Mixed> {
     let (rest, left) = wanted(sum(line, start, depth), start)?;
     let (rest, inside) = match (relation(rest), left) {
         (Ok((after, relation)), Mixed::Number(left)) => {
-            let (after, right) = wanted(expr(line, after, depth), spaces(rest))?;
+            let (after, right) = wanted(expr(line, after, depth), after)?;
             let span = line.span(spaces(start), after);
             (after, Mixed::Truth(Condition::Compare { left, relation, right, span }))
         }
@@ -227,7 +223,7 @@ fn numbered(line: Line, input: Input<'_>, depth: u8) -> Read<'_, Expr> {
             let (rest, mixed) = wanted(signed(line, &input[1..], depth), input)?;
             number(rest, input, mixed)?
         }
-        _ if comment_before(&input[1..]) => return fail(input, Alarm::RoundBrackets { letter: None }),
+        _ if comment_before(&input[1..]) => return round_brackets(&input[1..], None),
         _ => return no_expression(input),
     };
     Ok((rest, Expr { kind: ExprKind::Variable(Box::new(index)), span: line.span(input, rest) }))

@@ -6,7 +6,8 @@ use nom::sequence::{pair, preceded};
 use super::ast::{CallForm, Expr, ExprKind, Function, Name};
 use super::expr::{close, deeper, expr, wanted};
 use super::token::{
-    Input, Line, Read, comment_before, fail, is_space, letters, next, no_expression, sign, spaces,
+    Input, Line, Read, comment_before, fail, is_space, letters, next, no_expression, round_brackets, sign,
+    spaces,
 };
 use crate::alarm::Alarm;
 
@@ -71,11 +72,10 @@ type Arguments = (Box<Expr>, Option<Box<Expr>>);
 /// `[a]` or `[a,b]`.
 fn arguments(line: Line, input: Input<'_>, depth: u8) -> Read<'_, Arguments> {
     let Some((b'[', inside)) = next(input) else {
-        let alarm = match comment_before(input) {
-            true => Alarm::RoundBrackets { letter: None },
-            false => Alarm::MissingOpenBracket,
-        };
-        return fail(input, alarm);
+        if comment_before(input) {
+            return round_brackets(input, None);
+        }
+        return fail(spaces(input), Alarm::MissingOpenBracket);
     };
     let depth = deeper(spaces(input), depth)?;
     let argument = |input| wanted(expr(line, input, depth), input);

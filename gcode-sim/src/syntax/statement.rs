@@ -1,11 +1,11 @@
 //! Macro statements: assignment, GOTO, IF, WHILE, DO, END.
-use super::ast::{Expr, PrintKind, Statement};
+use super::ast::{Condition, Expr, PrintKind, Statement};
 use super::expr::{condition, expr, variable, wanted};
 use super::number::integer;
 use super::output::{print, set_names};
 use super::token::{
-    Input, Line, Read, comment_before, fail, is_space, letters, must, next, no_expression, other, sign,
-    spaces,
+    Input, Line, Read, comment_before, fail, is_space, letters, must, next, no_expression, other,
+    round_brackets, sign, spaces,
 };
 use crate::alarm::Alarm;
 use crate::source::Spanned;
@@ -101,7 +101,7 @@ fn goto(line: Line, input: Input<'_>) -> Read<'_, Expr> {
 }
 
 fn if_statement(line: Line, input: Input<'_>) -> Read<'_, Statement> {
-    let (rest, condition) = must(|input| condition(line, input), || format(input, Alarm::IfFormat))(input)?;
+    let (rest, condition) = wanted_condition(line, input, Alarm::IfFormat)?;
     let at = spaces(rest);
     match keyword(at) {
         Some((after, Keyword::Goto)) => {
@@ -129,8 +129,7 @@ fn then(line: Line, input: Input<'_>) -> Read<'_, Statement> {
 }
 
 fn while_statement(line: Line, input: Input<'_>) -> Read<'_, Statement> {
-    let (rest, condition) =
-        must(|input| condition(line, input), || format(input, Alarm::WhileFormat))(input)?;
+    let (rest, condition) = wanted_condition(line, input, Alarm::WhileFormat)?;
     let at = spaces(rest);
     match keyword(at) {
         Some((after, Keyword::Do)) if matches!(next(after), Some((b'0'..=b'9', _))) => {
@@ -142,8 +141,12 @@ fn while_statement(line: Line, input: Input<'_>) -> Read<'_, Statement> {
 }
 
 /// `IF(…)` has a comment where its condition should be.
-fn format(input: Input<'_>, otherwise: Alarm) -> Alarm {
-    if comment_before(input) { Alarm::RoundBrackets { letter: None } } else { otherwise }
+fn wanted_condition<'a>(line: Line, input: Input<'a>, otherwise: Alarm) -> Read<'a, Condition> {
+    match condition(line, input) {
+        Err(nom::Err::Error(_)) if comment_before(input) => round_brackets(input, None),
+        Err(nom::Err::Error(_)) => fail(spaces(input), otherwise),
+        read => read,
+    }
 }
 
 fn loop_number(line: Line, input: Input<'_>) -> Read<'_, Spanned<i64>> {

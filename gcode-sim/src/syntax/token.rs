@@ -40,6 +40,12 @@ pub(super) fn no_expression<T>(input: Input<'_>) -> Read<'_, T> {
     fail(input, Alarm::Expression { text: String::new() })
 }
 
+/// `(` where a value or `[` must stand; [`comment_before`] holds.
+pub(super) fn round_brackets<T>(input: Input<'_>, letter: Option<char>) -> Read<'_, T> {
+    let gap = input.iter().take_while(|b| is_space(**b)).count();
+    fail(&input[gap..], Alarm::RoundBrackets { letter })
+}
+
 /// This isn't the piece looked for; another may be.
 pub(super) fn other<T>(input: Input<'_>) -> Read<'_, T> {
     Err(Err::Error(Fault::from_error_kind(input, ErrorKind::Alt)))

@@ -2,7 +2,7 @@
 use super::ast::{Address, Expr, ExprKind, Word, WordValue};
 use super::expr::single;
 use super::number::{WORD_DIGITS, decimal};
-use super::token::{Input, Line, Read, comment_before, fail, other, spaces};
+use super::token::{Input, Line, Read, comment_before, fail, other, round_brackets, spaces};
 use crate::alarm::Alarm;
 
 /// The longest program name.
@@ -25,18 +25,14 @@ pub(super) fn word(line: Line, input: Input<'_>) -> Read<'_, Word> {
         [b'+', rest @ ..] => (false, spaces(rest)),
         _ => (false, start),
     };
-    let nothing = || {
-        let letter = char::from(letter);
-        if comment_before(&from[1..]) {
-            Alarm::RoundBrackets { letter: Some(letter) }
-        } else {
-            Alarm::NoDataAfterAddress { letter }
-        }
+    let nothing = |after| match char::from(letter) {
+        letter if comment_before(after) => round_brackets(after, Some(letter)),
+        letter => fail(input, Alarm::NoDataAfterAddress { letter }),
     };
     let (rest, value) = match unsigned.first() {
         Some(b'0'..=b'9' | b'.') => match decimal(unsigned, negative, WORD_DIGITS) {
             Ok((rest, number)) => (rest, WordValue::Literal(number)),
-            Err(nom::Err::Error(_)) => return fail(input, nothing()),
+            Err(nom::Err::Error(_)) => return nothing(&from[1..]),
             Err(error) => return Err(error),
         },
         Some(b'#' | b'[') => {
@@ -51,7 +47,7 @@ pub(super) fn word(line: Line, input: Input<'_>) -> Read<'_, Word> {
             (rest, WordValue::Name(name))
         }
         Some(b'-' | b'+') => return fail(unsigned, Alarm::IllegalMinus { letter: char::from(letter) }),
-        _ => return fail(input, nothing()),
+        _ => return nothing(&from[1..]),
     };
     Ok((rest, Word { address: Address { letter, comma }, value, span: line.span(input, rest) }))
 }

@@ -1,0 +1,14 @@
+O9804(RING ѧ GAUGE)
+G0(FAST)X1.()Y2.(%;#5204)
+#1=(HALF)[#2(WIDTH)/2(TWO)]
+GOTO100(REN*ERROR*MESSAGE)
+#3000=1 (O9804: D (RING ID) REQUIRED)
+(A (B) X5.
+(ONLY A COMMENT)
+X1(NOT TEN)0
+G0 X5. (NEVER CLOSED X6.
+G0 X7.;
+G0 X8. ; up again
+G0 X9. // to the side
+; a remark alone
+G0 X1.; G0 X2.
