@@ -58,7 +58,12 @@ impl Core {
         self.m_codes(given, plan)?;
         let lengthened = self.length(given, plan, span)?;
         match act {
-            Some(act) => self.act(act, given, plan, span)?,
+            Some(act) => {
+                if lengthened {
+                    self.recompute(&mut plan.state);
+                }
+                self.act(act, given, plan, span)?;
+            }
             None => self.motion(given, plan, lengthened, span)?,
         }
         if let Some(call) = &words.call {
@@ -72,6 +77,7 @@ impl Core {
         let state = &mut plan.state;
         let before = state.modal;
         let mut act = None;
+        let mut latched = before.cycle.is_some();
         for row in given.g_codes() {
             let new = match row.effect {
                 Effect::NotSimulated | Effect::Call => return Err(not_simulated(row.code, row.help).at(span)),
@@ -90,6 +96,10 @@ impl Core {
             }
             act = new.or(act);
             state.modal.apply(row);
+            if matches!(row.effect, Effect::Motion(_) | Effect::Cycle(None)) {
+                state.drilling = super::state::Drilling::default();
+                latched = false;
+            }
         }
         let modal = state.modal;
         if modal.plane != before.plane && state.transform.rotation.is_some() {
@@ -108,13 +118,16 @@ impl Core {
         if modal.work != before.work || state.transform != self.state.transform {
             self.recompute(state);
         }
-        if modal.cycle.is_none() {
-            state.drilling = super::state::Drilling::default();
-        } else if before.cycle.is_none() {
+        if modal.cycle.is_some() && !latched {
             let axis = self.settings.axes.find(b'Z').unwrap_or_default();
             state.drilling.initial = state.programmed[axis];
         }
-        Ok(act)
+        // G54 P is G54.1 P.
+        let additional = given.has(b'P')
+            && act.is_none()
+            && modal.cycle.is_none()
+            && given.g_codes().any(|row| row.effect == Effect::Work(1));
+        Ok(if additional { Some(Act::AdditionalWork) } else { act })
     }
 
     /// 1. Codes with a number.
@@ -145,6 +158,10 @@ impl Core {
                 return Err(Alarm::ImproperAddress { letter: char::from(letter) }.at(given.span(letter)));
             }
         }
+        let repeats = given.g_codes().any(|row| row.effect == Effect::OneShot(OneShot::DataInput));
+        if given.has(b'L') && !repeats {
+            return Err(Alarm::ImproperAddress { letter: 'L' }.at(given.span(b'L')));
+        }
         let dwells = given.g_codes().any(|row| row.effect == Effect::OneShot(OneShot::Dwell));
         for letter in [b'A', b'B', b'C', b'U', b'V', b'W', b'X', b'Y', b'Z'] {
             let known = self.settings.axes.find(letter).is_some() || (letter == b'U' && dwells);
@@ -165,7 +182,10 @@ impl Core {
         for (code, span) in given.m[..given.m_count].iter().flatten().copied() {
             plan.state.codes.m = code;
             let speed = Rpm(plan.state.codes.s);
-            let Some(effect) = m_codes::find(code) else { continue };
+            let Some(effect) = m_codes::find(code) else {
+                plan.passed_on = Some(code);
+                continue;
+            };
             match effect {
                 MEffect::Stop => plan.stop = Some(StopKind::M00),
                 MEffect::OptionalStop if self.settings.optional_stop => plan.stop = Some(StopKind::M01),
@@ -194,8 +214,8 @@ impl Core {
                 }
             }
         }
-        let speeds = given.has(b'S') && plan.state.spindle != Spindle::Off && given.m_count == 0;
-        if speeds {
+        let told = plan.events.iter().any(|(kind, _)| matches!(kind, EventKind::Spindle { .. }));
+        if given.has(b'S') && plan.state.spindle != Spindle::Off && !told {
             self.turn(plan, plan.state.spindle, Rpm(plan.state.codes.s));
         }
         Ok(())
@@ -237,6 +257,12 @@ impl Core {
         let named = self.names_axis(given);
         if !(named || arcs && given.has_any(b"IJKR")) {
             return self.settle(given, plan, lengthened, span);
+        }
+        // Some controls round corners by R or read I J K here; cutter compensation off takes a vector.
+        let vector = given.g_codes().any(|row| row.effect == Effect::Cutter(CutterSide::Off));
+        if let Some(letter) = b"IJKR".iter().find(|l| given.has(**l) && !arcs && !vector) {
+            let what = format!("{} beside a straight move", char::from(*letter));
+            return Err(Alarm::NotSimulated { what }.at(given.span(*letter)));
         }
         let goal = self.goal(given, &mut plan.state)?;
         match motion {

@@ -315,7 +315,7 @@ impl Core {
         block: Span,
     ) -> Frame {
         let calls = Some(Arc::new(Call { from: block, outer: self.frame().calls.clone() }));
-        Frame { next: start, kind, start, repeats: repeats - 1, calls, ..Frame::main(program) }
+        Frame { next: start, kind, start, repeats: repeats.saturating_sub(1), calls, ..Frame::main(program) }
     }
 
     fn push(&mut self, frame: Frame) {

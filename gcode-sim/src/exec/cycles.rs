@@ -2,7 +2,7 @@
 use super::Core;
 use super::eval::{Checked, at};
 use super::plan::Plan;
-use super::state::{Level, State};
+use super::state::{Drilling, Level, State};
 use super::words::Given;
 use crate::alarm::Alarm;
 use crate::motion::{Axis, EventKind, Position, Spindle, StopKind};
@@ -10,6 +10,9 @@ use crate::program::cycles::{Cycle, Step};
 use crate::program::modes::{Distance, ReturnTo};
 use crate::source::Span;
 use crate::units::{MmPerMin, Rpm, Seconds};
+
+/// A block with more pecks than this alarms: nobody drills so, and a run must end.
+const PECKS: f64 = 1e6;
 
 /// A drilling block, checked: telling it can't fail.
 #[derive(Clone, Debug)]
@@ -50,6 +53,9 @@ impl Core {
             return Err(Alarm::NotSimulated { what }.at(span));
         }
         let repeats = given.count(b'K')?.unwrap_or(1);
+        if repeats > 9999 {
+            return Err(Alarm::TooManyDigits.at(given.span(b'K')));
+        }
         let incremental = plan.state.modal.distance == Distance::Incremental;
         let from = plan.state;
         // The block's own depth words are not a move.
@@ -61,6 +67,17 @@ impl Core {
         }
         let (rate, _) = at(self.time_along(&plan.state, 1.0, 1.0, 0.0, given.has(b'F')), span)?;
         plan.moved = true;
+        let pecks = pecks(plan.state.drilling.r_level(), plan.state.drilling.z_level(), &plan.state.drilling);
+        if cycle.needs_q && pecks * f64::from(repeats.max(1)) > PECKS {
+            return Err(
+                Alarm::NotSimulated { what: "more than a million pecks in one block".into() }.at(span)
+            );
+        }
+        let turned = |(axis, letter): (Axis, char)| self.settings.roll_over[axis] && given.has(letter as u8);
+        if incremental && self.settings.axes.iter().any(turned) {
+            let what = "a drilling cycle with an incremental axis that rolls over".into();
+            return Err(Alarm::NotSimulated { what }.at(span));
+        }
         if repeats == 0 && !self.settings.unsure.k0_positions {
             return Ok(());
         }
@@ -232,7 +249,7 @@ impl Core {
     /// From R by Q until Z; the last peck is what is left.
     fn peck(&self, (r, z): (f64, f64), drill: &Drill, mut each: impl FnMut(f64, f64, bool)) {
         let q = drill.from.drilling.q.unwrap_or(0.0).copysign(z - r);
-        let pecks = if q == 0.0 { 1.0 } else { ((z - r) / q - 1e-9).ceil().max(1.0) };
+        let pecks = pecks(r, z, &drill.from.drilling);
         let mut last = r;
         let mut count = 1.0;
         while count <= pecks {
@@ -242,6 +259,14 @@ impl Core {
             last = next;
             count += 1.0;
         }
+    }
+}
+
+/// How many pecks of Q a hole from R to Z takes.
+fn pecks(r: f64, z: f64, data: &Drilling) -> f64 {
+    match data.q {
+        Some(q) if q != 0.0 => ((z - r).abs() / q.abs() - 1e-9).ceil().max(1.0),
+        _ => 1.0,
     }
 }
 

@@ -113,6 +113,8 @@ pub(crate) struct Core {
     blocks: u64,
     moves: u64,
     stops: Vec<Stop>,
+    /// M codes that went to the machine builder's logic, with the block of the first of each.
+    passed_on: BTreeMap<u32, Span>,
     block: Span,
 }
 
@@ -137,6 +139,7 @@ impl Control {
             blocks: 0,
             moves: 0,
             stops: Vec::new(),
+            passed_on: BTreeMap::new(),
             block: Span::default(),
         };
         let mut control = Self {
@@ -275,7 +278,10 @@ impl Control {
                 return Ok(outcome);
             }
             Flow::CancelModal => self.core.cancel_modal(),
-            Flow::End => return Ok(Some(Outcome::End)),
+            Flow::End => {
+                self.core.parts[0] += 1.0;
+                return Ok(Some(Outcome::End));
+            }
         }
         Ok(None)
     }
@@ -339,6 +345,12 @@ impl Control {
         Seconds(self.core.seconds)
     }
 
+    /// M codes that the control has no use for: they went to the machine builder's logic, which isn't simulated. Each
+    /// with the first block that has it.
+    pub fn passed_on(&self) -> &BTreeMap<u32, Span> {
+        &self.core.passed_on
+    }
+
     /// Operator stops in order; the first ten thousand.
     pub fn stops(&self) -> &[Stop] {
         &self.core.stops
@@ -348,7 +360,6 @@ impl Control {
 impl Core {
     /// Everything a plan says, in the order it says it.
     fn commit<S: Sink>(&mut self, plan: &mut Plan, sink: &mut S) {
-        let before = self.state;
         self.state = plan.state;
         for (kind, seconds) in plan.events.drain(..) {
             self.tell(kind, seconds, sink);
@@ -371,8 +382,8 @@ impl Core {
         if let Some(kind) = plan.stop.take() {
             self.tell(EventKind::Stop { kind, text: String::new(), named: Vec::new() }, 0.0, sink);
         }
-        if self.state.codes.m == 30 && before.codes.m != 30 {
-            self.parts[0] += 1.0;
+        if let Some(code) = plan.passed_on.take() {
+            self.passed_on.entry(code).or_insert(self.block);
         }
     }
 
@@ -404,7 +415,7 @@ impl Core {
 
     fn set_names(&mut self, first: u32, names: &[String]) -> Result<(), Alarm> {
         for (place, name) in names.iter().enumerate() {
-            let number = first + place as u32;
+            let number = first.saturating_add(place as u32);
             if !(500..=549).contains(&number) {
                 return Err(Alarm::NoSuchVariable { number: i64::from(number) });
             }

@@ -1,6 +1,7 @@
 //! The offset tables: work coordinate systems and tool offsets, held in increments as a control holds them.
 use super::Core;
 use super::state::State;
+use super::travel::shorter_way;
 use crate::alarm::Alarm;
 use crate::motion::{Axis, MAX_AXES, Position};
 use crate::program::modes::{Length, Unit, WorkSystem};
@@ -88,6 +89,12 @@ impl Core {
     pub(super) fn to_machine(&self, state: &State, point: Position) -> Position {
         let mut machine = state.transform.forward(point);
         for axis in 0..self.settings.axes.len() {
+            if self.settings.roll_over[axis] {
+                // From where the axis stands, the shorter way: turns already made stay made.
+                let work = state.machine[axis] - self.zero(state, axis) - state.length[axis];
+                machine[axis] = self.clean(state.machine[axis] + shorter_way(work, machine[axis]));
+                continue;
+            }
             machine[axis] = self.clean(machine[axis] + self.zero(state, axis) + state.length[axis]);
         }
         machine

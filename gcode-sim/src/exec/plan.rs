@@ -21,6 +21,8 @@ pub(super) struct Plan {
     /// Axes were commanded: what a modal macro call waits for.
     pub(super) moved: bool,
     pub(super) stop: Option<StopKind>,
+    /// An M code for the machine builder's logic.
+    pub(super) passed_on: Option<u32>,
     pub(super) flow: Flow,
 }
 
@@ -91,6 +93,7 @@ impl Plan {
         self.drill = None;
         self.moved = false;
         self.stop = None;
+        self.passed_on = None;
         self.flow = Flow::Next;
     }
 

@@ -62,8 +62,6 @@ impl Core {
         for (axis, way) in turned.iter().enumerate() {
             if let Some(way) = way {
                 machine[axis] = self.clean(state.machine[axis] + way);
-            } else if self.settings.roll_over[axis] {
-                machine[axis] = state.machine[axis];
             }
         }
         Ok(Goal { programmed, machine })
@@ -180,7 +178,7 @@ impl Core {
 }
 
 /// How an axis that rolls over gets from one angle to another: the shorter way, half a turn in the plus direction.
-fn shorter_way(from: f64, to: f64) -> f64 {
+pub(super) fn shorter_way(from: f64, to: f64) -> f64 {
     let way = (to - from).rem_euclid(360.0);
     if way > 180.0 { way - 360.0 } else { way }
 }
