@@ -1,12 +1,11 @@
 //! Evaluates expressions and conditions.
 use super::Core;
+use super::functions::{atan2, binary, compare, function, power};
 use super::vars::{self, Kind, Value};
 use crate::alarm::Alarm;
-use crate::control::Settings;
 use crate::program::{Code, Instruction, Operand, Operation, Program};
 use crate::source::{Span, Spanned};
-use crate::syntax::ast::{BinaryOp, Function, Relation};
-use crate::units::Deg;
+use crate::syntax::ast::BinaryOp;
 
 /// As many as [`crate::program`] lets an expression need.
 const STACK: usize = crate::program::STACK;
@@ -126,154 +125,6 @@ pub(super) fn index(value: Value) -> Result<u32, Alarm> {
     Err(Alarm::NoSuchVariable { number: number as i64 })
 }
 
-/// Results beyond what a double holds are PS0111.
-fn finite(value: f64) -> Result<f64, Alarm> {
-    if value.is_finite() { Ok(value) } else { Err(Alarm::FloatOverflow) }
-}
-
-fn binary(op: BinaryOp, left: f64, right: f64) -> Result<f64, Alarm> {
-    finite(match op {
-        BinaryOp::Add => left + right,
-        BinaryOp::Sub => left - right,
-        BinaryOp::Mul => left * right,
-        BinaryOp::Div if right == 0.0 => return Err(Alarm::DivideByZero),
-        BinaryOp::Div => left / right,
-        BinaryOp::Mod => {
-            let (left, right) = (left.round(), right.round());
-            if right == 0.0 {
-                return Err(Alarm::DivideByZero);
-            }
-            // The remainder has the sign of the dividend.
-            left % right
-        }
-        BinaryOp::And => f64::from(bits(left)? & bits(right)?),
-        BinaryOp::Or => f64::from(bits(left)? | bits(right)?),
-        BinaryOp::Xor => f64::from(bits(left)? ^ bits(right)?),
-    })
-}
-
-/// AND, OR and XOR work on 32-bit integers.
-fn bits(value: f64) -> Result<i32, Alarm> {
-    let value = value.round();
-    if (-2_147_483_648.0..=2_147_483_647.0).contains(&value) {
-        Ok(value as i32)
-    } else if (0.0..=4_294_967_295.0).contains(&value) {
-        Ok(value as u32 as i32)
-    } else {
-        Err(Alarm::IntegerOverflow)
-    }
-}
-
-/// Vacant equals vacant and differs from 0; larger and smaller take it for 0 (manual's comparison table).
-fn compare(relation: Relation, left: Value, right: Value) -> bool {
-    let (l, r) = (left.number(), right.number());
-    match relation {
-        Relation::Eq => left == right,
-        Relation::Ne => left != right,
-        Relation::Gt => l > r,
-        Relation::Ge => l >= r,
-        Relation::Lt => l < r,
-        Relation::Le => l <= r,
-    }
-}
-
-fn function(name: Function, x: f64, settings: &Settings) -> Result<f64, Alarm> {
-    let domain = |ok: bool| {
-        let function = || format!("{name:?}").to_uppercase();
-        if ok { Ok(()) } else { Err(Alarm::OutOfRange { function: function(), value: x }) }
-    };
-    let residue = |y: f64| if settings.zero_residues && y.abs() < 1e-8 { 0.0 } else { y };
-    finite(match name {
-        Function::Sin => residue(Deg(x).sin()),
-        Function::Cos => residue(Deg(x).cos()),
-        Function::Tan => {
-            domain(!(settings.unsure.tan_90_alarms && (x % 180.0).abs() == 90.0))?;
-            residue(Deg(x).tan())
-        }
-        Function::Asin => {
-            domain(x.abs() <= 1.0)?;
-            signed(Deg::asin(x).0, settings)
-        }
-        Function::Acos => {
-            domain(x.abs() <= 1.0)?;
-            Deg::acos(x).0
-        }
-        Function::Atan => Deg::atan2(x, 1.0).0,
-        Function::Sqrt => {
-            domain(x >= 0.0)?;
-            x.sqrt()
-        }
-        Function::Abs => x.abs(),
-        Function::Round => x.round(),
-        Function::Fix => x.trunc(),
-        Function::Fup => {
-            if x < 0.0 {
-                x.floor()
-            } else {
-                x.ceil()
-            }
-        }
-        Function::Ln => {
-            domain(x > 0.0)?;
-            libm::log(x)
-        }
-        Function::Exp => {
-            let y = libm::exp(x);
-            domain(y.is_finite())?;
-            y
-        }
-        Function::Bcd => {
-            domain((0.0..=99_999_999.0).contains(&x.round()))?;
-            f64::from(to_bcd(x.round() as u32))
-        }
-        Function::Bin => {
-            domain((0.0..=f64::from(u32::MAX)).contains(&x.round()))?;
-            let number = from_bcd(x.round() as u32);
-            domain(number.is_some())?;
-            f64::from(number.unwrap_or_default())
-        }
-        Function::Adp => return Err(Alarm::NotSimulated { what: "ADP".into() }),
-        Function::Pow => return Err(Alarm::MissingComma),
-    })
-}
-
-/// NAT: negative angles as they are, or a turn added.
-fn signed(degrees: f64, settings: &Settings) -> f64 {
-    if degrees < 0.0 && !settings.signed_angles { degrees + 360.0 } else { degrees }
-}
-
-fn atan2(y: f64, x: f64, settings: &Settings) -> Result<f64, Alarm> {
-    if y == 0.0 && x == 0.0 {
-        if settings.unsure.atan_of_nothing_alarms {
-            return Err(Alarm::OutOfRange { function: "ATAN".into(), value: 0.0 });
-        }
-        return Ok(0.0);
-    }
-    // A negative zero must not turn 180° into −180°.
-    Ok(signed(Deg::atan2(y + 0.0, x).0, settings))
-}
-
-fn power(base: f64, exponent: f64) -> Result<f64, Alarm> {
-    if base < 0.0 {
-        return Err(Alarm::OutOfRange { function: "POW".into(), value: base });
-    }
-    if base == 0.0 && exponent < 0.0 {
-        return Err(Alarm::DivideByZero);
-    }
-    finite(libm::pow(base, exponent))
-}
-
-fn to_bcd(number: u32) -> u32 {
-    (0..8).fold(0, |bcd, digit| bcd | (number / 10_u32.pow(digit) % 10) << (4 * digit))
-}
-
-fn from_bcd(code: u32) -> Option<u32> {
-    (0..8).rev().try_fold(0_u32, |number, digit| {
-        let value = code >> (4 * digit) & 15;
-        (value <= 9).then(|| number * 10 + value)
-    })
-}
-
 /// A value as the integer that an index, a code or a count is: the nearest one.
 pub(super) fn integer(value: f64) -> Result<i64, Alarm> {
     let rounded = value.round();
@@ -283,39 +134,4 @@ pub(super) fn integer(value: f64) -> Result<i64, Alarm> {
 /// Where a value of a computed word stands.
 pub(super) fn at<T>(result: Result<T, Alarm>, span: Span) -> Checked<T> {
     result.map_err(|alarm| alarm.at(span))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn vacant_differs_from_zero_only_in_eq_and_ne() {
-        let (vacant, zero) = (Value::Vacant, Value::Number(0.0));
-        assert!(!compare(Relation::Eq, vacant, zero) && compare(Relation::Ne, vacant, zero));
-        assert!(compare(Relation::Ge, vacant, zero) && !compare(Relation::Gt, vacant, zero));
-        assert!(compare(Relation::Eq, vacant, vacant));
-    }
-
-    #[test]
-    fn angles_turn_full_circle_unless_nat_is_set() {
-        let mut settings = Settings::default();
-        assert_eq!(atan2(-1.0, -1.0, &settings), Ok(225.0));
-        assert_eq!(atan2(-0.0, -1.0, &settings), Ok(180.0));
-        settings.signed_angles = true;
-        assert_eq!(atan2(-1.0, -1.0, &settings), Ok(-135.0));
-    }
-
-    #[test]
-    fn decimal_digits_in_four_bits_each() {
-        assert_eq!((to_bcd(1234), from_bcd(0x1234), from_bcd(0x1A)), (0x1234, Some(1234), None));
-    }
-
-    #[test]
-    fn fup_goes_away_from_zero() {
-        let settings = Settings::default();
-        assert_eq!(function(Function::Fup, -1.2, &settings), Ok(-2.0));
-        assert_eq!(function(Function::Fup, 3.0, &settings), Ok(3.0));
-        assert_eq!(function(Function::Fix, -1.2, &settings), Ok(-1.0));
-    }
 }

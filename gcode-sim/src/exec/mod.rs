@@ -1,9 +1,12 @@
 //! Operations to events: a control that can be stepped block by block, held and looked at.
 mod arcs;
+mod arguments;
 mod block;
 mod calls;
+mod commit;
 mod cycles;
 mod eval;
+mod functions;
 mod modal;
 mod offsets;
 mod one_shot;
@@ -12,8 +15,10 @@ mod state;
 mod statements;
 mod system_vars;
 mod transform;
+mod transform_codes;
 mod travel;
 mod vars;
+mod view;
 mod words;
 
 use std::collections::BTreeMap;
@@ -24,14 +29,13 @@ pub use vars::{Value, Vars};
 
 use self::calls::{Frame, FrameKind, ModalCall};
 use self::offsets::Offsets;
-use self::plan::{Flow, Plan, Write};
+use self::plan::{Flow, Plan};
 use self::words::Given;
 use crate::alarm::Alarm;
 use crate::control::Settings;
-use crate::motion::{Axis, Event, EventKind, Place, Position, Sink, StopKind};
+use crate::motion::{Place, Sink, StopKind};
 use crate::program::{Library, Memory, OpKind, ProgramId};
 use crate::source::{Span, Spanned};
-use crate::units::Seconds;
 
 /// How long a run may take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -285,154 +289,4 @@ impl Control {
         }
         Ok(None)
     }
-
-    pub fn memory(&self) -> &Memory {
-        &self.memory
-    }
-
-    pub fn settings(&self) -> &Settings {
-        &self.core.settings
-    }
-
-    /// How the run ended, or `None` while it goes on.
-    pub fn outcome(&self) -> Option<&Outcome> {
-        self.outcome.as_ref()
-    }
-
-    /// What isn't vacant, by number: the main program's locals as they stood before M30's reset, and the commons.
-    pub fn variables(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
-        self.core.vars.known()
-    }
-
-    /// A variable of any kind by its number, as a program would read it now.
-    pub fn variable(&self, number: u32) -> Result<Value, Alarm> {
-        self.core.read(number)
-    }
-
-    /// The coordinate of an axis in the active work coordinate system, as #5001… show it.
-    pub fn work_position(&self, axis: Axis) -> f64 {
-        let state = &self.core.state;
-        self.core.shown(state, Some(axis), state.programmed[axis])
-    }
-
-    /// In machine coordinates, mm and degrees.
-    pub fn machine_position(&self) -> Position {
-        self.core.state.machine
-    }
-
-    pub fn state(&self) -> &State {
-        &self.core.state
-    }
-
-    /// The block last begun, and the calls that led to it.
-    pub fn place(&self) -> Place {
-        let calls = self.core.frames.last().map(|f| f.calls.clone()).unwrap_or_default();
-        Place { block: self.core.block, calls }
-    }
-
-    /// Blocks executed so far.
-    pub fn blocks(&self) -> u64 {
-        self.core.blocks
-    }
-
-    /// Moves told so far.
-    pub fn moves(&self) -> u64 {
-        self.core.moves
-    }
-
-    /// What the motion takes, without acceleration.
-    pub fn seconds(&self) -> Seconds {
-        Seconds(self.core.seconds)
-    }
-
-    /// M codes that the control has no use for: they went to the machine builder's logic, which isn't simulated. Each
-    /// with the first block that has it.
-    pub fn passed_on(&self) -> &BTreeMap<u32, Span> {
-        &self.core.passed_on
-    }
-
-    /// Operator stops in order; the first ten thousand.
-    pub fn stops(&self) -> &[Stop] {
-        &self.core.stops
-    }
-}
-
-impl Core {
-    /// Everything a plan says, in the order it says it.
-    fn commit<S: Sink>(&mut self, plan: &mut Plan, sink: &mut S) {
-        self.state = plan.state;
-        for (kind, seconds) in plan.events.drain(..) {
-            self.tell(kind, seconds, sink);
-        }
-        if let Some(drill) = plan.drill.take() {
-            self.tell_drill(&drill, sink);
-        }
-        for (kind, seconds) in plan.after.drain(..) {
-            self.tell(kind, seconds, sink);
-        }
-        for write in plan.writes.drain(..) {
-            match write {
-                Write::Work { system, axis, value } => self.offsets.work_mut(system)[axis] = value,
-                Write::Tool { register, number, value } => {
-                    self.offsets.register(register)[number as usize] = value;
-                }
-            }
-            self.offsets_changed();
-        }
-        if let Some(kind) = plan.stop.take() {
-            self.tell(EventKind::Stop { kind, text: String::new(), named: Vec::new() }, 0.0, sink);
-        }
-        if let Some(code) = plan.passed_on.take() {
-            self.passed_on.entry(code).or_insert(self.block);
-        }
-    }
-
-    fn tell_drill<S: Sink>(&mut self, drill: &cycles::Drill, sink: &mut S) {
-        let (mut seconds, mut moves) = (0.0, 0);
-        let block = self.block;
-        let calls = self.frame().calls.clone();
-        self.drill(drill, &mut |kind, time| {
-            seconds += time;
-            moves += u64::from(moves_something(&kind));
-            sink.event(&Event { kind, seconds: Seconds(time), block, calls: &calls });
-        });
-        self.seconds += seconds;
-        self.moves += moves;
-    }
-
-    /// Tells the machine one thing and counts it.
-    fn tell<S: Sink>(&mut self, kind: EventKind, seconds: f64, sink: &mut S) {
-        self.seconds += seconds;
-        self.moves += u64::from(moves_something(&kind));
-        if let EventKind::Stop { kind, text, named } = &kind
-            && self.stops.len() < STOPS
-        {
-            self.stops.push(Stop { kind: *kind, text: text.clone(), named: named.clone() });
-        }
-        let block = self.block;
-        sink.event(&Event { kind, seconds: Seconds(seconds), block, calls: &self.frame().calls });
-    }
-
-    fn set_names(&mut self, first: u32, names: &[String]) -> Result<(), Alarm> {
-        for (place, name) in names.iter().enumerate() {
-            let number = first.saturating_add(place as u32);
-            if !(500..=549).contains(&number) {
-                return Err(Alarm::NoSuchVariable { number: i64::from(number) });
-            }
-            self.names.insert(name.clone(), number);
-        }
-        Ok(())
-    }
-
-    fn named(&self, name: &str) -> Result<u32, Alarm> {
-        let unknown = || Alarm::NoVariableName { name: name.to_owned() };
-        self.names.get(name).copied().ok_or_else(unknown)
-    }
-}
-
-fn moves_something(kind: &EventKind) -> bool {
-    matches!(
-        kind,
-        EventKind::Rapid { .. } | EventKind::Feed { .. } | EventKind::Arc { .. } | EventKind::Skip { .. }
-    )
 }

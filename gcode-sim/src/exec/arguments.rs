@@ -1,0 +1,58 @@
+//! The letters of a macro call to its locals.
+use super::Core;
+use super::eval::Checked;
+use super::vars::{Locals, VACANT, Value};
+use crate::alarm::Alarm;
+use crate::program::{Coded, Program};
+
+impl Core {
+    /// Letters to locals: specification I, and II for I J K, word by word in the order they stand in.
+    pub(super) fn arguments(&self, program: &Program, words: &[Coded], plain_ijk: bool) -> Checked<Locals> {
+        let mut locals = VACANT;
+        let mut set = 0;
+        let mut last = 0;
+        for word in words {
+            let local = match word.letter {
+                b'I' | b'J' | b'K' if !plain_ijk => {
+                    // I J K open the next set unless they follow in the alphabet.
+                    if word.letter <= last {
+                        set += 1;
+                    }
+                    last = word.letter;
+                    if set == 10 {
+                        return Err(Alarm::TooManyArgumentSets.at(word.span));
+                    }
+                    4 + 3 * set + usize::from(word.letter - b'I')
+                }
+                letter => match plain_argument(letter) {
+                    Some(local) => local,
+                    None if matches!(letter, b'L' | b'P') => continue,
+                    None => return Err(Alarm::ImproperAddress { letter: char::from(letter) }.at(word.span)),
+                },
+            };
+            if let Some(raw) = self.raw(program, word)? {
+                locals[local] = Value::Number(self.argument(raw, word.letter));
+            }
+        }
+        Ok(locals)
+    }
+}
+
+/// Argument specification I.
+fn plain_argument(letter: u8) -> Option<usize> {
+    Some(match letter {
+        b'A' => 1,
+        b'B' => 2,
+        b'C' => 3,
+        b'D' => 7,
+        b'E' => 8,
+        b'F' => 9,
+        b'H' => 11,
+        b'I' => 4,
+        b'J' => 5,
+        b'K' => 6,
+        b'M' => 13,
+        b'Q'..=b'Z' => usize::from(letter - b'Q') + 17,
+        _ => return None,
+    })
+}

@@ -1,0 +1,87 @@
+//! Carries out what a block has planned, and tells the machine.
+use super::cycles::Drill;
+use super::plan::{Plan, Write};
+use super::{Core, STOPS, Stop};
+use crate::alarm::Alarm;
+use crate::motion::{Event, EventKind, Sink};
+use crate::units::Seconds;
+
+impl Core {
+    /// Everything a plan says, in the order it says it.
+    pub(super) fn commit<S: Sink>(&mut self, plan: &mut Plan, sink: &mut S) {
+        self.state = plan.state;
+        for (kind, seconds) in plan.events.drain(..) {
+            self.tell(kind, seconds, sink);
+        }
+        if let Some(drill) = plan.drill.take() {
+            self.tell_drill(&drill, sink);
+        }
+        for (kind, seconds) in plan.after.drain(..) {
+            self.tell(kind, seconds, sink);
+        }
+        for write in plan.writes.drain(..) {
+            match write {
+                Write::Work { system, axis, value } => self.offsets.work_mut(system)[axis] = value,
+                Write::Tool { register, number, value } => {
+                    self.offsets.register(register)[number as usize] = value;
+                }
+            }
+            self.offsets_changed();
+        }
+        if let Some(kind) = plan.stop.take() {
+            self.tell(EventKind::Stop { kind, text: String::new(), named: Vec::new() }, 0.0, sink);
+        }
+        if let Some(code) = plan.passed_on.take() {
+            self.passed_on.entry(code).or_insert(self.block);
+        }
+    }
+
+    fn tell_drill<S: Sink>(&mut self, drill: &Drill, sink: &mut S) {
+        let (mut seconds, mut moves) = (0.0, 0);
+        let block = self.block;
+        let calls = self.frame().calls.clone();
+        self.drill(drill, &mut |kind, time| {
+            seconds += time;
+            moves += u64::from(moves_something(&kind));
+            sink.event(&Event { kind, seconds: Seconds(time), block, calls: &calls });
+        });
+        self.seconds += seconds;
+        self.moves += moves;
+    }
+
+    /// Tells the machine one thing and counts it.
+    pub(super) fn tell<S: Sink>(&mut self, kind: EventKind, seconds: f64, sink: &mut S) {
+        self.seconds += seconds;
+        self.moves += u64::from(moves_something(&kind));
+        if let EventKind::Stop { kind, text, named } = &kind
+            && self.stops.len() < STOPS
+        {
+            self.stops.push(Stop { kind: *kind, text: text.clone(), named: named.clone() });
+        }
+        let block = self.block;
+        sink.event(&Event { kind, seconds: Seconds(seconds), block, calls: &self.frame().calls });
+    }
+
+    pub(super) fn set_names(&mut self, first: u32, names: &[String]) -> Result<(), Alarm> {
+        for (place, name) in names.iter().enumerate() {
+            let number = first.saturating_add(place as u32);
+            if !(500..=549).contains(&number) {
+                return Err(Alarm::NoSuchVariable { number: i64::from(number) });
+            }
+            self.names.insert(name.clone(), number);
+        }
+        Ok(())
+    }
+
+    pub(super) fn named(&self, name: &str) -> Result<u32, Alarm> {
+        let unknown = || Alarm::NoVariableName { name: name.to_owned() };
+        self.names.get(name).copied().ok_or_else(unknown)
+    }
+}
+
+fn moves_something(kind: &EventKind) -> bool {
+    matches!(
+        kind,
+        EventKind::Rapid { .. } | EventKind::Feed { .. } | EventKind::Arc { .. } | EventKind::Skip { .. }
+    )
+}

@@ -1,0 +1,84 @@
+//! What can be seen of a control: while it runs, and at its end.
+use std::collections::BTreeMap;
+
+use super::state::State;
+use super::vars::Value;
+use super::{Control, Outcome, Stop};
+use crate::alarm::Alarm;
+use crate::control::Settings;
+use crate::motion::{Axis, Place, Position};
+use crate::program::Memory;
+use crate::source::Span;
+use crate::units::Seconds;
+
+impl Control {
+    pub fn memory(&self) -> &Memory {
+        &self.memory
+    }
+
+    pub fn settings(&self) -> &Settings {
+        &self.core.settings
+    }
+
+    /// How the run ended, or `None` while it goes on.
+    pub fn outcome(&self) -> Option<&Outcome> {
+        self.outcome.as_ref()
+    }
+
+    /// What isn't vacant, by number: the main program's locals as they stood before M30's reset, and the commons.
+    pub fn variables(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
+        self.core.vars.known()
+    }
+
+    /// A variable of any kind by its number, as a program would read it now.
+    pub fn variable(&self, number: u32) -> Result<Value, Alarm> {
+        self.core.read(number)
+    }
+
+    /// The coordinate of an axis in the active work coordinate system, as #5001… show it.
+    pub fn work_position(&self, axis: Axis) -> f64 {
+        let state = &self.core.state;
+        self.core.shown(state, Some(axis), state.programmed[axis])
+    }
+
+    /// In machine coordinates, mm and degrees.
+    pub fn machine_position(&self) -> Position {
+        self.core.state.machine
+    }
+
+    pub fn state(&self) -> &State {
+        &self.core.state
+    }
+
+    /// The block last begun, and the calls that led to it.
+    pub fn place(&self) -> Place {
+        let calls = self.core.frames.last().map(|f| f.calls.clone()).unwrap_or_default();
+        Place { block: self.core.block, calls }
+    }
+
+    /// Blocks executed so far.
+    pub fn blocks(&self) -> u64 {
+        self.core.blocks
+    }
+
+    /// Moves told so far.
+    pub fn moves(&self) -> u64 {
+        self.core.moves
+    }
+
+    /// What the motion takes, without acceleration.
+    pub fn seconds(&self) -> Seconds {
+        Seconds(self.core.seconds)
+    }
+
+    /// M codes that the control has no use for: they went to the machine builder's logic, which isn't simulated. Each
+    /// with the first block that has it.
+    pub fn passed_on(&self) -> &BTreeMap<u32, Span> {
+        &self.core.passed_on
+    }
+
+    /// Operator stops in order; the first ten thousand.
+    pub fn stops(&self) -> &[Stop] {
+        &self.core.stops
+    }
+}

@@ -1,0 +1,73 @@
+//! Laws of the control: it never panics, and it runs the same program the same way every time.
+use gcode_sim::control::Settings;
+use gcode_sim::exec::{Control, Limits, Outcome};
+use gcode_sim::motion::{Event, Sink};
+use gcode_sim::program::{Memory, NoLibrary};
+use proptest::prelude::*;
+
+/// Everything told, as text.
+#[derive(Default)]
+struct Told(Vec<String>);
+
+impl Sink for Told {
+    fn event(&mut self, event: &Event<'_>) {
+        if self.0.len() < 1000 {
+            self.0.push(format!("{:?} {:?}", event.kind, event.seconds));
+        }
+    }
+}
+
+fn run(program: &[u8], settings: &Settings) -> (String, Vec<String>) {
+    let mut memory = Memory::default();
+    memory.load("case.nc", program);
+    let mut control = Control::new(memory, settings.clone());
+    let mut told = Told::default();
+    let outcome = control.run(Limits { blocks: 500 }, &mut NoLibrary, &mut told);
+    let end = match outcome {
+        Outcome::End => "end".to_owned(),
+        Outcome::Limit => "limit".to_owned(),
+        Outcome::Alarm(stopped) => format!("{} {} {:?}", stopped.alarm.code(), stopped.alarm, stopped.span),
+    };
+    (end, told.0)
+}
+
+/// Pieces that real blocks are made of, right and wrong ones.
+const PIECES: &[&str] = &[
+    "\n", "\n", "\n", "\n", "G", "G0", "G1", "G2", "G3", "G4", "G10", "G16", "G17", "G18", "G19", "G20",
+    "G28", "G31", "G41", "G43", "G49", "G51", "G51.1", "G52", "G53", "G54.1", "G65", "G66", "G67", "G68",
+    "G68.2", "G73", "G76", "G80", "G81", "G83", "G87", "G90", "G91", "G92", "G93", "G95", "G99", "M3", "M6",
+    "M98", "M99", "M30", "P", "P1", "P2", "L2", "L20", "X", "X1.", "X-0.001", "Y#1", "Z-5.", "B400.", "R2.",
+    "R-3", "I1.", "J-1.", "K3", "Q0.5", "F100", "S1000", "T1", "H1", "D1", "N10", "N20", "GOTO10", "GOTO#2",
+    "IF[", "]GOTO20", "]THEN", "WHILE[", "]DO1", "DO2", "END1", "END2", "#1", "#100", "#[", "#5221", "#4001",
+    "#11001", "=", "+", "-", "*", "/", "MOD", "AND", "[", "]", "SQRT[", "ATAN[", "]/[", "POW[", ",", "EQ",
+    "LT", "#0", "0", "1", "99999999", "0.5", "1e9", "(TEXT)", "O1", "O2", "%", "/", " ",
+];
+
+fn programs() -> impl Strategy<Value = String> {
+    let piece = prop::sample::select(PIECES);
+    prop::collection::vec(piece, 0..60).prop_map(|pieces| format!("O1\n{}", pieces.concat()))
+}
+
+fn settings() -> impl Strategy<Value = Settings> {
+    (any::<bool>(), any::<bool>(), prop::option::of(0.0..1.0)).prop_map(
+        |(calculator_input, rolls, skip_signal)| {
+            let mut settings = Settings { calculator_input, skip_signal, ..Settings::default() };
+            settings.roll_over[4] = rolls;
+            settings
+        },
+    )
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(2000) })]
+
+    #[test]
+    fn a_run_never_panics_and_is_the_same_every_time(program in programs(), settings in settings()) {
+        prop_assert_eq!(run(program.as_bytes(), &settings), run(program.as_bytes(), &settings));
+    }
+
+    #[test]
+    fn any_bytes_run_to_an_end(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
+        run(&bytes, &Settings::default());
+    }
+}
