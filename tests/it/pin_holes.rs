@@ -311,6 +311,15 @@ fn a_hole_is_refused_where_the_head_does_not_come_to_its_angle() {
     assert_eq!(done.control.moves(), 0);
 }
 
+/// Half an increment of 0.01 degrees over 150 mm is 0.013 mm: rounding, not another angle.
+#[test]
+fn a_deep_hole_does_not_mistake_the_rounding_of_its_head_for_another_angle() {
+    let text = melon().replace("IS-B", "IS-A").replace("depth = 15.0", "depth = 150.0");
+    let done = ran(&families::emit(&job(&text)), |_| {});
+    assert!(matches!(done.outcome, Outcome::End), "{:?}", done.outcome);
+    assert_eq!(done.control.stops().len(), 6, "no setting of the head is repeated");
+}
+
 /// The caller's modes and feed come back; the macro's own variables are its own.
 #[test]
 fn a_call_leaves_the_callers_modes_feed_and_locals() {

@@ -34,9 +34,9 @@ IF[[#4005 NE 94]OR[#4006 NE 21]OR[#4007 NE 40]OR[#4008 NE 49]]GOTO 900
 #24=#2*SQRT[[#1-#18]*[#1+#18]]/#1 (EQUATION 8, EXACT NEAR R = A TOO)
 #25=ATAN[#24/[#2*#2]]/[#18/[#1*#1]]
 IF[#11 EQ 1]THEN #25=90.
-IF[[#{set} NE #0]AND[ABS[#25-#{set}]*#7 LE .3]]GOTO 20 (.3 DEG*MM = .005 MM)
+IF[[#{set} NE #0]AND[[ABS[#25-#{set}]-{half}]*#7 LE .3]]GOTO 20 (.005 MM AT THE BOTTOM)
 G65 P{head_call} A#1 B#2 H#11 Q#17 R#18 V#22 (HEAD IS SET FOR ANOTHER HOLE)
-IF[ABS[#25-#{set}]*#7 GT .3]GOTO 990
+IF[[ABS[#25-#{set}]-{half}]*#7 GT .3]GOTO 990
 N20 #26=COS[#{set}]
 #27=SIN[#{set}]
 #28=#18+[#17+#22]*#26

@@ -63,6 +63,8 @@ impl Resident {
             ("{angle}", self.common.to_string()),
             ("{set}", self.set().to_string()),
             ("{per_degree}", number(self.increment.per_unit())),
+            // The head's angle is rounded to its increment: half of one is no other angle.
+            ("{half}", number(self.increment.size() / 2.0)),
             ("{set_head}", set_head),
             ("{spindle_note}", spindle_note.to_owned()),
         ];

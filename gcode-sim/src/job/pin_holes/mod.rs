@@ -168,6 +168,31 @@ depth = 15.0
         }
     }
 
+    proptest::proptest! {
+        /// A job that somebody mistyped is an error with a message, or a job; never a panic.
+        #[test]
+        fn a_mistyped_job_is_told_or_read(place in 0usize..270, gone in 0usize..9, typed in "[ -~\n]{0,4}") {
+            let start = place.min(MINIMAL.len());
+            let end = (start + gone).min(MINIMAL.len());
+            let text = format!("{}{typed}{}", &MINIMAL[..start], &MINIMAL[end..]);
+            if let Err(error) = Job::parse(&text) {
+                proptest::prop_assert!(!error.to_string().is_empty());
+                proptest::prop_assert!(error.line.is_none_or(|line| line <= text.lines().count() + 1));
+            }
+        }
+
+        /// Radii, azimuths and depths come out as they went in.
+        #[test]
+        fn numbers_are_read_exactly(radius in 0.0..1158.8f64, azimuth in -720.0..720.0f64, depth in 0.01..99.0f64) {
+            let text = MINIMAL
+                .replace("radius = 420.0", &format!("radius = {radius:?}"))
+                .replace("azimuth = 0.0", &format!("azimuth = {azimuth:?}"))
+                .replace("depth = 15.0", &format!("depth = {depth:?}"));
+            let hole = &job(&text).holes[0];
+            proptest::prop_assert_eq!((hole.radius, hole.azimuth, hole.depth), (radius, azimuth, depth));
+        }
+    }
+
     fn job(text: &str) -> PinHoles {
         let Job::PinHoles(job) = Job::parse(text).unwrap();
         job
