@@ -1,79 +1,94 @@
 //! Which of many points lie near: a k-d tree, so that hundreds of thousands of holes stay n log n.
 use nalgebra::Point3;
 
-/// Points in an order that halves them again and again, along x, y, z in turn; the middle one is the node.
+/// Points in an order that halves them again and again; the middle one of each part is its node.
 #[derive(Debug, Default)]
 pub struct PointTree {
-    nodes: Vec<(Point3<f64>, u32)>,
+    nodes: Vec<Node>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    point: Point3<f64>,
+    index: u32,
+    /// Before the node lie points that are less in this coordinate, behind it those that are more.
+    axis: u8,
 }
 
 impl PointTree {
     pub fn new(points: impl IntoIterator<Item = Point3<f64>>) -> Self {
-        let mut nodes: Vec<_> = points.into_iter().zip(0u32..).collect();
-        halve(&mut nodes, 0);
+        let nodes = points.into_iter().zip(0u32..).map(|(point, index)| Node { point, index, axis: 0 });
+        let mut nodes: Vec<_> = nodes.collect();
+        halve(&mut nodes);
         Self { nodes }
     }
 
     /// Tells `each` the index of every point in the box from `low` to `high`.
     pub fn in_box(&self, low: &Point3<f64>, high: &Point3<f64>, each: &mut impl FnMut(usize)) {
-        visit(&self.nodes, 0, low, high, each);
+        visit(&self.nodes, low, high, each);
     }
 
     /// The index and the distance of the nearest point.
     pub fn nearest(&self, to: &Point3<f64>) -> Option<(usize, f64)> {
         let mut best = None;
-        closest(&self.nodes, 0, to, &mut best);
+        closest(&self.nodes, to, &mut best);
         best
     }
 }
 
-fn halve(nodes: &mut [(Point3<f64>, u32)], axis: usize) {
+fn halve(nodes: &mut [Node]) {
     if nodes.len() < 2 {
         return;
     }
+    let axis = widest(nodes);
     let middle = nodes.len() / 2;
     // The index decides between equal ones, so that the same points always make the same tree.
-    nodes.select_nth_unstable_by(middle, |a, b| a.0[axis].total_cmp(&b.0[axis]).then(a.1.cmp(&b.1)));
-    let (before, after) = nodes.split_at_mut(middle);
-    halve(before, (axis + 1) % 3);
-    halve(&mut after[1..], (axis + 1) % 3);
+    let order = |a: &Node, b: &Node| a.point[axis].total_cmp(&b.point[axis]).then(a.index.cmp(&b.index));
+    nodes.select_nth_unstable_by(middle, order);
+    nodes[middle].axis = axis as u8;
+    let (before, behind) = nodes.split_at_mut(middle);
+    halve(before);
+    halve(&mut behind[1..]);
 }
 
-fn visit(
-    nodes: &[(Point3<f64>, u32)],
-    axis: usize,
-    low: &Point3<f64>,
-    high: &Point3<f64>,
-    each: &mut impl FnMut(usize),
-) {
+/// Holes often lie on a plane: halving across it would tell nothing apart.
+fn widest(nodes: &[Node]) -> usize {
+    let first = nodes[0].point;
+    let (low, high) =
+        nodes.iter().fold((first, first), |(low, high), n| (low.inf(&n.point), high.sup(&n.point)));
+    (high - low).imax()
+}
+
+fn visit(nodes: &[Node], low: &Point3<f64>, high: &Point3<f64>, each: &mut impl FnMut(usize)) {
     let middle = nodes.len() / 2;
-    let Some((point, index)) = nodes.get(middle) else { return };
+    let Some(Node { point, index, axis }) = nodes.get(middle) else { return };
     if (0..3).all(|i| (low[i]..=high[i]).contains(&point[i])) {
         each(*index as usize);
     }
+    let axis = usize::from(*axis);
     if low[axis] <= point[axis] {
-        visit(&nodes[..middle], (axis + 1) % 3, low, high, each);
+        visit(&nodes[..middle], low, high, each);
     }
     if point[axis] <= high[axis] {
-        visit(&nodes[middle + 1..], (axis + 1) % 3, low, high, each);
+        visit(&nodes[middle + 1..], low, high, each);
     }
 }
 
-fn closest(nodes: &[(Point3<f64>, u32)], axis: usize, to: &Point3<f64>, best: &mut Option<(usize, f64)>) {
+fn closest(nodes: &[Node], to: &Point3<f64>, best: &mut Option<(usize, f64)>) {
     let middle = nodes.len() / 2;
-    let Some((point, index)) = nodes.get(middle) else { return };
+    let Some(Node { point, index, axis }) = nodes.get(middle) else { return };
     let distance = (point - to).norm();
     if best.is_none_or(|(at, least)| (distance, *index as usize) < (least, at)) {
         *best = Some((*index as usize, distance));
     }
-    let beyond = to[axis] - point[axis];
+    let beyond = to[usize::from(*axis)] - point[usize::from(*axis)];
     let (near, far) = match beyond < 0.0 {
         true => (&nodes[..middle], &nodes[middle + 1..]),
         false => (&nodes[middle + 1..], &nodes[..middle]),
     };
-    closest(near, (axis + 1) % 3, to, best);
+    closest(near, to, best);
     if best.is_none_or(|(_, least)| beyond.abs() <= least) {
-        closest(far, (axis + 1) % 3, to, best);
+        closest(far, to, best);
     }
 }
 

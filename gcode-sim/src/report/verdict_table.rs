@@ -105,8 +105,7 @@ fn full(text: &mut String, hole: &HoleVerdict, tolerance: f64) {
             near(hole.tilt, 4)
         ),
     );
-    let tool = hole.from.tool.map_or(String::new(), |tool| format!(", T{tool}"));
-    put(text, &format!(" verdict    {}; {} line {}{tool}", said(hole), hole.from.program, hole.from.line));
+    put(text, &format!(" verdict    {}; made by {}", said(hole), made_by(hole)));
     text.push('\n');
 }
 
@@ -124,9 +123,13 @@ fn summary(text: &mut String, verdict: &Verdict) {
     if !verdict.extra.is_empty() {
         parts.push(format!("{} too many", verdict.extra.len()));
     }
-    put(text, &format!("{answer}: {}", parts.join(", ")));
+    put(text, &format!("{answer}     {}", parts.join(", ")));
     if let (Some(worst), Some(from)) = (verdict.worst, &verdict.worst_from) {
         put(text, &format!("worst    Φ{} of Φ{}: {from}", near(worst, 4), verdict.tolerance));
+        let by_phi = |a: &&HoleVerdict, b: &&HoleVerdict| a.phi.total_cmp(&b.phi);
+        if let Some(hole) = verdict.holes.iter().rev().max_by(by_phi) {
+            put(text, &format!("         made by {}", made_by(hole)));
+        }
     }
     if let Some(rounding) = verdict.rounding {
         let share = rounding / verdict.tolerance * 100.0;
@@ -157,6 +160,14 @@ fn some<T>(all: &[T], name: impl Fn(&T) -> String, between: &str) -> String {
 fn put(text: &mut String, line: &str) {
     // Writing to a string can't fail.
     let _ = writeln!(text, "{}", line.trim_end());
+}
+
+/// `O8101 line 53, T2, called from O8100 line 20`.
+fn made_by(hole: &HoleVerdict) -> String {
+    let tool = hole.from.tool.map_or(String::new(), |tool| format!(", T{tool}"));
+    let calls: Vec<_> =
+        hole.calls.iter().map(|c| format!(", called from {} line {}", c.program, c.line)).collect();
+    format!("{} line {}{tool}{}", hole.from.program, hole.from.line, calls.concat())
 }
 
 fn off(hole: &HoleVerdict) -> [f64; 3] {
@@ -219,6 +230,7 @@ mod tests {
             nominal: placed(420.0),
             actual: placed(420.0 + phi / 2.0),
             from: Origin { program: "O8101".into(), line: 31, tool: Some(2) },
+            calls: vec![Origin { program: "O8100".into(), line: 20, tool: None }],
             objections: objections.iter().map(|o| (*o).to_owned()).collect(),
         }
     }
@@ -230,7 +242,7 @@ mod tests {
             depth_tolerance: 0.1,
             verdict: Answer::Fail,
             worst: Some(0.1234),
-            worst_from: Some("hole 2: …".into()),
+            worst_from: Some("hole 2, …".into()),
             rounding: Some(0.0211),
             holes: vec![hole("1", 0.0002, &[]), hole("2", 0.1234, &["hole-position"])],
             missing: (3..18).map(|id| id.to_string()).collect(),
@@ -250,9 +262,10 @@ hole         x         y         z       dx       dy       dz   entry  bottom   
 1      420.000   674.930     0.000  +0.0001   0.0000   0.0000  0.0001  0.0001  0.0000   0.0000  0.0002  0.0000  pass
 2      420.000   674.930     0.000  +0.0617   0.0000   0.0000  0.0617  0.0617  0.0000   0.0000  0.1234  0.0234  FAIL position
 
-FAIL: 1 of 17 wanted holes good, 15 missing
-worst    Φ0.1234 of Φ0.1: hole 2: …
-rounding to the least increment alone can use up Φ0.0211, 21.1 % of the zone
+FAIL     1 of 17 wanted holes good, 15 missing
+worst    Φ0.1234 of Φ0.1: hole 2, …
+         made by O8101 line 31, T2, called from O8100 line 20
+rounding alone, to the control's least increment, can use up Φ0.0211: 21.1 % of the zone
 missing  3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, … and 3 more
 ");
     }
@@ -268,18 +281,19 @@ hole 2              x         y         z         i         j         k         
  actual      420.0617  674.9300    0.0000  0.000000  1.000000  0.000000     6.000   15.0000
  deviation    +0.0617    0.0000    0.0000  0.000000  0.000000  0.000000     0.000    0.0000
  position   Φ0.1234 of Φ0.1, out of tolerance 0.0234 (entry 0.0617, bottom 0.0617, tilt 0.0000°)
- verdict    FAIL position; O8101 line 31, T2
+ verdict    FAIL position; made by O8101 line 31, T2, called from O8100 line 20
 
 hole 1              x         y         z         i         j         k         d         l
  nominal     420.0000  674.9300    0.0000  0.000000  1.000000  0.000000     6.000   15.0000
  actual      420.0001  674.9300    0.0000  0.000000  1.000000  0.000000     6.000   15.0000
  deviation    +0.0001    0.0000    0.0000  0.000000  0.000000  0.000000     0.000    0.0000
  position   Φ0.0002 of Φ0.1, out of tolerance 0.0000 (entry 0.0001, bottom 0.0001, tilt 0.0000°)
- verdict    pass; O8101 line 31, T2
+ verdict    pass; made by O8101 line 31, T2, called from O8100 line 20
 
-FAIL: 1 of 17 wanted holes good, 15 missing
-worst    Φ0.1234 of Φ0.1: hole 2: …
-rounding to the least increment alone can use up Φ0.0211, 21.1 % of the zone
+FAIL     1 of 17 wanted holes good, 15 missing
+worst    Φ0.1234 of Φ0.1: hole 2, …
+         made by O8101 line 31, T2, called from O8100 line 20
+rounding alone, to the control's least increment, can use up Φ0.0211: 21.1 % of the zone
 missing  3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, … and 3 more
 ");
     }

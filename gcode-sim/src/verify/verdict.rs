@@ -3,6 +3,7 @@ use serde::Serialize;
 
 use super::{Comparison, Objection, Rounding};
 use crate::diag::{Diagnostic, Severity};
+use crate::motion::{Call, Calls};
 use crate::part::hole::{Hole, Origin};
 use crate::source::Span;
 
@@ -57,6 +58,8 @@ pub struct HoleVerdict {
     pub nominal: Placed,
     pub actual: Placed,
     pub from: Origin,
+    /// The calls that led to that block, innermost first.
+    pub calls: Vec<Origin>,
     /// The codes of the findings against it.
     pub objections: Vec<String>,
     /// Which of the holes that the program makes it is, counted from 0.
@@ -191,6 +194,7 @@ fn hole_verdict(
             depth: wanted.depth + deviation.depth_error,
         },
         from: Origin { program, line, tool: found.tool },
+        calls: calls(&found.place.calls, locate),
         objections,
         found: pair.found,
     }
@@ -201,21 +205,31 @@ fn extra(comparison: &Comparison<'_>, index: usize, locate: &dyn Fn(Span) -> (St
     Extra { hole: found.hole(locate), why: super::checks::surplus::why(comparison, index) }
 }
 
-/// One sentence: which end, how far, by how much of it rounding is to blame, and the block.
+/// In one line: which end, how far, and how much of it rounding is to blame for.
 fn worst_from(hole: &HoleVerdict, rounding: &Rounding) -> String {
     let (end, off) = match hole.at_bottom > hole.at_entry {
         true => ("bottom", hole.at_bottom),
         false => ("entry", hole.at_entry),
     };
     let shares: Vec<_> = rounding.shares.iter().map(|s| format!("{} {:.4}", s.letter, s.moves)).collect();
-    let shares = if shares.is_empty() { String::new() } else { format!(" ({} mm)", shares.join(", ")) };
+    let shares = if shares.is_empty() { String::new() } else { format!(" ({})", shares.join(", ")) };
     // What can be explained by rounding is compared with room for the arithmetic itself.
     let blame = match hole.phi <= rounding.phi + 1e-6 {
-        true => "which rounding to the least increment explains",
+        true => "within what rounding to the least increment explains",
         false => "more than rounding to the least increment explains",
     };
     format!(
-        "hole {}: the axis is {off:.4} mm off at its {end}, {blame}: at most Φ{:.4} there{shares}; made by {} line {}",
-        hole.id, rounding.phi, hole.from.program, hole.from.line
+        "hole {}, {off:.4} mm off at its {end}: {blame}, at most Φ{:.4} there{shares}",
+        hole.id, rounding.phi
     )
+}
+
+/// The chain of calls, one place each.
+fn calls(calls: &Calls, locate: &dyn Fn(Span) -> (String, u32)) -> Vec<Origin> {
+    let chain = std::iter::successors(calls.as_deref(), |call| call.outer.as_deref());
+    let place = |call: &Call| {
+        let (program, line) = locate(call.from);
+        Origin { program, line, tool: None }
+    };
+    chain.map(place).collect()
 }
