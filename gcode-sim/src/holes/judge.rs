@@ -33,7 +33,8 @@ impl Extractor<'_> {
         };
         let inside = self.surface.map(|s| s.depth(&s.deepest_between(&line.start, &line.bottom())));
         // A feed outwards, as of a tool that was left in its hole, makes none.
-        if off.is_some_and(|off| off.0 > 90.0) {
+        let rises = self.surface.is_some_and(|s| s.value(&line.start) < s.value(&line.bottom()));
+        if rises || off.is_some_and(|off| off.0 > 90.0) {
             return;
         }
         if !came_back {
@@ -120,6 +121,7 @@ impl Extractor<'_> {
         }
     }
 
+    /// After a way back, a rapid along the line ran deeper than the line was cut.
     pub(super) fn rapid_into_uncut(&mut self, event: &Event<'_>, line: &Line) {
         let bottom = line.bottom();
         let inside = self.surface.map(|surface| surface.depth(&bottom));
@@ -136,6 +138,29 @@ impl Extractor<'_> {
                 None => Diagnostic::warning("rapid-beyond-cut", message),
             };
             finding.help("end the rapid above the depth already drilled")
+        });
+    }
+
+    /// The feed ends and a rapid goes on in its direction: out of the part after a feed outwards, or deeper into it.
+    pub(super) fn judge_overrun(&mut self, event: &Event<'_>, line: &Line, to: &Point3<f64>) {
+        // A rapid into the part is told where all rapids are.
+        if self.surface.is_some() {
+            return;
+        }
+        let outwards = line.tool_axis.is_some_and(|axis| axis.dot(&line.out) < 0.0);
+        if outwards {
+            return;
+        }
+        self.findings.add("rapid-beyond-cut", &event.place(), 0, || {
+            Diagnostic::warning(
+                "rapid-beyond-cut",
+                format!(
+                    "the rapid goes {:.3} mm on in the direction of a feed of {:.3} mm: not taken for a hole",
+                    line.depth_of(to) - line.cut(),
+                    line.cut()
+                ),
+            )
+            .help("right if the feed led out of the part; else the rapid runs into it")
         });
     }
 

@@ -103,6 +103,13 @@ impl Line {
         aside > 3.0 * self.rounding * (1.0 + depth.abs() / self.cut().max(1e-3)) + 1e-9
     }
 
+    /// Whether a rapid to `to` goes on in the direction of the feed from its very end: then the feed may have led
+    /// out of the part, or the rapid runs into it.
+    pub(super) fn is_overrun(&self, to: &Point3<f64>) -> bool {
+        let ended_deepest = self.cut() - self.depth <= 2.0 * self.rounding;
+        ended_deepest && self.cut() + DEEPER < self.depth_of(to) && !self.is_beside(to)
+    }
+
     /// Where the tool is after a straight motion to `to`.
     pub(super) fn after(&self, from: &Point3<f64>, to: &Point3<f64>) -> After {
         let depth = self.depth_of(to);

@@ -127,6 +127,10 @@ impl<'m> Extractor<'m> {
     fn stay_or_leave(&mut self, event: &Event<'_>, pace: Pace, from: Point3<f64>) -> Option<Point3<f64>> {
         let Some(mut line) = self.line.take() else { return Some(from) };
         let tip = self.pose.tip;
+        if pace == Pace::Rapid && line.is_overrun(&tip) {
+            self.judge_overrun(event, &line, &tip);
+            return Some(from);
+        }
         match line.after(&from, &tip) {
             After::On => {
                 let again = match pace {

@@ -136,6 +136,14 @@ fn a_feed_that_is_not_retraced_is_no_hole_and_is_told() {
     check(&Script::new().rapid("Z2").feed("Z-5").rapid("X50"), "feed-without-retract");
 }
 
+#[test]
+fn a_feed_outwards_that_a_rapid_goes_on_with_is_no_hole_and_is_told() {
+    check(&Script::new().rapid("Z-5 X9").feed("Z2").rapid("Z50"), "rapid-beyond-cut");
+    let out_of_the_ball =
+        Script::new().rapid("X150").feed("X150 Y150").rapid("Y200").rapid("X20").feed("Y150").rapid("Y250");
+    assert_eq!(on_the_ball(out_of_the_ball), "20.000 200.000 0.000 0.000 1.000 0.000 50.000");
+}
+
 /// Each end point is rounded: the way out isn't exactly on the line that the way in drew.
 #[test]
 fn rounded_points_stay_on_their_line() {

@@ -133,12 +133,8 @@ fn summary(text: &mut String, verdict: &Verdict) {
     }
     if let Some(rounding) = verdict.rounding {
         let share = rounding / verdict.tolerance * 100.0;
-        put(
-            text,
-            &format!(
-                "rounding to the least increment alone can use up Φ{rounding:.4}, {share:.1} % of the zone"
-            ),
-        );
+        let said = "rounding alone, to the control's least increment, can use up";
+        put(text, &format!("{said} Φ{rounding:.4}: {share:.1} % of the zone"));
     }
     if !verdict.missing.is_empty() {
         put(text, &format!("missing  {}", some(&verdict.missing, |id| id.clone(), ", ")));

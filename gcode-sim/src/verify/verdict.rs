@@ -1,4 +1,6 @@
 //! The answer: every hole with its numbers, what is missing and what is too many, and why.
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 
 use super::{Comparison, Objection, Rounding};
@@ -156,8 +158,29 @@ pub(super) fn verdict(
             })
             .collect(),
         holes,
-        diagnostics: objections.into_iter().map(|o| o.finding).chain(findings.iter().cloned()).collect(),
+        diagnostics: readable(objections.into_iter().map(|o| o.finding).chain(findings.iter().cloned())),
     }
+}
+
+/// As many of each kind as people read; the last of them says how many more there are.
+fn readable(findings: impl Iterator<Item = Diagnostic>) -> Vec<Diagnostic> {
+    const SHOWN: usize = 8;
+    let mut kinds: BTreeMap<String, (usize, usize)> = BTreeMap::new();
+    let mut shown: Vec<Diagnostic> = Vec::new();
+    for finding in findings {
+        let (count, last) = kinds.entry(finding.code.clone()).or_insert((0, 0));
+        *count += 1;
+        if *count <= SHOWN {
+            *last = shown.len();
+            shown.push(finding);
+        }
+    }
+    for (count, last) in kinds.into_values().filter(|(count, _)| SHOWN < *count) {
+        shown[last]
+            .notes
+            .push(format!("and {} more of this kind; --format json has them all", count - SHOWN));
+    }
+    shown
 }
 
 fn hole_verdict(

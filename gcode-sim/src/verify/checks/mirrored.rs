@@ -6,23 +6,24 @@ use super::{Comparison, Objection};
 use crate::diag::Diagnostic;
 use crate::holes::Found;
 
-/// Holes that lie on the mirror itself prove nothing; so many others must agree, in parts of those missing.
+/// So many of the wanted holes must agree with the mirrored ones.
 const MOST: f64 = 0.8;
 
 pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>) {
     if comparison.missing.is_empty() || comparison.extra.is_empty() {
         return;
     }
-    let wanted: Vec<_> = comparison.missing.iter().map(|index| comparison.wanted[*index].clone()).collect();
     for (axis, name) in [(2, 'z'), (0, 'x'), (1, 'y')] {
-        let turned: Vec<_> = comparison.extra.iter().map(|i| mirror(&comparison.found[*i], axis)).collect();
-        let again = Comparison::new(&wanted, &turned, comparison.tolerances);
-        if (again.pairs.len() as f64) < MOST * wanted.len() as f64 {
+        let turned: Vec<_> = comparison.found.iter().map(|found| mirror(found, axis)).collect();
+        let again = Comparison::new(comparison.wanted, &turned, comparison.tolerances);
+        let agree = again.pairs.len();
+        if agree <= comparison.pairs.len() || (agree as f64) < MOST * comparison.wanted.len() as f64 {
             continue;
         }
         let message = format!(
-            "{} holes lie mirrored, with {name} turned round: the rotary table turns the other way than the program believes",
-            again.pairs.len()
+            "the holes lie mirrored: with {name} turned round {agree} of {} would be there; the rotary table turns the \
+             other way than the program believes",
+            comparison.wanted.len()
         );
         let place = comparison.found[comparison.extra[0]].place.clone();
         let finding = Diagnostic::error("rotary-sign", message)
