@@ -12,6 +12,7 @@ mod r#gen;
 mod picture;
 pub mod programs;
 mod syntax;
+mod verify;
 
 use std::path::{Path, PathBuf};
 
@@ -27,6 +28,7 @@ pub const KINDS: &[(&str, Run)] = &[
     ("gen", r#gen::run),
     ("picture", picture::run),
     ("syntax", syntax::run),
+    ("verify", verify::run),
 ];
 
 /// The folder of one case.

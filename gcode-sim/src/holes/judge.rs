@@ -303,6 +303,8 @@ impl Extractor<'_> {
     }
 }
 
+/// Rounded; adding 0 to what is rounded turns −0 into 0.
 fn shown(p: &Point3<f64>) -> String {
-    format!("x {:.3} y {:.3} z {:.3} on the part", p.x, p.y, p.z)
+    let [x, y, z] = [p.x, p.y, p.z].map(|v| (v * 1000.0).round() / 1000.0 + 0.0);
+    format!("x {x:.3} y {y:.3} z {z:.3} on the part")
 }

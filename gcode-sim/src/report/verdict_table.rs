@@ -123,6 +123,10 @@ fn summary(text: &mut String, verdict: &Verdict) {
     if !verdict.extra.is_empty() {
         parts.push(format!("{} too many", verdict.extra.len()));
     }
+    let motion = verdict.findings.iter().filter(|f| f.severity == "error" && f.from_motion).count();
+    if motion != 0 {
+        parts.push(format!("{} in the motion", count(motion, "error")));
+    }
     put(text, &format!("{answer}     {}", parts.join(", ")));
     if let (Some(worst), Some(from)) = (verdict.worst, &verdict.worst_from) {
         put(text, &format!("worst    Φ{} of Φ{}: {from}", near(worst, 4), verdict.tolerance));

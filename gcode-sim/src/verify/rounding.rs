@@ -105,6 +105,8 @@ fn worst_case(machine: &Machine, moved: Vec<(Axis, [Vector3<f64>; 2])>) -> Round
             moves: entry.norm().max(bottom.norm()),
         })
         .collect();
+    // What goes along the hole, or turns a hole on the table's own axis, moves nothing sideways.
+    shares.retain(|share| 1e-7 < share.moves);
     shares.sort_by(|a, b| b.moves.total_cmp(&a.moves));
     Rounding { phi: 2.0 * worst, shares }
 }

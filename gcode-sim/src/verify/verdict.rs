@@ -94,6 +94,8 @@ pub struct Finding {
     pub message: String,
     pub help: Option<String>,
     pub notes: Vec<String>,
+    /// About how the tool moved, not about the holes that came of it.
+    pub from_motion: bool,
     /// The wanted hole it is about.
     pub hole: Option<String>,
     pub from: Option<Origin>,
@@ -130,7 +132,8 @@ pub(super) fn verdict(
             Origin { program, line, tool: None }
         })
     };
-    let told = objections.iter().map(|o| (o.wanted, &o.finding)).chain(findings.iter().map(|f| (None, f)));
+    let about_holes = objections.iter().map(|o| (o.wanted, &o.finding, false));
+    let told = about_holes.chain(findings.iter().map(|f| (None, f, true)));
     Verdict {
         basis: "predicted by simulation, not measured",
         tolerance: comparison.tolerances.position,
@@ -142,7 +145,7 @@ pub(super) fn verdict(
         missing: comparison.missing.iter().map(|index| comparison.id(*index).to_owned()).collect(),
         extra: comparison.extra.iter().map(|index| extra(comparison, *index, locate)).collect(),
         findings: told
-            .map(|(wanted, finding)| Finding {
+            .map(|(wanted, finding, from_motion)| Finding {
                 code: finding.code.clone(),
                 severity: match finding.severity {
                     Severity::Note => "note",
@@ -153,6 +156,7 @@ pub(super) fn verdict(
                 message: finding.message.clone(),
                 help: finding.help.clone(),
                 notes: finding.notes.clone(),
+                from_motion,
                 hole: wanted.map(|index| comparison.id(index).to_owned()),
                 from: origin(finding),
             })

@@ -1,12 +1,15 @@
 //! Every wanted hole must be there.
 use nalgebra::{Point3, Vector3};
 
-use super::{Comparison, Objection};
+use super::{Comparison, Objection, surplus};
 use crate::diag::Diagnostic;
 use crate::holes::near::PointTree;
 
 pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>) {
-    let tree = PointTree::new(comparison.extra.iter().map(|index| comparison.found[*index].bottom()));
+    // A hole drilled twice is known; it isn't the missing one in a wrong place.
+    let extra = comparison.extra.iter().copied().filter(|index| surplus::twice(comparison, *index).is_none());
+    let extra: Vec<usize> = extra.collect();
+    let tree = PointTree::new(extra.iter().map(|index| comparison.found[*index].bottom()));
     for wanted in &comparison.missing {
         let hole = &comparison.wanted[*wanted];
         let end = Point3::from(hole.entry) - Vector3::from(hole.axis) * hole.depth;
@@ -14,7 +17,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
         let finding = Diagnostic::error("hole-missing", message);
         let finding = match tree.nearest(&end) {
             Some((near, distance)) => {
-                let found = &comparison.found[comparison.extra[near]];
+                let found = &comparison.found[extra[near]];
                 let off = found.bottom() - end;
                 finding
                     .note(format!(

@@ -19,7 +19,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
 }
 
 /// The wanted hole that was drilled on the same line already; such holes stand side by side in the list.
-fn twice(comparison: &Comparison<'_>, extra: usize) -> Option<usize> {
+pub(super) fn twice(comparison: &Comparison<'_>, extra: usize) -> Option<usize> {
     let first = comparison.found[extra].first;
     let same = (first..comparison.found.len()).take_while(|index| comparison.found[*index].first == first);
     same.filter(|index| *index != extra).find_map(|index| comparison.wanted_of(index))

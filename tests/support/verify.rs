@@ -1,0 +1,77 @@
+//! Cases of kind `verify`: a program held against a reference, as the inspector's table and the findings say it.
+//!
+//! `case.nc` is the program (programs it calls stand in the same file), `reference.toml`, `.csv` or `.json` what is
+//! wanted, `machine.toml`, where there is one, the machine. Where there is no reference the holes are shown.
+use std::fmt::Write as _;
+
+use gcode_sim::diag::Severity;
+use gcode_sim::machine::Machine;
+use gcode_sim::motion::Call;
+use gcode_sim::part::reference::Reference;
+use gcode_sim::program::NoLibrary;
+use gcode_sim::report::verdict_table::{Layout, table};
+use gcode_sim::session::{Request, Simulation, simulate};
+use gcode_sim::verify::Tolerances;
+
+use crate::Case;
+
+pub(crate) fn run(case: &Case) {
+    let machine =
+        case.optional("machine.toml").map_or_else(Machine::default, |text| Machine::parse(&text).unwrap());
+    let request = Request::new("case.nc", case.bytes("case.nc"), machine.clone());
+    let files = ["reference.toml", "reference.csv", "reference.json"];
+    let reference =
+        files.iter().find_map(|name| case.optional(name)).map(|text| Reference::parse(&text).unwrap());
+    let surface = reference.as_ref().and_then(|reference| reference.surface);
+    let simulation = simulate(&request, &mut NoLibrary, surface).unwrap();
+    let (mut shown, findings) = match &reference {
+        Some(reference) => {
+            let verdict = simulation.verify(reference, Tolerances::of(reference, None), &machine);
+            (table(&verdict, Layout::default()), verdict.diagnostics)
+        }
+        None => (holes(&simulation), simulation.extracted.findings.clone()),
+    };
+    for finding in &findings {
+        let severity = match finding.severity {
+            Severity::Note => "note",
+            Severity::Warning => "warning",
+            Severity::Error => "error",
+            Severity::Alarm => "alarm",
+        };
+        write!(shown, "\n{severity} {}: {}\n", finding.code, finding.message).unwrap();
+        if let Some(place) = &finding.place {
+            writeln!(shown, "  at {}", at(&simulation, place.block)).unwrap();
+            let mut next: Option<&Call> = place.calls.as_deref();
+            while let Some(call) = next {
+                writeln!(shown, "  called from {}", at(&simulation, call.from)).unwrap();
+                next = call.outer.as_deref();
+            }
+        }
+        finding.notes.iter().for_each(|note| writeln!(shown, "  {note}").unwrap());
+        finding.help.iter().for_each(|help| writeln!(shown, "  help: {help}").unwrap());
+    }
+    case.snapshot("verdict", &shown);
+}
+
+fn at(simulation: &Simulation, block: gcode_sim::source::Span) -> String {
+    let (program, line) = simulation.run.locate(block);
+    let text = simulation.run.control.memory().sources().text(block);
+    format!("{program} line {line}: {}", text.trim())
+}
+
+fn holes(simulation: &Simulation) -> String {
+    let mut text = String::new();
+    for hole in simulation.list().holes {
+        let [x, y, z] = hole.entry.map(|v| format!("{:.3}", v + 0.0));
+        let [i, j, k] = hole.axis.map(|v| format!("{:.4}", v + 0.0));
+        let from = hole.from.unwrap();
+        let tool = from.tool.map_or(String::new(), |tool| format!(", T{tool}"));
+        let depth = hole.depth;
+        let line = format!(
+            "hole from {x} {y} {z}, axis {i} {j} {k}, {depth:.3} deep: {} line {}{tool}",
+            from.program, from.line
+        );
+        writeln!(text, "{}", line.replace("-0.000 ", "0.000 ").replace("-0.0000", "0.0000")).unwrap();
+    }
+    text
+}
