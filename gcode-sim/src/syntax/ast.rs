@@ -38,15 +38,15 @@ pub struct Block {
     pub comments: Vec<Comment>,
 }
 
-/// What a block is made of. A control takes either words or one statement; that is checked when it is lowered.
+/// What a block is made of. Most are words, so what is larger lies apart. A control takes either words or one statement; that is checked when it is lowered.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Item {
     Word(Word),
-    Statement(Spanned<Statement>),
+    Statement(Box<Spanned<Statement>>),
     /// `/n` inside a block: the rest is skipped when the switch is on.
     Skip(Spanned<u8>),
     /// The rest of the line can't be read.
-    Unreadable(Unreadable),
+    Unreadable(Box<Unreadable>),
 }
 
 /// The rest of a line from the word or statement that can't be read.

@@ -20,7 +20,7 @@ pub(super) fn block(line: Line, input: Input<'_>) -> (Block, Input<'_>) {
         match item(line, rest, &mut block) {
             Ok((after, ())) => rest = spaces(after),
             Err(error) => {
-                block.items.push(Item::Unreadable(unreadable(line, rest, error)));
+                block.items.push(Item::Unreadable(Box::new(unreadable(line, rest, error))));
                 rest = &rest[rest.len()..];
             }
         }
@@ -78,7 +78,7 @@ fn item<'a>(line: Line, at: Input<'a>, block: &mut Block) -> Read<'a, ()> {
         }
         [b'#' | b'[', ..] => {
             let (rest, found) = assignment(line, at)?;
-            (rest, Item::Statement(line.spanned(found, at, rest)))
+            (rest, Item::Statement(Box::new(line.spanned(found, at, rest))))
         }
         [b'<', ..] => {
             let (rest, word) = name_word(line, at)?;
@@ -88,7 +88,7 @@ fn item<'a>(line: Line, at: Input<'a>, block: &mut Block) -> Read<'a, ()> {
         [b',' | b'A'..=b'Z' | b'a'..=b'z', ..] => match keyword(at) {
             Some((rest, keyword)) => {
                 let (rest, found) = statement(line, rest, keyword)?;
-                (rest, Item::Statement(line.spanned(found, at, rest)))
+                (rest, Item::Statement(Box::new(line.spanned(found, at, rest))))
             }
             None => {
                 let (rest, word) = word(line, at)?;

@@ -58,6 +58,9 @@ impl<'a> Pieces<'a> {
     /// What stands before the first `%` is a leader, which a control ignores, if nothing in it can be read.
     fn behind_leader(mut self) -> Self {
         let text = &self.bytes[self.next..];
+        if !text.contains(&b'%') {
+            return self;
+        }
         let begins_line = |at: usize| text[..at].last().is_none_or(|b| matches!(b, b'\n' | b'\r'));
         let mark = text.iter().enumerate().find(|(at, byte)| **byte == b'%' && begins_line(*at));
         let Some((mark, _)) = mark else { return self };

@@ -206,7 +206,7 @@ fn comments() -> impl Strategy<Value = Vec<Comment>> {
 }
 
 fn block() -> impl Strategy<Value = Block> {
-    let statement = statement().prop_map(|s| vec![Item::Statement(Spanned::new(s, NOWHERE))]);
+    let statement = statement().prop_map(|s| vec![Item::Statement(Box::new(Spanned::new(s, NOWHERE)))]);
     let skip = || (1..=9u8).prop_map(|n| Spanned::new(n, NOWHERE));
     let words = (vec(word(), 1..5), option::weighted(0.1, (skip(), word()))).prop_map(|(mut words, tail)| {
         if let Some((skip, word)) = tail {

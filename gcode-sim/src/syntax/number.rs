@@ -7,34 +7,35 @@ use crate::alarm::Alarm;
 pub(super) const EXPRESSION_DIGITS: u32 = 12;
 pub(super) const WORD_DIGITS: u32 = 9;
 /// Zeros behind the point don't count as digits; beyond this many no control has a use for them.
-const MOST_PLACES: u8 = 18;
+const MOST_PLACES: u32 = 18;
 
 /// An unsigned literal of at most `most` digits, leading zeros not counted.
 pub(super) fn decimal(input: Input<'_>, negative: bool, most: u32) -> Read<'_, Decimal> {
-    let mut digits: u64 = 0;
-    let mut significant = 0;
-    let mut any = false;
-    let mut places: Option<u8> = None;
-    let mut used = 0;
+    let limit = 10u64.pow(most);
+    let (mut digits, mut count, mut used) = (0u64, 0u32, 0);
+    let mut before_point = None;
     for (at, byte) in input.iter().enumerate() {
         match byte {
             b'0'..=b'9' => {
-                any = true;
-                significant += u32::from(digits > 0 || *byte != b'0');
-                if significant > most || places == Some(MOST_PLACES) {
+                digits = digits * 10 + u64::from(byte - b'0');
+                count += 1;
+                if digits >= limit {
                     return fail(input, Alarm::TooManyDigits);
                 }
-                digits = digits * 10 + u64::from(byte - b'0');
-                places = places.map(|n| n + 1);
             }
-            b'.' if places.is_some() => return fail(input, Alarm::IllegalPoint { letter: None }),
-            b'.' => places = Some(0),
+            b'.' if before_point.is_some() => return fail(input, Alarm::IllegalPoint { letter: None }),
+            b'.' => before_point = Some(count),
             byte if is_space(*byte) => continue,
             _ => break,
         }
         used = at + 1;
     }
-    if any { Ok((&input[used..], Decimal { negative, digits, places })) } else { other(input) }
+    let places = before_point.map(|before| count - before);
+    if places > Some(MOST_PLACES) {
+        return fail(input, Alarm::TooManyDigits);
+    }
+    let places = places.map(|places| places as u8);
+    if count > 0 { Ok((&input[used..], Decimal { negative, digits, places })) } else { other(input) }
 }
 
 /// A whole number without a point, as after N, O, DO and `/`.
