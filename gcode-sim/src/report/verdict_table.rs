@@ -129,7 +129,15 @@ fn summary(text: &mut String, verdict: &Verdict) {
     }
     put(text, &format!("{answer}     {}", parts.join(", ")));
     if let (Some(worst), Some(from)) = (verdict.worst, &verdict.worst_from) {
-        put(text, &format!("worst    Φ{} of Φ{}: {from}", near(worst, 4), verdict.tolerance));
+        put(
+            text,
+            &format!(
+                "worst    Φ{} of Φ{}: {}",
+                near(worst, 4),
+                verdict.tolerance,
+                from.replace("; ", "\n         ")
+            ),
+        );
         let by_phi = |a: &&HoleVerdict, b: &&HoleVerdict| a.phi.total_cmp(&b.phi);
         if let Some(hole) = verdict.holes.iter().rev().max_by(by_phi) {
             put(text, &format!("         made by {}", made_by(hole)));

@@ -242,11 +242,11 @@ fn worst_from(hole: &HoleVerdict, rounding: &Rounding) -> String {
     let shares = if shares.is_empty() { String::new() } else { format!(" ({})", shares.join(", ")) };
     // What can be explained by rounding is compared with room for the arithmetic itself.
     let blame = match hole.phi <= rounding.phi + 1e-6 {
-        true => "within what rounding to the least increment explains",
-        false => "more than rounding to the least increment explains",
+        true => "within what rounding explains",
+        false => "more than rounding explains",
     };
     format!(
-        "hole {}, {off:.4} mm off at its {end}: {blame}, at most Φ{:.4} there{shares}",
+        "hole {}, {off:.4} mm off at its {end}, {blame}; rounding alone makes at most Φ{:.4} there{shares}",
         hole.id, rounding.phi
     )
 }
