@@ -6,13 +6,12 @@ use crate::session;
 use crate::verify::{Answer, Tolerances};
 
 pub(super) fn run(arguments: &VerifyArguments) -> Result<Status, Refusal> {
+    let asked = options::tolerance("--tolerance", arguments.tolerance)?;
+    let depth = options::tolerance("--depth-tolerance", arguments.depth_tolerance)?;
     let (request, mut folders) = options::request(&arguments.program)?;
     let reference = options::reference(&arguments.reference)?;
-    let asked = options::tolerance("--tolerance", arguments.tolerance)?;
     let mut tolerances = Tolerances::of(&reference, asked);
-    if let Some(depth) = options::tolerance("--depth-tolerance", arguments.depth_tolerance)? {
-        tolerances.depth = depth;
-    }
+    tolerances.depth = depth.unwrap_or(tolerances.depth);
     let simulation = session::simulate(&request, &mut folders, reference.surface)
         .map_err(|error| Refusal::new(error.to_string()))?;
     let verdict = simulation.verify(&reference, tolerances, &request.machine);

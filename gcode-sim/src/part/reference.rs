@@ -33,6 +33,10 @@ impl Reference {
         if read::is_csv(text) {
             return Self::of_list(read::csv(text)?);
         }
+        if !text.contains("family") {
+            let message = "neither a hole list (JSON or CSV) nor a job file with its key 'family'".to_owned();
+            return Err(ReferenceError { line: None, message });
+        }
         let job = Job::parse(text).map_err(|e| ReferenceError { line: e.line, message: e.message })?;
         Self::of_job(&job)
     }

@@ -42,7 +42,7 @@ pub fn of_verdict(
         standing: if hole.ok { Standing::Good } else { Standing::Bad },
         phi: Some(hole.phi),
         turn: rotary.turn(&found[hole.found]),
-        remark: hole.objections.first().map(|code| code.rsplit("::").next().unwrap_or(code).to_owned()),
+        remark: hole.objections.first().map(|code| code.trim_start_matches("hole-").to_owned()),
     });
     let missing = verdict.missing.iter().map(|id| DrawnHole {
         id: id.clone(),
