@@ -1,4 +1,6 @@
 //! Passes → holes: what several tools, or one tool in several goes, cut on one line is one hole.
+use std::collections::BTreeMap;
+
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::near::PointTree;
@@ -74,29 +76,18 @@ pub(super) fn holes(passes: &[Pass], machine: &Machine) -> Vec<Found> {
 /// For each pass the first one on its line.
 fn same_line(passes: &[Pass]) -> Vec<usize> {
     let tree = PointTree::new(passes.iter().map(|pass| pass.bottom));
-    let mut first: Vec<usize> = (0..passes.len()).collect();
+    let mut groups = tree.groups();
     for (index, pass) in passes.iter().enumerate() {
         let margin = Vector3::repeat(ASIDE);
         let low = pass.start.inf(&pass.bottom) - margin;
         let high = pass.start.sup(&pass.bottom) + margin;
-        tree.in_box(&low, &high, &mut |other| {
+        groups.join(index, &low, &high, &|other| {
             let to = passes[other].bottom - pass.bottom;
             let aside = (to - pass.axis.into_inner() * to.dot(&pass.axis)).norm();
-            if aside <= ASIDE && pass.axis.dot(&passes[other].axis) >= COSINE {
-                let (a, b) = (root(&mut first, index), root(&mut first, other));
-                first[a.max(b)] = a.min(b);
-            }
+            aside <= ASIDE && pass.axis.dot(&passes[other].axis) >= COSINE
         });
     }
-    (0..passes.len()).map(|index| root(&mut first, index)).collect()
-}
-
-fn root(first: &mut [usize], mut index: usize) -> usize {
-    while first[index] != index {
-        first[index] = first[first[index]];
-        index = first[index];
-    }
-    index
+    groups.firsts()
 }
 
 /// One hole, and one more for every time a tool came back for nothing.
@@ -106,12 +97,15 @@ fn holes_of(group: &[&Pass], machine: &Machine, found: &mut Vec<Found>) {
     let height = |p: &Point3<f64>| p.coords.dot(&out);
     let mut cutting: Vec<&Pass> = Vec::with_capacity(group.len());
     let mut again: Vec<&Pass> = Vec::new();
+    let mut reached: BTreeMap<Option<u32>, f64> = BTreeMap::new();
     for pass in group {
-        let before = cutting.iter().filter(|other| other.tool == pass.tool);
-        let lowest = before.map(|other| height(&other.bottom)).fold(f64::INFINITY, f64::min);
-        match height(&pass.bottom) < lowest - DEEPER {
-            true => cutting.push(pass),
-            false => again.push(pass),
+        let before = reached.entry(pass.tool).or_insert(f64::INFINITY);
+        let bottom = height(&pass.bottom);
+        if bottom < *before - DEEPER {
+            *before = bottom;
+            cutting.push(pass);
+        } else {
+            again.push(pass);
         }
     }
     let lowest = cutting.iter().map(|pass| height(&pass.bottom)).fold(f64::INFINITY, f64::min);

@@ -74,8 +74,7 @@ impl Extractor<'_> {
         }
         self.judge_feed(&line, off);
         let (pass, again): (Pass, Option<Pass>) = line.finish();
-        self.passes.push(pass);
-        self.passes.extend(again);
+        self.keep(std::iter::once(pass).chain(again));
     }
 
     fn judge_feed(&mut self, line: &Line, off: Option<Deg>) {

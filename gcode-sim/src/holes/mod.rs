@@ -16,13 +16,17 @@ use group::Pass;
 use line::{After, Line};
 
 use self::findings::Findings;
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Severity};
 use crate::machine::path::Travel;
 use crate::machine::{Frame, Machine, Pose, Setup};
-use crate::motion::{Arc2, Event, EventKind, Position, Sink, Spindle, StopKind};
+use crate::motion::{Arc2, Event, EventKind, Place, Position, Sink, Spindle, StopKind};
 use crate::part::hole::{Hole, HoleList, Origin, Unit};
 use crate::part::surface::Surface;
 use crate::source::Span;
+
+/// More passes than this aren't kept: no part has so many holes, but a loop that never ends drills them, and must not
+/// fill the memory.
+const PASSES: usize = 200_000;
 
 /// What a program does to the part.
 #[derive(Clone, Debug, Default)]
@@ -48,6 +52,10 @@ pub struct Extractor<'m> {
     outside: bool,
     line: Option<Line>,
     passes: Vec<Pass>,
+    /// As many passes are kept.
+    most: usize,
+    /// The first of the passes that were too many.
+    too_many: Option<Place>,
     findings: Findings,
 }
 
@@ -77,6 +85,8 @@ impl<'m> Extractor<'m> {
             outside: false,
             line: None,
             passes: Vec::new(),
+            most: PASSES,
+            too_many: None,
             findings: Findings::default(),
         }
     }
@@ -93,7 +103,24 @@ impl<'m> Extractor<'m> {
             let after = line.aside();
             self.judge_line(line, after, false);
         }
-        Extracted { holes: group::holes(&self.passes, self.machine), findings: self.findings.finish() }
+        let mut findings = self.findings.finish();
+        findings.extend(self.too_many.map(|place| {
+            let message =
+                format!("more than {PASSES} feeds into the part: those from here on aren't looked at");
+            let finding = Diagnostic::new(Severity::Alarm, "limit", message).at(place);
+            finding.help("does a loop never end? else split the program")
+        }));
+        Extracted { holes: group::holes(&self.passes, self.machine), findings }
+    }
+
+    fn keep(&mut self, passes: impl IntoIterator<Item = Pass>) {
+        for pass in passes {
+            if self.passes.len() < self.most {
+                self.passes.push(pass);
+            } else if self.too_many.is_none() {
+                self.too_many = Some(pass.place);
+            }
+        }
     }
 
     fn motion(&mut self, event: &Event<'_>, pace: Pace, to: &Position, arc: Option<&Arc2>) {
@@ -143,7 +170,7 @@ impl<'m> Extractor<'m> {
                         again
                     }
                 };
-                self.passes.extend(again);
+                self.keep(again);
                 self.line = Some(line);
                 None
             }

@@ -86,6 +86,24 @@ fn the_same_depth_twice_is_a_hole_twice() {
     check(&a_turn_later, &format!("{one}\n{one}").replace("0.000 0.000 2.000", "2.000 0.000 2.000"));
 }
 
+/// An endless loop over one hole: every pass after the first is one too many, and there is an end to keeping them.
+#[test]
+fn a_loop_over_one_hole_ends_with_the_limit_of_passes() {
+    let machine = Machine::default();
+    let mut extractor = Extractor::new(&machine);
+    extractor.most = 500;
+    Script::new().rapid("X9 Z2").rapid("X0").play(&mut extractor);
+    let once = Script::new().feed("Z-3").rapid("Z2").rapid("X9").rapid("X0");
+    for _ in 0..505 {
+        once.play(&mut extractor);
+    }
+    let found = extractor.finish();
+    assert_eq!(found.holes.len(), 500);
+    assert!(found.holes.iter().all(|hole| hole.first == 0 && (hole.depth - 5.0).abs() < 1e-9));
+    let [limit] = &found.findings[..] else { panic!("{:?}", found.findings) };
+    assert_eq!((limit.code.as_str(), limit.severity), ("limit", crate::diag::Severity::Alarm));
+}
+
 #[test]
 fn two_tools_on_one_line_are_one_hole_as_deep_as_the_deeper() {
     let script = Script::new()
