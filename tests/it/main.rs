@@ -4,6 +4,7 @@
 mod control;
 mod docs;
 mod emitted;
+mod explain;
 mod pin_holes;
 mod round_trip;
 mod tidy;

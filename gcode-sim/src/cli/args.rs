@@ -69,6 +69,14 @@ Examples:
     /// List the settings of the control that --control takes
     Settings,
 
+    /// Tell what an alarm means, with an example and what to write instead
+    #[command(after_help = "\
+Examples:
+  gcode-sim explain PS0112
+  gcode-sim explain 112
+  gcode-sim explain --list")]
+    Explain(ExplainArguments),
+
     /// Compare two pictures and mark what differs
     #[command(after_help = "\
 Example:
@@ -221,6 +229,17 @@ pub(super) struct RenderArguments {
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "1600x1200")]
     pub(super) size: String,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ExplainArguments {
+    /// The alarm's code as the control shows it: PS0112, ps112, 112, MC3021
+    #[arg(value_name = "CODE", required_unless_present = "list")]
+    pub(super) code: Option<String>,
+
+    /// Name all codes that can be explained
+    #[arg(long, conflicts_with = "code")]
+    pub(super) list: bool,
 }
 
 #[derive(Debug, Args)]

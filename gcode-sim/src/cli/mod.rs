@@ -1,6 +1,7 @@
 //! The only place that prints and opens files: arguments in, exit status out.
 mod args;
 mod compare;
+mod explain;
 pub mod front;
 mod holes;
 pub mod input;
@@ -71,6 +72,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Status {
         Command::Verify(arguments) => verify::run(&arguments),
         Command::Render(arguments) => render::run(&arguments),
         Command::Settings => settings::run(),
+        Command::Explain(arguments) => explain::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
     };
     done.unwrap_or_else(|refusal| {

@@ -64,7 +64,21 @@ impl Core {
                 machine[axis] = self.clean(state.machine[axis] + way);
             }
         }
+        self.in_range(given, &machine)?;
         Ok(Goal { programmed, machine })
+    }
+
+    /// A position has nine digits in increments, as a word has; an axis that rolls over begins anew with each turn.
+    fn in_range(&self, given: &Given, machine: &Position) -> Checked<()> {
+        let most = 999_999_999.0 / self.settings.increment.per_unit();
+        for (axis, letter) in self.settings.axes.iter() {
+            if machine[axis].abs() > most && !self.settings.roll_over[axis] {
+                let alarm = Alarm::PositionOverflow { letter, value: machine[axis] };
+                let named = given.has(letter as u8);
+                return Err(alarm.at(if named { given.span(letter as u8) } else { self.block }));
+            }
+        }
+        Ok(())
     }
 
     fn in_plane(&self, state: &State, axis: Axis) -> bool {

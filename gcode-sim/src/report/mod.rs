@@ -1,5 +1,6 @@
 //! Data to words: what the terminal, JSON and CSV say of runs, holes and verdicts.
 pub mod diagnostic;
+pub mod explain;
 pub mod holes;
 pub mod run;
 pub mod top;

@@ -1,0 +1,118 @@
+//! What `explain` says: one page per code, written in `docs/explain/` and carried in the program.
+use std::fmt::Write;
+
+/// One page: what a code means, what causes it, a program that raises it and what to write instead.
+#[derive(Clone, Copy, Debug)]
+pub struct Page {
+    /// `PS0112`; `MC3000` stands for all alarms that programs raise themselves.
+    pub code: &'static str,
+    /// Markdown: a title `# PS0112: division by zero`, and programs fenced as `nc`.
+    pub text: &'static str,
+}
+
+macro_rules! pages {
+    ($($code:literal)*) => {
+        &[$(Page { code: $code, text: include_str!(concat!("../../../docs/explain/", $code, ".md")) }),*]
+    };
+}
+
+/// All pages, in the order of their codes.
+#[rustfmt::skip]
+pub const PAGES: &[Page] = pages![
+    "MC3000"
+    "PS0003" "PS0004" "PS0005" "PS0006" "PS0007" "PS0009" "PS0010" "PS0011"
+    "PS0020" "PS0021" "PS0022" "PS0025" "PS0030" "PS0035" "PS0044" "PS0045"
+    "PS0046" "PS0074" "PS0076" "PS0077" "PS0078" "PS0092" "PS0110" "PS0111"
+    "PS0112" "PS0115" "PS0116" "PS0118" "PS0119" "PS0122" "PS0124" "PS0125"
+    "PS0126" "PS0127" "PS0128" "PS0129" "PS0142" "PS0144" "PS0305" "PS0310"
+    "PS0311" "PS1091" "PS1092" "PS1095" "PS1098" "PS1100" "PS1115" "PS1120"
+    "PS1124" "PS1125" "PS1128" "PS1131" "PS1132" "PS1133" "PS1134" "PS1137"
+    "PS1138" "PS1139" "PS1141" "PS1142" "PS1143" "PS1144" "PS1160" "PS5010" "PS5074"
+    "SIM0001"
+];
+
+/// The page of a code in any of its spellings: `PS0112`, `ps112`, `112`, `MC3021`.
+pub fn find(code: &str) -> Option<&'static Page> {
+    let code = code.trim().to_ascii_uppercase();
+    let digits = code.trim_start_matches(|c: char| c.is_ascii_alphabetic());
+    let family = &code[..code.len() - digits.len()];
+    let number: u32 = digits.parse().ok()?;
+    let named = |family: &str, number: u32| {
+        let code = format!("{family}{number:04}");
+        PAGES.iter().find(|page| page.code == code)
+    };
+    let raised = || named("MC", 3000);
+    match family {
+        "MC" => raised(),
+        // A number alone is what older controls show: 112, 3021.
+        "" => named("PS", number).or_else(|| (3000..4000).contains(&number).then(raised).flatten()),
+        family => named(family, number),
+    }
+}
+
+impl Page {
+    /// What the code means in a few words.
+    pub fn title(&self) -> &'static str {
+        let first = self.text.lines().next().unwrap_or_default();
+        first.split_once(": ").map_or(first, |(_, title)| title)
+    }
+
+    /// The programs on the page: the one that raises the alarm, then the one that doesn't.
+    pub fn programs(&self) -> impl Iterator<Item = &'static str> {
+        self.text.split("```nc\n").skip(1).filter_map(|rest| Some(rest.split_once("```")?.0))
+    }
+
+    /// The page as a terminal shows it: programs indented, no fences.
+    pub fn shown(&self) -> String {
+        let mut text = String::new();
+        let mut program = false;
+        for line in self.text.lines() {
+            if line.starts_with("```") {
+                program = !program;
+                continue;
+            }
+            let _ = if program {
+                writeln!(text, "    {line}")
+            } else {
+                let line = line.strip_prefix("## ").or(line.strip_prefix("# ")).unwrap_or(line);
+                writeln!(text, "{}", line.replace('`', ""))
+            };
+        }
+        text
+    }
+}
+
+/// All codes with what they mean, one line each.
+pub fn list() -> String {
+    PAGES.iter().fold(String::new(), |mut text, page| {
+        let _ = writeln!(text, "{:<8} {}", page.code, page.title());
+        text
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_code_is_found_in_all_its_spellings() {
+        for spelling in ["PS0112", "ps112", "112", " Ps0112 "] {
+            assert_eq!(find(spelling).unwrap().code, "PS0112", "{spelling}");
+        }
+        for spelling in ["MC3021", "mc7", "3001"] {
+            assert_eq!(find(spelling).unwrap().code, "MC3000", "{spelling}");
+        }
+        assert_eq!(find("SIM1").unwrap().code, "SIM0001");
+        for unknown in ["PS9999", "", "PS", "X", "PS-1", "€1"] {
+            assert!(find(unknown).is_none(), "{unknown}");
+        }
+    }
+
+    #[test]
+    fn a_terminal_sees_no_marks_of_a_page() {
+        let text = find("PS0112").unwrap().shown();
+        assert!(text.starts_with("PS0112: division by zero\n\nThe divisor is 0"));
+        assert!(text.contains("\nRaises it\n\n    #1=360.\n    #2=#1/#3\n"));
+        assert!(!text.contains('`'));
+    }
+}
