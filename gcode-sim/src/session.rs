@@ -1,4 +1,6 @@
 //! One program through the whole chain: what the command line, the generator and tests call.
+use std::sync::Arc;
+
 use crate::alarm::Alarm;
 use crate::control::Settings;
 use crate::diag::{Diagnostic, Severity};
@@ -18,7 +20,7 @@ use crate::verify::{Tolerances, Verdict, verify};
 pub struct Request {
     /// The file's name as the user gave it.
     pub name: String,
-    pub bytes: Vec<u8>,
+    pub bytes: Arc<[u8]>,
     pub settings: Settings,
     pub machine: Machine,
     pub limits: Limits,
@@ -28,7 +30,7 @@ pub struct Request {
 
 impl Request {
     /// A program on a machine, with that machine's control and the limits of [`Limits::default`].
-    pub fn new(name: impl Into<String>, bytes: impl Into<Vec<u8>>, machine: Machine) -> Self {
+    pub fn new(name: impl Into<String>, bytes: impl Into<Arc<[u8]>>, machine: Machine) -> Self {
         let settings = Settings {
             axes: machine.axes.clone(),
             dialect: machine.dialect,

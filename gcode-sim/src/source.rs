@@ -37,12 +37,12 @@ pub struct LineColumn {
 #[derive(Debug)]
 pub struct Source {
     pub name: String,
-    pub bytes: Vec<u8>,
+    pub bytes: Arc<[u8]>,
     lines: Vec<u32>,
 }
 
 impl Source {
-    fn new(name: String, bytes: Vec<u8>) -> Self {
+    fn new(name: String, bytes: Arc<[u8]>) -> Self {
         let lines = line_starts(&bytes);
         Self { name, bytes, lines }
     }
@@ -91,7 +91,7 @@ fn stray_returns(rest: &[u8]) -> usize {
 pub struct Sources(Vec<Arc<Source>>);
 
 impl Sources {
-    pub fn add(&mut self, name: impl Into<String>, bytes: impl Into<Vec<u8>>) -> SourceId {
+    pub fn add(&mut self, name: impl Into<String>, bytes: impl Into<Arc<[u8]>>) -> SourceId {
         let id = SourceId(self.0.len() as u32);
         self.0.push(Arc::new(Source::new(name.into(), bytes.into())));
         id

@@ -303,7 +303,7 @@ fn a_hole_is_refused_where_the_head_does_not_come_to_its_angle() {
             *text = "O8102\n#141=12.\nM99\n".to_owned();
         }
     }
-    let request = Request::new("O1.nc", format!("O1\nG21\n{CALL}\nM30\n"), Machine::default());
+    let request = Request::new("O1.nc", format!("O1\nG21\n{CALL}\nM30\n").into_bytes(), Machine::default());
     let done = run(&request, &mut programs, &mut ()).unwrap();
     let Outcome::Alarm(stopped) = done.outcome else { panic!("{:?}", done.outcome) };
     let Alarm::Raised { number, text, .. } = stopped.alarm else { panic!("{}", stopped.alarm) };
@@ -326,7 +326,7 @@ fn a_call_leaves_the_callers_modes_feed_and_locals() {
     let text = format!(
         "O1\nG21\nG90 G94 G01 F77.\n#1=5.\nG91\n{CALL}\n#100=#4001\n#101=#4003\n#102=#4109\n#103=#1\n#104=#24\nM30\n"
     );
-    let request = Request::new("O1.nc", text, Machine::default());
+    let request = Request::new("O1.nc", text.into_bytes(), Machine::default());
     let package = families::emit(&job(&melon()));
     let done = run(&request, &mut programs(&package), &mut ()).unwrap();
     let found: Vec<_> = done.control.variables().filter(|(number, _)| (100..140).contains(number)).collect();

@@ -2,8 +2,8 @@
 use super::expr::{Context, Instruction};
 use super::{Op, OpKind, PrintPart, Program, Statement, flow};
 use crate::alarm::Alarm;
-use crate::source::{Span, Spanned};
-use crate::syntax::ast;
+use crate::source::{SourceId, Span, Spanned};
+use crate::syntax::{self, Parts, ast};
 
 /// What grows while a program is lowered.
 #[derive(Default)]
@@ -13,18 +13,24 @@ pub(super) struct Lowering {
     pub(super) names: Vec<String>,
 }
 
-pub(super) fn lower(tree: &ast::Program) -> Program {
-    let mut lowering = Lowering::default();
-    let mut ops: Vec<Op> = tree.blocks.iter().map(|block| lowering.block(block)).collect();
+/// Reads and lowers the programs of a file, line by line.
+pub(super) fn lower(source: SourceId, bytes: &[u8]) -> Vec<Program> {
+    let programs = syntax::parse_with(source, bytes, |lowering: &mut Lowering, block| lowering.block(&block));
+    programs.into_iter().map(finish).collect()
+}
+
+/// What takes the whole program: the partners of loops, and the order of sequence numbers.
+fn finish(Parts { name, span, context, blocks: mut ops }: Parts<Lowering, Op>) -> Program {
     flow::pair_loops(&mut ops);
-    let end = tree.blocks.last().map_or(tree.span.end, |b| b.span.end.max(tree.span.end));
+    ops.shrink_to_fit();
+    let end = ops.last().map_or(span.end, |op| op.span.end.max(span.end));
     Program {
-        name: tree.name.clone(),
-        span: Span { end, ..tree.span },
+        name,
+        span: Span { end, ..span },
         numbers: flow::numbers(&ops),
         ops,
-        instructions: lowering.instructions,
-        names: lowering.names,
+        instructions: context.instructions,
+        names: context.names,
     }
 }
 

@@ -1,5 +1,6 @@
 //! A control's program memory: the texts, and the programs in them by number.
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use super::{Program, lower};
 use crate::source::{SourceId, Sources, Span};
@@ -43,12 +44,11 @@ pub struct Memory {
 impl Memory {
     /// Reads and lowers a file. Of two programs with one number the first stays, as on a control, which refuses
     /// the second.
-    pub fn load(&mut self, name: impl Into<String>, bytes: impl Into<Vec<u8>>) -> SourceId {
+    pub fn load(&mut self, name: impl Into<String>, bytes: impl Into<Arc<[u8]>>) -> SourceId {
         let source = self.sources.add(name, bytes);
         let bytes = &self.sources.get(source).bytes;
-        for tree in crate::syntax::parse(source, bytes) {
+        for program in lower::lower(source, bytes) {
             let id = ProgramId(self.programs.len() as u32);
-            let program = lower::lower(&tree);
             match &program.name {
                 ProgramName::Number(number) => {
                     self.numbers.entry(*number).or_insert(id);

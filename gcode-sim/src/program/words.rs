@@ -10,8 +10,8 @@ use crate::syntax::ast::{Decimal, Word, WordValue};
 /// The words of one block.
 #[derive(Debug)]
 pub struct Words {
-    pub list: Vec<Coded>,
-    pub call: Option<CallOp>,
+    pub list: Box<[Coded]>,
+    pub call: Option<Box<CallOp>>,
     /// `/n` inside the block: what is left of it while switch n is on.
     pub short: Option<(u8, Box<Words>)>,
 }
@@ -106,7 +106,7 @@ impl Lowering {
                 arguments: Vec::new(),
                 span,
             };
-            return Ok(Words { list, call: Some(call), short: None });
+            return Ok(Words { list: list.into(), call: Some(Box::new(call)), short: None });
         }
         subprogram(list, words)
     }
@@ -178,7 +178,7 @@ fn macro_call(
             _ => call.arguments.push(coded),
         }
     }
-    Ok(Words { list: Vec::new(), call: Some(call), short: None })
+    Ok(Words { list: Box::default(), call: Some(Box::new(call)), short: None })
 }
 
 /// M98 and M99 with their P, L and Q; the other words act first.
@@ -196,7 +196,7 @@ fn subprogram(list: Vec<Coded>, words: &[Word]) -> Result<Words, Spanned<Alarm>>
         if let Some(word) = words.iter().find(|w| matches!(w.value, WordValue::Name(_))) {
             return Err(Alarm::NotAWord { text: "a name without M98 or G65".into() }.at(word.span));
         }
-        return Ok(Words { list, call: None, short: None });
+        return Ok(Words { list: list.into(), call: None, short: None });
     };
     if let Some(second) = calls.next() {
         return Err(Alarm::TwoSubprogramCalls.at(second.span));
@@ -224,7 +224,7 @@ fn subprogram(list: Vec<Coded>, words: &[Word]) -> Result<Words, Spanned<Alarm>>
             _ => left.push(coded),
         }
     }
-    Ok(Words { list: left, call: Some(op), short: None })
+    Ok(Words { list: left.into(), call: Some(Box::new(op)), short: None })
 }
 
 impl From<Words> for OpKind {

@@ -226,34 +226,52 @@ fn program_word(at: Input<'_>) -> Option<(Input<'_>, ProgramName)> {
     Some((rest, number.map_or(ProgramName::Name(text), ProgramName::Number)))
 }
 
+/// One program of [`parse_with`].
+#[derive(Debug)]
+pub struct Parts<C, B> {
+    pub name: ProgramName,
+    pub span: Span,
+    pub context: C,
+    pub blocks: Vec<B>,
+}
+
 /// All programs of a file. Blocks before the first O word of a section are a program without a name; where nothing in
 /// it can be read and the file has other programs, it is the text around a tape and left out.
 pub fn parse(source: SourceId, bytes: &[u8]) -> Vec<Program> {
-    let mut programs: Vec<Program> = Vec::new();
+    let programs = parse_with(source, bytes, |(), block| block);
+    programs.into_iter().map(|Parts { name, span, blocks, .. }| Program { name, span, blocks }).collect()
+}
+
+/// As [`parse`], but each block becomes at once what `each` makes of it, so that the tree of a long file is never
+/// held. Every program has a context of its own.
+pub fn parse_with<C: Default, B>(
+    source: SourceId,
+    bytes: &[u8],
+    mut each: impl FnMut(&mut C, Block) -> B,
+) -> Vec<Parts<C, B>> {
+    let mut programs: Vec<(Parts<C, B>, bool)> = Vec::new();
     let mut open = false;
     for piece in Pieces::new(source, bytes) {
-        match piece {
-            Piece::Section => open = false,
-            Piece::Program { name, span } => {
-                programs.push(Program { name, span, blocks: Vec::new() });
-                open = true;
+        let (name, span, block) = match piece {
+            Piece::Section => {
+                open = false;
+                continue;
             }
-            Piece::Block(block) => {
-                if !open {
-                    let (name, span) = (ProgramName::Unnamed, block.span);
-                    programs.push(Program { name, span, blocks: Vec::new() });
-                    open = true;
-                }
-                if let Some(program) = programs.last_mut() {
-                    program.blocks.push(block);
-                }
-            }
+            Piece::Program { name, span } => (Some(name), span, None),
+            Piece::Block(block) => ((!open).then_some(ProgramName::Unnamed), block.span, Some(block)),
+        };
+        if let Some(name) = name {
+            let silent = name == ProgramName::Unnamed;
+            programs.push((Parts { name, span, context: C::default(), blocks: Vec::new() }, silent));
+            open = true;
+        }
+        if let (Some(block), Some((program, silent))) = (block, programs.last_mut()) {
+            *silent &= says_nothing(&block);
+            program.blocks.push(each(&mut program.context, block));
         }
     }
-    if programs.len() > 1 {
-        programs.retain(|p| p.name != ProgramName::Unnamed || !p.blocks.iter().all(says_nothing));
-    }
-    programs
+    let alone = programs.len() == 1;
+    programs.into_iter().filter(|(_, silent)| alone || !silent).map(|(program, _)| program).collect()
 }
 
 #[cfg(test)]

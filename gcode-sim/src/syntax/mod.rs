@@ -18,5 +18,5 @@ mod statement;
 mod token;
 mod word;
 
-pub use file::{Piece, Pieces, parse};
+pub use file::{Parts, Piece, Pieces, parse, parse_with};
 pub use print::print;
