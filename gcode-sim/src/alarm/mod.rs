@@ -1,4 +1,4 @@
-//! What stops a control: each alarm a fact, its number and wording in one table ([`table`]).
+//! What stops a control: each alarm a fact, its number and wording in one table (`table.rs`).
 //!
 //! Numbers and triggers follow the alarm list of the 30i / 0i-F class; the wording is ours.
 mod table;
@@ -34,7 +34,7 @@ impl std::fmt::Display for Code {
     }
 }
 
-/// Why the control stops. Variants carry facts; [`table`] has the sentences.
+/// Why the control stops. Variants carry facts; `table.rs` has the sentences.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Alarm {
     TooManyDigits,
