@@ -154,7 +154,8 @@ impl Run {
             }
             Outcome::Limit => {
                 let blocks = self.control.blocks();
-                let message = format!("the program has not ended after {blocks} blocks");
+                let moves = self.control.moves();
+                let message = format!("the program has not ended after {blocks} blocks and {moves} moves");
                 let finding = Diagnostic::new(Severity::Alarm, "limit", message).at(self.control.place());
                 Some(finding.help("does a loop never end? --max-blocks allows more"))
             }

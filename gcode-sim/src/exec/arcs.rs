@@ -24,6 +24,8 @@ impl Core {
         let end = (goal.programmed[plane.0], goal.programmed[plane.1]);
         let clockwise = state.modal.motion == Motion::Clockwise;
         let centre = if let Some(radius) = self.dimension(given, b'R', state)? {
+            // R goes before I J K.
+            given.accept(b"IJK");
             if start == end {
                 // The start is the end: with R there is nothing to go round.
                 return Ok(());

@@ -69,7 +69,19 @@ impl Core {
         if let Some(call) = &words.call {
             self.prepare_call(program, call, plan)?;
         }
-        Ok(())
+        self.check_unread(given, plan)
+    }
+
+    /// What nothing has read may still mean something to a control: it isn't passed over in silence. M codes may take
+    /// words of their own.
+    fn check_unread(&self, given: &Given, plan: &Plan) -> Checked<()> {
+        let for_m_code = plan.passed_on.is_some() || given.m_count > 0 && !self.names_axis(given);
+        match given.unread() {
+            Some((letter, span)) if !for_m_code => {
+                Err(Alarm::NotSimulated { what: format!("{letter} in such a block") }.at(span))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// 1. Modal G codes in the order they stand in; the answer is what uses the axis words instead of a move.
@@ -81,6 +93,10 @@ impl Core {
         for row in given.g_codes() {
             let new = match row.effect {
                 Effect::NotSimulated | Effect::Call => return Err(not_simulated(row.code, row.help).at(span)),
+                Effect::NoEffect => {
+                    given.accept(b"IPQR");
+                    None
+                }
                 Effect::OneShot(one) => Some(Act::OneShot(one)),
                 Effect::AdditionalWork => Some(Act::AdditionalWork),
                 Effect::Scaling(Scaling::On) => Some(Act::Scale),

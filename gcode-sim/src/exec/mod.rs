@@ -44,6 +44,11 @@ pub struct Limits {
     pub blocks: u64,
 }
 
+/// A run ends after so many moves, and so many for every block that it may execute: a cycle with K or with small
+/// pecks is one block, and a loop round it must end as well.
+const MOVES: u64 = 1_000_000;
+const MOVES_PER_BLOCK: u64 = 20;
+
 impl Default for Limits {
     fn default() -> Self {
         Self { blocks: 10_000_000 }
@@ -178,7 +183,8 @@ impl Control {
 
     /// Runs to the end, to an alarm, or to a limit.
     pub fn run<S: Sink>(&mut self, limits: Limits, library: &mut impl Library, sink: &mut S) -> Outcome {
-        while self.core.blocks < limits.blocks {
+        let moves = limits.blocks.saturating_mul(MOVES_PER_BLOCK).max(MOVES);
+        while self.core.blocks < limits.blocks && self.core.moves <= moves {
             if let Some(outcome) = self.step(library, sink) {
                 return outcome;
             }

@@ -178,6 +178,7 @@ impl Core {
         let mut to = plan.state.machine;
         let incremental = plan.state.modal.distance == Distance::Incremental;
         if incremental && !self.settings.unsure.g53_moves_in_g91 {
+            given.accept(b"ABCUVWXYZ");
             return Ok(());
         }
         for (axis, letter) in self.settings.axes.iter() {

@@ -113,19 +113,22 @@ impl Core {
                     u16::try_from(number).map_err(|_| Alarm::NoSuchVariable { number: 3000 }.at(span))?;
                 return Err(Alarm::Raised { number, text, plain }.at(span));
             }
-            Kind::System if number == 3006 => self.message(&shown(text), span, sink),
+            Kind::System if number == 3006 => self.message(&shown(text), sink),
             Kind::System => self.write_system(number, value.number()).map_err(|alarm| alarm.at(span))?,
         }
         Ok(())
     }
 
-    /// `#3006=1(TEXT)`: the program waits, and the operator reads the text and the variables it names.
-    fn message<S: Sink>(&mut self, text: &str, _: Span, sink: &mut S) {
+    /// `#3006=1(TEXT)`: the program waits, and the operator reads the text and the variables it names; a vacant
+    /// one shows nothing.
+    fn message<S: Sink>(&mut self, text: &str, sink: &mut S) {
         let mut named = Vec::new();
         for part in text.split('#').skip(1) {
             let digits: String = part.chars().take_while(char::is_ascii_digit).collect();
-            if let Some(value) = digits.parse().ok().and_then(|n| Some((n, self.read(n).ok()?))) {
-                named.push((value.0, value.1.number()));
+            if let Some(number) = digits.parse().ok()
+                && let Ok(Value::Number(value)) = self.read(number)
+            {
+                named.push((number, value));
             }
         }
         let text = text.to_owned();

@@ -1,5 +1,7 @@
 //! The words of the block at hand, evaluated: what is vacant is not there, and numbers become lengths, angles,
 //! times or counts only where the block asks for them.
+use std::cell::Cell;
+
 use super::Core;
 use super::eval::{Checked, at, integer};
 use super::state::State;
@@ -24,6 +26,8 @@ const M_CODES: usize = 3;
 #[derive(Clone, Debug)]
 pub(super) struct Given {
     present: u32,
+    /// The letters whose value somebody has asked for.
+    read: Cell<u32>,
     values: [(Raw, Span); 26],
     g: [Option<&'static Row>; G_CODES],
     g_count: usize,
@@ -35,6 +39,7 @@ impl Default for Given {
     fn default() -> Self {
         Self {
             present: 0,
+            read: Cell::new(0),
             values: [(Raw::Computed(0.0), Span::default()); 26],
             g: [None; G_CODES],
             g_count: 0,
@@ -56,7 +61,22 @@ impl Given {
     }
 
     fn get(&self, letter: u8) -> Option<(Raw, Span)> {
+        self.read.set(self.read.get() | 1 << (letter - b'A'));
         self.has(letter).then(|| self.values[usize::from(letter - b'A')])
+    }
+
+    /// Words that the block may have and that change nothing here.
+    pub(super) fn accept(&self, letters: &[u8]) {
+        for letter in letters {
+            self.get(*letter);
+        }
+    }
+
+    /// The first word, by its letter, that nothing in the block had a use for.
+    pub(super) fn unread(&self) -> Option<(char, Span)> {
+        let left = self.present & !self.read.get();
+        let letter = (left != 0).then(|| b'A' + left.trailing_zeros() as u8)?;
+        Some((char::from(letter), self.span(letter)))
     }
 
     pub(super) fn span(&self, letter: u8) -> Span {
@@ -97,6 +117,7 @@ impl Core {
     /// Evaluates every word of a block into `given`.
     pub(super) fn collect(&self, program: &Program, words: &Words, given: &mut Given) -> Checked<()> {
         given.present = 0;
+        given.read.set(0);
         given.g_count = 0;
         given.m_count = 0;
         for word in &words.list {
