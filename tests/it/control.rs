@@ -76,7 +76,7 @@ proptest! {
 #[test]
 fn a_loop_round_a_cycle_with_many_holes_ends_by_its_moves() {
     let mut memory = Memory::default();
-    memory.load("case.nc", "O1\nG99 G0 Z1.\nN1 G91 G81 X1. R0 Z-2. F100 K9999\nGOTO 1\n");
+    memory.load("case.nc", "O1\nG99 G0 Z1.\nN1 G91 G81 X1. R0 Z-2. F100 K9999\nGOTO 1\n".as_bytes());
     let mut control = Control::new(memory, Settings::default());
     let outcome = control.run(Limits { blocks: 40_000 }, &mut NoLibrary, &mut ());
     assert!(matches!(outcome, Outcome::Limit));
