@@ -8,6 +8,7 @@
 //! | `alarm=PS0112` | the control stopped with this alarm; several with `\|`, `ANY` for some alarm |
 //! | `msg="TEXT"` | the alarm's text |
 //! | `stop=TEXT` | an operator stop with this text |
+//! | `printed="LINE\|LINE"` | what DPRNT printed, all of it |
 //! | `#100=1.5`, `#100=vacant` | the variable at the end; locals are those of the main program |
 //! | `abs.X=1`, `mach.X=1` | work and machine position |
 //! | `path=R(x,y,z) F(…) A(…) D(s)` | all rapids, cutting feeds, arcs (by their ends, machine X Y Z) and dwells |
@@ -86,6 +87,12 @@ impl Ran {
             "stop" => {
                 let holds = self.control.stops().iter().any(|s| s.text == wanted.trim_matches('"'));
                 return self.not(holds, &format!("stop={wanted}"));
+            }
+            "printed" => {
+                let lines: Vec<_> = self.control.output().iter().map(|l| String::from_utf8_lossy(l)).collect();
+                let found = lines.join("|");
+                let holds = format!("\"{found}\"") == wanted;
+                return (!holds).then(|| format!("printed is \"{found}\", {wanted} is wanted"));
             }
             "path" => return self.path.difference(wanted, tolerance),
             "amove" => self.path.ways(3),

@@ -148,6 +148,14 @@ pub enum Alarm {
     TwoMacroCalls,
     TooManyArgumentSets,
     CancelWithoutModalCall,
+    /// A name that another tool offset memory has.
+    VariableName {
+        name: String,
+    },
+    /// The number in brackets behind a variable's name.
+    Suffix {
+        name: String,
+    },
     NoVariableName {
         name: String,
     },

@@ -141,6 +141,10 @@ pub(super) struct RunArguments {
     #[arg(long)]
     pub(super) moves: bool,
 
+    /// Write what the program prints (DPRNT, BPRNT) to this file
+    #[arg(long, value_name = "FILE")]
+    pub(super) output: Option<PathBuf>,
+
     /// Show a system variable at the end, e.g. '#5041' (repeatable)
     #[arg(long, value_name = "#N")]
     pub(super) show: Vec<String>,

@@ -18,6 +18,11 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Status, Refusal> {
         let value = run.control.variable(number);
         system.push((number, value.map_err(|alarm| Refusal::new(format!("--show '#{number}': {alarm}")))?));
     }
+    if let Some(path) = &arguments.output {
+        let lines = run.control.output().iter();
+        let bytes: Vec<u8> = lines.flat_map(|line| line.iter().copied().chain([b'\n'])).collect();
+        output::write(path, &bytes)?;
+    }
     let report = RunReport::new(&run, moves.as_ref(), system);
     match arguments.format {
         TextFormat::Text => output::print(&report.text())?,

@@ -71,6 +71,8 @@ pub struct Unsure {
     pub then_takes_goto: bool,
     /// G65 … L sets the arguments anew for every pass.
     pub repeats_reset_locals: bool,
+    /// G66.1 with arguments of its own calls the macro at once.
+    pub every_block_calls_itself: bool,
     /// `ATAN[0]/[0]` raises PS0119 instead of answering 0.
     pub atan_of_nothing_alarms: bool,
     /// `TAN[90]` raises PS0119 instead of answering a large number.
@@ -115,6 +117,14 @@ pub struct Settings {
     pub three_m_codes: bool,
     /// MCA 6008#1: `#3000=n` shows MC n instead of MC 3000 + n.
     pub plain_macro_alarms: bool,
+    /// PRT 6001#1: DPRNT leaves the blanks before a number out.
+    pub print_without_blanks: bool,
+    /// A number with more digits than DPRNT's format is printed whole instead of its lower digits only.
+    pub print_expands: bool,
+    /// DPRNT and BPRNT alarm unless POPEN came before.
+    pub print_needs_open: bool,
+    /// How many digits DPRNT's format may ask for.
+    pub print_digits: usize,
     /// SCR 5400#7: G51 counts its factors in 0.001 instead of 0.00001.
     pub coarse_scaling: bool,
     /// Block-skip switches that are on, by number 1 to 9.
@@ -171,6 +181,10 @@ impl Default for Settings {
             no_repeated_address: false,
             three_m_codes: false,
             plain_macro_alarms: false,
+            print_without_blanks: false,
+            print_expands: false,
+            print_needs_open: false,
+            print_digits: 8,
             coarse_scaling: true,
             skip_switches: [false; 9],
             optional_stop: true,
@@ -204,6 +218,7 @@ impl Default for Unsure {
             first_stored_number: false,
             then_takes_goto: false,
             repeats_reset_locals: false,
+            every_block_calls_itself: true,
             atan_of_nothing_alarms: false,
             tan_90_alarms: false,
             g53_moves_in_g91: false,

@@ -6,8 +6,10 @@ use crate::alarm::Alarm;
 use crate::program::{Coded, Program};
 
 impl Core {
-    /// Letters to locals: specification I, and II for I J K, word by word in the order they stand in.
-    pub(super) fn arguments(&self, program: &Program, words: &[Coded], plain_ijk: bool) -> Checked<Locals> {
+    /// Letters to locals: specification I, and II for I J K, word by word in the order they stand in. `every` is
+    /// G66.1, which takes G, L, N and P as well.
+    pub(super) fn arguments(&self, program: &Program, words: &[Coded], every: bool) -> Checked<Locals> {
+        let plain_ijk = self.settings.plain_ijk;
         let mut locals = VACANT;
         let mut set = 0;
         let mut last = 0;
@@ -26,6 +28,10 @@ impl Core {
                 }
                 letter => match plain_argument(letter) {
                     Some(local) => local,
+                    None if every && letter == b'G' => 10,
+                    None if every && letter == b'L' => 12,
+                    None if every && letter == b'N' => 14,
+                    None if every && letter == b'P' => 16,
                     None if matches!(letter, b'L' | b'P') => continue,
                     None => return Err(Alarm::ImproperAddress { letter: char::from(letter) }.at(word.span)),
                 },

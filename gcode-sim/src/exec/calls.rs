@@ -3,7 +3,7 @@ use std::sync::Arc;
 
 use super::eval::{Checked, at};
 use super::plan::{CallKind, CallPlan, Flow, Plan, Target};
-use super::vars::Locals;
+use super::vars::{Locals, Value};
 use super::words::{Raw, count};
 use super::{Control, Core};
 use crate::alarm::Alarm;
@@ -48,6 +48,8 @@ pub(super) struct ModalCall {
     program: ProgramId,
     repeats: u32,
     locals: Locals,
+    /// G66.1: every block calls, and its words are the arguments.
+    every: bool,
 }
 
 impl Frame {
@@ -101,7 +103,7 @@ impl Core {
             _ => None,
         };
         let Some(number) = number else { return Ok(false) };
-        let locals = self.arguments(program, &words.list[1..], settings.plain_ijk)?;
+        let locals = self.arguments(program, &words.list[1..], false)?;
         let repeats = match words.list[1..].iter().find(|w| w.letter == b'L') {
             Some(word) => self.coded_count(program, word)?.unwrap_or(1),
             None => 1,
@@ -112,6 +114,7 @@ impl Core {
             repeats,
             start: None,
             locals,
+            calls_now: true,
             span: first.span,
         }));
         Ok(true)
@@ -140,9 +143,7 @@ impl Core {
                 }
                 return Ok(());
             }
-            Calling::EveryBlock => {
-                return Err(super::block::not_simulated(661, "call by every block").at(call.span));
-            }
+            Calling::EveryBlock => CallKind::EveryBlock,
             Calling::Macro => CallKind::Macro,
             Calling::AfterMoves => CallKind::Modal,
             Calling::Subprogram => CallKind::Subprogram,
@@ -170,9 +171,12 @@ impl Core {
             Some(word) => self.coded_count(program, word)?,
             None => None,
         };
-        let locals = self.arguments(program, &call.arguments, self.settings.plain_ijk)?;
+        let every = kind == CallKind::EveryBlock;
+        let locals = self.arguments(program, &call.arguments, every)?;
+        let own = self.settings.unsure.every_block_calls_itself && !call.arguments.is_empty();
+        let calls_now = !every || own;
         let repeats = repeats.unwrap_or(1);
-        plan.flow = Flow::Call(Box::new(CallPlan { kind, target, repeats, start, locals, span: call.span }));
+        plan.flow = Flow::Call(Box::new(CallPlan { kind, target, repeats, start, locals, calls_now, span: call.span }));
         Ok(())
     }
 }
@@ -198,7 +202,7 @@ impl Control {
                 found.ok_or(Alarm::SequenceNumberNotFound { number })?
             }
         };
-        if call.kind != CallKind::Modal {
+        if call.kind != CallKind::Modal && call.calls_now {
             self.core.check_levels(call.kind != CallKind::Subprogram)?;
         }
         call.target = Target::Found(program, start);
@@ -233,9 +237,14 @@ impl Core {
             return;
         }
         let kind = match call.kind {
-            CallKind::Modal => {
-                self.modal_calls.push(ModalCall { program, repeats: call.repeats, locals: call.locals });
-                self.state.modal.call = crate::program::modes::ModalCall::AfterMoves;
+            CallKind::Modal | CallKind::EveryBlock => {
+                let every = call.kind == CallKind::EveryBlock;
+                let locals = call.locals;
+                self.modal_calls.push(ModalCall { program, repeats: call.repeats, locals, every });
+                self.show_modal_call();
+                if call.calls_now && every {
+                    self.call_with(&call.locals, block);
+                }
                 return;
             }
             CallKind::Subprogram => FrameKind::Subprogram,
@@ -274,10 +283,9 @@ impl Core {
 
     /// After a block with motion: the last modal call that this program's moves can trigger.
     pub(super) fn call_after_move(&mut self, block: Span) -> Result<(), Alarm> {
-        let available = self.frame().modal.min(self.modal_calls.len());
-        let Some(index) = available.checked_sub(1) else { return Ok(()) };
+        let Some(index) = self.waiting_call() else { return Ok(()) };
         self.check_levels(true)?;
-        let ModalCall { program, repeats, locals } = self.modal_calls[index].clone();
+        let ModalCall { program, repeats, locals, .. } = self.modal_calls[index].clone();
         let frame =
             Frame { modal: index, ..self.called(program, 0, FrameKind::Modal(index), repeats, block) };
         self.vars.enter(&locals);
@@ -285,12 +293,61 @@ impl Core {
         Ok(())
     }
 
+    /// The modal call that a block of this program can trigger.
+    fn waiting_call(&self) -> Option<usize> {
+        self.frame().modal.min(self.modal_calls.len()).checked_sub(1)
+    }
+
+    /// Under G66.1 a block of words is not executed: its words, G L N P among them, are the macro's arguments.
+    /// M99 and G67 stay what they are.
+    pub(super) fn call_by_block(
+        &mut self,
+        program: &Program,
+        words: &Words,
+        number: Option<u32>,
+        block: Span,
+    ) -> Checked<bool> {
+        if self.modal_calls.is_empty() || !self.waiting_call().is_some_and(|i| self.modal_calls[i].every) {
+            return Ok(false);
+        }
+        match &words.call {
+            Some(call) if matches!(call.kind, Calling::Cancel | Calling::Return) => return Ok(false),
+            Some(call) => return Err(Alarm::NotSimulated { what: "a call while G66.1 is on".into() }.at(call.span)),
+            None => {}
+        }
+        let mut locals = self.arguments(program, &words.list, true)?;
+        if let Some(number) = number {
+            locals[14] = Value::Number(f64::from(number));
+        }
+        self.check_levels(true).map_err(|alarm| alarm.at(block))?;
+        self.block = block;
+        self.call_with(&locals, block);
+        Ok(true)
+    }
+
+    /// Calls the macro of G66.1.
+    fn call_with(&mut self, locals: &Locals, block: Span) {
+        let Some(index) = self.waiting_call() else { return };
+        let ModalCall { program, repeats, .. } = self.modal_calls[index].clone();
+        let frame = Frame { modal: index, ..self.called(program, 0, FrameKind::Macro, repeats, block) };
+        self.vars.enter(locals);
+        self.push(frame);
+    }
+
+    /// #4012.
+    fn show_modal_call(&mut self) {
+        use crate::program::modes::ModalCall;
+        self.state.modal.call = match self.modal_calls.last() {
+            None => ModalCall::Off,
+            Some(call) if call.every => ModalCall::EveryBlock,
+            Some(_) => ModalCall::AfterMoves,
+        };
+    }
+
     /// G67: the last modal call ends.
     pub(super) fn cancel_modal(&mut self) {
         self.modal_calls.pop();
-        if self.modal_calls.is_empty() {
-            self.state.modal.call = crate::program::modes::ModalCall::Off;
-        }
+        self.show_modal_call();
     }
 
     /// Back from a subprogram or macro to the program that called it.

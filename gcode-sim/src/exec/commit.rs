@@ -68,6 +68,8 @@ impl Core {
             if !(500..=549).contains(&number) {
                 return Err(Alarm::NoSuchVariable { number: i64::from(number) });
             }
+            // A variable has one name: the last.
+            self.names.retain(|_, named| *named != number);
             self.names.insert(name.clone(), number);
         }
         Ok(())

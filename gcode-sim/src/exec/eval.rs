@@ -111,7 +111,23 @@ impl Core {
                 Value::Number(f64::from(u8::from(holds)))
             }
             Operation::Parameter => Value::Number(self.parameter(stack.pop().number())?),
-            Operation::Named(name) => self.read(self.named(program.variable_name(name))?)?,
+            Operation::NameNumber(name) => {
+                Value::Number(f64::from(self.named(program.variable_name(name))?))
+            }
+            Operation::SystemNumber(row) => {
+                let number = if self.settings.series_15_offsets { row.series_15 } else { row.number };
+                let place = match row.suffix {
+                    None => 0,
+                    Some((from, to)) => {
+                        let suffix = integer(stack.pop().number())?;
+                        if !(i64::from(from)..=i64::from(to)).contains(&suffix) {
+                            return Err(Alarm::Suffix { name: row.name.into() });
+                        }
+                        suffix as u32 - from
+                    }
+                };
+                Value::Number(f64::from(number + place))
+            }
         })
     }
 }

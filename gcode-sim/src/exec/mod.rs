@@ -11,6 +11,7 @@ mod modal;
 mod offsets;
 mod one_shot;
 mod plan;
+mod print;
 mod state;
 mod statements;
 mod system_vars;
@@ -122,6 +123,7 @@ pub(crate) struct Core {
     blocks: u64,
     moves: u64,
     stops: Vec<Stop>,
+    printed: print::Printed,
     /// M codes that went to the machine builder's logic, with the block of the first of each.
     passed_on: BTreeMap<u32, Span>,
     block: Span,
@@ -148,6 +150,7 @@ impl Control {
             blocks: 0,
             moves: 0,
             stops: Vec::new(),
+            printed: print::Printed::default(),
             passed_on: BTreeMap::new(),
             block: Span::default(),
         };
@@ -244,6 +247,10 @@ impl Control {
                 return core.statement(program, statement, op.span, sink);
             }
             OpKind::Words(words) => {
+                if core.call_by_block(program, words, op.number, op.span)? {
+                    core.state.codes.o = memory.get(core.frame().program).number().unwrap_or(0);
+                    return Ok(None);
+                }
                 core.prepare(program, words, given, plan, op.span)?;
                 let span = op.span;
                 if let Some(number) = op.number {

@@ -63,6 +63,8 @@ pub(super) struct CallPlan {
     /// `M98 P Q`: the sequence number to start at.
     pub(super) start: Option<u32>,
     pub(super) locals: Locals,
+    /// G66.1: its own words are arguments at once. Other calls always are.
+    pub(super) calls_now: bool,
     pub(super) span: Span,
 }
 
@@ -72,6 +74,8 @@ pub(super) enum CallKind {
     Subprogram,
     /// G66: stored, not called.
     Modal,
+    /// G66.1: stored, and called by its own words.
+    EveryBlock,
     /// A G or M code that calls a macro.
     Code,
 }

@@ -62,11 +62,9 @@ impl Core {
                 let first = index(self.operand(program, *first)?).map_err(|a| a.at(span))?;
                 self.set_names(first, names).map_err(|a| a.at(span))?;
             }
-            Statement::Print { .. } | Statement::OpenOutput | Statement::CloseOutput => {
-                return Err(
-                    Alarm::NotSimulated { what: "output (POPEN, DPRNT, BPRNT, PCLOS)".into() }.at(span)
-                );
-            }
+            Statement::Print { kind, parts } => self.print(program, *kind, parts, span)?,
+            Statement::OpenOutput => self.open_output(true),
+            Statement::CloseOutput => self.open_output(false),
             Statement::Alarm(alarm) => return Err((**alarm).clone()),
         }
         Ok(None)

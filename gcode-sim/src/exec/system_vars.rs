@@ -31,11 +31,18 @@ const ROWS: &[Row] = &[
     // Tool offsets, memory C.
     row(2001, 2200, Some(|c, n| c.tool_offset(Register::HWear, n)), Some(|c, n, v| c.set_tool_offset(Register::HWear, n, v))),
     row(2201, 2400, Some(|c, n| c.tool_offset(Register::HGeometry, n)), Some(|c, n, v| c.set_tool_offset(Register::HGeometry, n, v))),
+    // Work offsets by axis: EXT, G54 to G59 of axis 1, 2, 3, 4.
+    row(2500, 2506, Some(|c, n| c.work_offset(n as usize, 0)), Some(|c, n, v| c.set_work_offset(n as usize, 0, v))),
+    row(2600, 2606, Some(|c, n| c.work_offset(n as usize, 1)), Some(|c, n, v| c.set_work_offset(n as usize, 1, v))),
+    row(2700, 2706, Some(|c, n| c.work_offset(n as usize, 2)), Some(|c, n, v| c.set_work_offset(n as usize, 2, v))),
+    row(2800, 2806, Some(|c, n| c.work_offset(n as usize, 3)), Some(|c, n, v| c.set_work_offset(n as usize, 3, v))),
     // Alarm, clocks, switches, message.
     row(3000, 3000, None, None),
     row(3001, 3001, Some(|c, _| Ok(c.clock_1())), Some(|c, _, v| { c.clocks.0 = v - c.seconds * 1000.0; Ok(()) })),
     row(3002, 3002, Some(|c, _| Ok(c.clocks.1 + c.seconds / 3600.0)), Some(|c, _, v| { c.clocks.1 = v - c.seconds / 3600.0; Ok(()) })),
     row(3003, 3004, Some(|c, n| Ok(c.switches[n as usize])), Some(|c, n, v| c.set_switch(n, v))),
+    // Setting data: of its bits only INI (2), inch input, has an effect here.
+    row(3005, 3005, Some(|c, _| Ok(if c.state.modal.unit == crate::program::modes::Unit::Inch { 4.0 } else { 0.0 })), Some(|_, _, _| Err(Alarm::NotSimulated { what: "writing #3005".into() }))),
     row(3006, 3006, None, None),
     row(3007, 3007, Some(|c, _| Ok(f64::from(c.state.transform.mirrored))), None),
     row(3008, 3008, Some(|_, _| Ok(0.0)), None),

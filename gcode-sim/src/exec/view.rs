@@ -77,6 +77,11 @@ impl Control {
         &self.core.passed_on
     }
 
+    /// The lines of DPRNT and BPRNT, without their ends; BPRNT prints bytes that are no text.
+    pub fn output(&self) -> &[Vec<u8>] {
+        &self.core.printed.lines
+    }
+
     /// Operator stops in order; the first ten thousand.
     pub fn stops(&self) -> &[Stop] {
         &self.core.stops

@@ -1,5 +1,6 @@
 //! Expressions in postfix order, so that evaluating one needs neither recursion nor memory of its own.
 use super::lower::Lowering;
+use super::names::{self, NameRow, OTHER_MEMORIES};
 use crate::alarm::Alarm;
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{BinaryOp, CallForm, Condition, Expr, ExprKind, Function, Name, Relation};
@@ -51,8 +52,10 @@ pub enum Operation {
     Logic(BinaryOp),
     /// `PRM[n]`: takes the number.
     Parameter,
-    /// A variable named by SETVN: an index into the program's names.
-    Named(u32),
+    /// The number of a variable named by SETVN: an index into the program's names.
+    NameNumber(u32),
+    /// Takes a suffix, gives the number of the system variable; of `[#_NAME]` without a suffix it takes nothing.
+    SystemNumber(NameRow),
 }
 
 /// How deep brackets may stand in one another (operator's manual, custom macro: five levels).
@@ -125,7 +128,11 @@ impl Lowering {
                     depth
                 }
             }
-            ExprKind::Named(name) => self.named(name, span)?,
+            ExprKind::Named(name) => {
+                let depth = self.named(name, span, brackets)?;
+                self.emit(Operation::LoadIndirect, span);
+                depth
+            }
             ExprKind::Negate(inner) => self.unary(inner, Operation::Negate, span, context, brackets)?,
             ExprKind::Plus(inner) => self.unary(inner, Operation::Plus, span, context, brackets)?,
             ExprKind::Bracket(inner) => self.unary(inner, Operation::Bracket, span, context, brackets + 1)?,
@@ -192,16 +199,42 @@ impl Lowering {
         }
     }
 
-    fn named(&mut self, name: &Name, span: Span) -> Lowered<usize> {
-        if name.index.is_some() || name.text.starts_with('_') {
-            return Err(Alarm::NotSimulated { what: format!("the variable name #{}", name.text) }.at(span));
+    /// The number of the variable that an assignment writes.
+    pub(super) fn target(&mut self, target: &Expr) -> Lowered<Operand> {
+        match &target.kind {
+            ExprKind::Variable(index) => self.operand(index, Context::Macro),
+            ExprKind::Named(name) => {
+                self.code(target.span, |this| this.named(name, target.span, 0)).map(Operand::Code)
+            }
+            _ => Err(Alarm::Expression { text: String::new() }.at(target.span)),
         }
-        let place = self.names.iter().position(|n| *n == name.text).unwrap_or_else(|| {
-            self.names.push(name.text.clone());
-            self.names.len() - 1
-        });
-        self.emit(Operation::Named(place as u32), span);
-        Ok(1)
+    }
+
+    /// The number of a named variable.
+    fn named(&mut self, name: &Name, span: Span, brackets: usize) -> Lowered<usize> {
+        let text = || name.text.clone();
+        if !name.text.starts_with('_') {
+            if name.index.is_some() {
+                return Err(Alarm::Suffix { name: text() }.at(span));
+            }
+            let place = self.names.iter().position(|n| *n == name.text).unwrap_or_else(|| {
+                self.names.push(text());
+                self.names.len() - 1
+            });
+            self.emit(Operation::NameNumber(place as u32), span);
+            return Ok(1);
+        }
+        if OTHER_MEMORIES.contains(&name.text.as_str()) {
+            return Err(Alarm::VariableName { name: text() }.at(span));
+        }
+        let row = names::find(&name.text).ok_or_else(|| Alarm::NoVariableName { name: text() }.at(span))?;
+        let depth = match (&name.index, row.suffix) {
+            (Some(index), Some(_)) => self.expr(index, Context::Macro, brackets + 2)?,
+            (None, None) => 1,
+            _ => return Err(Alarm::Suffix { name: text() }.at(span)),
+        };
+        self.emit(Operation::SystemNumber(row), span);
+        Ok(depth)
     }
 
     fn test(&mut self, condition: &Condition) -> Lowered<usize> {

@@ -127,17 +127,9 @@ impl Lowering {
         span: Span,
         block: &ast::Block,
     ) -> Lowered<Statement> {
-        let index = match &target.kind {
-            ast::ExprKind::Variable(index) => self.operand(index, Context::Macro)?,
-            _ => {
-                return Err(
-                    Alarm::NotSimulated { what: "writing a variable by its name".into() }.at(target.span)
-                );
-            }
-        };
         let text = block.comments.iter().find(|c| c.span.start >= span.start);
         Ok(Statement::Assign {
-            target: index,
+            target: self.target(target)?,
             target_span: target.span,
             value: self.operand(value, Context::Macro)?,
             text: text.map(|c| c.text.clone().into_boxed_slice()),
@@ -155,10 +147,10 @@ impl Lowering {
                 ast::PrintPart::Text(text) => PrintPart::Text(text.clone()),
                 ast::PrintPart::Value { variable, format } => {
                     let digits: Vec<u8> = format.bytes().map(|b| b.wrapping_sub(b'0')).collect();
-                    let (whole, decimals) = match digits[..] {
-                        [whole @ 0..=9, decimals @ 0..=9] => (whole, decimals),
-                        [decimals @ 0..=9] => (0, decimals),
-                        _ => return Err(Alarm::MacroFormat { what: format!("format [{format}]") }.at(span)),
+                    let (whole, decimals) = match (kind, &digits[..]) {
+                        (ast::PrintKind::Decimal, [whole @ 0..=9, decimals @ 0..=9]) => (*whole, *decimals),
+                        (ast::PrintKind::Binary, [decimals @ 0..=9]) => (0, *decimals),
+                        _ => return Err(Alarm::PrintFormat.at(span)),
                     };
                     let value = self.operand(variable, Context::Macro)?;
                     PrintPart::Value { value, whole, decimals }

@@ -9,6 +9,7 @@ mod lower;
 pub mod m_codes;
 mod memory;
 pub mod modes;
+pub mod names;
 mod words;
 
 pub use expr::{Code, Instruction, Operand, Operation, STACK};
@@ -33,7 +34,7 @@ pub struct Program {
     instructions: Vec<Instruction>,
     /// Sequence numbers with their operations, by number, then by place.
     numbers: Vec<(u32, OpIndex)>,
-    /// The names that [`Operation::Named`] counts.
+    /// The names that [`Operation::NameNumber`] counts.
     names: Vec<String>,
 }
 

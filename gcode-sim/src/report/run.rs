@@ -15,6 +15,10 @@ pub struct RunReport {
     pub outcome: &'static str,
     pub alarm: Option<AlarmReport>,
     pub stops: Vec<StopReport>,
+    /// What the program printed, line by line; bytes that are no text as `\xNN`.
+    pub output: Vec<String>,
+    /// M codes left to the machine builder's logic.
+    pub passed_on: Vec<PassedOnReport>,
     #[serde(serialize_with = "variables")]
     pub variables: Vec<(u32, f64)>,
     /// What `--show` asked for; null is vacant.
@@ -55,6 +59,14 @@ pub struct CallReport {
 pub struct StopReport {
     pub kind: &'static str,
     pub text: String,
+}
+
+/// An M code without an effect on the control, and the first block that has it.
+#[derive(Debug, Serialize)]
+pub struct PassedOnReport {
+    pub code: String,
+    pub program: String,
+    pub line: u32,
 }
 
 #[derive(Debug, Serialize)]
@@ -164,6 +176,15 @@ impl RunReport {
                 .iter()
                 .map(|stop| StopReport { kind: stop_name(stop.kind), text: stop.text.clone() })
                 .collect(),
+            output: control.output().iter().map(|line| printable(line)).collect(),
+            passed_on: control
+                .passed_on()
+                .iter()
+                .map(|(code, span)| {
+                    let (program, line) = run.locate(*span);
+                    PassedOnReport { code: format!("M{code:02}"), program, line }
+                })
+                .collect(),
             variables: control.variables().collect(),
             system: system.into_iter().map(|(number, value)| (number, value.given())).collect(),
             position: Coordinates::new(axes, |axis| control.work_position(axis)),
@@ -191,6 +212,15 @@ impl RunReport {
         for stop in &self.stops {
             let _ = writeln!(text, "stop       {} {}", stop.kind, stop.text);
         }
+        for line in &self.output {
+            let _ = writeln!(text, "output     {line}");
+        }
+        for PassedOnReport { code, program, line } in &self.passed_on {
+            let _ = writeln!(
+                text,
+                "passed on  {code}, first in {program} line {line}: the machine builder's, not simulated"
+            );
+        }
         for (number, value) in &self.variables {
             let _ = writeln!(text, "{:<11}{}", format!("#{number}"), plain(*value));
         }
@@ -205,6 +235,16 @@ impl RunReport {
         }
         text
     }
+}
+
+/// A printed line as a text: BPRNT's bytes are spelled out, so that none is lost.
+fn printable(line: &[u8]) -> String {
+    line.iter()
+        .map(|byte| match byte {
+            b' '..=b'~' => char::from(*byte).to_string(),
+            byte => format!("\\x{byte:02X}"),
+        })
+        .collect()
 }
 
 fn stop_name(kind: StopKind) -> &'static str {
