@@ -89,7 +89,8 @@ impl Ran {
                 return self.not(holds, &format!("stop={wanted}"));
             }
             "printed" => {
-                let lines: Vec<_> = self.control.output().iter().map(|l| String::from_utf8_lossy(l)).collect();
+                let lines: Vec<_> =
+                    self.control.output().iter().map(|l| String::from_utf8_lossy(l)).collect();
                 let found = lines.join("|");
                 let holds = format!("\"{found}\"") == wanted;
                 return (!holds).then(|| format!("printed is \"{found}\", {wanted} is wanted"));

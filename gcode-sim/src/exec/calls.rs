@@ -176,7 +176,15 @@ impl Core {
         let own = self.settings.unsure.every_block_calls_itself && !call.arguments.is_empty();
         let calls_now = !every || own;
         let repeats = repeats.unwrap_or(1);
-        plan.flow = Flow::Call(Box::new(CallPlan { kind, target, repeats, start, locals, calls_now, span: call.span }));
+        plan.flow = Flow::Call(Box::new(CallPlan {
+            kind,
+            target,
+            repeats,
+            start,
+            locals,
+            calls_now,
+            span: call.span,
+        }));
         Ok(())
     }
 }
@@ -312,7 +320,9 @@ impl Core {
         }
         match &words.call {
             Some(call) if matches!(call.kind, Calling::Cancel | Calling::Return) => return Ok(false),
-            Some(call) => return Err(Alarm::NotSimulated { what: "a call while G66.1 is on".into() }.at(call.span)),
+            Some(call) => {
+                return Err(Alarm::NotSimulated { what: "a call while G66.1 is on".into() }.at(call.span));
+            }
             None => {}
         }
         let mut locals = self.arguments(program, &words.list, true)?;

@@ -111,9 +111,7 @@ impl Core {
                 Value::Number(f64::from(u8::from(holds)))
             }
             Operation::Parameter => Value::Number(self.parameter(stack.pop().number())?),
-            Operation::NameNumber(name) => {
-                Value::Number(f64::from(self.named(program.variable_name(name))?))
-            }
+            Operation::NameNumber(name) => Value::Number(f64::from(self.named(program.variable_name(name))?)),
             Operation::SystemNumber(row) => {
                 let number = if self.settings.series_15_offsets { row.series_15 } else { row.number };
                 let place = match row.suffix {

@@ -53,7 +53,8 @@ pub const OTHER_MEMORIES: [&str; 3] = ["_OFS", "_OFSG", "_OFSW"];
 
 /// The variable that a name and its suffix stand for, or the bounds of what would be one.
 pub fn find(name: &str) -> Option<NameRow> {
-    let system = |text: &str| text.parse().ok().filter(|p: &u32| (1..=300).contains(p) && !text.starts_with('0'));
+    let system =
+        |text: &str| text.parse().ok().filter(|p: &u32| (1..=300).contains(p) && !text.starts_with('0'));
     if let Some(p) = name.strip_prefix("_WZP").and_then(system) {
         let number = 14_001 + 20 * (p - 1);
         return Some(NameRow { name: "_WZP", number, suffix: Some((1, 20)), series_15: number });
