@@ -49,9 +49,23 @@ pub struct Found {
     pub at: Position,
     /// The angle between the finishing feed and the tool's axis.
     pub off_tool: Deg,
+    /// What was cut there besides the finishing pass.
+    pub others: Vec<Cut>,
     /// The place in the list of the first hole on this line. A later one with the same is the same hole, drilled
     /// again by a tool that had been there.
     pub first: usize,
+}
+
+/// A pass of a hole that doesn't finish it.
+#[derive(Clone, Debug)]
+pub struct Cut {
+    pub bottom: Point3<f64>,
+    /// Out of the part.
+    pub axis: Unit<Vector3<f64>>,
+    pub tool: Option<u32>,
+    /// Of the tool, in mm, where the tool table has it.
+    pub diameter: Option<f64>,
+    pub place: Place,
 }
 
 /// The holes in the order in which their first passes were made.
@@ -110,7 +124,16 @@ fn holes_of(group: &[&Pass], machine: &Machine, found: &mut Vec<Found>) {
     }
     let lowest = cutting.iter().map(|pass| height(&pass.bottom)).fold(f64::INFINITY, f64::min);
     let finish = finishing(&cutting, lowest, height, machine);
-    let one = |pass: &Pass, starts: &[&Pass], bottom: f64| {
+    let diameter = |pass: &Pass| pass.tool.and_then(|tool| machine.find_tool(tool)?.diameter);
+    let cut = |pass: &&Pass| Cut {
+        bottom: pass.bottom,
+        axis: pass.axis,
+        tool: pass.tool,
+        diameter: diameter(pass),
+        place: pass.place.clone(),
+    };
+    let others = cutting.iter().filter(|pass| !std::ptr::eq(**pass, finish)).map(cut).collect();
+    let one = |pass: &Pass, starts: &[&Pass], bottom: f64, others: Vec<Cut>| {
         let start = starts.iter().map(|p| height(&p.start)).fold(f64::NEG_INFINITY, f64::max);
         let slope = pass.axis.dot(&out);
         let along =
@@ -119,17 +142,18 @@ fn holes_of(group: &[&Pass], machine: &Machine, found: &mut Vec<Found>) {
             entry: along(start),
             axis: pass.axis,
             depth: (along(start) - along(bottom)).norm(),
-            diameter: pass.tool.and_then(|tool| machine.find_tool(tool)?.diameter),
+            diameter: diameter(pass),
             tool: pass.tool,
             place: pass.place.clone(),
             at: pass.at,
             off_tool: Deg::acos(pass.axis.dot(&pass.fed).clamp(-1.0, 1.0)),
+            others,
             first,
         }
     };
     let starts: Vec<&Pass> = cutting.iter().copied().filter(|pass| pass.tool == finish.tool).collect();
-    found.push(one(finish, &starts, lowest));
-    found.extend(again.into_iter().map(|pass| one(pass, &[pass], height(&pass.bottom))));
+    found.push(one(finish, &starts, lowest, others));
+    found.extend(again.into_iter().map(|pass| one(pass, &[pass], height(&pass.bottom), Vec::new())));
 }
 
 /// The last pass of the largest tool that goes at least half as deep as the hole; where diameters aren't known, of

@@ -34,7 +34,8 @@ impl Extractor<'_> {
         let inside = self.surface.map(|s| s.depth(&s.deepest_between(&line.start, &line.bottom())));
         // A feed outwards, as of a tool that was left in its hole, makes none.
         let rises = self.surface.is_some_and(|s| s.value(&line.start) < s.value(&line.bottom()));
-        if rises || off.is_some_and(|off| off.0 > 90.0) {
+        let backwards = off.is_some_and(|off| off.0 > 90.0);
+        if rises || backwards && inside.is_none_or(|depth| depth <= TOUCH) {
             return;
         }
         if !came_back {

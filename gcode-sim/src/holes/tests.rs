@@ -268,6 +268,14 @@ fn a_rapid_to_below_the_surface_before_the_feed_is_an_error() {
     assert_eq!(on_the_ball(script), "0.000 99.500 0.000 0.000 1.000 0.000 14.500\nrapid-into-part");
 }
 
+/// The head half a turn round: the shank would go in first.
+#[test]
+fn a_feed_into_the_part_against_the_tool_is_an_error() {
+    let script = Script::new().head(270.0).rapid("Y150").feed("Y85").rapid("Y150");
+    let said = on_the_ball(script);
+    assert!(said.ends_with("feed-not-along-tool"), "{said}");
+}
+
 #[test]
 fn drilling_and_coming_back_out_is_no_rapid_through_the_part() {
     let script = Script::new()

@@ -32,10 +32,15 @@ impl Surface {
         Unit::try_new(self.gradient(p), f64::MIN_POSITIVE)
     }
 
-    /// How far below the surface a point lies, to first order: exact on the surface, the right sign everywhere.
+    /// How far below the surface a point lies, along the gradient there: the distance for a sphere, near the surface
+    /// and on an axis of the body. Below 0 outside, to first order.
     pub fn depth(&self, p: &Point3<f64>) -> f64 {
-        let slope = self.gradient(p).norm();
-        if slope == 0.0 { f64::INFINITY } else { -self.value(p) / slope }
+        let out = self.normal(p).unwrap_or(Vector3::y_axis());
+        let value = self.value(p);
+        match self.exit(p, &out) {
+            Some(exit) if value < 0.0 => (exit - p).norm(),
+            _ => -value / self.gradient(p).norm(),
+        }
     }
 
     /// Where a line leaves the body towards `out`; `None` where it misses the body.
@@ -131,10 +136,15 @@ mod tests {
     }
 
     #[test]
-    fn depth_is_the_distance_near_the_surface() {
+    fn depth_is_the_distance_to_the_surface() {
         let sphere = Surface::Ellipsoid { a: 100.0, b: 100.0 };
-        assert!((sphere.depth(&Point3::new(0.0, 99.9, 0.0)) - 0.1).abs() < 1e-4);
-        assert!(sphere.depth(&Point3::new(0.0, 100.1, 0.0)) < 0.0);
+        for (y, depth) in [(99.9, 0.1), (40.0, 60.0), (-97.0, 3.0), (0.0, 100.0)] {
+            let found = sphere.depth(&Point3::new(0.0, y, 0.0));
+            assert!((found - depth).abs() < 1e-9, "{found} at {y}");
+        }
+        let flat = Surface::Ellipsoid { a: 1000.0, b: 400.0 };
+        assert!((flat.depth(&Point3::new(0.0, 322.0, 0.0)) - 78.0).abs() < 1e-9);
+        assert!((sphere.depth(&Point3::new(0.0, 100.1, 0.0)) + 0.1).abs() < 1e-3);
     }
 
     #[test]

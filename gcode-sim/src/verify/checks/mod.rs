@@ -1,4 +1,5 @@
 //! The checks: one file each, one line here.
+mod aside;
 mod depth;
 mod diameter;
 mod mirrored;
@@ -10,5 +11,12 @@ use super::{Comparison, Objection};
 
 type Check = fn(&Comparison<'_>, &mut Vec<Objection>);
 
-pub(super) const ALL: &[Check] =
-    &[mirrored::check, missing::check, surplus::check, position::check, depth::check, diameter::check];
+pub(super) const ALL: &[Check] = &[
+    mirrored::check,
+    missing::check,
+    surplus::check,
+    position::check,
+    aside::check,
+    depth::check,
+    diameter::check,
+];
