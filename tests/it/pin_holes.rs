@@ -135,6 +135,31 @@ fn neither_the_machine_file_nor_the_range_of_atan_changes_the_verdict() {
     }
 }
 
+/// A tool that is longer than the one before by more than V must not stand in the part when it comes.
+#[test]
+fn a_longer_tool_comes_clear_of_the_part() {
+    let longer = melon()
+        .replace("radius = 420.0", "radius = 0.0")
+        .replacen("length = 0.0", "length = 120.0", 1)
+        .replacen("length = 0.0", "length = 180.0", 1);
+    let upright = longer.replace("\"normal\"", "\"axial\"");
+    assert!(upright.contains("length = 120.0") && upright.contains("length = 180.0"));
+    // Of all holes the first alone, at the pole, where the part is highest.
+    let first = upright.match_indices("[[hole]]").nth(1).unwrap().0;
+    let job = job(&upright[..first]);
+    let checked = check(&job, &families::emit(&job)).unwrap();
+    assert_eq!(checked.refusals, Vec::<String>::new());
+}
+
+/// At the equator an axial hole leaves the part again on the other side of it.
+#[test]
+fn a_hole_through_a_steep_flank_is_there() {
+    let steep = melon().replace("radius = 420.0", "radius = 1158.7");
+    let job = job(&steep);
+    let checked = check(&job, &families::emit(&job)).unwrap();
+    assert_eq!(checked.refusals, Vec::<String>::new());
+}
+
 /// A control manages about a thousand macro blocks a second and stands still meanwhile.
 #[test]
 fn one_more_hole_costs_16_blocks_of_arithmetic() {

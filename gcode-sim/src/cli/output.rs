@@ -1,6 +1,6 @@
 //! Writes results: to standard output, or to a file that is complete or not there at all.
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::Refusal;
 
@@ -45,24 +45,43 @@ pub fn write_all(files: &[(&Path, &[u8])]) -> Result<(), Refusal> {
         if path.is_dir() {
             return Err(unwritable(&"it is a folder"));
         }
-        let folder = match path.parent() {
+        if is_device(path) {
+            write_through(path, bytes).map_err(|e| unwritable(&e))?;
+            continue;
+        }
+        let place = place(path);
+        let folder = match place.parent() {
             Some(folder) if !folder.as_os_str().is_empty() => folder,
             _ => Path::new("."),
         };
-        if !folder.is_dir() {
-            return Err(unwritable(&format!("there is no folder {}", folder.display())));
-        }
         let mut file =
             tempfile::Builder::new().prefix(".writing-").tempfile_in(folder).map_err(|e| unwritable(&e))?;
         file.write_all(bytes).map_err(|e| unwritable(&e))?;
         allow_reading(file.as_file()).map_err(|e| unwritable(&e))?;
-        waiting.push((path, file));
+        waiting.push((place, file));
     }
-    for (path, file) in waiting {
-        file.persist(path)
-            .map_err(|e| Refusal::new(format!("{} can't be written: {}", path.display(), e.error)))?;
+    for (place, file) in waiting {
+        file.persist(&place)
+            .map_err(|e| Refusal::new(format!("{} can't be written: {}", place.display(), e.error)))?;
     }
     Ok(())
+}
+
+/// What stands there is no file: a device such as `/dev/null`, or a pipe. A file renamed onto it would take its place
+/// for everyone.
+fn is_device(path: &Path) -> bool {
+    std::fs::metadata(path).is_ok_and(|about| !about.is_file() && !about.is_dir())
+}
+
+fn write_through(path: &Path, bytes: &[u8]) -> std::io::Result<()> {
+    let mut device = std::fs::OpenOptions::new().write(true).open(path)?;
+    device.write_all(bytes)?;
+    device.flush()
+}
+
+/// Where a link leads, so that it stays a link.
+fn place(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| path.to_owned())
 }
 
 /// Temporary files are private; a result may be read by everyone who may read new files.
@@ -75,4 +94,35 @@ fn allow_reading(file: &std::fs::File) -> std::io::Result<()> {
 #[cfg(not(unix))]
 fn allow_reading(_: &std::fs::File) -> std::io::Result<()> {
     Ok(())
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_link_stays_a_link() {
+        let folder = tempfile::tempdir().unwrap();
+        let (file, link) = (folder.path().join("file"), folder.path().join("link"));
+        write(&file, b"old").unwrap();
+        std::os::unix::fs::symlink(&file, &link).unwrap();
+        write(&link, b"new").unwrap();
+        assert!(link.is_symlink());
+        assert_eq!(super::super::input::bytes(&file).unwrap(), b"new");
+    }
+
+    #[test]
+    fn a_device_is_written_to_and_stays_a_device() {
+        // A link to the device: were it replaced after all, the device itself would be safe from this test.
+        let folder = tempfile::tempdir().unwrap();
+        let (link, full) = (folder.path().join("null"), folder.path().join("full"));
+        std::os::unix::fs::symlink("/dev/null", &link).unwrap();
+        write(&link, b"gone").unwrap();
+        assert!(link.is_symlink() && is_device(&link));
+        if is_device(Path::new("/dev/full")) {
+            std::os::unix::fs::symlink("/dev/full", &full).unwrap();
+            assert!(write(&full, b"too much").is_err(), "a full device is an error");
+            assert!(is_device(&full));
+        }
+    }
 }

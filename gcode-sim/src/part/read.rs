@@ -115,7 +115,8 @@ fn check(hole: &Hole, index: usize) -> Result<(), String> {
     if length == 0.0 {
         return Err(format!("{name}: the axis is 0, 0, 0: give the unit vector out of the part"));
     }
-    if (length - 1.0).abs() > 1e-6 {
+    // Lists rounded to a few digits are normalized; what is farther off was never meant as a direction of length 1.
+    if (length - 1.0).abs() > 1e-3 {
         return Err(format!("{name}: the axis has the length {length:.7}: divide i, j, k by it"));
     }
     if hole.depth <= 0.0 {
@@ -132,6 +133,7 @@ fn check(hole: &Hole, index: usize) -> Result<(), String> {
 #[cfg(test)]
 mod tests {
     use super::super::reference::Reference;
+    use super::*;
 
     const HOLE: &str =
         r#"{"unit": "mm", "holes": [{"id": "1", "entry": [1, 2, 3], "axis": [0, 0.6, 0.8], "depth": 5}]}"#;
@@ -150,6 +152,13 @@ mod tests {
     fn a_hole_without_an_id_is_named_by_its_number() {
         let csv = "id,x,y,z,i,j,k,depth,diameter\n,0,0,0,0,1,0,5,6\n";
         assert_eq!(Reference::parse(csv).unwrap().holes[0].id.as_deref(), Some("#1"));
+    }
+
+    #[test]
+    fn an_axis_rounded_to_a_few_digits_is_taken() {
+        let csv = "id,x,y,z,i,j,k,depth,diameter\n1,0,0,0,0.453,0.879,-0.149,5,6\n";
+        let axis = Reference::parse(csv).unwrap().holes[0].axis;
+        assert!((Vector3::from(axis).norm() - 1.0).abs() < 1e-15, "{axis:?}");
     }
 
     #[test]

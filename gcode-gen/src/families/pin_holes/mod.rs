@@ -45,8 +45,8 @@ impl<'j> Main<'j> {
         let passes = passes(self.job);
         self.header(&passes);
         self.start();
-        for pass in &passes {
-            self.tool(pass);
+        for (index, pass) in passes.iter().enumerate() {
+            self.tool(pass, passes.get(index + 1));
         }
         self.text.block(
             Block::of(format!("#{}=#0", self.resident.set())).comment("HEAD SET FOR NOTHING ANY MORE"),
@@ -103,7 +103,7 @@ impl<'j> Main<'j> {
         self.text.block(Block::of(format!("#{}=#0", self.resident.set())).comment("HEAD NOT SET YET"));
     }
 
-    fn tool(&mut self, pass: &ToolPass<'_>) {
+    fn tool(&mut self, pass: &ToolPass<'_>, next: Option<&ToolPass<'_>>) {
         let tool = pass.tool;
         let diameter = number(tool.diameter);
         self.text.remark(format!("T{} {} DIAMETER {diameter}", tool.number, tool.name));
@@ -119,8 +119,10 @@ impl<'j> Main<'j> {
             }
         }
         self.text.block(Block::of("M09"));
-        // The tip is then V above the pole or higher, whatever the angle of the head: see O8102.
-        let height = [self.job.surface.b, self.reach(pass), self.job.machine.retract].map(number);
+        // The tip is then V above the pole or higher, whatever the angle of the head: see O8102. The next tool's
+        // too, which may be longer.
+        let reach = next.map_or(0.0, |next| self.reach(next)).max(self.reach(pass));
+        let height = [self.job.surface.b, reach, self.job.machine.retract].map(number);
         self.text
             .block(Block::of(format!("G90 G00 Y[{}]", height.join("+"))).comment("B+Q+V, CLEAR OF THE PART"));
         self.text.block(Block::of("M05"));
