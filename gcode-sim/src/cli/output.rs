@@ -54,6 +54,9 @@ pub fn write_all(files: &[(&Path, &[u8])]) -> Result<(), Refusal> {
             Some(folder) if !folder.as_os_str().is_empty() => folder,
             _ => Path::new("."),
         };
+        if !folder.is_dir() {
+            return Err(unwritable(&format!("there is no folder {}", folder.display())));
+        }
         let mut file =
             tempfile::Builder::new().prefix(".writing-").tempfile_in(folder).map_err(|e| unwritable(&e))?;
         file.write_all(bytes).map_err(|e| unwritable(&e))?;
