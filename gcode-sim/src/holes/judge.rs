@@ -34,9 +34,8 @@ impl Extractor<'_> {
         let inside = self.surface.map(|s| s.depth(&s.deepest_between(&line.start, &line.bottom())));
         // A feed outwards, as of a tool that was left in its hole, makes none.
         // Told where it begins: a hole on a steep flank may end outside the part again.
-        let rises = self
-            .surface
-            .is_some_and(|s| s.gradient(&line.start).dot(&(line.bottom() - line.start)) >= 0.0);
+        let rises =
+            self.surface.is_some_and(|s| s.gradient(&line.start).dot(&(line.bottom() - line.start)) >= 0.0);
         let backwards = off.is_some_and(|off| off.0 > 90.0);
         if rises || backwards && inside.is_none_or(|depth| depth <= TOUCH) {
             return;
