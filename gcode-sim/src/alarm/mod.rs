@@ -71,10 +71,14 @@ pub enum Alarm {
     OffsetNumber {
         number: i64,
     },
+    OffsetValue {
+        value: f64,
+    },
     SkipInCompensation,
     NotAtReference {
         letter: char,
     },
+    TNotAllowed,
     ScaleRate {
         value: f64,
     },
@@ -103,6 +107,8 @@ pub enum Alarm {
     SequenceNumberNotFound {
         number: u32,
     },
+    /// G08 with another P than 0 and 1.
+    LookAheadFormat,
     IntegerOverflow,
     FloatOverflow,
     DivideByZero,
@@ -146,6 +152,10 @@ pub enum Alarm {
     GAsArgument,
     TwoSubprogramCalls,
     TwoMacroCalls,
+    /// Words beside M99 while a modal macro call waits.
+    WordsWithReturn {
+        letter: char,
+    },
     TooManyArgumentSets,
     CancelWithoutModalCall,
     /// A name that another tool offset memory has.

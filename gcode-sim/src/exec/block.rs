@@ -18,7 +18,7 @@ use crate::motion::{EventKind, Spindle, StopKind};
 use crate::program::codes::{Effect, OneShot};
 use crate::program::m_codes::{self, MEffect};
 use crate::program::modes::{CutterSide, Length, Mirror, Motion, Polar, Rotation, Scaling};
-use crate::program::{Program, Words};
+use crate::program::{Calling, Program, Words};
 use crate::source::Span;
 use crate::units::Rpm;
 
@@ -53,6 +53,7 @@ impl Core {
             return Ok(());
         }
         self.collect(program, words, given)?;
+        self.beside_return(words)?;
         let act = self.modal_codes(given, plan, span)?;
         self.codes(given, plan, span)?;
         self.m_codes(given, plan)?;
@@ -79,6 +80,17 @@ impl Core {
         match given.unread() {
             Some((letter, span)) if !for_m_code => {
                 Err(Alarm::NotSimulated { what: format!("{letter} in such a block") }.at(span))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Only N, P and L may stand beside M99 while G66 is on.
+    fn beside_return(&self, words: &Words) -> Checked<()> {
+        let returns = words.call.as_ref().is_some_and(|call| call.kind == Calling::Return);
+        match words.list.iter().find(|word| word.letter != b'L') {
+            Some(word) if returns && !self.modal_calls.is_empty() => {
+                Err(Alarm::WordsWithReturn { letter: char::from(word.letter) }.at(word.span))
             }
             _ => Ok(()),
         }
@@ -173,6 +185,18 @@ impl Core {
             if given.has(letter) {
                 return Err(Alarm::ImproperAddress { letter: char::from(letter) }.at(given.span(letter)));
             }
+        }
+        if given.g_codes().any(|row| row.effect == Effect::LookAhead)
+            && given.count(b'P')?.is_none_or(|p| p > 1)
+        {
+            return Err(Alarm::LookAheadFormat.at(span));
+        }
+        let keeps_tool = |effect| {
+            use OneShot::{DataInput, Dwell};
+            matches!(effect, Effect::OneShot(Dwell | DataInput) | Effect::Scaling(Scaling::Off))
+        };
+        if given.has(b'T') && given.g_codes().any(|row| keeps_tool(row.effect)) {
+            return Err(Alarm::TNotAllowed.at(given.span(b'T')));
         }
         let repeats = given.g_codes().any(|row| row.effect == Effect::OneShot(OneShot::DataInput));
         if given.has(b'L') && !repeats {

@@ -54,6 +54,7 @@ impl Modal {
             Effect::AdditionalWork
             | Effect::OneShot(_)
             | Effect::NoEffect
+            | Effect::LookAhead
             | Effect::Call
             | Effect::NotSimulated => {}
         }

@@ -139,6 +139,12 @@ impl Core {
         }
     }
 
+    /// An offset has as many digits as a position.
+    pub(super) fn offset_in_range(&self, value: f64) -> Result<f64, Alarm> {
+        let fits = value.abs() * self.settings.increment.per_unit() <= 999_999_999.0;
+        if fits { Ok(value) } else { Err(Alarm::OffsetValue { value }) }
+    }
+
     /// A length in mm as a program reads it: in the unit in force.
     pub(super) fn shown(&self, state: &State, axis: Option<Axis>, value: f64) -> f64 {
         let turns = axis.is_some_and(|axis| self.settings.axes.is_rotary(axis));

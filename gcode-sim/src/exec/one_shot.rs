@@ -239,7 +239,11 @@ impl Core {
                 for (axis, letter) in self.settings.axes.iter() {
                     let Some(value) = self.dimension(given, letter as u8, &plan.state)? else { continue };
                     let old = if adds { self.offsets.work(system)[axis] } else { 0.0 };
-                    plan.writes.push(Write::Work { system, axis, value: self.clean(old + value) });
+                    plan.writes.push(Write::Work {
+                        system,
+                        axis,
+                        value: at(self.offset_in_range(self.clean(old + value)), span)?,
+                    });
                 }
                 Ok(())
             }
@@ -257,7 +261,8 @@ impl Core {
                 }
                 let value =
                     self.dimension(given, b'R', &plan.state)?.ok_or_else(|| format("R is missing"))?;
-                let value = self.clean(if adds { old + value } else { value });
+                let value =
+                    at(self.offset_in_range(self.clean(if adds { old + value } else { value })), span)?;
                 plan.writes.push(Write::Tool { register, number, value });
                 Ok(())
             }

@@ -25,9 +25,9 @@ const fn row(from: u32, to: u32, read: Option<Read>, write: Option<Write>) -> Ro
 const ROWS: &[Row] = &[
     // Interface signals.
     row(1000, 1031, Some(|c, n| Ok(f64::from(c.settings.inputs >> n & 1))), None),
-    row(1032, 1035, Some(|c, n| Ok(if n == 0 { f64::from(c.settings.inputs as i32) } else { 0.0 })), None),
+    row(1032, 1035, Some(|c, n| first_signals(n).map(|()| f64::from(c.settings.inputs as i32))), None),
     row(1100, 1131, Some(|c, n| Ok(f64::from(c.outputs >> n & 1))), Some(|c, n, v| { c.set_output(n, v != 0.0); Ok(()) })),
-    row(1132, 1135, Some(|c, n| Ok(if n == 0 { f64::from(c.outputs as i32) } else { 0.0 })), Some(|c, n, v| c.set_outputs(n, v))),
+    row(1132, 1135, Some(|c, n| first_signals(n).map(|()| f64::from(c.outputs as i32))), Some(|c, n, v| c.set_outputs(n, v))),
     // Tool offsets, memory C.
     row(2001, 2200, Some(|c, n| c.tool_offset(Register::HWear, n)), Some(|c, n, v| c.set_tool_offset(Register::HWear, n, v))),
     row(2201, 2400, Some(|c, n| c.tool_offset(Register::HGeometry, n)), Some(|c, n, v| c.set_tool_offset(Register::HGeometry, n, v))),
@@ -78,6 +78,14 @@ fn find(number: u32) -> Result<&'static Row, Alarm> {
     row.ok_or(Alarm::NoSuchVariable { number: i64::from(number) })
 }
 
+/// A control may have up to 128 signals each way; here are the first 32.
+fn first_signals(word: u32) -> Result<(), Alarm> {
+    if word > 0 {
+        return Err(Alarm::NotSimulated { what: "more than 32 interface signals".into() });
+    }
+    Ok(())
+}
+
 impl Core {
     pub(super) fn read_system(&self, number: u32) -> Result<Value, Alarm> {
         if number == 3100 {
@@ -103,9 +111,8 @@ impl Core {
 
     fn set_outputs(&mut self, word: u32, value: f64) -> Result<(), Alarm> {
         let value = super::eval::integer(value)?;
-        if word == 0 {
-            self.outputs = value as u32;
-        }
+        first_signals(word)?;
+        self.outputs = value as u32;
         Ok(())
     }
 
@@ -182,7 +189,7 @@ impl Core {
         if axis >= self.settings.axes.len() {
             return Ok(());
         }
-        let value = self.stored(&self.state, Some(axis), value);
+        let value = self.offset_in_range(self.stored(&self.state, Some(axis), value))?;
         self.offsets.work_mut(system)[axis] = value;
         self.offsets_changed();
         Ok(())
@@ -213,7 +220,7 @@ impl Core {
     fn set_tool_offset(&mut self, register: Register, place: u32, value: f64) -> Result<(), Alarm> {
         let register = self.register(register);
         self.offsets.tool(register, place + 1)?;
-        let value = self.stored(&self.state, None, value);
+        let value = self.offset_in_range(self.stored(&self.state, None, value))?;
         self.offsets.register(register)[place as usize + 1] = value;
         Ok(())
     }

@@ -110,7 +110,9 @@ pub(super) fn count(raw: Raw, letter: u8) -> Result<u32, Alarm> {
     if number < 0 {
         return Err(Alarm::IllegalMinus { letter });
     }
-    u32::try_from(number).map_err(|_| Alarm::TooManyDigits)
+    // Operator's manual, range of command values: eight digits, S five.
+    let most = if letter == 'S' { 99_999 } else { 99_999_999 };
+    if number > most { Err(Alarm::TooManyDigits) } else { Ok(number as u32) }
 }
 
 impl Core {

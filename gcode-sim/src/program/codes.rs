@@ -32,6 +32,8 @@ pub enum Effect {
     OneShot(OneShot),
     /// Feed and look-ahead control that moves nothing elsewhere.
     NoEffect,
+    /// G08: as [`Effect::NoEffect`], with a P.
+    LookAhead,
     /// Calls, which lowering has taken out of the words where the code is a literal.
     Call,
     /// A control may have it; this one does not execute it.
@@ -85,7 +87,7 @@ pub const CODES: &[Row] = &[
     row(51, Effect::NoEffect, "look-ahead contour control"),
     row(54, Effect::NotSimulated, "high-precision oscillation"),
     row(71, Effect::NotSimulated, "cylindrical interpolation"),
-    row(80, Effect::NoEffect, "look-ahead control"),
+    row(80, Effect::LookAhead, "look-ahead control"),
     row(90, Effect::NoEffect, "exact stop in this block"),
     row(100, Effect::OneShot(OneShot::DataInput), "offsets from the program"),
     row(106, Effect::NotSimulated, "tool retract"),
