@@ -72,10 +72,23 @@ const ROWS: &[Row] = &[
     row(14001, 20000, Some(|c, n| c.work_offset((7 + n / 20) as usize, n % 20)), Some(|c, n, v| c.set_work_offset((7 + n / 20) as usize, n % 20, v))),
 ];
 
+/// What a control may have and this one has not: better than to say that there is no such variable.
+const NOT_SIMULATED: &[(u32, u32, &str)] = &[
+    (4401, 4530, "the codes of a block that a macro interrupted"),
+    (8000, 8999, "tool management"),
+    (98_000, 98_499, "extended common variables"),
+    (100_001, 100_200, "positions of more than 20 axes"),
+];
+
 fn find(number: u32) -> Result<&'static Row, Alarm> {
     let place = ROWS.partition_point(|row| row.to < number);
-    let row = ROWS.get(place).filter(|row| row.from <= number);
-    row.ok_or(Alarm::NoSuchVariable { number: i64::from(number) })
+    ROWS.get(place).filter(|row| row.from <= number).ok_or_else(|| {
+        let known = NOT_SIMULATED.iter().find(|(from, to, _)| (*from..=*to).contains(&number));
+        match known {
+            Some((.., what)) => Alarm::NotSimulated { what: format!("#{number} ({what})") },
+            None => Alarm::NoSuchVariable { number: i64::from(number) },
+        }
+    })
 }
 
 /// A control may have up to 128 signals each way; here are the first 32.
