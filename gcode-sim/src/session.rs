@@ -53,6 +53,10 @@ impl Request {
 pub enum SessionError {
     #[error("{name} holds no program")]
     NoProgram { name: String },
+    #[error(
+        "{name}, line {line}: {program} is there twice, and a control refuses the second: give it a number of its own"
+    )]
+    Twice { name: String, line: u32, program: String },
     #[error("#{number} can't be set: {alarm}")]
     Variable { number: u32, alarm: Alarm },
 }
@@ -74,6 +78,10 @@ pub fn run<S: Sink>(
     memory.load(request.name.clone(), request.bytes.clone());
     if memory.programs().is_empty() {
         return Err(SessionError::NoProgram { name: request.name.clone() });
+    }
+    if let Some(second) = memory.refused().next() {
+        let line = memory.sources().place(second.span).line;
+        return Err(SessionError::Twice { name: request.name.clone(), line, program: second.label() });
     }
     let mut control = Control::new(memory, request.settings.clone());
     for (number, value) in

@@ -114,7 +114,7 @@ fn a_table_that_turns_the_other_way_fails() {
     assert_eq!(verdict(&package, &melon()).verdict, Answer::Fail);
 }
 
-/// The contract's smallest job on the machine of the paper, without a machine file, and on controls whose angles
+/// The smallest job on the machine of the paper, without a machine file, and on controls whose angles
 /// count from −180 to 180.
 #[test]
 fn neither_the_machine_file_nor_the_range_of_atan_changes_the_verdict() {

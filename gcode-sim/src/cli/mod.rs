@@ -23,7 +23,7 @@ use crate::diag::{Diagnostic, Severity};
 use crate::report::diagnostic;
 use crate::session::Run;
 
-/// How a request ended; contract of both programs.
+/// How a request ended, the same for both programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
     /// Done, and what was asked about holds.

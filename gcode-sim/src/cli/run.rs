@@ -1,7 +1,7 @@
 //! `gcode-sim run`: executes a program and shows the end state.
 use super::args::{RunArguments, TextFormat};
 use super::{Refusal, Status, options, output};
-use crate::report::run::{Moves, RunReport};
+use crate::report::run::{MOST_MOVES, Moves, RunReport};
 use crate::session;
 
 pub(super) fn run(arguments: &RunArguments) -> Result<Status, Refusal> {
@@ -28,5 +28,12 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Status, Refusal> {
         TextFormat::Text => output::print(&report.text())?,
         TextFormat::Json => output::json(&report)?,
     }
-    Ok(super::stopped(&run).unwrap_or(Status::Holds))
+    let stopped = super::stopped(&run);
+    if moves.is_some_and(|moves| moves.too_many) {
+        output::tell(&format!(
+            "error: --moves: more than {MOST_MOVES} moves; those behind aren't in the list\n"
+        ));
+        return Ok(Status::Stopped);
+    }
+    Ok(stopped.unwrap_or(Status::Holds))
 }

@@ -274,7 +274,8 @@ impl Extractor<'_> {
         text: &str,
         named: &[(u32, f64)],
     ) -> Option<Deg> {
-        if !text.to_ascii_uppercase().contains("HEAD") {
+        let mut words = text.split(|c: char| !c.is_ascii_alphanumeric());
+        if !words.any(|word| word.eq_ignore_ascii_case("HEAD")) {
             return None;
         }
         if !self.machine.head.is_set_by_hand() {

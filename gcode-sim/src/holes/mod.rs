@@ -260,7 +260,7 @@ impl Extracted {
 }
 
 impl Found {
-    /// In the schema of the contract; the program alone gives no id.
+    /// In the schema that references have too; the program alone gives no id.
     pub fn hole(&self, locate: impl Fn(Span) -> (String, u32)) -> Hole {
         let (program, line) = locate(self.place.block);
         Hole {

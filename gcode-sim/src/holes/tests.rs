@@ -4,6 +4,7 @@ use nalgebra::Point3;
 use super::script::Script;
 use super::{Extracted, Extractor, Found};
 use crate::machine::{Head, HeadKind, Machine, Tool};
+use crate::motion::{EventKind, StopKind};
 use crate::part::surface::Surface;
 
 fn extract(machine: &Machine, surface: Option<Surface>, script: &Script) -> Extracted {
@@ -219,6 +220,22 @@ fn a_head_nobody_has_set_is_an_error() {
     let script = Script::new().rapid("Z2").feed("Z-5").rapid("Z2");
     let found = extract(&machine, None, &script);
     assert!(told(&found).ends_with("head-not-set"), "{}", told(&found));
+}
+
+#[test]
+fn a_message_about_something_else_sets_no_head() {
+    let named = vec![(140, 30.0)];
+    let ask = |text: &str| {
+        let stop = EventKind::Stop { kind: StopKind::Message, text: text.to_owned(), named: named.clone() };
+        told(&extract(
+            &Machine::default(),
+            None,
+            &Script::new().with(stop).rapid("Z2").feed("Z-5").rapid("Z2"),
+        ))
+    };
+    let drilled = "0.000 0.000 2.000 0.000 0.000 1.000 7.000";
+    assert_eq!(ask("GO AHEAD, SEE #140"), drilled);
+    assert_ne!(ask("TURN HEAD: #140"), drilled);
 }
 
 #[test]

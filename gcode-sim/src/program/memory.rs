@@ -39,11 +39,13 @@ pub struct Memory {
     programs: Vec<Program>,
     numbers: BTreeMap<u32, ProgramId>,
     names: BTreeMap<String, ProgramId>,
+    /// Programs whose number was taken already.
+    refused: Vec<ProgramId>,
 }
 
 impl Memory {
     /// Reads and lowers a file. Of two programs with one number the first stays, as on a control, which refuses
-    /// the second.
+    /// the second: see [`Memory::refused`].
     pub fn load(&mut self, name: impl Into<String>, bytes: impl Into<Arc<[u8]>>) -> SourceId {
         let source = self.sources.add(name, bytes);
         let bytes = &self.sources.get(source).bytes;
@@ -51,10 +53,14 @@ impl Memory {
             let id = ProgramId(self.programs.len() as u32);
             match &program.name {
                 ProgramName::Number(number) => {
-                    self.numbers.entry(*number).or_insert(id);
+                    if *self.numbers.entry(*number).or_insert(id) != id {
+                        self.refused.push(id);
+                    }
                 }
                 ProgramName::Name(name) => {
-                    self.names.entry(name.clone()).or_insert(id);
+                    if *self.names.entry(name.clone()).or_insert(id) != id {
+                        self.refused.push(id);
+                    }
                 }
                 ProgramName::Unnamed => {}
             }
@@ -65,6 +71,11 @@ impl Memory {
 
     pub fn sources(&self) -> &Sources {
         &self.sources
+    }
+
+    /// Programs that can't be called, because an earlier one has the same number or name.
+    pub fn refused(&self) -> impl Iterator<Item = &Program> {
+        self.refused.iter().map(|id| self.get(*id))
     }
 
     pub fn programs(&self) -> &[Program] {

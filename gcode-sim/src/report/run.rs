@@ -122,9 +122,14 @@ fn shown<S: Serializer>(all: &[(u32, Option<f64>)], serializer: S) -> Result<S::
     serializer.collect_map(all.iter().map(|(number, value)| (format!("#{number}"), value.map(plain))))
 }
 
+/// More moves than this aren't written down: a loop that never ends must not fill the memory.
+pub const MOST_MOVES: usize = 1_000_000;
+
 /// Writes down every move that goes somewhere, and every dwell.
 #[derive(Debug, Default)]
 pub struct Moves {
+    /// There were more than [`MOST_MOVES`].
+    pub too_many: bool,
     at: Position,
     found: Vec<(&'static str, Position, f64, Option<f64>, Span)>,
 }
@@ -143,7 +148,10 @@ impl Sink for Moves {
             | EventKind::Stop { .. } => return,
         };
         if to != self.at || matches!(kind, "arc" | "dwell") {
-            self.found.push((kind, to, event.seconds.0, feed, event.block));
+            self.too_many = self.found.len() >= MOST_MOVES;
+            if !self.too_many {
+                self.found.push((kind, to, event.seconds.0, feed, event.block));
+            }
         }
         self.at = to;
     }

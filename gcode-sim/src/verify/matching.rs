@@ -1,4 +1,6 @@
 //! Which drilled hole is which wanted one: the pairs that lie nearest to one another first.
+use std::collections::BTreeMap;
+
 use nalgebra::{Point3, Vector3};
 
 use super::Tolerances;
@@ -33,7 +35,8 @@ pub struct Comparison<'a> {
     pub missing: Vec<usize>,
     /// There and not wanted.
     pub extra: Vec<usize>,
-    taken_for: Vec<Option<usize>>,
+    /// The wanted hole that a line was taken for, by the first hole found on the line.
+    on_line: BTreeMap<usize, usize>,
 }
 
 impl<'a> Comparison<'a> {
@@ -61,24 +64,25 @@ impl<'a> Comparison<'a> {
             let order = a.deviation.phi().total_cmp(&b.deviation.phi());
             order.then(a.found.cmp(&b.found)).then(a.wanted.cmp(&b.wanted))
         });
-        let (mut is_there, mut taken_for) = (vec![false; wanted.len()], vec![None; found.len()]);
+        let (mut is_there, mut is_taken) = (vec![false; wanted.len()], vec![false; found.len()]);
         let mut pairs = Vec::with_capacity(wanted.len());
         for pair in candidates {
-            if !is_there[pair.wanted] && taken_for[pair.found].is_none() {
+            if !is_there[pair.wanted] && !is_taken[pair.found] {
                 is_there[pair.wanted] = true;
-                taken_for[pair.found] = Some(pair.wanted);
+                is_taken[pair.found] = true;
                 pairs.push(pair);
             }
         }
         pairs.sort_by_key(|pair| pair.wanted);
+        let on_line = pairs.iter().map(|pair| (found[pair.found].first, pair.wanted)).collect();
         let missing = (0..wanted.len()).filter(|index| !is_there[*index]).collect();
-        let extra = (0..found.len()).filter(|index| taken_for[*index].is_none()).collect();
-        Self { wanted, found, tolerances, pairs, missing, extra, taken_for }
+        let extra = (0..found.len()).filter(|index| !is_taken[*index]).collect();
+        Self { wanted, found, tolerances, pairs, missing, extra, on_line }
     }
 
-    /// The wanted hole that a drilled one was taken for.
-    pub fn wanted_of(&self, found: usize) -> Option<usize> {
-        self.taken_for.get(found).copied().flatten()
+    /// The wanted hole that was drilled already on the line of one that nobody asked for.
+    pub fn wanted_on_line_of(&self, extra: usize) -> Option<usize> {
+        self.on_line.get(&self.found[extra].first).copied()
     }
 
     /// A wanted hole's name.

@@ -105,7 +105,7 @@ mod tests {
     use super::PinHoles;
     use crate::job::Job;
 
-    /// The job of the contract with one line replaced.
+    /// The smallest job with one line replaced.
     fn told(from: &str, to: &str) -> String {
         let job = MINIMAL.replace(from, to);
         assert_ne!(job, MINIMAL, "'{from}' is not in the job");

@@ -1,13 +1,14 @@
 //! Every wanted hole must be there.
 use nalgebra::{Point3, Vector3};
 
-use super::{Comparison, Objection, surplus};
+use super::{Comparison, Objection};
 use crate::diag::Diagnostic;
 use crate::holes::near::PointTree;
 
 pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>) {
     // A hole drilled twice is known; it isn't the missing one in a wrong place.
-    let extra = comparison.extra.iter().copied().filter(|index| surplus::twice(comparison, *index).is_none());
+    let extra = comparison.extra.iter().copied();
+    let extra = extra.filter(|index| comparison.wanted_on_line_of(*index).is_none());
     let extra: Vec<usize> = extra.collect();
     let tree = PointTree::new(extra.iter().map(|index| comparison.found[*index].bottom()));
     for wanted in &comparison.missing {

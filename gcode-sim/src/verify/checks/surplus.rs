@@ -6,7 +6,7 @@ use crate::diag::Diagnostic;
 
 pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>) {
     for index in &comparison.extra {
-        let twice = twice(comparison, *index).is_some();
+        let twice = comparison.wanted_on_line_of(*index).is_some();
         let (code, help) = match twice {
             true => ("hole-twice", "the same tool comes back for nothing: take the second call out"),
             false => ("hole-extra", "take it out of the program, or correct its place"),
@@ -18,17 +18,10 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
     }
 }
 
-/// The wanted hole that was drilled on the same line already; such holes stand side by side in the list.
-pub(super) fn twice(comparison: &Comparison<'_>, extra: usize) -> Option<usize> {
-    let first = comparison.found[extra].first;
-    let same = (first..comparison.found.len()).take_while(|index| comparison.found[*index].first == first);
-    same.filter(|index| *index != extra).find_map(|index| comparison.wanted_of(index))
-}
-
 /// In one sentence, for the finding and for the verdict.
 pub(crate) fn why(comparison: &Comparison<'_>, extra: usize) -> String {
     let found = &comparison.found[extra];
-    if let Some(wanted) = twice(comparison, extra) {
+    if let Some(wanted) = comparison.wanted_on_line_of(extra) {
         return format!("hole {} is drilled a second time", comparison.id(wanted));
     }
     let Point3 { coords: p } = found.entry;
