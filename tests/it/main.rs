@@ -3,6 +3,7 @@
 
 mod control;
 mod control_page;
+mod corpus;
 mod docs;
 mod emitted;
 mod explain;

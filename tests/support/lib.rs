@@ -8,6 +8,7 @@ mod cli;
 mod control;
 mod exec;
 pub mod expect;
+pub mod fuzz;
 mod r#gen;
 mod picture;
 pub mod programs;
