@@ -46,7 +46,8 @@ impl<'a> Pieces<'a> {
         // Senders end a file with 0x1A or with blank tape.
         let kept = bytes.iter().rposition(|b| !matches!(b, 0 | 0x1a | b' ' | b'\t' | b'\r' | b'\n'));
         let bytes = &bytes[..kept.map_or(0, |last| last + 1)];
-        let next = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
+        // An editor that doesn't know the byte order mark puts another before it.
+        let next = 3 * bytes.chunks(3).take_while(|mark| mark == b"\xef\xbb\xbf").count();
         Self::starting(source, bytes, next).behind_leader()
     }
 

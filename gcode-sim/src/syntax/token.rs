@@ -80,8 +80,9 @@ impl Line {
     }
 }
 
+/// A space; also the feed and the rub-out of paper tape, which controls read over.
 pub(super) fn is_space(byte: u8) -> bool {
-    matches!(byte, b' ' | b'\t')
+    matches!(byte, b' ' | b'\t' | 0 | 0x7f)
 }
 
 /// What is left after spaces and comments.
