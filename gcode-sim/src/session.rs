@@ -160,13 +160,23 @@ impl Run {
                 finding.help = row.help;
                 Some(finding)
             }
-            Outcome::Limit => {
-                let blocks = self.control.blocks();
-                let moves = self.control.moves();
-                let message = format!("the program has not ended after {blocks} blocks and {moves} moves");
-                let finding = Diagnostic::new(Severity::Alarm, "limit", message).at(self.control.place());
-                Some(finding.help("does a loop never end? --max-blocks allows more"))
-            }
+            Outcome::Limit => Some(self.unended()),
         }
+    }
+
+    fn unended(&self) -> Diagnostic {
+        let Some((first, last)) = self.control.endless_loop() else {
+            let (blocks, moves) = (self.control.blocks(), self.control.moves());
+            let message = format!("the program has not ended after {blocks} blocks and {moves} moves");
+            let finding = Diagnostic::new(Severity::Alarm, "limit", message).at(self.control.place());
+            return finding.help("does a loop never end? --max-blocks allows more");
+        };
+        let ((program, from), (other, to)) = (self.locate(first), self.locate(last));
+        let to = if program == other { format!("line {to}") } else { format!("line {to} of {other}") };
+        let message = format!(
+            "the program never ends: from line {from} of {program} to {to} all repeats and nothing changes"
+        );
+        let finding = Diagnostic::new(Severity::Alarm, "limit", message).at(self.control.place());
+        finding.help("a wait for an input ends with --input '#1005=1', a main program's M99 with --cycles 1")
     }
 }

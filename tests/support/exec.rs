@@ -43,7 +43,13 @@ fn shown(ran: &Ran) -> String {
     }
     match &ran.outcome {
         Outcome::End => text.push_str("end\n"),
-        Outcome::Limit => text.push_str("limit of blocks\n"),
+        Outcome::Limit => match ran.control.endless_loop() {
+            Some((first, last)) => {
+                writeln!(text, "repeats for ever from line {} to line {}", line(ran, first), line(ran, last))
+                    .unwrap();
+            }
+            None => text.push_str("limit of blocks\n"),
+        },
         Outcome::Alarm(stopped) => alarmed(ran, stopped, &mut text),
     }
     text

@@ -5,6 +5,7 @@
 //! | item | holds when |
 //! |---|---|
 //! | `end=normal` | M30, M02 or the end of the program was reached without an alarm |
+//! | `end=repeats` | the run was ended because the program provably repeats for ever |
 //! | `alarm=PS0112` | the control stopped with this alarm; several with `\|`, `ANY` for some alarm |
 //! | `msg="TEXT"` | the alarm's text |
 //! | `stop=TEXT` | an operator stop with this text |
@@ -70,6 +71,10 @@ impl Ran {
 
     fn difference(&self, key: &str, wanted: &str, tolerance: f64) -> Option<String> {
         let found = match key {
+            "end" if wanted == "repeats" => {
+                let found = self.control.endless_loop().is_some();
+                return self.not(found, "end=repeats");
+            }
             "end" => return self.not(matches!(self.outcome, Outcome::End), "end=normal"),
             "alarm" => {
                 let code = match &self.outcome {

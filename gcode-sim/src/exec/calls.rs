@@ -43,7 +43,7 @@ pub(super) enum FrameKind {
 }
 
 /// G66: waits for moves.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct ModalCall {
     program: ProgramId,
     repeats: u32,
@@ -66,6 +66,15 @@ impl Frame {
             modal: usize::MAX,
             by_code: false,
         }
+    }
+
+    /// Whether two frames lead to the same blocks from here on.
+    pub(super) fn goes_on_like(&self, other: &Self) -> bool {
+        let Self { program, next, kind, start, repeats, arguments, calls: _, loops, modal, by_code } = self;
+        (*program, *next, *kind, *start, *repeats)
+            == (other.program, other.next, other.kind, other.start, other.repeats)
+            && *arguments == other.arguments
+            && (*loops, *modal, *by_code) == (other.loops, other.modal, other.by_code)
     }
 
     /// Goes to an operation and leaves the loops that it is not in.
@@ -387,7 +396,7 @@ impl Core {
         frame.loops = [None; 3];
         frame.next = start;
         if let Some(arguments) = frame.arguments.clone() {
-            *self.vars.locals_mut() = *arguments;
+            self.vars.set_locals(&arguments);
         }
     }
 }

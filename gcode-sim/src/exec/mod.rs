@@ -5,6 +5,7 @@ mod block;
 mod calls;
 mod commit;
 mod cycles;
+mod endless;
 mod eval;
 mod functions;
 mod modal;
@@ -22,6 +23,7 @@ mod vars;
 mod view;
 mod words;
 
+use std::cell::Cell;
 use std::collections::BTreeMap;
 
 pub use modal::Modal;
@@ -29,6 +31,7 @@ pub use state::{Codes, State};
 pub use vars::{Value, Vars};
 
 use self::calls::{Frame, FrameKind, ModalCall};
+use self::endless::{Endless, Watch};
 use self::offsets::Offsets;
 use self::plan::{Flow, Plan};
 use self::words::Given;
@@ -62,7 +65,7 @@ pub enum Outcome {
     /// M02, M30, the M99 that ends the run, or the program's end.
     End,
     Alarm(Stopped),
-    /// The limit of blocks: the program may never end.
+    /// The limit of blocks, or a loop that provably never ends ([`Control::endless_loop`]).
     Limit,
 }
 
@@ -97,6 +100,8 @@ pub struct Control {
     given: Given,
     main: ProgramId,
     outcome: Option<Outcome>,
+    watch: Watch,
+    endless: Option<Endless>,
 }
 
 /// Everything but the programs.
@@ -120,6 +125,10 @@ pub(crate) struct Core {
     /// M99 of the main program, counted.
     cycles: u32,
     seconds: f64,
+    /// Seconds that the clocks have gone on while the program waited for them.
+    idle: f64,
+    /// A clock was read since the last jump back.
+    clock_read: Cell<bool>,
     blocks: u64,
     moves: u64,
     stops: Vec<Stop>,
@@ -147,6 +156,8 @@ impl Control {
             parts: [0.0; 2],
             cycles: 0,
             seconds: 0.0,
+            idle: 0.0,
+            clock_read: Cell::new(false),
             blocks: 0,
             moves: 0,
             stops: Vec::new(),
@@ -161,6 +172,8 @@ impl Control {
             given: Given::default(),
             main: ProgramId::default(),
             outcome: None,
+            watch: Watch::default(),
+            endless: None,
         };
         control.select(ProgramId::default());
         control
@@ -219,7 +232,7 @@ impl Control {
         library: &mut impl Library,
         sink: &mut S,
     ) -> Result<Option<Outcome>, Spanned<Alarm>> {
-        let Self { memory, core, plan, given, .. } = self;
+        let Self { memory, core, plan, given, watch, endless, .. } = self;
         if memory.programs().is_empty() {
             return Err(Alarm::EndOfRecord.at(Span::default()));
         }
@@ -244,7 +257,12 @@ impl Control {
             OpKind::Empty => {}
             OpKind::Alarm(alarm) => return Err((**alarm).clone()),
             OpKind::Statement(statement) => {
-                return core.statement(program, statement, op.span, sink);
+                let outcome = core.statement(program, statement, op.span, sink)?;
+                if core.frame().next <= place {
+                    *endless = watch.jumped(core);
+                    return Ok(endless.map(|_| Outcome::Limit));
+                }
+                return Ok(outcome);
             }
             OpKind::Words(words) => {
                 if core.call_by_block(program, words, op.number, op.span)? {
@@ -292,6 +310,10 @@ impl Control {
                 let outcome = self.go_back(to, span)?;
                 let program = self.core.frame().program;
                 self.core.state.codes.o = self.memory.get(program).number().unwrap_or(0);
+                if outcome.is_none() {
+                    self.endless = self.watch.jumped(&mut self.core);
+                    return Ok(self.endless.map(|_| Outcome::Limit));
+                }
                 return Ok(outcome);
             }
             Flow::CancelModal => self.core.cancel_modal(),

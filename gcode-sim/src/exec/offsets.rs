@@ -19,7 +19,7 @@ pub(super) enum Register {
 }
 
 /// All offsets; lengths in mm.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Offsets {
     external: Position,
     /// G54 to G59.

@@ -16,7 +16,7 @@ pub(super) struct Printed {
     pub(super) lines: Vec<Vec<u8>>,
     bytes: usize,
     /// Between POPEN and PCLOS.
-    open: bool,
+    pub(super) open: bool,
 }
 
 impl Core {

@@ -5,7 +5,7 @@ use super::transform::Transform;
 use crate::motion::{Position, Spindle};
 
 /// The control between two blocks. Lengths in mm, whatever G20 says.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct State {
     pub modal: Modal,
     /// Where the program stands in its work coordinate system, before mirror, scaling and rotation, without the
@@ -36,7 +36,7 @@ pub struct State {
 }
 
 /// Codes with a number that stays: #4107…#4130.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Codes {
     /// In the unit and mode it was commanded in.
     pub f: f64,
@@ -51,7 +51,7 @@ pub struct Codes {
 }
 
 /// The modal data of a drilling cycle; G80 and group 01 clear it.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Drilling {
     /// The drilling axis when the cycle began.
     pub initial: f64,
@@ -62,7 +62,7 @@ pub struct Drilling {
 }
 
 /// A level as commanded: G91 counts R from the initial level and Z from R.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Level {
     pub value: f64,
     pub incremental: bool,

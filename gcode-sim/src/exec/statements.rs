@@ -100,7 +100,7 @@ impl Core {
         sink: &mut S,
     ) -> Checked<()> {
         match vars::kind(number) {
-            Kind::Local(index) => self.vars.locals_mut()[index] = value,
+            Kind::Local(index) => self.vars.set_local(index, value),
             Kind::Common(index) => self.vars.set_common(index, value),
             Kind::Vacant => return Err(Alarm::WriteProtected { number }.at(span)),
             Kind::System if number == 3000 => {

@@ -38,8 +38,8 @@ const ROWS: &[Row] = &[
     row(2800, 2806, Some(|c, n| c.work_offset(n as usize, 3)), Some(|c, n, v| c.set_work_offset(n as usize, 3, v))),
     // Alarm, clocks, switches, message.
     row(3000, 3000, None, None),
-    row(3001, 3001, Some(|c, _| Ok(c.clock_1())), Some(|c, _, v| { c.clocks.0 = v - c.seconds * 1000.0; Ok(()) })),
-    row(3002, 3002, Some(|c, _| Ok(c.clocks.1 + c.seconds / 3600.0)), Some(|c, _, v| { c.clocks.1 = v - c.seconds / 3600.0; Ok(()) })),
+    row(3001, 3001, Some(|c, _| Ok(c.clock_1())), Some(|c, _, v| { c.clocks.0 = v - (c.seconds + c.idle) * 1000.0; Ok(()) })),
+    row(3002, 3002, Some(|c, _| Ok(c.clocks.1 + c.now() / 3600.0)), Some(|c, _, v| { c.clocks.1 = v - (c.seconds + c.idle) / 3600.0; Ok(()) })),
     row(3003, 3004, Some(|c, n| Ok(c.switches[n as usize])), Some(|c, n, v| c.set_switch(n, v))),
     // Setting data: of its bits only INI (2), inch input, has an effect here.
     row(3005, 3005, Some(|c, _| Ok(if c.state.modal.unit == crate::program::modes::Unit::Inch { 4.0 } else { 0.0 })), Some(|_, _, _| Err(Alarm::NotSimulated { what: "writing #3005".into() }))),
@@ -129,15 +129,21 @@ impl Core {
         Ok(())
     }
 
+    /// Seconds since the start, as the clocks read them.
+    fn now(&self) -> f64 {
+        self.clock_read.set(true);
+        self.seconds + self.idle
+    }
+
     /// #3001: milliseconds; wraps as the control's does.
     fn clock_1(&self) -> f64 {
-        (self.seconds * 1000.0 + self.clocks.0).trunc().rem_euclid(2_147_483_648.0)
+        (self.now() * 1000.0 + self.clocks.0 + 1e-6).trunc().rem_euclid(2_147_483_648.0)
     }
 
     /// #3012 as hhmmss: the setting's time and what the run has taken since.
     fn time_of_day(&self) -> f64 {
         let start = self.settings.time;
-        let seconds = f64::from(start / 10_000 * 3600 + start / 100 % 100 * 60 + start % 100) + self.seconds;
+        let seconds = f64::from(start / 10_000 * 3600 + start / 100 % 100 * 60 + start % 100) + self.now();
         let seconds = seconds.rem_euclid(86_400.0) as u32;
         f64::from(seconds / 3600 * 10_000 + seconds / 60 % 60 * 100 + seconds % 60)
     }

@@ -64,11 +64,13 @@ pub struct Vars {
     levels: Vec<Locals>,
     level: usize,
     commons: Vec<Value>,
+    /// A digest of all values in force, kept up with every write.
+    digest: u64,
 }
 
 impl Default for Vars {
     fn default() -> Self {
-        Self { levels: vec![VACANT], level: 0, commons: vec![Value::Vacant; COMMONS] }
+        Self { levels: vec![VACANT], level: 0, commons: vec![Value::Vacant; COMMONS], digest: 0 }
     }
 }
 
@@ -77,8 +79,27 @@ impl Vars {
         &self.levels[self.level]
     }
 
-    pub(super) fn locals_mut(&mut self) -> &mut Locals {
-        &mut self.levels[self.level]
+    pub(super) fn set_local(&mut self, index: usize, value: Value) {
+        let place = &mut self.levels[self.level][index];
+        self.digest ^= mix(self.level + 1, index, *place) ^ mix(self.level + 1, index, value);
+        *place = value;
+    }
+
+    pub(super) fn set_locals(&mut self, locals: &Locals) {
+        self.digest ^= mix_all(self.level + 1, self.locals()) ^ mix_all(self.level + 1, locals);
+        self.levels[self.level] = *locals;
+    }
+
+    /// Differs almost surely where any value differs.
+    pub(super) fn digest(&self) -> u64 {
+        self.digest
+    }
+
+    /// Whether all values in force are the same; sets above the level don't count.
+    pub(super) fn same(&self, other: &Self) -> bool {
+        self.level == other.level
+            && self.levels[..=self.level] == other.levels[..=other.level]
+            && self.commons == other.commons
     }
 
     pub fn level(&self) -> usize {
@@ -90,12 +111,15 @@ impl Vars {
     }
 
     pub(super) fn set_common(&mut self, index: usize, value: Value) {
-        self.commons[index] = value;
+        let place = &mut self.commons[index];
+        self.digest ^= mix(0, index, *place) ^ mix(0, index, value);
+        *place = value;
     }
 
     /// A macro call: a new level with these locals.
     pub(super) fn enter(&mut self, locals: &Locals) {
         self.level += 1;
+        self.digest ^= mix_all(self.level + 1, locals);
         match self.levels.get_mut(self.level) {
             Some(set) => *set = *locals,
             None => self.levels.push(*locals),
@@ -104,6 +128,7 @@ impl Vars {
 
     /// Back to the caller's locals.
     pub(super) fn leave(&mut self) {
+        self.digest ^= mix_all(self.level + 1, self.locals());
         self.level = self.level.saturating_sub(1);
     }
 
@@ -115,6 +140,16 @@ impl Vars {
     }
 }
 
+fn mix(level: usize, index: usize, value: Value) -> u64 {
+    let Value::Number(number) = value else { return 0 };
+    let place = ((level << 16 | index) as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    (number.to_bits() ^ place).wrapping_mul(0xD6E8_FEB8_6659_FD93).rotate_left(29) ^ place
+}
+
+fn mix_all(level: usize, locals: &Locals) -> u64 {
+    locals.iter().enumerate().fold(0, |digest, (index, value)| digest ^ mix(level, index, *value))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -122,13 +157,31 @@ mod tests {
     #[test]
     fn a_call_hides_the_callers_locals_and_a_return_brings_them_back() {
         let mut vars = Vars::default();
-        vars.locals_mut()[1] = Value::Number(7.0);
+        vars.set_local(1, Value::Number(7.0));
         vars.enter(&VACANT);
         assert!(vars.locals()[1].is_vacant());
-        vars.locals_mut()[1] = Value::Number(9.0);
+        vars.set_local(1, Value::Number(9.0));
         vars.leave();
         assert_eq!(vars.locals()[1], Value::Number(7.0));
         vars.enter(&VACANT);
         assert!(vars.locals()[1].is_vacant(), "a level used before starts vacant");
+    }
+
+    #[test]
+    fn the_digest_comes_back_with_the_values() {
+        let mut vars = Vars::default();
+        vars.set_common(500, Value::Number(1.0));
+        vars.set_local(3, Value::Number(0.0));
+        let before = vars.digest();
+        let mut locals = VACANT;
+        locals[7] = Value::Number(5.0);
+        vars.enter(&locals);
+        vars.set_local(7, Value::Number(6.0));
+        assert_ne!(vars.digest(), before);
+        vars.leave();
+        vars.set_local(3, Value::Vacant);
+        assert_ne!(vars.digest(), before, "0 is not vacant");
+        vars.set_local(3, Value::Number(0.0));
+        assert_eq!(vars.digest(), before);
     }
 }

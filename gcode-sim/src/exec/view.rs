@@ -82,6 +82,13 @@ impl Control {
         &self.core.printed.lines
     }
 
+    /// The first and the last block of the loop that was found never to end, where that ended the run.
+    pub fn endless_loop(&self) -> Option<(Span, Span)> {
+        let found = self.endless.as_ref()?;
+        let first = self.memory.get(found.program).ops.get(found.to)?;
+        Some((first.span, found.from))
+    }
+
     /// Operator stops in order; the first ten thousand.
     pub fn stops(&self) -> &[Stop] {
         &self.core.stops
