@@ -119,7 +119,6 @@ fn a_table_that_turns_the_other_way_fails() {
 #[test]
 fn neither_the_machine_file_nor_the_range_of_atan_changes_the_verdict() {
     let text = melon();
-    let text = text.replace("axis = \"axial\"               # axial", "axis = \"axial\" # axial");
     let reference = Reference::of_job(&job(&text)).unwrap();
     let package = families::emit(&job(&text));
     let main = package.program(package.main).unwrap();

@@ -1,4 +1,6 @@
 //! What the top view shows: holes found, and where there is a reference, the verdict on each.
+use std::collections::BTreeMap;
+
 use crate::holes::Found;
 use crate::machine::{Link, LinkMotion, Machine};
 use crate::motion::Axis;
@@ -34,7 +36,8 @@ pub fn of_verdict(
 ) -> TopView {
     let rotary = Rotary::of(machine);
     let found = &simulation.extracted.holes;
-    let wanted = |id: &str| reference.holes.iter().find(|hole| hole.id.as_deref() == Some(id));
+    let by_id: BTreeMap<_, _> = reference.holes.iter().map(|hole| (hole.id.as_deref(), hole)).collect();
+    let wanted = |id: &str| by_id.get(&Some(id)).copied();
     let judged = verdict.holes.iter().map(|hole| DrawnHole {
         id: hole.id.clone(),
         nominal: wanted(&hole.id).cloned(),
