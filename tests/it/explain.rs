@@ -1,13 +1,19 @@
-//! The pages of `explain`: one for every alarm, and every example does what its page says.
+//! The pages of `explain`: one for every alarm and every finding, and every example does what its page says.
 use std::collections::BTreeSet;
 use std::path::Path;
 
+use gcode_sim::diag::{Diagnostic, Severity};
 use gcode_sim::exec::Outcome;
-use gcode_sim::report::explain::{self, PAGES};
+use gcode_sim::machine::Machine;
+use gcode_sim::part::reference::Reference;
+use gcode_sim::program::NoLibrary;
+use gcode_sim::report::explain::{self, PAGES, Page};
+use gcode_sim::session::{Request, simulate};
+use gcode_sim::verify::Tolerances;
 use gcode_tests::expect;
 
 /// The codes that the table of alarms can give; all that programs raise themselves are `MC3000`.
-fn table() -> BTreeSet<String> {
+fn alarms() -> BTreeSet<String> {
     let text = include_str!("../../gcode-sim/src/alarm/table.rs");
     let mut codes = BTreeSet::new();
     for (family, name) in [("Ps(", "PS"), ("Ot(", "OT"), ("Sim(", "SIM")] {
@@ -20,15 +26,42 @@ fn table() -> BTreeSet<String> {
     codes
 }
 
+/// The codes of findings: quoted, small letters with a hyphen between them.
+fn findings() -> BTreeSet<String> {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("../gcode-sim/src");
+    let mut codes = BTreeSet::new();
+    for folder in ["holes", "verify/checks"] {
+        for entry in std::fs::read_dir(source.join(folder)).unwrap() {
+            let text = std::fs::read_to_string(entry.unwrap().path()).unwrap();
+            let text = text.split("#[cfg(test)]").next().unwrap();
+            let quoted = text.split('"').skip(1).step_by(2);
+            let is_code = |text: &&str| {
+                text.contains('-')
+                    && text
+                        .split('-')
+                        .all(|part| !part.is_empty() && part.bytes().all(|b| b.is_ascii_lowercase()))
+            };
+            codes.extend(quoted.filter(is_code).map(str::to_owned));
+        }
+    }
+    codes
+}
+
+fn is_finding(page: &Page) -> bool {
+    page.code.contains('-')
+}
+
 #[test]
-fn every_alarm_has_its_page_and_every_page_its_alarm() {
+fn every_alarm_and_finding_has_its_page_and_every_page_its_code() {
     let listed: Vec<String> = PAGES.iter().map(|page| page.code.to_owned()).collect();
     let mut sorted = listed.clone();
     sorted.sort();
     assert_eq!(listed, sorted, "pages stand in the order of their codes");
     let listed: BTreeSet<String> = listed.into_iter().collect();
-    assert!(table().len() > 50, "the codes in alarm/table.rs were found");
-    assert_eq!(listed, table(), "a page in docs/explain/ and a line in report/explain.rs for each alarm");
+    let (alarms, findings) = (alarms(), findings());
+    assert!(alarms.len() > 50 && findings.len() > 10, "the codes were found in the sources");
+    let codes: BTreeSet<String> = alarms.union(&findings).cloned().collect();
+    assert_eq!(listed, codes, "a page in docs/explain/ and a line in report/explain.rs for each code");
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/explain");
     let files: BTreeSet<String> = std::fs::read_dir(folder)
         .unwrap()
@@ -41,7 +74,7 @@ fn every_alarm_has_its_page_and_every_page_its_alarm() {
 fn every_page_begins_with_its_code_and_has_two_programs() {
     for page in PAGES {
         assert!(page.text.starts_with(&format!("# {}: ", page.code)), "{}", page.code);
-        assert_eq!(page.programs().count(), 2, "{}", page.code);
+        assert_eq!(page.fenced("nc").len(), 2, "{}", page.code);
         assert!(page.text.contains("\n## Raises it\n"), "{}", page.code);
         assert!(page.text.contains("\n## Write instead\n"), "{}", page.code);
         assert!(page.text.lines().all(|line| line.chars().count() <= 110), "{}: a long line", page.code);
@@ -50,8 +83,9 @@ fn every_page_begins_with_its_code_and_has_two_programs() {
 
 #[test]
 fn the_first_program_raises_the_alarm_and_the_second_ends() {
-    for page in PAGES {
-        let programs: Vec<_> = page.programs().map(|p| expect::run(p.as_bytes()).outcome).collect();
+    for page in PAGES.iter().filter(|page| !is_finding(page)) {
+        let run = |program: &&str| expect::run(program.as_bytes()).outcome;
+        let programs: Vec<_> = page.fenced("nc").iter().map(run).collect();
         match &programs[0] {
             Outcome::Alarm(stopped) => {
                 let code = stopped.alarm.code().to_string();
@@ -62,4 +96,44 @@ fn the_first_program_raises_the_alarm_and_the_second_ends() {
         }
         assert!(matches!(programs[1], Outcome::End), "{}: {:?}", page.code, programs[1]);
     }
+}
+
+/// What is found on a page's program, against its reference on its machine.
+fn found(page: &Page, program: &str) -> Vec<Diagnostic> {
+    let (jobs, machines): (Vec<&str>, Vec<&str>) =
+        page.fenced("toml").into_iter().partition(|text| text.starts_with("family"));
+    let machine = machines.first().map_or_else(Machine::default, |text| Machine::parse(text).unwrap());
+    let reference =
+        page.fenced("csv").into_iter().chain(jobs).next().map(|text| Reference::parse(text).unwrap());
+    let request = Request::new("example.nc", program.as_bytes(), machine.clone());
+    // Of a job on these pages only the surface counts.
+    let surface = reference.as_ref().and_then(|reference| reference.surface);
+    let simulation = simulate(&request, &mut NoLibrary, surface).unwrap();
+    match reference {
+        Some(reference) if surface.is_none() => {
+            simulation.verify(&reference, Tolerances::of(&reference, None), &machine).diagnostics
+        }
+        _ => simulation.extracted.findings,
+    }
+}
+
+#[test]
+fn the_first_program_gives_the_finding_and_the_second_none() {
+    let mut wrong = String::new();
+    for page in PAGES.iter().filter(|page| is_finding(page)) {
+        let programs = page.fenced("nc");
+        let codes: Vec<_> = found(page, programs[0]).into_iter().map(|finding| finding.code).collect();
+        if !codes.iter().any(|code| code == page.code) {
+            wrong.push_str(&format!("{}: the first gives {codes:?}\n", page.code));
+        }
+        let good: Vec<_> = found(page, programs[1])
+            .into_iter()
+            .filter(|f| Severity::Note < f.severity)
+            .map(|f| (f.code, f.message))
+            .collect();
+        if !good.is_empty() {
+            wrong.push_str(&format!("{}: the second gives {good:?}\n", page.code));
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong}");
 }

@@ -69,11 +69,12 @@ Examples:
     /// List the settings of the control that --control takes
     Settings,
 
-    /// Tell what an alarm means, with an example and what to write instead
+    /// Tell what an alarm or a finding means, with an example and what to write instead
     #[command(after_help = "\
 Examples:
   gcode-sim explain PS0112
   gcode-sim explain 112
+  gcode-sim explain hole-position
   gcode-sim explain --list")]
     Explain(ExplainArguments),
 
@@ -237,7 +238,7 @@ pub(super) struct RenderArguments {
 
 #[derive(Debug, Args)]
 pub(super) struct ExplainArguments {
-    /// The alarm's code as the control shows it: PS0112, ps112, 112, MC3021
+    /// An alarm as the control shows it (PS0112, ps112, 112, MC3021) or a finding (hole-position)
     #[arg(value_name = "CODE", required_unless_present = "list")]
     pub(super) code: Option<String>,
 

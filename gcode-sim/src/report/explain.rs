@@ -1,10 +1,10 @@
-//! What `explain` says: one page per code, written in `docs/explain/` and carried in the program.
+//! What `explain` says: one page for every alarm and every finding on holes, written in `docs/explain/` and carried in the program.
 use std::fmt::Write;
 
 /// One page: what a code means, what causes it, a program that raises it and what to write instead.
 #[derive(Clone, Copy, Debug)]
 pub struct Page {
-    /// `PS0112`; `MC3000` stands for all alarms that programs raise themselves.
+    /// `PS0112`, or a finding's `hole-position`; `MC3000` stands for all alarms that programs raise themselves.
     pub code: &'static str,
     /// Markdown: a title `# PS0112: division by zero`, and programs fenced as `nc`.
     pub text: &'static str,
@@ -92,11 +92,36 @@ pub const PAGES: &[Page] = pages![
     "PS5010"
     "PS5074"
     "SIM0001"
+    "axis-carries-nothing"
+    "feed-no-hole"
+    "feed-not-along-tool"
+    "feed-without-retract"
+    "head-message-unclear"
+    "head-not-manual"
+    "head-not-set"
+    "hole-cut-aside"
+    "hole-depth"
+    "hole-diameter"
+    "hole-extra"
+    "hole-missing"
+    "hole-position"
+    "hole-tilted"
+    "hole-twice"
+    "leaves-hole-sideways"
+    "rapid-beyond-cut"
+    "rapid-into-part"
+    "rotary-sign"
+    "spindle-stopped"
+    "tool-unknown"
 ];
 
-/// The page of a code in any of its spellings: `PS0112`, `ps112`, `112`, `MC3021`.
+/// The page of a code in any of its spellings: `PS0112`, `ps112`, `112`, `MC3021`, `hole-position`.
 pub fn find(code: &str) -> Option<&'static Page> {
-    let code = code.trim().to_ascii_uppercase();
+    let code = code.trim();
+    if let Some(page) = PAGES.iter().find(|page| page.code.eq_ignore_ascii_case(code)) {
+        return Some(page);
+    }
+    let code = code.to_ascii_uppercase();
     let digits = code.trim_start_matches(|c: char| c.is_ascii_alphabetic());
     let family = &code[..code.len() - digits.len()];
     let number: u32 = digits.parse().ok()?;
@@ -120,9 +145,10 @@ impl Page {
         first.split_once(": ").map_or(first, |(_, title)| title)
     }
 
-    /// The programs on the page: the one that raises the alarm, then the one that doesn't.
-    pub fn programs(&self) -> impl Iterator<Item = &'static str> {
-        self.text.split("```nc\n").skip(1).filter_map(|rest| Some(rest.split_once("```")?.0))
+    /// What is fenced as `nc` (the program that raises the alarm, then the one that doesn't), `csv` or `toml`.
+    pub fn fenced(&self, language: &str) -> Vec<&'static str> {
+        let parts = self.text.split("```").skip(1).step_by(2);
+        parts.filter_map(|part| part.strip_prefix(language)?.strip_prefix('\n')).collect()
     }
 
     /// The page as a terminal shows it: programs indented, no fences.
@@ -148,7 +174,7 @@ impl Page {
 /// All codes with what they mean, one line each.
 pub fn list() -> String {
     PAGES.iter().fold(String::new(), |mut text, page| {
-        let _ = writeln!(text, "{:<8} {}", page.code, page.title());
+        let _ = writeln!(text, "{:<20} {}", page.code, page.title());
         text
     })
 }
