@@ -84,6 +84,11 @@ pub enum Alarm {
     },
     PlaneInRotation,
     NoIntermediatePoint,
+    /// M00, M01, M02 or M30 beside another M code.
+    PluralM {
+        first: u32,
+        second: u32,
+    },
     FileNotFound {
         name: String,
     },

@@ -7,6 +7,7 @@ use super::eval::{Checked, at, integer};
 use super::state::State;
 use crate::alarm::Alarm;
 use crate::program::codes::{self, Row};
+use crate::program::m_codes;
 use crate::program::modes::{FeedMode, Unit};
 use crate::program::{Coded, Input, Program, Words};
 use crate::source::Span;
@@ -140,6 +141,13 @@ impl Core {
                 }
                 b'M' => {
                     let code = at(count(raw, b'M'), word.span)?;
+                    // A stop or an end lost among other codes would let the program run on.
+                    let other = given.m[..given.m_count].iter().flatten().next();
+                    if let Some((before, _)) = other
+                        && (m_codes::stands_alone(code) || m_codes::stands_alone(*before))
+                    {
+                        return Err(Alarm::PluralM { first: *before, second: code }.at(word.span));
+                    }
                     let most = if self.settings.three_m_codes { M_CODES } else { 1 };
                     // Without M3B the last M code of a block counts.
                     let place = given.m_count.min(most - 1);

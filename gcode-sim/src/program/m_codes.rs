@@ -55,6 +55,11 @@ pub const M_CODES: &[MRow] = &[
     row(198, MEffect::NotSimulated, "call of an external file"),
 ];
 
+/// Stops and ends have their block for themselves (operator's manual, several M codes in a block).
+pub fn stands_alone(code: u32) -> bool {
+    matches!(find(code), Some(MEffect::Stop | MEffect::OptionalStop | MEffect::End))
+}
+
 /// What the control does at an M code; `None` leaves it to the machine builder's logic.
 pub fn find(code: u32) -> Option<MEffect> {
     M_CODES.iter().find(|row| row.code == code).map(|row| row.effect)

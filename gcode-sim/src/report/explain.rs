@@ -64,6 +64,7 @@ pub const PAGES: &[Page] = pages![
     "PS0305"
     "PS0310"
     "PS0311"
+    "PS0335"
     "PS1091"
     "PS1092"
     "PS1093"
