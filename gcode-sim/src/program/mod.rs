@@ -1,6 +1,7 @@
 //! Tree to operations: codes looked up, loops paired, sequence numbers found, expressions in postfix order.
 //!
 //! A [`Program`] is what will run. Nothing here depends on a control's settings, so a program is lowered once.
+mod arguments;
 pub mod codes;
 pub mod cycles;
 mod expr;
@@ -12,6 +13,7 @@ pub mod modes;
 pub mod names;
 mod words;
 
+pub use arguments::{ArgumentLocals, argument_letter};
 pub use expr::{Code, Instruction, Operand, Operation, STACK};
 pub use memory::{Library, Memory, NoLibrary, ProgramId};
 pub use words::{CallOp, CallTarget, Calling, Coded, Input, Words};
