@@ -21,6 +21,8 @@ pub mod diag;
 
 pub mod exec;
 
+pub mod check;
+
 pub mod job;
 
 pub mod part;

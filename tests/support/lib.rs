@@ -4,6 +4,7 @@
 //! picture's data), and what must come out stands beside it as snapshots. One file per kind in this folder.
 #![expect(clippy::unwrap_used, clippy::disallowed_methods, reason = "tests read files and may panic")]
 
+mod check;
 mod cli;
 mod control;
 mod exec;
@@ -23,6 +24,7 @@ type Run = fn(&Case);
 /// The kinds of cases by their folder under `suite/`.
 pub const KINDS: &[(&str, Run)] = &[
     ("alarm", exec::alarm),
+    ("check", check::run),
     ("cli", cli::run),
     ("control", control::run),
     ("exec", exec::run),

@@ -66,6 +66,15 @@ Examples:
   gcode-sim render O8100.nc --reference job.toml -o top.png --size 1600x1200")]
     Render(RenderArguments),
 
+    /// Find faults without running: jumps to nowhere, lost points, variables never set, and more
+    #[command(after_help = "\
+Examples:
+  gcode-sim check O8100.nc
+  gcode-sim check O1234.nc --lib macros --format json
+
+A comment (CHECK-OFF DOUBLED-N) on a block silences that rule there, at the head of a program in all of it.")]
+    Check(CheckArguments),
+
     /// List the settings of the control that --control takes
     Settings,
 
@@ -86,7 +95,7 @@ Example:
 }
 
 /// The program, and everything its run depends on.
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub(super) struct ProgramArguments {
     /// The main program; '-' reads standard input
     #[arg(value_name = "PROGRAM.nc")]
@@ -245,6 +254,37 @@ pub(super) struct ExplainArguments {
     /// Name all codes that can be explained
     #[arg(long, conflicts_with = "code")]
     pub(super) list: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct CheckArguments {
+    /// The program; '-' reads standard input
+    #[arg(value_name = "PROGRAM.nc")]
+    pub(super) program: PathBuf,
+
+    /// A folder that holds called programs (repeatable; the program's own folder is searched first)
+    #[arg(long = "lib", value_name = "DIR")]
+    pub(super) libraries: Vec<PathBuf>,
+
+    /// The control: fanuc-31i, fanuc-0i-f or haas-ngc
+    #[arg(long, value_name = "NAME")]
+    pub(super) dialect: Option<String>,
+
+    /// A setting of the control, e.g. DPI=1 (repeatable)
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(super) control: Vec<String>,
+
+    /// The machine: its axes and its control [default: the machine of the paper]
+    #[arg(long, value_name = "MACHINE.toml")]
+    pub(super) machine: Option<PathBuf>,
+
+    /// A code that calls a macro, e.g. G201=9010 or M50=9020 (repeatable)
+    #[arg(long, value_name = "CODE=PROGRAM")]
+    pub(super) code: Vec<String>,
+
+    /// How the result is written
+    #[arg(long, value_enum, default_value_t = TextFormat::Text)]
+    pub(super) format: TextFormat,
 }
 
 #[derive(Debug, Args)]

@@ -1,5 +1,6 @@
 //! The only place that prints and opens files: arguments in, exit status out.
 mod args;
+mod check;
 mod compare;
 mod explain;
 pub mod front;
@@ -71,6 +72,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Status {
         Command::Reference(arguments) => reference::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),
         Command::Render(arguments) => render::run(&arguments),
+        Command::Check(arguments) => check::run(&arguments),
         Command::Settings => settings::run(),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),

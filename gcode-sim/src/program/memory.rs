@@ -82,6 +82,11 @@ impl Memory {
         &self.programs
     }
 
+    /// The programs in the order they were read.
+    pub(crate) fn ids(&self) -> impl Iterator<Item = ProgramId> + use<> {
+        (0..self.programs.len() as u32).map(ProgramId)
+    }
+
     pub(crate) fn get(&self, id: ProgramId) -> &Program {
         &self.programs[id.0 as usize]
     }

@@ -1,0 +1,141 @@
+//! Who calls whom: G65, G66, M98 and the codes that call macros, with the locals that their arguments set.
+use crate::control::Settings;
+use crate::program::{
+    ArgumentLocals, CallTarget, Calling, Coded, Input, Memory, OpIndex, OpKind, Program, Words,
+};
+use crate::source::Span;
+
+use super::literal;
+
+/// One block that calls.
+#[derive(Debug)]
+pub(crate) struct CallSite {
+    pub(crate) block: OpIndex,
+    /// A fresh set of locals; M98 shares the caller's.
+    pub(crate) own_locals: bool,
+    /// G66: called after moves that follow, not here.
+    pub(crate) modal: bool,
+    pub(crate) target: CalledAs,
+    /// Where Q of M98 starts.
+    pub(crate) start: Option<u32>,
+    /// The locals that arguments set, with the letters they stand behind.
+    pub(crate) arguments: Vec<Argument>,
+    pub(crate) span: Span,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum CalledAs {
+    Number(u32),
+    Name(String),
+    /// `P#1`: only a run knows.
+    Computed,
+    /// No P at all.
+    Nothing,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Argument {
+    pub(crate) local: usize,
+    /// A number, so surely not vacant.
+    pub(crate) number: bool,
+}
+
+/// The program numbers that a program calls, G and M codes that call macros included.
+pub(super) fn numbers(program: &Program, settings: &Settings) -> Vec<u32> {
+    let called = sites(program, settings).into_iter().filter_map(|site| match site.target {
+        CalledAs::Number(number) => Some(number),
+        CalledAs::Name(_) | CalledAs::Computed | CalledAs::Nothing => None,
+    });
+    called.collect()
+}
+
+/// Every call of a program.
+pub(super) fn sites(program: &Program, settings: &Settings) -> Vec<CallSite> {
+    let mut found = Vec::new();
+    for (block, op) in program.ops.iter().enumerate() {
+        if let OpKind::Words(words) = &op.kind {
+            found.extend(site(block, words, settings));
+        }
+    }
+    found
+}
+
+fn site(block: OpIndex, words: &Words, settings: &Settings) -> Option<CallSite> {
+    let Some(call) = &words.call else { return by_code(block, words, settings) };
+    let subprogram = call.kind == Calling::Subprogram;
+    if matches!(call.kind, Calling::Return | Calling::Cancel) {
+        return None;
+    }
+    let target = match &call.target {
+        CallTarget::None => CalledAs::Nothing,
+        CallTarget::Name(name) => CalledAs::Name(name.clone()),
+        CallTarget::Number(word) => match literal::count(word) {
+            // M98 P with more than four digits: repeats in front of a four-digit program number.
+            Some(number) if subprogram && call.repeats.is_none() && number > 9999 => {
+                CalledAs::Number(number % 10_000)
+            }
+            Some(number) => CalledAs::Number(number),
+            None => CalledAs::Computed,
+        },
+    };
+    Some(CallSite {
+        block,
+        own_locals: !subprogram,
+        modal: matches!(call.kind, Calling::AfterMoves | Calling::EveryBlock),
+        target,
+        start: call.start.as_ref().and_then(literal::count),
+        arguments: arguments(&call.arguments, settings),
+        span: call.span,
+    })
+}
+
+/// A G or M code that calls a macro by a parameter; the code comes first, and the other words are arguments.
+fn by_code(block: OpIndex, words: &Words, settings: &Settings) -> Option<CallSite> {
+    let (first, rest) = words.list.split_first()?;
+    let number = match (first.letter, first.value) {
+        (b'G', Input::G(code, _)) => settings.g_calls.iter().find(|(g, _)| *g == code)?.1,
+        (b'M', _) => {
+            let code = literal::count(first)?;
+            settings.m_calls.iter().find(|(m, _)| *m == code)?.1
+        }
+        _ => return None,
+    };
+    Some(CallSite {
+        block,
+        own_locals: true,
+        modal: false,
+        target: CalledAs::Number(number),
+        start: None,
+        arguments: arguments(rest, settings),
+        span: first.span,
+    })
+}
+
+fn arguments(words: &[Coded], settings: &Settings) -> Vec<Argument> {
+    let mut letters = ArgumentLocals::new(settings.plain_ijk);
+    let dealt = words.iter().filter_map(|word| {
+        let local = letters.next(word.letter).ok().flatten()?;
+        Some(Argument { local, number: literal::of_word(word).is_some() })
+    });
+    dealt.collect()
+}
+
+impl CalledAs {
+    /// As a message names it: `O8101`, `<PROBE>`.
+    pub(crate) fn label(&self) -> String {
+        match self {
+            Self::Number(number) => format!("O{number:04}"),
+            Self::Name(name) => format!("<{name}>"),
+            Self::Computed | Self::Nothing => "the called program".into(),
+        }
+    }
+
+    /// The program, where it is in memory.
+    pub(crate) fn find(&self, memory: &Memory) -> Option<crate::program::ProgramId> {
+        match self {
+            Self::Number(number) => memory.find(*number),
+            Self::Name(name) => memory.find_name(name),
+            Self::Computed | Self::Nothing => None,
+        }
+    }
+}

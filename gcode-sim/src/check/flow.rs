@@ -1,0 +1,205 @@
+//! The ways from block to block: falling through, jumps, loops, ends; and which blocks anything reaches.
+use crate::alarm::Alarm;
+use crate::program::{CallTarget, Calling, OpIndex, OpKind, Operand, Program, Statement, Words};
+
+use super::literal;
+
+/// Where a block can go.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Ways {
+    /// To the next block.
+    pub(crate) falls: bool,
+    /// By a jump, a loop, or a return from a call.
+    pub(crate) jumps: Vec<OpIndex>,
+    /// A computed jump: to any numbered block.
+    pub(crate) anywhere: bool,
+    /// The program ends here, returns, or stops with an alarm of its own (`#3000`).
+    pub(crate) leaves: bool,
+}
+
+/// A sequence number that a block goes to, and whether it is there.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Jump {
+    pub(crate) block: OpIndex,
+    pub(crate) number: u32,
+    pub(crate) to: Option<OpIndex>,
+    /// `M99 P`: in a called program the number is the caller's.
+    pub(crate) returns: bool,
+}
+
+#[derive(Debug)]
+pub(crate) struct Flow {
+    pub(crate) ways: Vec<Ways>,
+    pub(crate) jumps: Vec<Jump>,
+    numbered: Vec<OpIndex>,
+}
+
+impl Flow {
+    pub(super) fn new(program: &Program) -> Self {
+        let mut flow = Self { ways: Vec::new(), jumps: Vec::new(), numbered: Vec::new() };
+        for (block, op) in program.ops.iter().enumerate() {
+            if op.number.is_some() {
+                flow.numbered.push(block);
+            }
+            let mut ways = flow.of_block(program, block);
+            if op.skip.is_some() {
+                ways.falls = true;
+            }
+            flow.ways.push(ways);
+        }
+        flow
+    }
+
+    fn of_block(&mut self, program: &Program, block: OpIndex) -> Ways {
+        match &program.ops[block].kind {
+            // An alarm stops the control; what stands behind it is looked at as if it had been mended.
+            OpKind::Empty | OpKind::Alarm(_) => Ways { falls: true, ..Ways::default() },
+            OpKind::Words(words) => {
+                let mut ways = self.of_words(program, block, words);
+                if let Some((_, short)) = &words.short {
+                    let other = self.of_words(program, block, short);
+                    ways.falls |= other.falls;
+                    ways.leaves |= other.leaves;
+                    ways.jumps.extend(other.jumps);
+                }
+                ways
+            }
+            OpKind::Statement(statement) => self.of_statement(program, block, statement),
+        }
+    }
+
+    fn of_words(&mut self, program: &Program, block: OpIndex, words: &Words) -> Ways {
+        let mut ways = Ways { falls: true, ..Ways::default() };
+        let codes = || words.list.iter().filter(|w| w.letter == b'M').filter_map(literal::count);
+        if codes().any(|m| matches!(m, 2 | 30)) {
+            ways = Ways { leaves: true, ..Ways::default() };
+        }
+        // Haas: a subprogram at a sequence number of the same program.
+        if codes().any(|m| m == 97)
+            && let Some(number) = words.list.iter().find(|w| w.letter == b'P').and_then(literal::count)
+        {
+            ways.jumps.extend(program.find_number(number, block + 1));
+        }
+        if let Some(call) = words.call.as_ref().filter(|call| call.kind == Calling::Return) {
+            ways.falls = false;
+            ways.leaves = true;
+            if let CallTarget::Number(word) = &call.target {
+                match literal::count(word) {
+                    Some(number) => {
+                        let to = program.find_number(number, 0);
+                        ways.jumps.extend(to);
+                        self.jumps.push(Jump { block, number, to, returns: true });
+                    }
+                    None => ways.anywhere = true,
+                }
+            }
+        }
+        ways
+    }
+
+    fn of_statement(&mut self, program: &Program, block: OpIndex, statement: &Statement) -> Ways {
+        match statement {
+            Statement::Goto(to) => self.goto(program, block, to.node),
+            Statement::IfGoto { to, .. } => Ways { falls: true, ..self.goto(program, block, to.node) },
+            Statement::IfThen { then, .. } => Ways { falls: true, ..self.of_statement(program, block, then) },
+            Statement::While { end, .. } => Ways { falls: true, jumps: vec![end + 1], ..Ways::default() },
+            Statement::End { start, .. } => Ways { jumps: vec![*start], ..Ways::default() },
+            Statement::Assign { target, .. } if literal::of_operand(*target) == Some(3000.0) => {
+                Ways { leaves: true, ..Ways::default() }
+            }
+            Statement::Assign { .. }
+            | Statement::Do { .. }
+            | Statement::SetNames { .. }
+            | Statement::Print { .. }
+            | Statement::OpenOutput
+            | Statement::CloseOutput
+            | Statement::Alarm(_) => Ways { falls: true, ..Ways::default() },
+        }
+    }
+
+    fn goto(&mut self, program: &Program, block: OpIndex, to: Operand) -> Ways {
+        let Some(number) = literal::of_operand(to).and_then(literal::whole) else {
+            let computed = literal::of_operand(to).is_none();
+            return Ways { anywhere: computed, ..Ways::default() };
+        };
+        let to = program.find_number(number, block + 1);
+        self.jumps.push(Jump { block, number, to, returns: false });
+        Ways { jumps: to.into_iter().collect(), ..Ways::default() }
+    }
+
+    /// A called program may return to these blocks.
+    pub(super) fn may_return(&mut self, block: OpIndex, to: impl IntoIterator<Item = OpIndex>) {
+        self.ways[block].jumps.extend(to);
+    }
+
+    pub(super) fn may_return_anywhere(&mut self, block: OpIndex) {
+        self.ways[block].anywhere = true;
+    }
+
+    /// The blocks that can follow `block`; one past the last is the end of the program.
+    pub(crate) fn after(&self, block: OpIndex) -> Vec<OpIndex> {
+        let Some(ways) = self.ways.get(block) else { return Vec::new() };
+        let mut to = ways.jumps.clone();
+        if ways.falls {
+            to.push(block + 1);
+        }
+        if ways.anywhere {
+            to.extend(&self.numbered);
+        }
+        to
+    }
+
+    /// The blocks that can come before each block.
+    pub(crate) fn before(&self) -> Vec<Vec<OpIndex>> {
+        let mut before = vec![Vec::new(); self.ways.len()];
+        for block in 0..self.ways.len() {
+            for to in self.after(block) {
+                if let Some(list) = before.get_mut(to) {
+                    list.push(block);
+                }
+            }
+        }
+        before
+    }
+
+    /// Whether anything reaches each block from one of `starts`.
+    pub(crate) fn reached(&self, starts: impl IntoIterator<Item = OpIndex>) -> Vec<bool> {
+        let mut reached = vec![false; self.ways.len()];
+        let mut open: Vec<OpIndex> = starts.into_iter().collect();
+        // A computed jump goes to every numbered block, but they need be looked at only once.
+        let mut anywhere = false;
+        while let Some(block) = open.pop() {
+            let Some(seen) = reached.get_mut(block) else { continue };
+            if std::mem::replace(seen, true) {
+                continue;
+            }
+            let ways = &self.ways[block];
+            open.extend(&ways.jumps);
+            if ways.falls {
+                open.push(block + 1);
+            }
+            if ways.anywhere && !std::mem::replace(&mut anywhere, true) {
+                open.extend(&self.numbered);
+            }
+        }
+        reached
+    }
+}
+
+/// Whether a block is `#3000=…`, alone or behind IF … THEN.
+pub(crate) fn raises(kind: &OpKind) -> bool {
+    match kind {
+        OpKind::Statement(Statement::IfThen { then, .. }) => is_raise(then),
+        OpKind::Statement(statement) => is_raise(statement),
+        _ => false,
+    }
+}
+
+fn is_raise(statement: &Statement) -> bool {
+    matches!(statement, Statement::Assign { target, .. } if literal::of_operand(*target) == Some(3000.0))
+}
+
+/// Loops without a partner, which a rule of their own tells.
+pub(crate) fn is_loop_alarm(alarm: &Alarm) -> bool {
+    matches!(alarm, Alarm::MissingEnd { .. } | Alarm::MissingDo { .. } | Alarm::LoopNumber { .. })
+}

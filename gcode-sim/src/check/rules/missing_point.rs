@@ -1,0 +1,143 @@
+//! A missing decimal point: on a control without calculator-type input `Z-3` is 0.003 mm.
+//!
+//! Programs that count in increments throughout (`X45000`) are left alone: they have no points, and numbers of 1 mm
+//! and more.
+use crate::check::literal::without_point;
+use crate::check::subject::{Finding, Subject, Unit};
+use crate::control::Settings;
+use crate::program::{Coded, Input, OpKind, Words};
+use crate::syntax::ast::Decimal;
+
+pub(super) const NAME: &str = "missing-point";
+
+/// Codes (× 10) whose words are counts or factors and no lengths: G05.1, G10, G51, G68.2.
+const OTHER_WORDS: [u16; 4] = [51, 100, 510, 682];
+/// Cycles whose Q is a length: G73, G76, G83, G87. Older controls take no point there.
+const WITH_Q: [u16; 4] = [730, 760, 830, 870];
+/// A peck of this many increments may be meant.
+const LEAST_PECK: u64 = 100;
+
+pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
+    let settings = subject.settings;
+    if settings.calculator_input || in_increments(unit, settings) {
+        return Vec::new();
+    }
+    let inch = unit.program.ops.iter().any(|op| words(&op.kind).is_some_and(|words| has(words, &[200])));
+    let mut found = Vec::new();
+    for (block, op) in unit.program.ops.iter().enumerate().filter(|(block, _)| unit.reached[*block]) {
+        let Some(words) = words(&op.kind) else { continue };
+        for word in measures(words, settings) {
+            let Some(number) = without_point(word) else { continue };
+            let pecks = word.letter == b'Q' && words.call.is_none();
+            if pecks && number.digits >= LEAST_PECK {
+                continue;
+            }
+            let written = spelled(word.letter, number);
+            let message = format!("{written} is {}", meaning(word.letter, number, words, settings, inch));
+            found.push(unit.warning(NAME, block, message).on(word.span).help(format!("write {written}.")));
+        }
+    }
+    found
+}
+
+fn words(kind: &OpKind) -> Option<&Words> {
+    match kind {
+        OpKind::Words(words) => Some(words),
+        _ => None,
+    }
+}
+
+fn has(words: &Words, codes: &[u16]) -> bool {
+    words.list.iter().any(|word| matches!(word.value, Input::G(code, _) if codes.contains(&code)))
+}
+
+/// The words of a block that are lengths, angles or seconds.
+fn measures<'a>(words: &'a Words, settings: &'a Settings) -> impl Iterator<Item = &'a Coded> {
+    let other = has(words, &OTHER_WORDS);
+    let dwell = has(words, &[40]);
+    let cycle = has(words, &WITH_Q);
+    let plain = words.list.iter().filter(move |word| match word.letter {
+        _ if other => false,
+        b'X' | b'U' if dwell => true,
+        _ if dwell => false,
+        b'Q' => cycle,
+        b'I' | b'J' | b'K' | b'R' => true,
+        b'C' if word.comma => true,
+        letter => settings.axes.find(letter).is_some(),
+    });
+    // The letters of a macro call that a control scales: all but D E F H M S T.
+    let arguments = words.call.iter().flat_map(|call| &call.arguments);
+    let scaled = arguments.filter(|word| b"ABCIJKQRUVWXYZ".contains(&word.letter));
+    // K of a drilling cycle counts repetitions, and arcs have it with I or J or alone: a small K is left alone.
+    plain.filter(move |word| word.letter != b'K' || !drills(words)).chain(scaled)
+}
+
+fn drills(words: &Words) -> bool {
+    let arc = has(words, &[20, 30]);
+    !arc && !words.list.iter().any(|word| matches!(word.letter, b'I' | b'J'))
+}
+
+/// A program without any point whose numbers are of 1 mm and more counts in increments on purpose.
+fn in_increments(unit: &Unit<'_>, settings: &Settings) -> bool {
+    let mut large = false;
+    for words in unit.program.ops.iter().filter_map(|op| words(&op.kind)) {
+        for word in measures(words, settings) {
+            match word.value {
+                Input::Literal(Decimal { places: Some(_), .. }) => return false,
+                Input::Literal(number) => large |= number.digits as f64 >= settings.increment.per_unit(),
+                Input::Operand(_) | Input::G(..) => {}
+            }
+        }
+    }
+    large
+}
+
+fn spelled(letter: u8, number: Decimal) -> String {
+    let sign = if number.negative { "-" } else { "" };
+    format!("{}{sign}{}", char::from(letter), number.digits)
+}
+
+/// `0.003 mm`.
+fn meaning(letter: u8, number: Decimal, words: &Words, settings: &Settings, inch: bool) -> String {
+    let degrees = matches!(letter, b'A' | b'B' | b'C') && words.call.is_none();
+    let (per_unit, unit) = if has(words, &[40]) {
+        (settings.increment.per_unit(), "seconds")
+    } else if degrees {
+        (settings.increment.per_unit(), "degrees")
+    } else if inch {
+        (settings.increment.per_unit() * 10.0, "inch")
+    } else if words.call.is_some() {
+        (settings.increment.per_unit(), "for the macro")
+    } else {
+        (settings.increment.per_unit(), "mm")
+    };
+    format!("{} {unit}", number.value() / per_unit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{NOWHERE, lines, messages};
+    use super::NAME;
+
+    #[test]
+    fn a_point_is_missing() {
+        let found = messages(NAME, "O1\nG0 X10. Y20.\nG1 Z-3 F100\nG4 X2\nG0 B90\nG65 P2 A5\nM30\nO2\nM99\n");
+        assert_eq!(
+            found,
+            ["Z-3 is -0.003 mm", "X2 is 0.002 seconds", "B90 is 0.09 degrees", "A5 is 0.005 for the macro"]
+        );
+    }
+
+    #[test]
+    fn counts_zeros_and_increments_are_no_lengths() {
+        for text in [
+            "O1\nG0 X0 Y0.5\nG43 H1 Z100.\nM98 P2 L3\nG4 P500\nM30\nO2\nM99\n",
+            "O1\nG0 X45000 Y500\nG1 Z-3000 F200\nM30\n",
+            "O1\nG83 X1. Y1. Z-20. R2. Q500 K3 F100\nM30\n",
+            "O1\n#1=3\nG0 X#1 Y[5]\nG10 L2 P1 X1.\nG51 X0 Y0 I2000 J2000\nM30\n",
+            "O1\nG65 P2 A5. D3 H2 T1 S5\nM30\nO2\nM99\n",
+        ] {
+            assert_eq!(lines(NAME, text), NOWHERE, "{text}");
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! The rules: a file each, a line each in [`ALL`].
+mod doubled_n;
+mod endless_loop;
+mod live_position;
+mod loop_pairs;
+mod missing_argument;
+mod missing_n;
+mod missing_point;
+mod missing_program;
+mod relation_symbol;
+mod round_brackets;
+mod unknown_check;
+mod unknown_code;
+mod unreachable;
+mod unreachable_alarm;
+mod unreadable;
+mod unset_variable;
+
+use crate::diag::Diagnostic;
+
+use super::silence::Silence;
+use super::subject::{Finding, Subject, Unit};
+
+/// One thing that can be wrong with a program.
+pub struct Rule {
+    /// The code of its findings, and the name in `(CHECK-OFF NAME)`.
+    pub name: &'static str,
+    /// What it finds, in a line.
+    pub about: &'static str,
+    find: fn(&Subject<'_>, &Unit<'_>) -> Vec<Finding>,
+}
+
+/// All rules in the order their findings of one block are told.
+#[rustfmt::skip]
+pub const ALL: &[Rule] = &[
+    Rule { name: unreadable::NAME, about: "a block that stops the control with an alarm as it is read", find: unreadable::find },
+    Rule { name: round_brackets::NAME, about: "( ) where [ ] was meant: round brackets are a comment", find: round_brackets::find },
+    Rule { name: relation_symbol::NAME, about: "= < > where EQ, LT, GT … must stand", find: relation_symbol::find },
+    Rule { name: loop_pairs::NAME, about: "DO and END that don't pair, or loops that overlap", find: loop_pairs::find },
+    Rule { name: missing_n::NAME, about: "a jump to a sequence number that isn't there", find: missing_n::find },
+    Rule { name: doubled_n::NAME, about: "a sequence number that stands twice", find: doubled_n::find },
+    Rule { name: unknown_code::NAME, about: "a G or M code the control doesn't have", find: unknown_code::find },
+    Rule { name: missing_program::NAME, about: "a call of a program that isn't there", find: missing_program::find },
+    Rule { name: missing_argument::NAME, about: "a macro call without a letter that the macro needs", find: missing_argument::find },
+    Rule { name: unset_variable::NAME, about: "a local variable that is read before it is set", find: unset_variable::find },
+    Rule { name: missing_point::NAME, about: "a number without a point that means thousandths", find: missing_point::find },
+    Rule { name: live_position::NAME, about: "a position read while a move may be under way", find: live_position::find },
+    Rule { name: endless_loop::NAME, about: "a loop that never ends", find: endless_loop::find },
+    Rule { name: unreachable_alarm::NAME, about: "a #3000 that can't be reached", find: unreachable_alarm::find },
+    Rule { name: unreachable::NAME, about: "blocks that nothing reaches", find: unreachable::find },
+    Rule { name: unknown_check::NAME, about: "CHECK-OFF with a name that no rule has", find: unknown_check::find },
+];
+
+/// What all rules find, the silenced left out: program by program, block by block.
+pub(super) fn findings(subject: &Subject<'_>) -> Vec<Diagnostic> {
+    let mut all = Vec::new();
+    for unit in &subject.units {
+        let silence = Silence::new(unit);
+        let mut found: Vec<Finding> = ALL.iter().flat_map(|rule| (rule.find)(subject, unit)).collect();
+        found.retain(|finding| !silence.silences(finding));
+        found.sort_by_key(|finding| finding.block);
+        all.extend(found.into_iter().map(|finding| finding.diagnostic));
+    }
+    all
+}
+
+#[cfg(test)]
+pub(super) mod testing {
+    //! Runs all rules over a program and tells what one of them finds.
+    use crate::check::check;
+    use crate::control::Settings;
+    use crate::program::NoLibrary;
+
+    pub(crate) const NOWHERE: [u32; 0] = [];
+
+    /// The lines, counted from 1, that a rule finds something in.
+    pub(crate) fn lines(rule: &str, text: &str) -> Vec<u32> {
+        let checked = check("test.nc", text, &Settings::default(), &mut NoLibrary);
+        let of_rule = checked.findings.iter().filter(|f| f.code == rule);
+        of_rule.map(|f| checked.memory.sources().place(f.place.as_ref().unwrap().block).line).collect()
+    }
+
+    /// The messages of a rule.
+    pub(crate) fn messages(rule: &str, text: &str) -> Vec<String> {
+        let checked = check("test.nc", text, &Settings::default(), &mut NoLibrary);
+        checked.findings.into_iter().filter(|f| f.code == rule).map(|f| f.message).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_spelled_as_codes_and_stand_once() {
+        for (place, rule) in ALL.iter().enumerate() {
+            assert!(rule.name.bytes().all(|b| b.is_ascii_lowercase() || b == b'-'), "{}", rule.name);
+            assert!(ALL[..place].iter().all(|other| other.name != rule.name), "{}", rule.name);
+        }
+    }
+}

@@ -1,0 +1,24 @@
+//! `=`, `<` and `>` in a condition: a control compares with EQ, NE, LT, LE, GT and GE.
+use crate::alarm::Alarm;
+use crate::check::subject::{Finding, Subject, Unit};
+
+use super::unreadable::{alarms, finding};
+
+pub(super) const NAME: &str = "relation-symbol";
+
+pub(super) fn find(_: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
+    let alarms = alarms(unit).filter(|(_, alarm)| matches!(alarm.node, Alarm::RelationSymbol));
+    alarms.map(|(block, alarm)| finding(unit, NAME, block, alarm)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::lines;
+    use super::NAME;
+
+    #[test]
+    fn symbols_compare_nothing() {
+        let text = "O1\n#1=1\nIF[#1=2]GOTO 5\nIF[#1<=4]GOTO 5\nWHILE[#1>4]DO1\nIF[#1 GT 4]GOTO 5\nN5 M30\n";
+        assert_eq!(lines(NAME, text), [3, 4, 5]);
+    }
+}

@@ -1,0 +1,59 @@
+//! Blocks that stop the control as soon as it reads them: text it can't read, words that can't stand together.
+use crate::alarm::Alarm;
+use crate::check::flow::is_loop_alarm;
+use crate::check::subject::{Finding, Subject, Unit};
+use crate::program::{OpKind, Statement};
+use crate::source::Spanned;
+
+pub(super) const NAME: &str = "unreadable";
+
+pub(super) fn find(_: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
+    let alarms = alarms(unit).filter(|(_, alarm)| !has_own_rule(&alarm.node));
+    alarms.map(|(block, alarm)| finding(unit, NAME, block, alarm)).collect()
+}
+
+/// The blocks that raise an alarm as they are read and that something reaches.
+pub(super) fn alarms<'a>(unit: &'a Unit<'_>) -> impl Iterator<Item = (usize, &'a Spanned<Alarm>)> {
+    unit.program.ops.iter().enumerate().filter(|(block, _)| unit.reached[*block]).filter_map(|(block, op)| {
+        match &op.kind {
+            OpKind::Alarm(alarm) => Some((block, &**alarm)),
+            OpKind::Statement(Statement::IfThen { then, .. }) => match &**then {
+                Statement::Alarm(alarm) => Some((block, &**alarm)),
+                _ => None,
+            },
+            _ => None,
+        }
+    })
+}
+
+fn has_own_rule(alarm: &Alarm) -> bool {
+    is_loop_alarm(alarm)
+        || matches!(alarm, Alarm::RoundBrackets { .. } | Alarm::RelationSymbol | Alarm::ImproperGCode { .. })
+}
+
+/// An alarm as a finding: its number, its sentence, its remedy.
+pub(super) fn finding(unit: &Unit<'_>, name: &'static str, block: usize, alarm: &Spanned<Alarm>) -> Finding {
+    let row = alarm.node.row();
+    let found = unit.error(name, block, format!("{}: {}", row.code, row.message)).on(alarm.span);
+    match row.help {
+        Some(help) => found.help(help),
+        None => found,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{NOWHERE, lines, messages};
+    use super::NAME;
+
+    #[test]
+    fn names_the_alarm_a_control_raises() {
+        let found = messages(NAME, "O1\nG0 X..5\nG0 X1. #1=5\nM30\n");
+        assert!(found[0].starts_with("PS0007: ") && found[1].starts_with("PS0127: "), "{found:?}");
+    }
+
+    #[test]
+    fn what_nothing_reaches_alarms_nobody() {
+        assert_eq!(lines(NAME, "O1\nGOTO 5\nWRITTEN BY HAND\nN5 M30\nNOTES, FREE TEXT\n"), NOWHERE);
+    }
+}

@@ -1,0 +1,119 @@
+//! A local variable that is read before anything has set it: its word disappears, or it counts as 0.
+use std::collections::BTreeMap;
+
+use crate::check::subject::{Finding, Role, Subject, Unit};
+use crate::check::vacancy::{Locals, States, states, unset_at_first};
+use crate::check::variables::{self, Use};
+use crate::program::{OpIndex, argument_letter};
+use crate::source::Span;
+
+use super::missing_argument;
+
+pub(super) const NAME: &str = "unset-variable";
+
+pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
+    let mut unset: BTreeMap<(OpIndex, u32), (Span, Use)> = BTreeMap::new();
+    match unit.role {
+        Role::Resident => {}
+        Role::Main => {
+            let states = states(unit, Locals::UNSET);
+            unset.extend(reads(unit, &states));
+        }
+        Role::Called => {
+            for (caller, site) in &unit.callers {
+                let call = &subject.units[*caller].calls[*site];
+                // A subprogram has its caller's locals, and a modal call keeps its own from call to call.
+                if !call.own_locals || call.modal {
+                    return Vec::new();
+                }
+                let states = states(unit, missing_argument::entry(call));
+                // What a letter could have set is told at the call.
+                unset.extend(
+                    reads(unit, &states).filter(|((_, local), _)| argument_letter(*local as usize).is_none()),
+                );
+            }
+        }
+    }
+    let mut found = Vec::new();
+    for ((block, local), (span, usage)) in unset {
+        let so = match usage {
+            Use::Word => "its word is ignored",
+            Use::Passed => "vacancy is passed on",
+            Use::Tested | Use::Compared | Use::Computed => "it counts as 0",
+        };
+        let message = format!("#{local} is read and nothing has set it: {so}");
+        let help = format!("set #{local} before, or correct its number");
+        found.push(unit.warning(NAME, block, message).on(span).help(help));
+    }
+    found
+}
+
+/// The reads of locals that are surely unset there, each block's local once.
+pub(super) fn reads<'a>(
+    unit: &'a Unit<'_>,
+    states: &'a States,
+) -> impl Iterator<Item = ((OpIndex, u32), (Span, Use))> + 'a {
+    let reached = unit.blocks.iter().enumerate().filter(|(block, _)| states[*block].is_some());
+    reached.flat_map(move |(block, written)| {
+        let itself = variables::assignment(written)
+            .filter(|(target, value)| target.kind == value.kind || same_variable(target, value));
+        let reads = variables::of_block(written).reads.into_iter();
+        let plain = reads.filter(move |read| {
+            // `#1=#1` says nothing.
+            (1..=33).contains(&read.number) && read.usage != Use::Tested && itself.is_none()
+        });
+        plain
+            .filter(move |read| unset_at_first(unit, states, block, read.number))
+            .map(move |read| ((block, read.number), (read.span, read.usage)))
+    })
+}
+
+fn same_variable(left: &crate::syntax::ast::Expr, right: &crate::syntax::ast::Expr) -> bool {
+    use crate::check::literal::variable;
+    variable(left).is_some() && variable(left) == variable(right)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{NOWHERE, lines, messages};
+    use super::NAME;
+
+    #[test]
+    fn what_was_never_set_is_told() {
+        assert_eq!(lines(NAME, "O1\n#1=2.\nG0 X#1 Y#2\n#3=#4*2\n#5=#6\nM30\n"), [3, 4, 5]);
+        let found = messages(NAME, "O1\nG0 Y#2\nM30\n");
+        assert_eq!(found, ["#2 is read and nothing has set it: its word is ignored"]);
+    }
+
+    #[test]
+    fn idioms_are_left_alone() {
+        for text in [
+            "O1\nIF[#24 EQ #0]THEN #24=1.\nX#24\nM30\n",
+            "O1\nIF[#24 NE #0]GOTO 5\n#24=1.\nN5 X#24\nM30\n",
+            "O1\n#1=#0\nX#1\n#2=#1\nM30\n",
+            "O1\n#[10+5]=3.\nX#15\nM30\n",
+            "O1\nM98 P2\nX#5\nM30\nO2\n#5=3.\nM99\n",
+            "O1\n#3=#500\nX#3\n#4=#100\n#4=#4\nM30\n",
+            "O2\nX#24\n#27=#26*2\nM99\n",
+            "O1\nIF[#500 EQ 1]GOTO 5\n#1=2.\nN5 X#1\nM30\n",
+        ] {
+            assert_eq!(lines(NAME, text), NOWHERE, "{text}");
+        }
+    }
+
+    #[test]
+    fn the_first_pass_of_a_loop_counts() {
+        assert_eq!(lines(NAME, "O1\n#1=0\nWHILE[#1 LT 3]DO1\nX#2\n#2=5.\n#1=#1+1\nEND1\nM30\n"), [4]);
+        assert_eq!(
+            lines(NAME, "O1\n#1=0\nWHILE[#1 LT 3]DO1\n#2=5.\nX#2\n#1=#1+1\nEND1\nX#2\nM30\n"),
+            NOWHERE
+        );
+    }
+
+    #[test]
+    fn a_macro_knows_what_its_calls_pass() {
+        let called = "O2\nX#24\n#30=#24+#31\nM99\n";
+        assert_eq!(lines(NAME, &format!("O1\nG65 P2 X1.\nM30\n{called}")), [6]);
+        assert_eq!(lines(NAME, "O1\nG65 P2 I1. I2.\nM30\nO2\nX#4 Y#7\nM99\n"), NOWHERE);
+    }
+}

@@ -1,0 +1,52 @@
+//! `(CHECK-OFF NAME)`: silences a rule on its block, or in the whole program where it stands before the first block
+//! that does something. A control takes it for the comment it is.
+use crate::program::OpKind;
+use crate::source::Span;
+
+use super::rules::ALL;
+use super::subject::{Finding, Unit};
+
+/// The word that begins such a comment.
+const WORD: &str = "CHECK-OFF";
+
+/// What a program's comments silence.
+#[derive(Debug)]
+pub(super) struct Silence {
+    /// The block's index, or `None` for all of the program; the rule's name in upper case.
+    off: Vec<(Option<usize>, String, Span)>,
+}
+
+impl Silence {
+    pub(super) fn new(unit: &Unit<'_>) -> Self {
+        let mut off = Vec::new();
+        let mut head = true;
+        for (index, (block, op)) in unit.blocks.iter().zip(&unit.program.ops).enumerate() {
+            head &= matches!(op.kind, OpKind::Empty) && op.number.is_none();
+            for comment in &block.comments {
+                let text = String::from_utf8_lossy(&comment.text).to_ascii_uppercase();
+                let Some(names) = text.trim().strip_prefix(WORD) else { continue };
+                let place = (!head).then_some(index);
+                let mut names: Vec<&str> =
+                    names.split([' ', ',', '\t']).filter(|name| !name.is_empty()).collect();
+                if names.is_empty() {
+                    names.push("");
+                }
+                off.extend(names.into_iter().map(|name| (place, name.to_owned(), comment.span)));
+            }
+        }
+        Self { off }
+    }
+
+    pub(super) fn silences(&self, finding: &Finding) -> bool {
+        self.off.iter().any(|(place, name, _)| {
+            place.is_none_or(|block| block == finding.block)
+                && name.eq_ignore_ascii_case(&finding.diagnostic.code)
+        })
+    }
+
+    /// Names that no rule has, with the comments they stand in.
+    pub(super) fn unknown(&self) -> impl Iterator<Item = (&str, Span)> {
+        let known = |name: &str| ALL.iter().any(|rule| rule.name.eq_ignore_ascii_case(name));
+        self.off.iter().filter(move |(_, name, _)| !known(name)).map(|(_, name, span)| (name.as_str(), *span))
+    }
+}

@@ -1,0 +1,200 @@
+//! The programs under check, each with its text, its blocks, its ways and its calls.
+use std::collections::BTreeMap;
+
+use crate::control::Settings;
+use crate::diag::{Diagnostic, Severity};
+use crate::motion::Place;
+use crate::program::{Calling, Memory, Op, OpIndex, OpKind, Program, ProgramId};
+use crate::source::{SourceId, Span};
+use crate::syntax::{self, ast};
+
+use super::calls::{self, CallSite};
+use super::flow::Flow;
+
+/// Everything a rule may look at.
+#[derive(Debug)]
+pub(crate) struct Subject<'a> {
+    pub(crate) memory: &'a Memory,
+    pub(crate) settings: &'a Settings,
+    pub(crate) units: Vec<Unit<'a>>,
+    places: BTreeMap<ProgramId, usize>,
+}
+
+/// One program.
+#[derive(Debug)]
+pub(crate) struct Unit<'a> {
+    /// As written: the tree keeps comments and points.
+    pub(crate) blocks: Vec<ast::Block>,
+    /// As it will run; block and operation have the same index.
+    pub(crate) program: &'a Program,
+    pub(crate) flow: Flow,
+    pub(crate) calls: Vec<CallSite>,
+    /// Who calls it: unit and place in its calls.
+    pub(crate) callers: Vec<(usize, usize)>,
+    /// The first block, and those where calls with Q start.
+    pub(crate) starts: Vec<OpIndex>,
+    /// Whether anything reaches each block.
+    pub(crate) reached: Vec<bool>,
+    pub(crate) role: Role,
+}
+
+/// How a program is entered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Role {
+    /// By the operator: all locals are vacant.
+    Main,
+    /// Only by calls that are seen here.
+    Called,
+    /// Nothing here calls it, and it returns: by calls that nobody sees.
+    Resident,
+}
+
+impl<'a> Subject<'a> {
+    pub(super) fn new(memory: &'a Memory, settings: &'a Settings, programs: &[ProgramId]) -> Self {
+        let places = programs.iter().enumerate().map(|(unit, id)| (*id, unit)).collect();
+        let mut trees = trees(memory, programs);
+        let units = programs
+            .iter()
+            .map(|id| {
+                let program = memory.get(*id);
+                Unit {
+                    blocks: trees.remove(id).unwrap_or_default(),
+                    flow: Flow::new(program),
+                    calls: calls::sites(program, settings),
+                    callers: Vec::new(),
+                    starts: vec![0],
+                    reached: Vec::new(),
+                    role: Role::Main,
+                    program,
+                }
+            })
+            .collect();
+        let mut subject = Self { memory, settings, units, places };
+        subject.connect();
+        subject
+    }
+
+    /// Tells each program who calls it, each call where it may return to, and what is reached.
+    fn connect(&mut self) {
+        for caller in 0..self.units.len() {
+            for site in 0..self.units[caller].calls.len() {
+                let call = &self.units[caller].calls[site];
+                let block = call.block;
+                let Some(called) = self.called(call) else {
+                    self.units[caller].flow.may_return_anywhere(block);
+                    continue;
+                };
+                if let Some(number) = call.start {
+                    let start = self.units[called].program.find_number(number, 0);
+                    self.units[called].starts.extend(start);
+                }
+                let returns = &self.units[called].flow;
+                let anywhere = returns.ways.iter().any(|ways| ways.leaves && ways.anywhere);
+                let numbers: Vec<u32> =
+                    returns.jumps.iter().filter(|jump| jump.returns).map(|jump| jump.number).collect();
+                let to: Vec<_> =
+                    numbers.iter().filter_map(|n| self.units[caller].program.find_number(*n, 0)).collect();
+                self.units[called].callers.push((caller, site));
+                self.units[caller].flow.may_return(block, to);
+                if anywhere {
+                    self.units[caller].flow.may_return_anywhere(block);
+                }
+            }
+        }
+        for unit in &mut self.units {
+            unit.role = unit.role();
+            unit.reached = unit.flow.reached(unit.starts.iter().copied());
+        }
+    }
+
+    /// The unit that a call goes to, where it is here.
+    pub(crate) fn called(&self, call: &CallSite) -> Option<usize> {
+        let id = call.target.find(self.memory)?;
+        self.places.get(&id).copied()
+    }
+}
+
+/// The trees of programs, read once more from the texts in memory: lowering doesn't keep them.
+fn trees(memory: &Memory, programs: &[ProgramId]) -> BTreeMap<ProgramId, Vec<ast::Block>> {
+    let mut ids: BTreeMap<SourceId, Vec<ProgramId>> = BTreeMap::new();
+    for id in memory.ids() {
+        ids.entry(memory.get(id).span.source).or_default().push(id);
+    }
+    let mut found = BTreeMap::new();
+    for (source, ids) in ids {
+        let read = syntax::parse(source, &memory.sources().get(source).bytes);
+        let wanted = ids.into_iter().zip(read).filter(|(id, _)| programs.contains(id));
+        found.extend(wanted.map(|(id, tree)| (id, tree.blocks)));
+    }
+    found
+}
+
+impl Unit<'_> {
+    fn role(&self) -> Role {
+        if !self.callers.is_empty() {
+            return Role::Called;
+        }
+        let returns = self.program.ops.iter().any(|op| match &op.kind {
+            OpKind::Words(words) => words.call.as_ref().is_some_and(|call| call.kind == Calling::Return),
+            _ => false,
+        });
+        let ends = self.flow.ways.iter().zip(&self.program.ops).any(|(ways, op)| {
+            let returns = matches!(&op.kind, OpKind::Words(words) if words.call.is_some());
+            ways.leaves && matches!(op.kind, OpKind::Words(_)) && !returns
+        });
+        if returns && !ends { Role::Resident } else { Role::Main }
+    }
+
+    pub(crate) fn op(&self, block: OpIndex) -> &Op {
+        &self.program.ops[block]
+    }
+
+    /// A finding about a block.
+    pub(crate) fn finding(
+        &self,
+        severity: Severity,
+        code: &'static str,
+        block: OpIndex,
+        message: impl Into<String>,
+    ) -> Finding {
+        let place = Place { block: self.op(block).span, calls: None };
+        Finding { block, diagnostic: Diagnostic::new(severity, code, message).at(place) }
+    }
+
+    pub(crate) fn error(&self, code: &'static str, block: OpIndex, message: impl Into<String>) -> Finding {
+        self.finding(Severity::Error, code, block, message)
+    }
+
+    pub(crate) fn warning(&self, code: &'static str, block: OpIndex, message: impl Into<String>) -> Finding {
+        self.finding(Severity::Warning, code, block, message)
+    }
+
+    pub(crate) fn note(&self, code: &'static str, block: OpIndex, message: impl Into<String>) -> Finding {
+        self.finding(Severity::Note, code, block, message)
+    }
+}
+
+/// What a rule says of a block.
+#[derive(Debug)]
+pub(crate) struct Finding {
+    pub(crate) block: OpIndex,
+    pub(crate) diagnostic: Diagnostic,
+}
+
+impl Finding {
+    /// The exact part of the block.
+    pub(crate) fn on(mut self, span: Span) -> Self {
+        self.diagnostic.span = Some(span);
+        self
+    }
+
+    pub(crate) fn help(mut self, help: impl Into<String>) -> Self {
+        self.diagnostic = self.diagnostic.help(help);
+        self
+    }
+
+    pub(crate) fn label(mut self, span: Span, text: impl Into<String>) -> Self {
+        self.diagnostic.labels.push((span, text.into()));
+        self
+    }
+}

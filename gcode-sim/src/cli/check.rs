@@ -1,0 +1,27 @@
+//! `gcode-sim check`: what can be known of a program without running it.
+use super::args::{CheckArguments, ProgramArguments, TextFormat};
+use super::{Refusal, Status, options, output};
+use crate::check::check;
+use crate::report::check::{CheckReport, text};
+
+pub(super) fn run(arguments: &CheckArguments) -> Result<Status, Refusal> {
+    let program = ProgramArguments {
+        program: arguments.program.clone(),
+        libraries: arguments.libraries.clone(),
+        dialect: arguments.dialect.clone(),
+        control: arguments.control.clone(),
+        machine: arguments.machine.clone(),
+        code: arguments.code.clone(),
+        ..ProgramArguments::default()
+    };
+    let (request, mut folders) = options::request(&program)?;
+    let checked = check(request.name.clone(), request.bytes, &request.settings, &mut folders);
+    if checked.programs == 0 {
+        return Err(Refusal::new(format!("{} holds no program", request.name)));
+    }
+    match arguments.format {
+        TextFormat::Text => output::print(&text(&checked))?,
+        TextFormat::Json => output::json(&CheckReport::new(&checked))?,
+    }
+    Ok(if checked.stands() { Status::Fails } else { Status::Holds })
+}

@@ -1,0 +1,110 @@
+//! What `check` answers: the findings with their places, and a line that counts them.
+use serde::Serialize;
+
+use crate::check::Checked;
+use crate::diag::{Diagnostic, Severity};
+use crate::report::diagnostic;
+use crate::source::Span;
+
+/// The document of `check --format json`.
+#[derive(Debug, Serialize)]
+pub struct CheckReport {
+    /// How many programs were looked at, the called ones included.
+    pub programs: usize,
+    pub findings: Vec<FindingReport>,
+}
+
+#[derive(Debug, Serialize)]
+pub struct FindingReport {
+    /// The rule's name.
+    pub code: String,
+    pub severity: &'static str,
+    pub message: String,
+    pub program: Option<String>,
+    pub file: Option<String>,
+    pub line: Option<u32>,
+    pub column: Option<u32>,
+    /// The block as written.
+    pub block: Option<String>,
+    pub help: Option<String>,
+    /// Second places: where a loop begins, where a call stands.
+    pub labels: Vec<LabelReport>,
+}
+
+#[derive(Debug, Serialize)]
+pub struct LabelReport {
+    pub file: String,
+    pub line: u32,
+    pub text: String,
+}
+
+impl CheckReport {
+    pub fn new(checked: &Checked) -> Self {
+        let findings = checked.findings.iter().map(|finding| report(checked, finding)).collect();
+        Self { programs: checked.programs, findings }
+    }
+}
+
+fn report(checked: &Checked, finding: &Diagnostic) -> FindingReport {
+    let sources = checked.memory.sources();
+    let block = finding.place.as_ref().map(|place| place.block);
+    let at = finding.span.or(block);
+    let file = |span: Span| sources.get(span.source).name.clone();
+    FindingReport {
+        code: finding.code.clone(),
+        severity: severity(finding.severity),
+        message: finding.message.clone(),
+        program: block.and_then(|span| checked.program(span)).map(|program| program.label()),
+        file: at.map(file),
+        line: at.map(|span| sources.place(span).line),
+        column: at.map(|span| sources.place(span).column),
+        block: block.map(|span| sources.text(span).trim().to_owned()),
+        help: finding.help.clone(),
+        labels: finding
+            .labels
+            .iter()
+            .map(|(span, text)| LabelReport {
+                file: file(*span),
+                line: sources.place(*span).line,
+                text: text.clone(),
+            })
+            .collect(),
+    }
+}
+
+fn severity(severity: Severity) -> &'static str {
+    match severity {
+        Severity::Note => "note",
+        Severity::Warning => "warning",
+        Severity::Error => "error",
+        Severity::Alarm => "alarm",
+    }
+}
+
+/// The findings as the terminal shows them, and their count.
+pub fn text(checked: &Checked) -> String {
+    let sources = checked.memory.sources();
+    let mut text: String =
+        checked.findings.iter().map(|finding| diagnostic::render(finding, sources) + "\n").collect();
+    text.push_str(&summary(checked));
+    text.push('\n');
+    text
+}
+
+/// `2 programs checked: 1 error, 2 warnings`.
+fn summary(checked: &Checked) -> String {
+    let counted = |count: usize, what: &str| match count {
+        1 => format!("1 {what}"),
+        count => format!("{count} {what}s"),
+    };
+    let kinds = [(Severity::Error, "error"), (Severity::Warning, "warning"), (Severity::Note, "note")];
+    let counts: Vec<_> = kinds
+        .iter()
+        .filter_map(|(severity, what)| match checked.count(*severity) {
+            0 => None,
+            count => Some(counted(count, what)),
+        })
+        .collect();
+    let found = if counts.is_empty() { "nothing found".to_owned() } else { counts.join(", ") };
+    format!("{} checked: {found}", counted(checked.programs, "program"))
+}

@@ -1,0 +1,44 @@
+//! Cases of kind `check`: what is found in `case.nc` without running it, each finding with its block and its remedy.
+//!
+//! Programs it calls stand in the same file. A comment `(@KEY=VALUE)` is a setting of the control.
+use std::fmt::Write as _;
+
+use gcode_sim::check::{Checked, check};
+use gcode_sim::diag::Severity;
+use gcode_sim::program::NoLibrary;
+use gcode_sim::source::Span;
+
+use crate::{Case, expect};
+
+pub(crate) fn run(case: &Case) {
+    let program = case.bytes("case.nc");
+    let settings = expect::settings(&program);
+    let checked = check("case.nc", program, &settings, &mut NoLibrary);
+    let mut shown = String::new();
+    for finding in &checked.findings {
+        let severity = match finding.severity {
+            Severity::Note => "note",
+            Severity::Warning => "warning",
+            Severity::Error => "error",
+            Severity::Alarm => "alarm",
+        };
+        if let Some(place) = &finding.place {
+            writeln!(shown, "{}", at(&checked, place.block)).unwrap();
+        }
+        writeln!(shown, "  {severity} {}: {}", finding.code, finding.message).unwrap();
+        for (span, text) in &finding.labels {
+            writeln!(shown, "  {text}: {}", at(&checked, *span)).unwrap();
+        }
+        finding.help.iter().for_each(|help| writeln!(shown, "  help: {help}").unwrap());
+    }
+    if checked.findings.is_empty() {
+        shown.push_str("nothing found\n");
+    }
+    case.snapshot("findings", &shown);
+}
+
+fn at(checked: &Checked, block: Span) -> String {
+    let sources = checked.memory.sources();
+    let program = checked.program(block).map_or_else(String::new, |program| program.label());
+    format!("{program} line {}: {}", sources.place(block).line, sources.text(block).trim())
+}
