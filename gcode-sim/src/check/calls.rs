@@ -84,7 +84,7 @@ fn site(block: OpIndex, words: &Words, settings: &Settings) -> Option<CallSite> 
         modal: matches!(call.kind, Calling::AfterMoves | Calling::EveryBlock),
         target,
         start: call.start.as_ref().and_then(literal::count),
-        arguments: arguments(&call.arguments, settings),
+        arguments: arguments(&call.arguments, call.kind == Calling::EveryBlock, settings),
         span: call.span,
     })
 }
@@ -106,13 +106,13 @@ fn by_code(block: OpIndex, words: &Words, settings: &Settings) -> Option<CallSit
         modal: false,
         target: CalledAs::Number(number),
         start: None,
-        arguments: arguments(rest, settings),
+        arguments: arguments(rest, false, settings),
         span: first.span,
     })
 }
 
-fn arguments(words: &[Coded], settings: &Settings) -> Vec<Argument> {
-    let mut letters = ArgumentLocals::new(settings.plain_ijk);
+fn arguments(words: &[Coded], every: bool, settings: &Settings) -> Vec<Argument> {
+    let mut letters = ArgumentLocals::new(settings.plain_ijk, every);
     let dealt = words.iter().filter_map(|word| {
         let local = letters.next(word.letter).ok().flatten()?;
         Some(Argument { local, number: literal::of_word(word).is_some() })

@@ -1,6 +1,6 @@
 //! Numbers that a program writes out: what a word, an operand or an expression is without running anything.
-use crate::program::{Coded, Input, Operand};
-use crate::syntax::ast::{BinaryOp, Decimal, Expr, ExprKind};
+use crate::program::{Coded, Input, Operand, names};
+use crate::syntax::ast::{BinaryOp, Decimal, Expr, ExprKind, Name};
 
 /// The number a word writes out, point or not; `None` where it is computed.
 pub(super) fn of_word(word: &Coded) -> Option<f64> {
@@ -63,7 +63,21 @@ pub(super) fn arithmetic(op: BinaryOp, left: f64, right: f64) -> Option<f64> {
 pub(super) fn variable(expr: &Expr) -> Option<u32> {
     match &expr.kind {
         ExprKind::Variable(index) => constant(index).and_then(whole),
+        ExprKind::Named(name) => named(name),
         ExprKind::Bracket(inner) => variable(inner),
+        _ => None,
+    }
+}
+
+/// The number of a system variable's name; names given by SETVN are common variables, which only a run knows.
+fn named(name: &Name) -> Option<u32> {
+    let row = names::find(&name.text)?;
+    match (&name.index, row.suffix) {
+        (None, None) => Some(row.number),
+        (Some(index), Some((lowest, _))) => {
+            let suffix = constant(index).and_then(whole)?;
+            Some(row.number + suffix.checked_sub(lowest)?)
+        }
         _ => None,
     }
 }

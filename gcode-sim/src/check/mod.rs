@@ -14,6 +14,7 @@ mod vacancy;
 mod variables;
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use crate::control::Settings;
 use crate::diag::{Diagnostic, Severity};
@@ -35,7 +36,7 @@ pub struct Checked {
 /// `programs` is 0.
 pub fn check(
     name: impl Into<String>,
-    bytes: impl Into<Vec<u8>>,
+    bytes: impl Into<Arc<[u8]>>,
     settings: &Settings,
     library: &mut impl Library,
 ) -> Checked {

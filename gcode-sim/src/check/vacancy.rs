@@ -25,7 +25,8 @@ impl Locals {
 
     fn of(&self, number: u32) -> u8 {
         match number {
-            0 => EMPTY,
+            // [#_EMPTY] is #3100.
+            0 | 3100 => EMPTY,
             1..=33 => self.0[number as usize],
             _ => ANYTHING,
         }
@@ -166,11 +167,13 @@ enum Value {
 fn value_of(expr: &Expr, state: &Locals) -> Value {
     match &expr.kind {
         ExprKind::Literal(number) => Value::Number(number.value()),
-        ExprKind::Variable(_) => match literal::variable(expr).map(|number| state.of(number)) {
-            Some(bits) if bits & NUMBER == 0 => Value::Vacant,
-            Some(NUMBER) => Value::Some,
-            _ => Value::Unknown,
-        },
+        ExprKind::Variable(_) | ExprKind::Named(_) => {
+            match literal::variable(expr).map(|number| state.of(number)) {
+                Some(bits) if bits & NUMBER == 0 => Value::Vacant,
+                Some(NUMBER) => Value::Some,
+                _ => Value::Unknown,
+            }
+        }
         ExprKind::Bracket(inner) | ExprKind::Plus(inner) => value_of(inner, state),
         ExprKind::Negate(inner) => match value_of(inner, state) {
             Value::Number(value) => Value::Number(-value),
@@ -196,7 +199,6 @@ fn value_of(expr: &Expr, state: &Locals) -> Value {
             None => Value::Some,
         },
         ExprKind::Call(..) | ExprKind::Parameter { .. } => Value::Some,
-        ExprKind::Named(_) => Value::Unknown,
     }
 }
 
@@ -254,7 +256,7 @@ fn refine(condition: &Condition, answer: bool, state: &mut Locals) {
     match condition {
         Condition::Compare { left, relation: relation @ (Relation::Eq | Relation::Ne), right, .. } => {
             let tested = match (literal::variable(left), literal::variable(right)) {
-                (Some(0), Some(number)) | (Some(number), Some(0)) => number,
+                (Some(0 | 3100), Some(number)) | (Some(number), Some(0 | 3100)) => number,
                 _ => return,
             };
             let vacant = (*relation == Relation::Eq) == answer;

@@ -1,9 +1,7 @@
 //! The variables that a block reads and writes, and how it reads them: a vacant one is harmless in some places.
 use crate::program::OpIndex;
 use crate::source::Span;
-use crate::syntax::ast::{
-    Block, CallForm, Condition, Expr, ExprKind, Item, PrintPart, Relation, Statement, WordValue,
-};
+use crate::syntax::ast::{Block, CallForm, Condition, Expr, ExprKind, Item, PrintPart, Statement, WordValue};
 
 use super::literal;
 
@@ -105,10 +103,9 @@ impl Uses {
 
     fn condition(&mut self, condition: &Condition) {
         match condition {
-            Condition::Compare { left, relation, right, .. } => {
-                let equality = matches!(relation, Relation::Eq | Relation::Ne);
+            Condition::Compare { left, right, .. } => {
                 let usage = |other: &Expr| match literal::variable(other) {
-                    Some(0) if equality => Use::Tested,
+                    Some(0 | 3100) => Use::Tested,
                     _ => Use::Compared,
                 };
                 self.expr(left, usage(right));
@@ -136,7 +133,10 @@ impl Uses {
                 self.index_of(expr);
             }
             ExprKind::Named(name) => {
-                self.reads_any = true;
+                match literal::variable(expr) {
+                    Some(number) => self.reads.push(Read { number, usage, span: expr.span }),
+                    None => self.reads_any = true,
+                }
                 name.index.iter().for_each(|index| self.expr(index, Use::Computed));
             }
             ExprKind::Negate(inner) if usage == Use::Word => self.expr(inner, usage),

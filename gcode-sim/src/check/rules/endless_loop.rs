@@ -49,9 +49,9 @@ fn loop_finding(unit: &Unit<'_>, block: OpIndex) -> Finding {
             let mut names: Vec<String> = uses.reads.iter().map(|read| format!("#{}", read.number)).collect();
             names.dedup();
             let message = if names.is_empty() {
-                "this loop never ends: its condition is always true".to_owned()
+                "once begun, this loop never ends: its condition is always true".to_owned()
             } else {
-                format!("this loop never ends: nothing in it changes {}", names.join(" or "))
+                format!("once begun, this loop never ends: nothing in it changes {}", names.join(" or "))
             };
             let help = match names.first() {
                 Some(name) => format!("change {name} in the loop, {name}={name}+1"),
@@ -187,7 +187,11 @@ mod tests {
         assert_eq!(lines(NAME, "O1\n#1=0\nWHILE[#1 LT 3]DO1\nG91 X1.\n#2=#1+1\nEND1\nM30\n"), [3]);
         assert_eq!(lines(NAME, "O1\n#1=0\nWHILE[#1 LT 3]DO1\nG91 X1.\n#1=#1+1\nEND1\nM30\n"), NOWHERE);
         let found = messages(NAME, "O1\n#1=0\nWHILE[#1 LT #2]DO1\nG65 P2 X#1\nEND1\nM30\nO2\n#1=5\nM99\n");
-        assert_eq!(found, ["this loop never ends: nothing in it changes #1 or #2"], "a macro has its own #1");
+        assert_eq!(
+            found,
+            ["once begun, this loop never ends: nothing in it changes #1 or #2"],
+            "a macro has its own #1"
+        );
     }
 
     #[test]

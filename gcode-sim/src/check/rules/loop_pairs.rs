@@ -20,7 +20,6 @@ pub(super) fn find(_: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
                 let message = format!("PS0124: DO{number} inside a DO{number} that is still open");
                 let finding = unit.error(NAME, block, message).label(*outer, "the outer loop begins here");
                 found.push(finding.help("give the inner loop another number, 1 to 3"));
-                open.retain(|(n, ..)| *n != number);
             }
             open.push((number, block, read.span));
         } else {
@@ -50,10 +49,26 @@ pub(super) fn find(_: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
 
 /// The number of a loop, and whether it begins here.
 fn loop_word(item: &Item) -> Option<(i64, bool)> {
-    let Item::Statement(statement) = item else { return None };
+    let statement = match item {
+        Item::Statement(statement) => statement,
+        // `WHILE(#1 GT 0)DO1` has a fault of its own; its END has none.
+        Item::Unreadable(unreadable) => return spoilt_loop(&unreadable.text).map(|number| (number, true)),
+        Item::Word(_) | Item::Skip(_) => return None,
+    };
     match &statement.node {
         Statement::While { number, .. } | Statement::Do(number) => Some((number.node, true)),
         Statement::End(number) => Some((number.node, false)),
+        _ => None,
+    }
+}
+
+/// The number behind the DO of a WHILE that can't be read.
+fn spoilt_loop(text: &[u8]) -> Option<i64> {
+    let text: Vec<u8> =
+        text.iter().filter(|b| !b.is_ascii_whitespace()).map(u8::to_ascii_uppercase).collect();
+    let place = text.windows(2).rposition(|two| two == b"DO").filter(|_| text.starts_with(b"WH"))?;
+    match text.get(place + 2) {
+        Some(digit @ b'1'..=b'3') => Some(i64::from(digit - b'0')),
         _ => None,
     }
 }
@@ -75,6 +90,12 @@ mod tests {
             ),
             NOWHERE,
         );
+    }
+
+    #[test]
+    fn one_fault_is_told_once() {
+        assert_eq!(lines(NAME, "O1\n#1=0\nWHILE(#1 LT 3)DO1\n#1=#1+1\nEND1\nM30\n"), NOWHERE);
+        assert_eq!(lines(NAME, "O1\n#1=0\nDO1\nDO1\n#1=#1+1\nEND1\nEND1\nM30\n"), [4]);
     }
 
     #[test]

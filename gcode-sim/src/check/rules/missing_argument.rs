@@ -16,15 +16,18 @@ pub(super) const NAME: &str = "missing-argument";
 
 pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     let mut found = Vec::new();
-    let mut known: BTreeMap<(usize, Locals), Vec<String>> = BTreeMap::new();
+    let mut known: BTreeMap<(usize, Locals), Vec<Lack>> = BTreeMap::new();
     for call in unit.calls.iter().filter(|call| unit.reached[call.block] && call.own_locals) {
         let Some(called) = subject.called(call) else { continue };
         let entry = entry(call);
         let lacking = known
             .entry((called, entry))
             .or_insert_with(|| lacking(subject, &subject.units[called], entry, call.modal));
-        for message in lacking {
-            let finding = unit.error(NAME, call.block, message.clone()).on(unit.op(call.block).span);
+        for lack in lacking {
+            let finding = match lack {
+                Lack::Refused(message) => unit.error(NAME, call.block, message.clone()),
+                Lack::Reckoned(message) => unit.warning(NAME, call.block, message.clone()),
+            };
             found.push(finding.help("write the letter with its value"));
         }
     }
@@ -40,14 +43,22 @@ pub(super) fn entry(call: &CallSite) -> Locals {
     entry
 }
 
-/// What a macro lacks, one sentence a letter.
-fn lacking(subject: &Subject<'_>, called: &Unit<'_>, entry: Locals, modal: bool) -> Vec<String> {
+/// What comes of a letter that isn't there, in a sentence.
+enum Lack {
+    /// The macro stops with its alarm.
+    Refused(String),
+    /// The macro reckons with 0, which may even be meant.
+    Reckoned(String),
+}
+
+/// What a macro lacks, letter by letter.
+fn lacking(subject: &Subject<'_>, called: &Unit<'_>, entry: Locals, modal: bool) -> Vec<Lack> {
     let label = called.program.label();
     let letters = (1..=26).filter_map(|local| Some((local, argument_letter(local)?)));
     let missing: Vec<_> = letters.filter(|(local, _)| entry.0[*local] == UNSET).collect();
     let mut filled = entry;
     missing.iter().for_each(|(local, _)| filled.0[*local] = NUMBER);
-    let mut messages = Vec::new();
+    let mut lacks = Vec::new();
     let mut told = BTreeSet::new();
     for (local, letter) in &missing {
         let mut without = filled;
@@ -56,24 +67,26 @@ fn lacking(subject: &Subject<'_>, called: &Unit<'_>, entry: Locals, modal: bool)
             && refusal(subject, called, &states(called, filled)).is_none()
         {
             told.insert(*local as u32);
-            messages.push(format!("{label} needs {letter} (#{local}): without it, it stops with {alarm}"));
+            let message = format!("{label} needs {letter} (#{local}): without it, it stops with {alarm}");
+            lacks.push(Lack::Refused(message));
         }
     }
     // Beyond a refusal nothing is read, and a modal macro may find what its last pass left.
-    if !messages.is_empty() || modal {
-        return messages;
+    if !lacks.is_empty() || modal {
+        return lacks;
     }
     let states = states(called, entry);
     for ((block, local), (_, usage)) in reads(called, &states) {
         let Some(letter) = argument_letter(local as usize) else { continue };
         if usage == Use::Computed && told.insert(local) {
             let line = subject.memory.sources().place(called.op(block).span).line;
-            messages.push(format!(
+            let message = format!(
                 "{label} reckons with {letter} (#{local}) in line {line}: without it, it counts as 0"
-            ));
+            );
+            lacks.push(Lack::Reckoned(message));
         }
     }
-    messages
+    lacks
 }
 
 /// The alarm that every way through a program ends in; `None` where it can end otherwise.

@@ -10,14 +10,16 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
         let number = jump.number;
         if !jump.returns {
             if jump.to.is_none() {
-                let message = format!("there is no block N{number} in {} to go to", unit.program.label());
+                let message =
+                    format!("PS0128: there is no block N{number} in {} to go to", unit.program.label());
                 found.push(unit.error(NAME, jump.block, message).help(HELP));
             }
             continue;
         }
         match unit.role {
             Role::Main if jump.to.is_none() => {
-                let message = format!("there is no block N{number} in {} to go on at", unit.program.label());
+                let message =
+                    format!("PS0078: there is no block N{number} in {} to go on at", unit.program.label());
                 found.push(unit.error(NAME, jump.block, message).help(HELP));
             }
             Role::Main | Role::Resident => {}
@@ -28,8 +30,10 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
                     .find(|(caller, _)| subject.units[*caller].program.find_number(number, 0).is_none());
                 if let Some((caller, site)) = lacking {
                     let caller = &subject.units[*caller];
-                    let message =
-                        format!("there is no block N{number} in {} to return to", caller.program.label());
+                    let message = format!(
+                        "PS0078: there is no block N{number} in {} to return to",
+                        caller.program.label()
+                    );
                     let call = caller.op(caller.calls[*site].block).span;
                     found.push(unit.error(NAME, jump.block, message).label(call, "called here").help(HELP));
                 }
@@ -41,13 +45,14 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
             let program = subject.units[called].program;
             if program.find_number(number, 0).is_none() {
                 let label = program.label();
-                let message = format!("there is no block N{number} in {label} to start at");
+                let message = format!("PS0078: there is no block N{number} in {label} to start at");
                 found.push(unit.error(NAME, call.block, message).help(HELP));
             }
         } else if let (Some(number), CalledAs::Nothing) = (call.start, &call.target)
             && unit.program.find_number(number, 0).is_none()
         {
-            let message = format!("there is no block N{number} in {} to start at", unit.program.label());
+            let message =
+                format!("PS0078: there is no block N{number} in {} to start at", unit.program.label());
             found.push(unit.error(NAME, call.block, message).help(HELP));
         }
     }

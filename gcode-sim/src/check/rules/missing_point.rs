@@ -14,8 +14,8 @@ pub(super) const NAME: &str = "missing-point";
 const OTHER_WORDS: [u16; 4] = [51, 100, 510, 682];
 /// Cycles whose Q is a length: G73, G76, G83, G87. Older controls take no point there.
 const WITH_Q: [u16; 4] = [730, 760, 830, 870];
-/// A peck of this many increments may be meant.
-const LEAST_PECK: u64 = 100;
+/// A peck or a dwell of this many increments may be meant: many programs write `G4 X500`.
+const LEAST_MEANT: u64 = 100;
 
 pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     let settings = subject.settings;
@@ -28,8 +28,8 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
         let Some(words) = words(&op.kind) else { continue };
         for word in measures(words, settings) {
             let Some(number) = without_point(word) else { continue };
-            let pecks = word.letter == b'Q' && words.call.is_none();
-            if pecks && number.digits >= LEAST_PECK {
+            let counted = (word.letter == b'Q' && words.call.is_none()) || has(words, &[40]);
+            if counted && number.digits >= LEAST_MEANT {
                 continue;
             }
             let written = spelled(word.letter, number);
@@ -134,7 +134,7 @@ mod tests {
             "O1\nG0 X0 Y0.5\nG43 H1 Z100.\nM98 P2 L3\nG4 P500\nM30\nO2\nM99\n",
             "O1\nG0 X45000 Y500\nG1 Z-3000 F200\nM30\n",
             "O1\nG83 X1. Y1. Z-20. R2. Q500 K3 F100\nM30\n",
-            "O1\n#1=3\nG0 X#1 Y[5]\nG10 L2 P1 X1.\nG51 X0 Y0 I2000 J2000\nM30\n",
+            "O1\n#1=3\nG4 X500\nG0 X#1 Y[5]\nG10 L2 P1 X1.\nG51 X0 Y0 I2000 J2000\nM30\n",
             "O1\nG65 P2 A5. D3 H2 T1 S5\nM30\nO2\nM99\n",
         ] {
             assert_eq!(lines(NAME, text), NOWHERE, "{text}");

@@ -6,10 +6,14 @@ pub(super) const NAME: &str = "missing-program";
 
 pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     let mut found = Vec::new();
+    let mut told: Vec<&CalledAs> = Vec::new();
     for call in unit.calls.iter().filter(|call| unit.reached[call.block]) {
-        if subject.called(call).is_some() {
+        // Each program once: what is missing is one thing, however often it is called.
+        if subject.called(call).is_some() || call.target != CalledAs::Nothing && told.contains(&&call.target)
+        {
             continue;
         }
+        told.push(&call.target);
         let label = call.target.label();
         let finding = match call.target {
             CalledAs::Computed => continue,
@@ -37,7 +41,8 @@ mod tests {
 
     #[test]
     fn called_programs_must_be_there() {
-        let text = "O1\nM98 P30002\nG65 P3 A1.\nM98 P2 L2\n#1=2\nG65 P#1\nG65 A1.\nM30\nO2\nM99\n";
+        let text =
+            "O1\nM98 P30002\nG65 P3 A1.\nM98 P2 L2\n#1=2\nG65 P#1\nG65 A1.\nG65 P3 A2.\nM30\nO2\nM99\n";
         assert_eq!(lines(NAME, text), [3, 7]);
     }
 }

@@ -75,14 +75,14 @@ pub(super) mod testing {
 
     /// The lines, counted from 1, that a rule finds something in.
     pub(crate) fn lines(rule: &str, text: &str) -> Vec<u32> {
-        let checked = check("test.nc", text, &Settings::default(), &mut NoLibrary);
+        let checked = check("test.nc", text.as_bytes(), &Settings::default(), &mut NoLibrary);
         let of_rule = checked.findings.iter().filter(|f| f.code == rule);
         of_rule.map(|f| checked.memory.sources().place(f.place.as_ref().unwrap().block).line).collect()
     }
 
     /// The messages of a rule.
     pub(crate) fn messages(rule: &str, text: &str) -> Vec<String> {
-        let checked = check("test.nc", text, &Settings::default(), &mut NoLibrary);
+        let checked = check("test.nc", text.as_bytes(), &Settings::default(), &mut NoLibrary);
         checked.findings.into_iter().filter(|f| f.code == rule).map(|f| f.message).collect()
     }
 }

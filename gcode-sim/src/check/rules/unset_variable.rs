@@ -39,7 +39,8 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
         let so = match usage {
             Use::Word => "its word is ignored",
             Use::Passed => "vacancy is passed on",
-            Use::Tested | Use::Compared | Use::Computed => "it counts as 0",
+            Use::Tested | Use::Compared => "a vacant variable is compared",
+            Use::Computed => "it counts as 0",
         };
         let message = format!("#{local} is read and nothing has set it: {so}");
         let help = format!("set #{local} before, or correct its number");

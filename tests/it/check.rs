@@ -1,0 +1,105 @@
+//! `check` on what stands in this repository: nothing to find in macros and examples, a page and a case for each rule.
+use std::path::{Path, PathBuf};
+
+use gcode_sim::check::rules::ALL;
+use gcode_sim::check::{Checked, check};
+use gcode_sim::cli::library::Folders;
+use gcode_sim::control::Settings;
+use gcode_sim::program::NoLibrary;
+
+fn workspace() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
+}
+
+/// The programs below `dir`.
+fn programs(dir: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(dir).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            found.extend(programs(&path));
+        } else if path.extension().is_some_and(|e| e == "nc") {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}
+
+fn messages(checked: &Checked) -> Vec<String> {
+    checked.findings.iter().map(|f| format!("{}: {}", f.code, f.message)).collect()
+}
+
+#[test]
+fn macros_and_examples_have_no_findings() {
+    // The program with a wrong digit calls the macros beside the right one.
+    let beside = [workspace().join("examples/melon-mould")];
+    let all =
+        programs(&workspace().join("macros")).into_iter().chain(programs(&workspace().join("examples")));
+    let mut seen = 0;
+    for path in all {
+        let mut folders = Folders::new(&path, &beside).unwrap();
+        let bytes = std::fs::read(&path).unwrap();
+        let checked = check(path.display().to_string(), bytes, &Settings::default(), &mut folders);
+        assert_eq!(messages(&checked), [""; 0], "{}", path.display());
+        seen += 1;
+    }
+    assert!(seen > 5);
+}
+
+#[test]
+fn a_fault_put_into_an_example_is_found() {
+    let path = workspace().join("examples/melon-mould/O8100.nc");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let faults = [
+        (
+            " W21.6405",
+            "",
+            "missing-argument: O8101 needs W (#23): without it, it stops with MC3010 (W MISSING)",
+        ),
+        ("D15. C2. V50. F10.", "D15. C2 V50. F10.", "missing-point: C2 is 0.002 for the macro"),
+        ("G65 P8102", "G65 P8103", "missing-program: PS0076: program O8103 is not here"),
+        (
+            "Y[724.3+0.+50.]",
+            "Y(724.3+0.+50.)",
+            "round-brackets: PS0005: address Y has no number: round brackets are a comment",
+        ),
+        ("N330 M30", "N320 M30", "doubled-n: N320 stands in line 56 already: a search finds one of the two"),
+    ];
+    for (right, wrong, told) in faults {
+        let spoilt = text.replacen(right, wrong, 1);
+        assert_ne!(spoilt, text, "{right}");
+        let mut folders = Folders::new(&path, &[]).unwrap();
+        let checked = check("O8100.nc", spoilt.into_bytes(), &Settings::default(), &mut folders);
+        assert_eq!(messages(&checked), [told]);
+    }
+}
+
+#[test]
+fn every_rule_has_its_page_and_a_case() {
+    let page = std::fs::read_to_string(workspace().join("docs/checks.md")).unwrap();
+    let suite = workspace().join("tests/suite/check");
+    let mut told = String::new();
+    for entry in std::fs::read_dir(suite).unwrap() {
+        told += &std::fs::read_to_string(entry.unwrap().path().join("findings.snap")).unwrap();
+    }
+    for rule in ALL {
+        assert!(page.contains(&format!("\n## {}\n", rule.name)), "docs/checks.md lacks {}", rule.name);
+        let finds = [" error ", " warning "].iter().any(|s| told.contains(&format!("{s}{}:", rule.name)));
+        assert!(finds, "no case in tests/suite/check finds {}", rule.name);
+    }
+}
+
+/// Whatever stands in a file, it can be checked; the cases of the suite hold every kind of fault.
+#[test]
+fn every_program_of_the_suite_can_be_checked() {
+    for path in programs(&workspace().join("tests/suite")) {
+        let bytes = std::fs::read(&path).unwrap();
+        let whole = check("whole", bytes.clone(), &Settings::default(), &mut NoLibrary);
+        let again = check("whole", bytes.clone(), &Settings::default(), &mut NoLibrary);
+        assert_eq!(messages(&whole), messages(&again), "{}", path.display());
+        for cut in [bytes.len() / 3, bytes.len() / 2] {
+            check("cut", bytes[cut..].to_vec(), &Settings::default(), &mut NoLibrary);
+        }
+    }
+}
