@@ -1,6 +1,6 @@
 //! What can be known of a program without running it: faults that a control would meet, and slips it would not notice.
 //!
-//! The program and the ones it calls by number are read into [`subject::Subject`]: their blocks with the ways from
+//! The program and the ones it calls by number are read into one subject (`subject`): their blocks with the ways from
 //! one to another (`flow`), what is called from where (`calls`), which locals are vacant where (`vacancy`). The
 //! rules, a file each in [`rules`], look at that and say what they find. A comment `(CHECK-OFF NAME)` on a block, or
 //! at the head of a program for all of it, silences a rule there (`silence`).
