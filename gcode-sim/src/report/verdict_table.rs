@@ -148,6 +148,9 @@ fn summary(text: &mut String, verdict: &Verdict) {
         let said = "rounding alone, to the control's least increment, can use up";
         put(text, &format!("{said} Φ{rounding:.4}: {share:.1} % of the zone"));
     }
+    for what in &verdict.not_checked {
+        put(text, &format!("not checked: {what}"));
+    }
     if !verdict.missing.is_empty() {
         put(text, &format!("missing  {}", some(&verdict.missing, |id| id.clone(), ", ")));
     }
@@ -256,6 +259,7 @@ mod tests {
             missing: (3..18).map(|id| id.to_string()).collect(),
             extra: Vec::new(),
             findings: Vec::new(),
+            not_checked: Vec::new(),
             diagnostics: Vec::new(),
         }
     }

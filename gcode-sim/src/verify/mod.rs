@@ -13,9 +13,10 @@ pub use verdict::{Answer, Extra, Finding, HoleVerdict, Placed, Verdict};
 
 use crate::diag::Diagnostic;
 use crate::holes::Extracted;
-use crate::machine::Machine;
+use crate::machine::{HeadKind, Machine};
 use crate::part::reference::Reference;
 use crate::source::Span;
+use crate::units::Deg;
 
 /// What a hole may be off by.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,5 +62,26 @@ pub fn verify(
     for check in checks::ALL {
         check(&comparison, &mut objections);
     }
-    verdict::verdict(&comparison, rounding, objections, &extracted.findings, locate)
+    let mut verdict = verdict::verdict(&comparison, rounding, objections, &extracted.findings, locate);
+    verdict.not_checked = not_checked(&comparison, reference, machine);
+    verdict
+}
+
+/// What a pass says nothing about, in words: nobody should take it for checked.
+fn not_checked(comparison: &Comparison<'_>, reference: &Reference, machine: &Machine) -> Vec<String> {
+    let mut all = Vec::new();
+    let unknown = |pair: &&Pair| {
+        comparison.wanted[pair.wanted].diameter.is_some() && comparison.found[pair.found].diameter.is_none()
+    };
+    if comparison.pairs.iter().any(|pair| unknown(&pair)) {
+        all.push("diameters: the machine has no tool table, or not these tools".to_owned());
+    }
+    let along_feed = comparison.pairs.iter().all(|pair| comparison.found[pair.found].off_tool == Deg::ZERO);
+    if machine.head.kind == HeadKind::Free && along_feed {
+        all.push("head angles: the head is not known, each axis is taken along its feed".to_owned());
+    }
+    if reference.surface.is_none() {
+        all.push("rapid motion through the part: the reference has no surface, as a job file has".to_owned());
+    }
+    all
 }

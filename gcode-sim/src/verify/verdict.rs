@@ -37,6 +37,8 @@ pub struct Verdict {
     pub missing: Vec<String>,
     pub extra: Vec<Extra>,
     pub findings: Vec<Finding>,
+    /// What the verdict says nothing about, in words.
+    pub not_checked: Vec<String>,
     /// The findings with their places, for people.
     #[serde(skip)]
     pub diagnostics: Vec<Diagnostic>,
@@ -109,7 +111,8 @@ pub(super) fn verdict(
     locate: &dyn Fn(Span) -> (String, u32),
 ) -> Verdict {
     let mut against: Vec<Vec<String>> = vec![Vec::new(); comparison.wanted.len()];
-    for objection in &objections {
+    let failed = |finding: &Diagnostic| Severity::Error <= finding.severity;
+    for objection in objections.iter().filter(|objection| failed(&objection.finding)) {
         if let Some(wanted) = objection.wanted {
             against[wanted].push(objection.finding.code.clone());
         }
@@ -123,7 +126,6 @@ pub(super) fn verdict(
             hole_verdict(comparison, pair, rounding, objections, locate)
         })
         .collect();
-    let failed = |finding: &Diagnostic| Severity::Error <= finding.severity;
     let fails = objections.iter().any(|o| failed(&o.finding)) || findings.iter().any(failed);
     let worst = (0..holes.len()).max_by(|a, b| holes[*a].phi.total_cmp(&holes[*b].phi).then(b.cmp(a)));
     let origin = |finding: &Diagnostic| {
@@ -161,6 +163,7 @@ pub(super) fn verdict(
                 from: origin(finding),
             })
             .collect(),
+        not_checked: Vec::new(),
         holes,
         diagnostics: readable(objections.into_iter().map(|o| o.finding).chain(findings.iter().cloned())),
     }

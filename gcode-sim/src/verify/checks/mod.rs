@@ -6,6 +6,7 @@ mod mirrored;
 mod missing;
 mod position;
 pub(super) mod surplus;
+mod tools;
 
 use super::{Comparison, Objection};
 
@@ -19,4 +20,5 @@ pub(super) const ALL: &[Check] = &[
     aside::check,
     depth::check,
     diameter::check,
+    tools::check,
 ];
