@@ -239,7 +239,7 @@ fn a_hole_finished_by_the_drill_alone_has_the_wrong_diameter() {
     assert_eq!((verdict.verdict, verdict.holes.len()), (Answer::Pass, 5), "{:?}", codes(&verdict));
     let drilled = by(2, &five()[1..], by(1, &five(), start(PAPER)));
     let verdict = judge(&machine, &reference, &drilled);
-    assert_eq!((verdict.verdict, codes(&verdict)), (Answer::Fail, vec!["hole-diameter"]));
+    assert_eq!((verdict.verdict, codes(&verdict)), (Answer::Fail, vec!["hole-diameter", "hole-tools"]));
 }
 
 /// A part that stands 0.2 mm off, and one that leans 0.05° about z, on a machine that drills right.
