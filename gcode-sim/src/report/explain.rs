@@ -107,6 +107,7 @@ pub const PAGES: &[Page] = pages![
     "hole-missing"
     "hole-position"
     "hole-tilted"
+    "hole-tools"
     "hole-twice"
     "leaves-hole-sideways"
     "rapid-beyond-cut"
