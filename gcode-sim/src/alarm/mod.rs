@@ -84,7 +84,7 @@ pub enum Alarm {
     },
     PlaneInRotation,
     NoIntermediatePoint,
-    /// M00, M01, M02 or M30 beside another M code.
+    /// M00, M01, M02 or M30, and behind it another M code that takes its place.
     PluralM {
         first: u32,
         second: u32,

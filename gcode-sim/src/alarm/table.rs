@@ -63,7 +63,7 @@ impl Alarm {
             Self::TNotAllowed => (Ps(245), "T can't stand beside G04, G10 or G50".into(), Some("command T in a block of its own")),
             Self::NoIntermediatePoint => (Ps(305), "G29 without a G28 that left an intermediate point".into(), None),
             Self::FileNotFound { name } => (Ps(310), format!("program <{name}> is not here"), None),
-            Self::PluralM { first, second } => (Ps(335), format!("M{first:02} and M{second:02} in one block"), Some("M00, M01, M02 and M30 stand alone: write the other code in the block before")),
+            Self::PluralM { first, second } => (Ps(335), format!("M{second:02} behind M{first:02} in one block: only the last M code counts"), Some("write the other code in the block before")),
             Self::TwoSubprogramCalls => (Ps(1091), "two subprogram calls in one block".into(), None),
             Self::TwoMacroCalls => (Ps(1092), "two macro calls in one block".into(), None),
             Self::WordsWithReturn { letter } => (Ps(1093), format!("{letter} beside M99 while a modal macro call is on"), Some("write it in the block before")),

@@ -141,15 +141,14 @@ impl Core {
                 }
                 b'M' => {
                     let code = at(count(raw, b'M'), word.span)?;
-                    // A stop or an end lost among other codes would let the program run on.
-                    let other = given.m[..given.m_count].iter().flatten().next();
-                    if let Some((before, _)) = other
-                        && (m_codes::stands_alone(code) || m_codes::stands_alone(*before))
-                    {
-                        return Err(Alarm::PluralM { first: *before, second: code }.at(word.span));
-                    }
                     let most = if self.settings.three_m_codes { M_CODES } else { 1 };
-                    // Without M3B the last M code of a block counts.
+                    // Without M3B the last M code of a block counts; a stop or an end isn't lost in silence.
+                    if let Some(Some((first, _))) = given.m.get(most - 1)
+                        && given.m_count == most
+                        && m_codes::ends_or_stops(*first)
+                    {
+                        return Err(Alarm::PluralM { first: *first, second: code }.at(word.span));
+                    }
                     let place = given.m_count.min(most - 1);
                     given.m[place] = Some((code, word.span));
                     given.m_count = place + 1;

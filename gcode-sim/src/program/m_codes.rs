@@ -55,8 +55,8 @@ pub const M_CODES: &[MRow] = &[
     row(198, MEffect::NotSimulated, "call of an external file"),
 ];
 
-/// Stops and ends have their block for themselves (operator's manual, several M codes in a block).
-pub fn stands_alone(code: u32) -> bool {
+/// Whether the program would run on without this code.
+pub fn ends_or_stops(code: u32) -> bool {
     matches!(find(code), Some(MEffect::Stop | MEffect::OptionalStop | MEffect::End))
 }
 
