@@ -1,7 +1,7 @@
 //! One program through the whole chain: what the command line, the generator and tests call.
 use std::sync::Arc;
 
-use crate::alarm::Alarm;
+use crate::alarm::{Alarm, Code};
 use crate::control::Settings;
 use crate::diag::{Diagnostic, Severity};
 use crate::exec::{Control, Limits, Outcome};
@@ -157,7 +157,11 @@ impl Run {
                 let mut finding = Diagnostic::new(Severity::Alarm, row.code.to_string(), row.message);
                 finding.place = Some(stopped.place.clone());
                 finding.span = Some(stopped.span);
-                finding.help = row.help;
+                finding.help = row.help.or_else(|| match row.code {
+                    // The program's own words are all there is to say.
+                    Code::Mc(_) => None,
+                    code => Some(format!("gcode-sim explain {code} shows what to write instead")),
+                });
                 Some(finding)
             }
             Outcome::Limit => Some(self.unended()),

@@ -10,7 +10,7 @@ pub(super) fn run(arguments: &ExplainArguments) -> Result<Status, Refusal> {
     };
     let unknown = || {
         Refusal::new(format!(
-            "{code}: this simulator raises no such alarm; gcode-sim explain --list names those it does"
+            "{code} is none of this simulator's alarms and findings: gcode-sim explain --list names them"
         ))
     };
     output::print(&explain::find(code).ok_or_else(unknown)?.shown())?;
