@@ -31,12 +31,9 @@ pub struct Request {
 impl Request {
     /// A program on a machine, with that machine's control and the limits of [`Limits::default`].
     pub fn new(name: impl Into<String>, bytes: impl Into<Arc<[u8]>>, machine: Machine) -> Self {
-        let settings = Settings {
-            axes: machine.axes.clone(),
-            dialect: machine.dialect,
-            increment: machine.increment,
-            ..Settings::default()
-        };
+        let mut settings =
+            Settings { axes: machine.axes.clone(), increment: machine.increment, ..Settings::default() };
+        settings.become_dialect(machine.dialect);
         Self {
             name: name.into(),
             bytes: bytes.into(),

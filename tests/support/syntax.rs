@@ -85,6 +85,9 @@ fn statement(found: &Statement) -> String {
         Statement::Assign { target, value } => format!("set {} to {}", expr(target), expr(value)),
         Statement::Goto(to) => format!("go to {}", expr(to)),
         Statement::IfGoto { condition: c, to } => format!("if {} go to {}", condition(c), expr(to)),
+        Statement::If { condition: c, has_then } => {
+            format!("if {}{}, what follows", condition(c), if *has_then { " then" } else { "" })
+        }
         Statement::IfThen { condition: c, then } => format!("if {} then {}", condition(c), statement(then)),
         Statement::While { condition: c, number } => format!("while {} do {}", condition(c), number.node),
         Statement::Do(number) => format!("do {}", number.node),

@@ -20,10 +20,11 @@ pub(super) fn request(arguments: &ProgramArguments) -> Result<(Request, Folders)
     let name = if piped { "standard input".to_owned() } else { arguments.program.display().to_string() };
     let mut request = Request::new(name, input::bytes(&arguments.program)?, machine);
     let mut settings: Vec<(&str, String)> = Vec::new();
+    // The family first: what stands behind --control changes it.
+    settings.extend(arguments.dialect.iter().map(|name| ("--dialect", format!("DIALECT={name}"))));
     settings.extend(arguments.control.iter().map(|text| ("--control", text.clone())));
     settings.extend(arguments.input.iter().map(|text| ("--input", text.clone())));
     settings.extend(arguments.code.iter().map(|text| ("--code", text.clone())));
-    settings.extend(arguments.dialect.iter().map(|name| ("--dialect", format!("DIALECT={name}"))));
     settings.extend(arguments.cycles.iter().map(|count| ("--cycles", format!("CYCLES={count}"))));
     settings.extend(arguments.skip.iter().map(|part| ("--skip", format!("SKIP={part}"))));
     for (flag, text) in settings {

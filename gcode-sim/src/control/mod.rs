@@ -1,9 +1,11 @@
 //! The settings of a control that a program's meaning depends on, in one struct: never an `if` in the reader.
+mod dialect;
 mod table;
 
 use crate::motion::{Axes, MAX_AXES, Position};
 use crate::units::MmPerMin;
 
+pub use dialect::{DIALECTS, DialectRow};
 pub use table::{ROWS, Row, SettingError};
 
 /// The least input increment (parameter 1013).
@@ -56,6 +58,20 @@ impl Dialect {
         [("fanuc-31i", Self::Fanuc31i), ("fanuc-0i-f", Self::Fanuc0iF), ("haas-ngc", Self::HaasNgc)];
 }
 
+/// Which variables the tool offsets have.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum OffsetVariables {
+    /// #10001 wear and #11001 geometry of H, #12001 and #13001 of D; #2001 and #2201 for the first 200 of H.
+    #[default]
+    Fanuc,
+    /// #2001 geometry and #2201 wear of the length, #2401 and #2601 of the diameter.
+    Haas,
+}
+
+impl OffsetVariables {
+    pub const ALL: [(&'static str, Self); 2] = [("fanuc", Self::Fanuc), ("haas", Self::Haas)];
+}
+
 /// What is done where the sources are silent or contradict one another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Unsure {
@@ -67,12 +83,24 @@ pub struct Unsure {
     pub round_literals: bool,
     /// GOTO takes the first of several equal N of the program instead of the next one downwards.
     pub first_stored_number: bool,
-    /// `IF[…]THEN` takes any statement and not only an assignment.
+    /// `IF[…]THEN GOTO n` is taken.
     pub then_takes_goto: bool,
     /// G65 … L sets the arguments anew for every pass.
     pub repeats_reset_locals: bool,
     /// G66.1 with arguments of its own calls the macro at once.
     pub every_block_calls_itself: bool,
+    /// A modal macro call finds its locals as its last call left them.
+    pub modal_keeps_locals: bool,
+    /// `GOTO-n` searches upwards instead of raising PS1128.
+    pub minus_searches_up: bool,
+    /// A GOTO without its target raises PS0078 instead of PS0128.
+    pub missing_target_is_78: bool,
+    /// AND, OR and XOR of a negative number raise PS0119 instead of working on two's complements.
+    pub negative_bits_alarm: bool,
+    /// #5001… under mirror, scaling and rotation are the coordinates after them instead of those programmed.
+    pub shows_transformed: bool,
+    /// POW and MOD are known.
+    pub new_functions: bool,
     /// `ATAN[0]/[0]` raises PS0119 instead of answering 0.
     pub atan_of_nothing_alarms: bool,
     /// `TAN[90]` raises PS0119 instead of answering a large number.
@@ -115,8 +143,15 @@ pub struct Settings {
     pub no_repeated_address: bool,
     /// M3B 3404#7: up to three M codes in a block.
     pub three_m_codes: bool,
-    /// MCA 6008#1: `#3000=n` shows MC n instead of MC 3000 + n.
-    pub plain_macro_alarms: bool,
+    /// `#3000=n` shows MC with this number added; MCA 6008#1 makes it 0.
+    pub macro_alarm_base: u16,
+    /// `IF[…]` is followed by an assignment or by words without THEN.
+    pub plain_if: bool,
+    /// `IF[…]THEN` takes words.
+    pub then_takes_words: bool,
+    /// Common variables beyond #999.
+    pub more_commons: Option<(u32, u32)>,
+    pub offset_variables: OffsetVariables,
     /// PRT 6001#1: DPRNT leaves the blanks before a number out.
     pub print_without_blanks: bool,
     /// A number with more digits than DPRNT's format is printed whole instead of its lower digits only.
@@ -180,7 +215,11 @@ impl Default for Settings {
             series_15_offsets: false,
             no_repeated_address: false,
             three_m_codes: false,
-            plain_macro_alarms: false,
+            macro_alarm_base: 3000,
+            plain_if: false,
+            then_takes_words: false,
+            more_commons: Some((98_000, 98_499)),
+            offset_variables: OffsetVariables::default(),
             print_without_blanks: false,
             print_expands: false,
             print_needs_open: false,
@@ -219,6 +258,12 @@ impl Default for Unsure {
             then_takes_goto: false,
             repeats_reset_locals: false,
             every_block_calls_itself: true,
+            modal_keeps_locals: true,
+            minus_searches_up: false,
+            missing_target_is_78: false,
+            negative_bits_alarm: false,
+            shows_transformed: false,
+            new_functions: true,
             atan_of_nothing_alarms: false,
             tan_90_alarms: false,
             g53_moves_in_g91: false,

@@ -1,5 +1,5 @@
 //! The settings by their names: the parameter a manual names, its key on the command line, how it is read.
-use super::{Dialect, Increment, Settings};
+use super::{Dialect, Increment, OffsetVariables, Settings};
 use crate::units::MmPerMin;
 
 /// Why a setting can't be taken.
@@ -48,7 +48,7 @@ macro_rules! number {
 /// Every setting with a name, in the order they are listed.
 #[rustfmt::skip]
 pub const ROWS: &[Row] = &[
-    number!("DIALECT", "the family of controls", "fanuc-31i, fanuc-0i-f or haas-ngc", |s, v| s.dialect = choice(v, &Dialect::ALL)?),
+    number!("DIALECT", "the family of controls", "fanuc-31i, fanuc-0i-f or haas-ngc", |s, v| s.become_dialect(choice(v, &Dialect::ALL)?)),
     number!("INCREMENT", "1013: the least input increment", "IS-A, IS-B or IS-C", |s, v| s.increment = choice(v, &Increment::ALL)?),
     switch!("DPI", "3401#0: numbers without a point are mm, degrees, seconds", calculator_input),
     switch!("NAT", "6004#0: ASIN -90 to 90, ATAN -180 to 180", signed_angles),
@@ -57,7 +57,12 @@ pub const ROWS: &[Row] = &[
     switch!("V15", "6000#3: geometry and wear change places in tool offset variables", series_15_offsets),
     switch!("AD2", "3403#6: an address twice in a block alarms", no_repeated_address),
     switch!("M3B", "3404#7: up to three M codes in a block", three_m_codes),
-    switch!("MCA", "6008#1: #3000=n shows MC n", plain_macro_alarms),
+    number!("MCA", "6008#1: #3000=n shows MC n", SWITCH, |s, v| s.macro_alarm_base = if switch(v)? { 0 } else { 3000 }),
+    number!("ALARM-BASE", "what #3000=n adds to n", "0 to 9000", |s, v| s.macro_alarm_base = whole(v, 0, 9000)? as u16),
+    number!("MORE-COMMONS", "common variables beyond #999", "a range as 98000-98499, or 0", |s, v| s.more_commons = range(v)?),
+    number!("OFFSET-VARIABLES", "how the variables of tool offsets are numbered", "fanuc or haas", |s, v| s.offset_variables = choice(v, &OffsetVariables::ALL)?),
+    switch!("PLAIN-IF", "IF[..] takes an assignment or words without THEN", plain_if),
+    switch!("THEN-WORDS", "IF[..]THEN takes words", then_takes_words),
     switch!("PRT", "6001#1: DPRNT leaves the blanks before a number out", print_without_blanks),
     switch!("PRINT-EXPANDS", "DPRNT prints a number whole that has more digits than its format", print_expands),
     switch!("PRINT-NEEDS-POPEN", "DPRNT and BPRNT without POPEN alarm", print_needs_open),
@@ -85,6 +90,12 @@ pub const ROWS: &[Row] = &[
     switch!("THEN-GOTO", "IF[..]THEN GOTO is taken", unsure.then_takes_goto),
     switch!("L-RESETS", "G65 L sets the arguments anew for every pass", unsure.repeats_reset_locals),
     switch!("G66.1-CALLS", "G66.1 with arguments calls its macro at once", unsure.every_block_calls_itself),
+    switch!("G66-KEEPS-LOCALS", "a modal macro finds its locals as its last call left them", unsure.modal_keeps_locals),
+    switch!("GOTO-MINUS-UP", "GOTO-n searches upwards", unsure.minus_searches_up),
+    switch!("MISSING-N-78", "GOTO without its target is PS0078, not PS0128", unsure.missing_target_is_78),
+    switch!("BITS-ALARM", "AND, OR, XOR of a negative number alarm", unsure.negative_bits_alarm),
+    switch!("SHOWN-TRANSFORMED", "#5001.. under G51, G51.1, G68, G68.2 are the coordinates after them", unsure.shows_transformed),
+    switch!("NEW-FUNCTIONS", "POW and MOD are known", unsure.new_functions),
     switch!("ATAN-0-ALARM", "ATAN[0]/[0] alarms", unsure.atan_of_nothing_alarms),
     switch!("TAN-90-ALARM", "TAN[90] alarms", unsure.tan_90_alarms),
     switch!("G53-IN-G91", "G53 moves by increments in G91", unsure.g53_moves_in_g91),
@@ -153,6 +164,17 @@ fn positive(value: &str) -> Option<f64> {
 
 fn whole(value: &str, least: usize, most: usize) -> Option<usize> {
     value.parse().ok().filter(|v| (least..=most).contains(v))
+}
+
+/// `98000-98499`; `0` is none.
+fn range(value: &str) -> Option<Option<(u32, u32)>> {
+    if value == "0" {
+        return Some(None);
+    }
+    let (from, to) = value.split_once('-')?;
+    let from = whole(from.trim(), 1000, 99_999)? as u32;
+    let to = whole(to.trim(), from as usize, from as usize + 9_999)? as u32;
+    Some(Some((from, to)))
 }
 
 fn roll_over(settings: &mut Settings, letters: &str) -> Option<()> {

@@ -375,7 +375,9 @@ impl Core {
             FrameKind::Macro => self.vars.leave(),
             FrameKind::Modal(index) => {
                 let locals = *self.vars.locals();
-                if let Some(call) = self.modal_calls.get_mut(index) {
+                if let Some(call) = self.modal_calls.get_mut(index)
+                    && self.settings.unsure.modal_keeps_locals
+                {
                     call.locals = locals;
                 }
                 self.vars.leave();

@@ -1,7 +1,7 @@
 //! Evaluates expressions and conditions.
 use super::Core;
 use super::functions::{atan2, binary, compare, function, power};
-use super::vars::{self, Kind, Value};
+use super::vars::{Kind, Value};
 use crate::alarm::Alarm;
 use crate::program::{Code, Instruction, Operand, Operation, Program};
 use crate::source::{Span, Spanned};
@@ -48,7 +48,7 @@ impl Core {
 
     /// The value of a variable of any kind.
     pub(super) fn read(&self, number: u32) -> Result<Value, Alarm> {
-        match vars::kind(number) {
+        match self.vars.kind(number) {
             Kind::Local(index) => Ok(self.vars.locals()[index]),
             Kind::Common(index) => Ok(self.vars.common(index)),
             Kind::Vacant => Ok(Value::Vacant),
@@ -84,12 +84,15 @@ impl Core {
             },
             Operation::Binary(op) => {
                 let right = stack.pop().number();
-                Value::Number(binary(op, stack.pop().number(), right)?)
+                Value::Number(binary(op, stack.pop().number(), right, unsure)?)
             }
             Operation::Function(name) => Value::Number(function(name, stack.pop().number(), &self.settings)?),
             Operation::Atan2 => {
                 let right = stack.pop().number();
                 Value::Number(atan2(stack.pop().number(), right, &self.settings)?)
+            }
+            Operation::Power if !unsure.new_functions => {
+                return Err(Alarm::Expression { text: "POW".into() });
             }
             Operation::Power => {
                 let right = stack.pop().number();

@@ -1,7 +1,7 @@
 //! What operators, comparisons and functions compute, with their domains and alarms.
 use super::vars::Value;
 use crate::alarm::Alarm;
-use crate::control::Settings;
+use crate::control::{Settings, Unsure};
 use crate::syntax::ast::{BinaryOp, Function, Relation};
 use crate::units::Deg;
 
@@ -10,13 +10,15 @@ fn finite(value: f64) -> Result<f64, Alarm> {
     if value.is_finite() { Ok(value) } else { Err(Alarm::FloatOverflow) }
 }
 
-pub(super) fn binary(op: BinaryOp, left: f64, right: f64) -> Result<f64, Alarm> {
+pub(super) fn binary(op: BinaryOp, left: f64, right: f64, unsure: &Unsure) -> Result<f64, Alarm> {
+    let bits = |value| bits(value, unsure);
     finite(match op {
         BinaryOp::Add => left + right,
         BinaryOp::Sub => left - right,
         BinaryOp::Mul => left * right,
         BinaryOp::Div if right == 0.0 => return Err(Alarm::DivideByZero),
         BinaryOp::Div => left / right,
+        BinaryOp::Mod if !unsure.new_functions => return Err(Alarm::Expression { text: "MOD".into() }),
         BinaryOp::Mod => {
             let (left, right) = (left.round(), right.round());
             if right == 0.0 {
@@ -32,8 +34,11 @@ pub(super) fn binary(op: BinaryOp, left: f64, right: f64) -> Result<f64, Alarm> 
 }
 
 /// AND, OR and XOR work on 32-bit integers.
-fn bits(value: f64) -> Result<i32, Alarm> {
+fn bits(value: f64, unsure: &Unsure) -> Result<i32, Alarm> {
     let value = value.round();
+    if value < 0.0 && unsure.negative_bits_alarm {
+        return Err(Alarm::OutOfRange { function: "AND, OR, XOR".into(), value });
+    }
     if (-2_147_483_648.0..=2_147_483_647.0).contains(&value) {
         Ok(value as i32)
     } else if (0.0..=4_294_967_295.0).contains(&value) {

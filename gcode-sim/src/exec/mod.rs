@@ -142,10 +142,11 @@ impl Control {
     /// A control switched on, about to run the first program of `memory`.
     pub fn new(memory: Memory, settings: Settings) -> Self {
         let offsets = Offsets::new(settings.tool_offsets);
+        let vars = Vars::new(settings.more_commons);
         let core = Core {
             settings,
             state: State::default(),
-            vars: Vars::default(),
+            vars,
             offsets,
             frames: Vec::new(),
             modal_calls: Vec::new(),
@@ -253,8 +254,18 @@ impl Control {
         if op.skip.is_some_and(|switch| core.skips(switch)) {
             return Ok(None);
         }
-        match &op.kind {
-            OpKind::Empty => {}
+        let mut kind = &op.kind;
+        if let OpKind::If { condition, has_then, then } = kind {
+            let taken = if *has_then { core.settings.then_takes_words } else { core.settings.plain_if };
+            if !taken {
+                return Err(Alarm::IfFormat.at(op.span));
+            }
+            if core.holds(program, *condition)? {
+                kind = then;
+            }
+        }
+        match kind {
+            OpKind::Empty | OpKind::If { .. } => {}
             OpKind::Alarm(alarm) => return Err((**alarm).clone()),
             OpKind::Statement(statement) => {
                 let outcome = core.statement(program, statement, op.span, sink)?;

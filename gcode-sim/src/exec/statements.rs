@@ -1,6 +1,6 @@
 //! Macro statements: assignments, branches and loops. They never tell the machine anything, but for #3000 and #3006.
 use super::eval::{Checked, index, integer};
-use super::vars::{self, Kind, Value};
+use super::vars::{Kind, Value};
 use super::{Core, Outcome};
 use crate::alarm::Alarm;
 use crate::motion::{EventKind, Sink, StopKind};
@@ -78,16 +78,30 @@ impl Core {
     fn goto(&mut self, program: &Program, to: &Spanned<Operand>) -> Checked<()> {
         let value = self.operand(program, to.node)?.number();
         let number = integer(value).map_err(|alarm| alarm.at(to.span))?;
+        if self.settings.unsure.minus_searches_up && (-99_999_999..0).contains(&number) {
+            let target = program.find_number_above(number.unsigned_abs() as u32, self.frame().next);
+            let missing = || self.no_target(number.unsigned_abs() as u32).at(to.span);
+            let target = target.ok_or_else(missing)?;
+            self.frame_mut().jump(target);
+            return Ok(());
+        }
         if !(1..=99_999_999).contains(&number) {
             return Err(Alarm::SequenceNumberRange { number }.at(to.span));
         }
         let number = number as u32;
         let from = if self.settings.unsure.first_stored_number { 0 } else { self.frame().next };
         let Some(target) = program.find_number(number, from) else {
-            return Err(Alarm::JumpTargetNotFound { number }.at(to.span));
+            return Err(self.no_target(number).at(to.span));
         };
         self.frame_mut().jump(target);
         Ok(())
+    }
+
+    fn no_target(&self, number: u32) -> Alarm {
+        match self.settings.unsure.missing_target_is_78 {
+            true => Alarm::SequenceNumberNotFound { number },
+            false => Alarm::JumpTargetNotFound { number },
+        }
     }
 
     /// Writes a variable of any kind.
@@ -99,16 +113,18 @@ impl Core {
         span: Span,
         sink: &mut S,
     ) -> Checked<()> {
-        match vars::kind(number) {
+        match self.vars.kind(number) {
             Kind::Local(index) => self.vars.set_local(index, value),
             Kind::Common(index) => self.vars.set_common(index, value),
             Kind::Vacant => return Err(Alarm::WriteProtected { number }.at(span)),
             Kind::System if number == 3000 => {
                 let number = integer(value.number()).map_err(|alarm| alarm.at(span))?;
                 let text = shown(text);
-                let plain = self.settings.plain_macro_alarms;
                 let number =
                     u16::try_from(number).map_err(|_| Alarm::NoSuchVariable { number: 3000 }.at(span))?;
+                let base = self.settings.macro_alarm_base;
+                let (number, plain) =
+                    if base == 3000 { (number, false) } else { (number.saturating_add(base), true) };
                 return Err(Alarm::Raised { number, text, plain }.at(span));
             }
             Kind::System if number == 3006 => self.message(&shown(text), sink),

@@ -3,6 +3,7 @@ use super::Core;
 use super::offsets::Register;
 use super::vars::Value;
 use crate::alarm::Alarm;
+use crate::control::OffsetVariables;
 use crate::motion::Axis;
 
 type Read = fn(&Core, u32) -> Result<f64, Alarm>;
@@ -55,7 +56,7 @@ const ROWS: &[Row] = &[
     row(4001, 4130, Some(|c, n| c.modal_information(n + 1)), None),
     row(4201, 4330, Some(|c, n| c.modal_information(n + 1)), None),
     // Positions.
-    row(5001, 5020, Some(|c, n| c.position(n, |c, axis| c.state.programmed[axis])), None),
+    row(5001, 5020, Some(|c, n| c.position(n, |c, axis| c.end_point()[axis])), None),
     row(5021, 5040, Some(|c, n| c.position(n, |c, axis| c.rolled(axis, c.state.machine[axis]))), None),
     row(5041, 5060, Some(|c, n| c.position(n, |c, axis| c.in_work(axis, c.state.machine[axis]))), None),
     row(5061, 5080, Some(|c, n| c.position(n, |c, axis| c.in_work(axis, c.state.skip[axis]))), None),
@@ -76,11 +77,27 @@ const ROWS: &[Row] = &[
 const NOT_SIMULATED: &[(u32, u32, &str)] = &[
     (4401, 4530, "the codes of a block that a macro interrupted"),
     (8000, 8999, "tool management"),
-    (98_000, 98_499, "extended common variables"),
     (100_001, 100_200, "positions of more than 20 axes"),
 ];
 
-fn find(number: u32) -> Result<&'static Row, Alarm> {
+/// What the variables of tool offsets are on a Haas; its diameters are radii here.
+#[rustfmt::skip]
+const HAAS_OFFSETS: &[Row] = &[
+    row(2001, 2200, Some(|c, n| c.tool_offset(Register::HGeometry, n)), Some(|c, n, v| c.set_tool_offset(Register::HGeometry, n, v))),
+    row(2201, 2400, Some(|c, n| c.tool_offset(Register::HWear, n)), Some(|c, n, v| c.set_tool_offset(Register::HWear, n, v))),
+    row(2401, 2600, Some(|c, n| Ok(2.0 * c.tool_offset(Register::DGeometry, n)?)), Some(|c, n, v| c.set_tool_offset(Register::DGeometry, n, v / 2.0))),
+    row(2601, 2800, Some(|c, n| Ok(2.0 * c.tool_offset(Register::DWear, n)?)), Some(|c, n, v| c.set_tool_offset(Register::DWear, n, v / 2.0))),
+];
+
+fn find(number: u32, offsets: OffsetVariables) -> Result<&'static Row, Alarm> {
+    if offsets == OffsetVariables::Haas {
+        if let Some(row) = HAAS_OFFSETS.iter().find(|row| (row.from..=row.to).contains(&number)) {
+            return Ok(row);
+        }
+        if (2001..=2806).contains(&number) || (10_001..=13_999).contains(&number) {
+            return Err(Alarm::NoSuchVariable { number: i64::from(number) });
+        }
+    }
     let place = ROWS.partition_point(|row| row.to < number);
     ROWS.get(place).filter(|row| row.from <= number).ok_or_else(|| {
         let known = NOT_SIMULATED.iter().find(|(from, to, _)| (*from..=*to).contains(&number));
@@ -104,7 +121,7 @@ impl Core {
         if number == 3100 {
             return Ok(Value::Vacant);
         }
-        let row = find(number)?;
+        let row = find(number, self.settings.offset_variables)?;
         let read = row.read.ok_or(Alarm::ReadProtected { number })?;
         read(self, number - row.from).map(Value::Number)
     }
@@ -113,7 +130,7 @@ impl Core {
         if number == 3100 {
             return Err(Alarm::WriteProtected { number });
         }
-        let row = find(number)?;
+        let row = find(number, self.settings.offset_variables)?;
         let write = row.write.ok_or(Alarm::WriteProtected { number })?;
         write(self, number - row.from, value)
     }
@@ -183,6 +200,14 @@ impl Core {
                 f64::from(self.state.modal.code(group).ok_or(unknown)?) / 10.0
             }
         })
+    }
+
+    /// Where the last block ended: as programmed, or after mirror, scaling and rotation.
+    fn end_point(&self) -> crate::motion::Position {
+        match self.settings.unsure.shows_transformed {
+            true => self.state.transform.forward(self.state.programmed),
+            false => self.state.programmed,
+        }
     }
 
     /// A position of axis 1…; axes that the control doesn't have stand at 0.
@@ -276,7 +301,7 @@ mod tests {
     #[test]
     fn numbers_between_the_ranges_do_not_exist() {
         for number in [34, 99, 200, 499, 5401, 9_999_999] {
-            assert!(find(number).is_err(), "#{number}");
+            assert!(find(number, OffsetVariables::Fanuc).is_err(), "#{number}");
         }
     }
 }

@@ -47,16 +47,6 @@ pub(super) enum Kind {
 
 const COMMONS: usize = 1000;
 
-/// What kind of variable `number` is.
-pub(super) fn kind(number: u32) -> Kind {
-    match number {
-        0 => Kind::Vacant,
-        1..=33 => Kind::Local(number as usize),
-        100..=199 | 500..=999 => Kind::Common(number as usize),
-        _ => Kind::System,
-    }
-}
-
 /// All variables that a program may use freely.
 #[derive(Clone, Debug)]
 pub struct Vars {
@@ -64,17 +54,41 @@ pub struct Vars {
     levels: Vec<Locals>,
     level: usize,
     commons: Vec<Value>,
+    /// The numbers of further commons, which follow the others in `commons`.
+    more: (u32, u32),
     /// A digest of all values in force, kept up with every write.
     digest: u64,
 }
 
-impl Default for Vars {
-    fn default() -> Self {
-        Self { levels: vec![VACANT], level: 0, commons: vec![Value::Vacant; COMMONS], digest: 0 }
+impl Vars {
+    /// `more` are the numbers of commons beyond #999.
+    pub(super) fn new(more: Option<(u32, u32)>) -> Self {
+        let count = more.map_or(0, |(from, to)| (to - from + 1) as usize);
+        let more = more.unwrap_or((1, 0));
+        Self {
+            levels: vec![VACANT],
+            level: 0,
+            commons: vec![Value::Vacant; COMMONS + count],
+            more,
+            digest: 0,
+        }
     }
 }
 
 impl Vars {
+    /// What kind of variable `number` is.
+    pub(super) fn kind(&self, number: u32) -> Kind {
+        match number {
+            0 => Kind::Vacant,
+            1..=33 => Kind::Local(number as usize),
+            100..=199 | 500..=999 => Kind::Common(number as usize),
+            _ if (self.more.0..=self.more.1).contains(&number) => {
+                Kind::Common(COMMONS + (number - self.more.0) as usize)
+            }
+            _ => Kind::System,
+        }
+    }
+
     pub fn locals(&self) -> &Locals {
         &self.levels[self.level]
     }
@@ -135,7 +149,9 @@ impl Vars {
     /// The variables that aren't vacant, by number: the locals of the main program and the commons.
     pub fn known(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
         let locals = self.levels[0].iter().enumerate();
-        let all = locals.chain(self.commons.iter().enumerate());
+        let (commons, more) = self.commons.split_at(COMMONS);
+        let more = (self.more.0 as usize..).zip(more);
+        let all = locals.chain(commons.iter().enumerate()).chain(more);
         all.filter_map(|(number, value)| Some((number as u32, value.given()?)))
     }
 }
@@ -156,7 +172,7 @@ mod tests {
 
     #[test]
     fn a_call_hides_the_callers_locals_and_a_return_brings_them_back() {
-        let mut vars = Vars::default();
+        let mut vars = Vars::new(None);
         vars.set_local(1, Value::Number(7.0));
         vars.enter(&VACANT);
         assert!(vars.locals()[1].is_vacant());
@@ -169,7 +185,7 @@ mod tests {
 
     #[test]
     fn the_digest_comes_back_with_the_values() {
-        let mut vars = Vars::default();
+        let mut vars = Vars::new(None);
         vars.set_common(500, Value::Number(1.0));
         vars.set_local(3, Value::Number(0.0));
         let before = vars.digest();

@@ -48,6 +48,17 @@ impl Lowering {
     }
 
     fn kind(&mut self, block: &ast::Block) -> Lowered<OpKind> {
+        if let Some(ast::Item::Statement(first)) = block.items.first()
+            && let ast::Statement::If { condition, has_then } = &first.node
+        {
+            let condition = self.condition(condition, first.span)?;
+            let rest = ast::Block { items: block.items[1..].to_vec(), ..block.clone() };
+            let then = match self.kind(&rest)? {
+                then @ (OpKind::Words(_) | OpKind::Statement(Statement::Assign { .. })) => Box::new(then),
+                _ => return Err(Alarm::IfFormat.at(first.span)),
+            };
+            return Ok(OpKind::If { condition, has_then: *has_then, then });
+        }
         let mut words = Vec::new();
         let mut skips = Vec::new();
         let mut statement = None;
@@ -104,6 +115,7 @@ impl Lowering {
                 };
                 Statement::IfThen { condition, then: Box::new(then) }
             }
+            ast::Statement::If { .. } => return Err(Alarm::IfFormat.at(span)),
             ast::Statement::While { condition, number } => {
                 let number = loop_number(number)?;
                 Statement::While { condition: self.condition(condition, span)?, number, end: 0 }

@@ -56,6 +56,12 @@ pub enum OpKind {
     Empty,
     Words(Box<Words>),
     Statement(Statement),
+    /// `IF[…]` before words or a statement, with THEN or without: settings say whether the control takes it.
+    If {
+        condition: Code,
+        has_then: bool,
+        then: Box<Self>,
+    },
     /// The control stops here if it gets here.
     Alarm(Box<Spanned<Alarm>>),
 }
@@ -138,6 +144,12 @@ impl Program {
 
     pub(crate) fn variable_name(&self, index: u32) -> &str {
         self.names.get(index as usize).map_or("", String::as_str)
+    }
+
+    /// The last block with this sequence number before `from`.
+    pub fn find_number_above(&self, number: u32, from: OpIndex) -> Option<OpIndex> {
+        let next = self.numbers.partition_point(|entry| *entry < (number, from));
+        self.numbers.get(next.checked_sub(1)?).filter(|(n, _)| *n == number).map(|(_, op)| *op)
     }
 
     /// The block with this sequence number: the next one from `from` on, else the first of the program.

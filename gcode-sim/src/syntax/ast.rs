@@ -250,6 +250,12 @@ pub enum Statement {
         condition: Condition,
         then: Box<Statement>,
     },
+    /// `IF[…]` or `IF[…]THEN` before words, or `IF[…]` before an assignment: the block's other items are what it
+    /// decides about.
+    If {
+        condition: Condition,
+        has_then: bool,
+    },
     While {
         condition: Condition,
         number: Spanned<i64>,

@@ -176,6 +176,9 @@ pub fn print_statement(statement: &Statement) -> String {
         Statement::IfThen { condition: c, then } => {
             format!("IF[{}]THEN {}", condition(c), print_statement(then))
         }
+        Statement::If { condition: c, has_then } => {
+            format!("IF[{}]{}", condition(c), if *has_then { "THEN" } else { "" })
+        }
         Statement::While { condition: c, number } => format!("WHILE[{}]DO{}", condition(c), number.node),
         Statement::Do(number) => format!("DO{}", number.node),
         Statement::End(number) => format!("END{}", number.node),

@@ -108,12 +108,24 @@ fn if_statement(line: Line, input: Input<'_>) -> Read<'_, Statement> {
             let (rest, to) = goto(line, after)?;
             Ok((rest, Statement::IfGoto { condition, to }))
         }
+        Some((after, Keyword::Then)) if begins_word(after) => {
+            Ok((after, Statement::If { condition, has_then: true }))
+        }
         Some((after, Keyword::Then)) => {
             let (rest, then) = must(|input| then(line, input), || Alarm::IfFormat)(after)?;
             Ok((rest, Statement::IfThen { condition, then: Box::new(then) }))
         }
+        None if begins_word(at) || matches!(at.first(), Some(b'#')) => {
+            Ok((at, Statement::If { condition, has_then: false }))
+        }
         _ => fail(at, Alarm::IfFormat),
     }
+}
+
+/// An address and its value, as far as two characters tell.
+fn begins_word(input: Input<'_>) -> bool {
+    let Some((b'A'..=b'Z' | b'a'..=b'z', after)) = next(input) else { return false };
+    matches!(next(after), Some((b'0'..=b'9' | b'#' | b'[' | b'.' | b'-' | b'+', _)))
 }
 
 /// One assignment, or a GOTO, which some controls take.

@@ -1,0 +1,66 @@
+//! The families of controls as data: what choosing one sets, in the words of `--control`.
+use super::{Dialect, Settings};
+
+/// What a family of controls has by itself; a setting named after the dialect still changes it.
+#[derive(Debug)]
+pub struct DialectRow {
+    pub dialect: Dialect,
+    pub name: &'static str,
+    /// Keys of [`super::ROWS`] with their values.
+    pub sets: &'static [(&'static str, &'static str)],
+}
+
+/// Settings not named here are those of every control of the class.
+#[rustfmt::skip]
+pub const DIALECTS: &[DialectRow] = &[
+    DialectRow { dialect: Dialect::Fanuc31i, name: "fanuc-31i", sets: &[
+        ("MACRO-LEVELS", "5"), ("CALL-LEVELS", "15"), ("MORE-COMMONS", "98000-98499"), ("OFFSET-VARIABLES", "fanuc"),
+        ("ALARM-BASE", "3000"), ("PRINT-EXPANDS", "0"), ("PRINT-DIGITS", "8"), ("PLAIN-IF", "0"), ("THEN-WORDS", "0"),
+        ("THEN-GOTO", "0"), ("G67-ALARM", "1"),
+    ] },
+    DialectRow { dialect: Dialect::Fanuc0iF, name: "fanuc-0i-f", sets: &[
+        ("MACRO-LEVELS", "5"), ("CALL-LEVELS", "15"), ("MORE-COMMONS", "98000-98499"), ("OFFSET-VARIABLES", "fanuc"),
+        ("ALARM-BASE", "3000"), ("PRINT-EXPANDS", "0"), ("PRINT-DIGITS", "8"), ("PLAIN-IF", "0"), ("THEN-WORDS", "0"),
+        ("THEN-GOTO", "0"), ("G67-ALARM", "1"),
+    ] },
+    // Nine macro levels in all; commons #10000 to #10999; offsets as #2001 and #2201 length and its wear, #2401 and
+    // #2601 diameter and its wear; #3000=n shows 1000 + n; DPRNT prints all digits, seven at most are asked for; IF
+    // without THEN (operator's manual, macros).
+    DialectRow { dialect: Dialect::HaasNgc, name: "haas-ngc", sets: &[
+        ("MACRO-LEVELS", "9"), ("CALL-LEVELS", "9"), ("MORE-COMMONS", "10000-10999"), ("OFFSET-VARIABLES", "haas"),
+        ("ALARM-BASE", "1000"), ("PRINT-EXPANDS", "1"), ("PRINT-DIGITS", "7"), ("PLAIN-IF", "1"), ("THEN-WORDS", "1"),
+        ("THEN-GOTO", "1"), ("G67-ALARM", "0"),
+    ] },
+];
+
+impl Settings {
+    /// Makes the control one of a family: sets all that the family's row names.
+    pub fn become_dialect(&mut self, dialect: Dialect) {
+        self.dialect = dialect;
+        let row = DIALECTS.iter().find(|row| row.dialect == dialect);
+        for (key, value) in row.iter().flat_map(|row| row.sets) {
+            // A test holds that every row can be set.
+            let taken = self.set(key, value);
+            debug_assert_eq!(taken, Ok(()));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_row_can_be_set_and_the_first_is_the_default() {
+        for row in DIALECTS {
+            let mut settings = Settings::default();
+            for (key, value) in row.sets {
+                settings.set(key, value).unwrap();
+            }
+            settings.become_dialect(row.dialect);
+            assert_eq!(settings.dialect, row.dialect);
+            settings.become_dialect(Dialect::default());
+            assert_eq!(settings, Settings::default(), "{} leaves something behind", row.name);
+        }
+    }
+}
