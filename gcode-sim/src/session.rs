@@ -82,7 +82,7 @@ pub fn run<S: Sink>(
     }
     let mut control = Control::new(memory, request.settings.clone());
     for (number, value) in
-        presets(&request.machine, request.settings.tool_offsets).chain(request.variables.iter().copied())
+        presets(&request.machine, &request.settings).chain(request.variables.iter().copied())
     {
         control.set(number, value).map_err(|alarm| SessionError::Variable { number, alarm })?;
     }
@@ -91,15 +91,16 @@ pub fn run<S: Sink>(
 }
 
 /// What stands in the control of a machine that is set up: work offsets (#5221…), and the lengths of the tools in
-/// the table as geometry offsets H (#11001…).
-fn presets(machine: &Machine, pairs: usize) -> impl Iterator<Item = (u32, f64)> + '_ {
+/// the table as geometry offsets H (#11001…, or #2001… on a Haas).
+fn presets<'a>(machine: &'a Machine, settings: &'a Settings) -> impl Iterator<Item = (u32, f64)> + 'a {
     let work = machine.offsets.iter().flat_map(|offset| {
         let first = 5221 + 20 * (offset.code - 54);
         offset.values.iter().map(move |(axis, value)| (first + *axis as u32, *value))
     });
-    let measured = move |number: u32| (1..=pairs).contains(&(number as usize));
     let lengths = machine.tools.iter().filter_map(move |tool| {
-        tool.length.filter(|_| measured(tool.number)).map(|length| (11_000 + tool.number, length))
+        let known = (1..=settings.tool_offsets).contains(&(tool.number as usize));
+        let variable = settings.offset_variables.length(tool.number).filter(|_| known)?;
+        Some((variable, tool.length?))
     });
     work.chain(lengths)
 }

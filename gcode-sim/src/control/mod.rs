@@ -70,6 +70,14 @@ pub enum OffsetVariables {
 
 impl OffsetVariables {
     pub const ALL: [(&'static str, Self); 2] = [("fanuc", Self::Fanuc), ("haas", Self::Haas)];
+
+    /// The variable of the geometry offset H of a tool, if it has one.
+    pub fn length(self, tool: u32) -> Option<u32> {
+        match self {
+            Self::Fanuc => (tool <= 999).then_some(11_000 + tool),
+            Self::Haas => (tool <= 200).then_some(2_000 + tool),
+        }
+    }
 }
 
 /// What is done where the sources are silent or contradict one another.
