@@ -41,7 +41,7 @@ impl Flow {
             if op.number.is_some() {
                 flow.numbered.push(block);
             }
-            let mut ways = flow.of_block(program, block);
+            let mut ways = flow.of_block(program, block, &op.kind);
             if op.skip.is_some() {
                 ways.falls = true;
             }
@@ -50,8 +50,8 @@ impl Flow {
         flow
     }
 
-    fn of_block(&mut self, program: &Program, block: OpIndex) -> Ways {
-        match &program.ops[block].kind {
+    fn of_block(&mut self, program: &Program, block: OpIndex, kind: &OpKind) -> Ways {
+        match kind {
             // An alarm stops the control; what stands behind it is looked at as if it had been mended.
             OpKind::Empty | OpKind::Alarm(_) => Ways { falls: true, ..Ways::default() },
             OpKind::Words(words) => {
@@ -65,6 +65,7 @@ impl Flow {
                 ways
             }
             OpKind::Statement(statement) => self.of_statement(program, block, statement),
+            OpKind::If { then, .. } => Ways { falls: true, ..self.of_block(program, block, then) },
         }
     }
 

@@ -125,6 +125,11 @@ fn steps(unit: &Unit<'_>, block: OpIndex, state: &Locals) -> Vec<(OpIndex, Local
             assign(target, value, &mut after);
             both(after)
         }
+        (OpKind::If { .. }, _) => {
+            // What stands behind the condition may have written any of them, or none.
+            after.may_be(ANYTHING);
+            both(after)
+        }
         (OpKind::Words(_), _) => {
             // A subprogram works on the same locals.
             if unit.calls.iter().any(|call| call.block == block && !call.own_locals) {

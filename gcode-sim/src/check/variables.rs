@@ -88,7 +88,7 @@ impl Uses {
                 self.condition(condition);
                 self.statement(then);
             }
-            Statement::While { condition, .. } => self.condition(condition),
+            Statement::While { condition, .. } | Statement::If { condition, .. } => self.condition(condition),
             Statement::Print { parts, .. } => {
                 for part in parts {
                     if let PrintPart::Value { variable, .. } = part {

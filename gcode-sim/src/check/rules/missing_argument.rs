@@ -121,13 +121,7 @@ fn alarm(subject: &Subject<'_>, unit: &Unit<'_>, block: OpIndex) -> String {
         .and_then(|(_, value)| crate::check::literal::constant(value))
         .map_or_else(
             || "its alarm".to_owned(),
-            |n| {
-                if subject.settings.plain_macro_alarms {
-                    format!("MC{n:04}")
-                } else {
-                    format!("MC{:04}", 3000.0 + n)
-                }
-            },
+            |n| format!("MC{:04}", f64::from(subject.settings.macro_alarm_base) + n),
         );
     match written.comments.first() {
         Some(text) => format!("{number} ({})", String::from_utf8_lossy(&text.text).trim()),

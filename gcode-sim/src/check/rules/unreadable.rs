@@ -7,9 +7,18 @@ use crate::source::Spanned;
 
 pub(super) const NAME: &str = "unreadable";
 
-pub(super) fn find(_: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
+pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     let alarms = alarms(unit).filter(|(_, alarm)| !has_own_rule(&alarm.node));
-    alarms.map(|(block, alarm)| finding(unit, NAME, block, alarm)).collect()
+    let mut found: Vec<_> = alarms.map(|(block, alarm)| finding(unit, NAME, block, alarm)).collect();
+    // IF before words, or without THEN, is a matter of the control.
+    for (block, op) in unit.program.ops.iter().enumerate().filter(|(block, _)| unit.reached[*block]) {
+        let OpKind::If { has_then, .. } = op.kind else { continue };
+        let settings = subject.settings;
+        if !(if has_then { settings.then_takes_words } else { settings.plain_if }) {
+            found.push(finding(unit, NAME, block, &Alarm::IfFormat.at(op.span)));
+        }
+    }
+    found
 }
 
 /// The blocks that raise an alarm as they are read and that something reaches.
@@ -50,6 +59,12 @@ mod tests {
     fn names_the_alarm_a_control_raises() {
         let found = messages(NAME, "O1\nG0 X..5\nG0 X1. #1=5\nM30\n");
         assert!(found[0].starts_with("PS0007: ") && found[1].starts_with("PS0127: "), "{found:?}");
+    }
+
+    #[test]
+    fn an_if_without_then_is_for_other_controls() {
+        let found = messages(NAME, "O1\nIF[#1 EQ 0]#2=1\nM30\n");
+        assert!(found[0].starts_with("PS1137: "), "{found:?}");
     }
 
     #[test]
