@@ -17,7 +17,7 @@ use crate::alarm::Alarm;
 use crate::motion::{EventKind, Spindle, StopKind};
 use crate::program::codes::{Effect, OneShot};
 use crate::program::m_codes::{self, MEffect};
-use crate::program::modes::{CutterSide, Length, Mirror, Motion, Polar, Rotation, Scaling};
+use crate::program::modes::{CutterSide, Length, Mirror, Motion, Polar, Rotation, Scaling, StrokeCheck};
 use crate::program::{Calling, Program, Words};
 use crate::source::Span;
 use crate::units::Rpm;
@@ -190,6 +190,11 @@ impl Core {
             && given.count(b'P')?.is_none_or(|p| p > 1)
         {
             return Err(Alarm::LookAheadFormat.at(span));
+        }
+        // The axis words behind G22 are limits, no move.
+        let limits = given.g_codes().any(|row| row.effect == Effect::StrokeCheck(StrokeCheck::On));
+        if limits && (self.names_axis(given) || given.has_any(b"IJK")) {
+            return Err(Alarm::NotSimulated { what: "G22 with limits".into() }.at(span));
         }
         let keeps_tool = |effect| {
             use OneShot::{DataInput, Dwell};
