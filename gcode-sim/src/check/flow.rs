@@ -125,7 +125,8 @@ impl Flow {
         };
         let to = program.find_number(number, block + 1);
         self.jumps.push(Jump { block, number, to, returns: false });
-        Ways { jumps: to.into_iter().collect(), ..Ways::default() }
+        // A jump to nowhere is told by a rule; what stands behind it is no second fault.
+        Ways { falls: to.is_none(), jumps: to.into_iter().collect(), ..Ways::default() }
     }
 
     /// A called program may return to these blocks.

@@ -8,11 +8,17 @@ pub(super) const NAME: &str = "loop-pairs";
 
 pub(super) fn find(_: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     let mut found = Vec::new();
+    let mut unpaired = Vec::new();
     let mut open: Vec<(i64, usize, Span)> = Vec::new();
     for (block, read) in unit.blocks.iter().enumerate() {
         let Some((number, begins)) = read.items.iter().find_map(loop_word) else { continue };
         let word = if begins { "DO" } else { "END" };
         if !(1..=3).contains(&number) {
+            // Its DO is the fault.
+            if !begins && unpaired.contains(&number) {
+                continue;
+            }
+            unpaired.push(number);
             let message = format!("PS0126: {word}{number}: a loop's number is 1, 2 or 3");
             found.push(unit.error(NAME, block, message).help("number it 1, 2 or 3"));
         } else if begins {
@@ -82,7 +88,7 @@ mod tests {
     fn loops_pair_and_nest() {
         assert_eq!(lines(NAME, "O1\n#1=0\nWHILE[#1 LT 3]DO1\n#1=#1+1\nM30\n"), [3]);
         assert_eq!(lines(NAME, "O1\nEND1\nM30\n"), [2]);
-        assert_eq!(lines(NAME, "O1\nDO4\nGOTO 5\nEND4\nN5 M30\n"), [2], "behind the jump nothing is reached");
+        assert_eq!(lines(NAME, "O1\nDO4\n#1=#500\nEND4\nM30\n"), [2]);
         assert_eq!(
             lines(
                 NAME,

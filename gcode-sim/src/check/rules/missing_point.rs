@@ -99,17 +99,16 @@ fn spelled(letter: u8, number: Decimal) -> String {
 
 /// `0.003 mm`.
 fn meaning(letter: u8, number: Decimal, words: &Words, settings: &Settings, inch: bool) -> String {
-    let degrees = matches!(letter, b'A' | b'B' | b'C') && words.call.is_none();
-    let (per_unit, unit) = if has(words, &[40]) {
-        (settings.increment.per_unit(), "seconds")
-    } else if degrees {
-        (settings.increment.per_unit(), "degrees")
-    } else if inch {
-        (settings.increment.per_unit() * 10.0, "inch")
-    } else if words.call.is_some() {
-        (settings.increment.per_unit(), "for the macro")
-    } else {
-        (settings.increment.per_unit(), "mm")
+    let turns = matches!(letter, b'A' | b'B' | b'C');
+    let dwell = has(words, &[40]);
+    let finer = if inch && !turns && !dwell { 10.0 } else { 1.0 };
+    let per_unit = settings.increment.per_unit() * finer;
+    let unit = match () {
+        () if words.call.is_some() => "for the macro",
+        () if dwell => "seconds",
+        () if turns => "degrees",
+        () if inch => "inch",
+        () => "mm",
     };
     format!("{} {unit}", number.value() / per_unit)
 }

@@ -1,6 +1,8 @@
 //! The rules: a file each, a line each in [`ALL`].
 mod doubled_n;
+mod doubled_program;
 mod endless_loop;
+mod jump_into_loop;
 mod live_position;
 mod loop_pairs;
 mod missing_argument;
@@ -37,8 +39,10 @@ pub const ALL: &[Rule] = &[
     Rule { name: round_brackets::NAME, about: "( ) where [ ] was meant: round brackets are a comment", find: round_brackets::find },
     Rule { name: relation_symbol::NAME, about: "= < > where EQ, LT, GT … must stand", find: relation_symbol::find },
     Rule { name: loop_pairs::NAME, about: "DO and END that don't pair, or loops that overlap", find: loop_pairs::find },
+    Rule { name: jump_into_loop::NAME, about: "a jump into a loop from outside", find: jump_into_loop::find },
     Rule { name: missing_n::NAME, about: "a jump to a sequence number that isn't there", find: missing_n::find },
     Rule { name: doubled_n::NAME, about: "a sequence number that stands twice", find: doubled_n::find },
+    Rule { name: doubled_program::NAME, about: "a program number that stands twice", find: doubled_program::find },
     Rule { name: unknown_code::NAME, about: "a G or M code the control doesn't have", find: unknown_code::find },
     Rule { name: missing_program::NAME, about: "a call of a program that isn't there", find: missing_program::find },
     Rule { name: missing_argument::NAME, about: "a macro call without a letter that the macro needs", find: missing_argument::find },

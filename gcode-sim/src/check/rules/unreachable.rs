@@ -1,7 +1,7 @@
 //! Blocks that nothing reaches: behind M30, M99, GOTO or a #3000 without a number that something jumps to.
 use crate::check::flow::raises;
 use crate::check::subject::{Finding, Subject, Unit};
-use crate::program::OpKind;
+use crate::program::{OpIndex, OpKind};
 
 pub(super) const NAME: &str = "unreachable";
 
@@ -15,10 +15,9 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
             continue;
         }
         let end = (block..ops.len()).find(|next| unit.reached[*next]).unwrap_or(ops.len());
-        // Comments and numbers alone do nothing; an alarm that is lost is told by its own rule.
-        let lost: Vec<_> = (block..end)
-            .filter(|b| !matches!(ops[*b].kind, OpKind::Empty) && !raises(&ops[*b].kind))
-            .collect();
+        // Comments and numbers alone do nothing, an end behind an end or an alarm neither; an alarm that is lost is
+        // told by its own rule.
+        let lost: Vec<_> = (block..end).filter(|b| !harmless(unit, *b)).collect();
         if let (Some(first), Some(last)) = (lost.first(), lost.last()) {
             let line = |block: usize| subject.memory.sources().place(ops[block].span).line;
             let message = if first == last {
@@ -34,6 +33,16 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     found
 }
 
+/// What isn't missed where nothing reaches it.
+fn harmless(unit: &Unit<'_>, block: OpIndex) -> bool {
+    let kind = &unit.op(block).kind;
+    match kind {
+        OpKind::Empty => true,
+        OpKind::Words(words) => unit.flow.ways[block].leaves && words.list.len() <= 1,
+        _ => raises(kind),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::testing::{NOWHERE, lines, messages};
@@ -45,6 +54,12 @@ mod tests {
         assert_eq!(lines(NAME, "O1\n#1=1\nIF[#1 EQ 2]GOTO 9\nM30\n(REMARK)\nN9 G0 X2.\nM30\n"), NOWHERE);
         assert_eq!(lines(NAME, "O1\n#1=1\nGOTO#1\nN1 G0\nM30\nN9 G0 X2.\nM30\n"), NOWHERE, "#1 may be 9");
         assert_eq!(lines(NAME, "O1\n/M30\nG0 X2.\nM30\n"), NOWHERE, "the switch may be on");
+    }
+
+    #[test]
+    fn an_end_behind_an_alarm_is_no_fault() {
+        assert_eq!(lines(NAME, "O1\n#1=#500\nIF[#1 EQ 0]GOTO 9\nM30\nN9 #3000=1(NO)\nM30\n"), NOWHERE);
+        assert_eq!(lines(NAME, "O1\n#3000=1(NO)\nG0 X1.\nM30\n"), [3]);
     }
 
     #[test]
