@@ -50,8 +50,16 @@ impl Folders {
 
 impl Library for Folders {
     fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)> {
-        let path = self.by_name(number).or_else(|| self.by_content(number))?;
-        let bytes = input::bytes(&path).ok()?;
+        // A file's name may promise a number that isn't in it: then the contents decide.
+        let named = self.by_name(number).and_then(|path| Some((input::bytes(&path).ok()?, path)));
+        let holds = |bytes: &[u8]| numbers_in(bytes).any(|n| n == number);
+        let (bytes, path) = match named.filter(|(bytes, _)| holds(bytes)) {
+            Some(found) => found,
+            None => {
+                let path = self.by_content(number)?;
+                (input::bytes(&path).ok()?, path)
+            }
+        };
         Some((path.display().to_string(), bytes))
     }
 }

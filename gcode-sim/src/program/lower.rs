@@ -76,6 +76,8 @@ impl Lowering {
         }
         match (statement, words.is_empty()) {
             (Some(_), false) => Err(Alarm::MixedStatements.at(block.span)),
+            // What a control does with a /n behind a statement is not known; it must not be read over.
+            (Some(_), true) if !skips.is_empty() => Err(Alarm::MixedStatements.at(block.span)),
             (Some(found), true) => self.statement(&found.node, found.span, block).map(OpKind::Statement),
             (None, true) => Ok(OpKind::Empty),
             (None, false) => {

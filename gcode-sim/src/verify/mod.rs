@@ -11,7 +11,7 @@ pub use matching::{Comparison, Pair};
 pub use rounding::{Rounding, Share};
 pub use verdict::{Answer, Extra, Finding, HoleVerdict, Placed, Verdict};
 
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Severity};
 use crate::holes::Extracted;
 use crate::machine::{HeadKind, Machine};
 use crate::part::reference::Reference;
@@ -61,6 +61,11 @@ pub fn verify(
     let mut objections = Vec::new();
     for check in checks::ALL {
         check(&comparison, &mut objections);
+    }
+    if extracted.findings.iter().any(|finding| finding.severity == Severity::Alarm) {
+        for objection in objections.iter_mut().filter(|o| o.finding.code == "hole-missing") {
+            objection.finding.help = Some("the run stopped before its end: see why first".to_owned());
+        }
     }
     let mut verdict = verdict::verdict(&comparison, rounding, objections, &extracted.findings, locate);
     verdict.not_checked = not_checked(&comparison, reference, machine);

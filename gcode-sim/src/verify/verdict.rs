@@ -187,6 +187,8 @@ fn readable(findings: impl Iterator<Item = Diagnostic>) -> Vec<Diagnostic> {
             .notes
             .push(format!("and {} more of this kind; --format json has them all", count - SHOWN));
     }
+    // What stopped the run explains what else is wrong.
+    shown.sort_by_key(|finding| finding.severity != Severity::Alarm);
     shown
 }
 
