@@ -149,6 +149,8 @@ pub struct Settings {
     pub series_15_offsets: bool,
     /// AD2 3403#6: an address twice in a block raises PS5074.
     pub no_repeated_address: bool,
+    /// More M codes in a block than it may have raise PS0335; otherwise the last counts.
+    pub plural_m_alarms: bool,
     /// M3B 3404#7: up to three M codes in a block.
     pub three_m_codes: bool,
     /// `#3000=n` shows MC with this number added; MCA 6008#1 makes it 0.
@@ -194,8 +196,8 @@ pub struct Settings {
     pub g73_retract: f64,
     /// 5115: the clearance of G83 above the last depth, mm.
     pub g83_clearance: f64,
-    /// 1241: the second reference position, in machine coordinates.
-    pub second_reference: Position,
+    /// 1241 to 1243: the second, third and fourth reference position, in machine coordinates.
+    pub references: [Position; 3],
     /// Pairs of tool offsets.
     pub tool_offsets: usize,
     /// Macro calls inside one another.
@@ -222,6 +224,7 @@ impl Default for Settings {
             plain_ijk: false,
             series_15_offsets: false,
             no_repeated_address: false,
+            plural_m_alarms: false,
             three_m_codes: false,
             macro_alarm_base: 3000,
             plain_if: false,
@@ -245,7 +248,7 @@ impl Default for Settings {
             arc_tolerance: 0.02,
             g73_retract: 1.0,
             g83_clearance: 0.5,
-            second_reference: Position::default(),
+            references: [Position::default(); 3],
             tool_offsets: 400,
             macro_levels: 5,
             call_levels: 15,

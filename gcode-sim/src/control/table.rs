@@ -1,5 +1,6 @@
 //! The settings by their names: the parameter a manual names, its key on the command line, how it is read.
 use super::{Dialect, Increment, OffsetVariables, Settings};
+use crate::motion::Position;
 use crate::units::MmPerMin;
 
 /// Why a setting can't be taken.
@@ -23,6 +24,7 @@ pub struct Row {
 
 const SWITCH: &str = "0 or 1";
 const LENGTH: &str = "a length in mm, 0 or more";
+const POINT: &str = "axes and their machine coordinates, as in X10,Z-5";
 const COUNT: &str = "a whole number";
 
 macro_rules! switch {
@@ -57,6 +59,10 @@ pub const ROWS: &[Row] = &[
     switch!("V15", "6000#3: geometry and wear change places in tool offset variables", series_15_offsets),
     switch!("AD2", "3403#6: an address twice in a block alarms", no_repeated_address),
     switch!("M3B", "3404#7: up to three M codes in a block", three_m_codes),
+    switch!("PLURAL-M-ALARM", "more M codes in a block than it may have alarm", plural_m_alarms),
+    number!("1241", "the second reference position", POINT, |s, v| s.references[0] = point(s, v)?),
+    number!("1242", "the third reference position", POINT, |s, v| s.references[1] = point(s, v)?),
+    number!("1243", "the fourth reference position", POINT, |s, v| s.references[2] = point(s, v)?),
     number!("MCA", "6008#1: #3000=n shows MC n", SWITCH, |s, v| s.macro_alarm_base = if switch(v)? { 0 } else { 3000 }),
     number!("ALARM-BASE", "what #3000=n adds to n", "0 to 9000", |s, v| s.macro_alarm_base = whole(v, 0, 9000)? as u16),
     number!("MORE-COMMONS", "common variables beyond #999", "a range as 98000-98499, or 0", |s, v| s.more_commons = range(v)?),
@@ -164,6 +170,16 @@ fn positive(value: &str) -> Option<f64> {
 
 fn whole(value: &str, least: usize, most: usize) -> Option<usize> {
     value.parse().ok().filter(|v| (least..=most).contains(v))
+}
+
+/// `X10,Z-5`; axes not named are at 0.
+fn point(settings: &Settings, value: &str) -> Option<Position> {
+    let mut point = Position::default();
+    for word in value.split(',').map(str::trim) {
+        let letter = word.bytes().next()?.to_ascii_uppercase();
+        point[settings.axes.find(letter)?] = between(word.get(1..)?, -1e6, 1e6)?;
+    }
+    Some(point)
 }
 
 /// `98000-98499`; `0` is none.

@@ -53,8 +53,7 @@ impl Core {
             OneShot::SecondReference => {
                 let p = given.count(b'P')?.unwrap_or(2);
                 match p {
-                    2 => self.reference(given, plan, self.settings.second_reference),
-                    3 | 4 => Err(not_simulated(300, "third and fourth reference position").at(span)),
+                    2..=4 => self.reference(given, plan, self.settings.references[p as usize - 2]),
                     _ => Err(Alarm::ReferenceReturnP { p: i64::from(p) }.at(span)),
                 }
             }

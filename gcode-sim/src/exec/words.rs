@@ -145,7 +145,7 @@ impl Core {
                     // Without M3B the last M code of a block counts; a stop or an end isn't lost in silence.
                     if let Some(Some((first, _))) = given.m.get(most - 1)
                         && given.m_count == most
-                        && m_codes::ends_or_stops(*first)
+                        && (m_codes::ends_or_stops(*first) || self.settings.plural_m_alarms)
                     {
                         return Err(Alarm::PluralM { first: *first, second: code }.at(word.span));
                     }
