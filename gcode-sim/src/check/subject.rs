@@ -149,6 +149,12 @@ impl Unit<'_> {
         &self.program.ops[block]
     }
 
+    /// The call that a block makes; a block has one at most, and they are kept in the order of their blocks.
+    pub(crate) fn call_in(&self, block: OpIndex) -> Option<&CallSite> {
+        let place = self.calls.binary_search_by_key(&block, |call| call.block).ok()?;
+        self.calls.get(place)
+    }
+
     /// A finding about a block.
     pub(crate) fn finding(
         &self,

@@ -132,7 +132,7 @@ fn steps(unit: &Unit<'_>, block: OpIndex, state: &Locals) -> Vec<(OpIndex, Local
         }
         (OpKind::Words(_), _) => {
             // A subprogram works on the same locals.
-            if unit.calls.iter().any(|call| call.block == block && !call.own_locals) {
+            if unit.call_in(block).is_some_and(|call| !call.own_locals) {
                 after.may_be(ANYTHING);
             }
             both(after)

@@ -147,8 +147,7 @@ fn writes(unit: &Unit<'_>, block: OpIndex, numbers: &[u32]) -> bool {
 fn calls_write(subject: &Subject<'_>, unit: &Unit<'_>, block: OpIndex, numbers: &[u32]) -> bool {
     // A modal call acts in any block that moves.
     let modal = unit.calls.iter().filter(|call| call.modal);
-    let here = unit.calls.iter().filter(|call| call.block == block);
-    here.chain(modal).any(|call| {
+    unit.call_in(block).into_iter().chain(modal).any(|call| {
         let reach = |number: &&u32| !call.own_locals || **number >= 100;
         let reached: Vec<u32> = numbers.iter().filter(reach).copied().collect();
         if reached.is_empty() {
