@@ -7,7 +7,7 @@ use crate::diag::{Diagnostic, Severity};
 use crate::exec::{Control, Limits, Outcome};
 use crate::holes::{Extracted, Extractor};
 use crate::machine::Machine;
-use crate::motion::Sink;
+use crate::motion::{Place, Sink};
 use crate::part::hole::HoleList;
 use crate::part::reference::Reference;
 use crate::part::surface::Surface;
@@ -121,6 +121,7 @@ pub fn simulate(
     let mut extractor = Extractor::new(&request.machine).with_surface(surface);
     let run = run(request, library, &mut extractor)?;
     let mut extracted = extractor.finish();
+    extracted.findings.extend(run.notes());
     extracted.findings.extend(run.stopped());
     Ok(Simulation { run, extracted })
 }
@@ -144,6 +145,14 @@ impl Run {
         let line = memory.sources().place(span).line;
         let program = memory.program_at(span);
         (program.map_or_else(|| memory.sources().get(span.source).name.clone(), |p| p.label()), line)
+    }
+
+    /// What the control did without a word and the programmer hardly meant, as warnings.
+    pub fn notes(&self) -> impl Iterator<Item = Diagnostic> + '_ {
+        self.control.notes().map(|(note, block)| {
+            let (code, message, help) = note.parts();
+            Diagnostic::warning(code, message).at(Place { block, calls: None }).help(help)
+        })
     }
 
     /// Why the run stopped before its end, as a finding; `None` where it didn't.

@@ -83,10 +83,12 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Status {
     })
 }
 
-/// Tells why a run stopped before its end, if it did.
+/// Tells what a run did in silence, and why it stopped before its end, if it did.
 fn stopped(run: &Run) -> Option<Status> {
+    let sources = run.control.memory().sources();
+    run.notes().for_each(|note| output::tell(&diagnostic::render(&note, sources)));
     let finding = run.stopped()?;
-    output::tell(&diagnostic::render(&finding, run.control.memory().sources()));
+    output::tell(&diagnostic::render(&finding, sources));
     Some(Status::Stopped)
 }
 

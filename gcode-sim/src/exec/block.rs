@@ -11,6 +11,7 @@
 //!  7. call or return.
 use super::Core;
 use super::eval::{Checked, at};
+use super::notes::Note;
 use super::plan::{Flow, Plan};
 use super::words::Given;
 use crate::alarm::Alarm;
@@ -224,6 +225,9 @@ impl Core {
 
     /// 2., 5. and 6. What M codes do, each at its time.
     fn m_codes(&self, given: &Given, plan: &mut Plan) -> Checked<()> {
+        if let Some(code) = given.lost_m {
+            plan.note = Some(Note::MCodeLost { code });
+        }
         for (code, span) in given.m[..given.m_count].iter().flatten().copied() {
             plan.state.codes.m = code;
             let speed = Rpm(plan.state.codes.s);

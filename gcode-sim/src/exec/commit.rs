@@ -31,6 +31,9 @@ impl Core {
         if let Some(kind) = plan.stop.take() {
             self.tell(EventKind::Stop { kind, text: String::new(), named: Vec::new() }, 0.0, sink);
         }
+        if let Some(note) = plan.note.take() {
+            self.notes.entry(note).or_insert(self.block);
+        }
         if let Some(code) = plan.passed_on.take() {
             self.passed_on.entry(code).or_insert(self.block);
         }

@@ -1,6 +1,7 @@
 //! Expands a drilling cycle's row into moves, hole by hole.
 use super::Core;
 use super::eval::{Checked, at};
+use super::notes::Note;
 use super::plan::Plan;
 use super::state::{Drilling, Level, State};
 use super::words::Given;
@@ -77,6 +78,9 @@ impl Core {
         if incremental && self.settings.axes.iter().any(turned) {
             let what = "a drilling cycle with an incremental axis that rolls over".into();
             return Err(Alarm::NotSimulated { what }.at(span));
+        }
+        if repeats == 0 {
+            plan.note = Some(Note::NoRepeats);
         }
         if repeats == 0 && !self.settings.unsure.k0_positions {
             return Ok(());

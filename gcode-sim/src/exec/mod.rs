@@ -9,6 +9,7 @@ mod endless;
 mod eval;
 mod functions;
 mod modal;
+mod notes;
 mod offsets;
 mod one_shot;
 mod plan;
@@ -27,6 +28,7 @@ use std::cell::Cell;
 use std::collections::BTreeMap;
 
 pub use modal::Modal;
+pub use notes::Note;
 pub use state::{Codes, State};
 pub use vars::{Value, Vars};
 
@@ -135,6 +137,7 @@ pub(crate) struct Core {
     printed: print::Printed,
     /// M codes that went to the machine builder's logic, with the block of the first of each.
     passed_on: BTreeMap<u32, Span>,
+    notes: BTreeMap<Note, Span>,
     block: Span,
 }
 
@@ -164,6 +167,7 @@ impl Control {
             stops: Vec::new(),
             printed: print::Printed::default(),
             passed_on: BTreeMap::new(),
+            notes: BTreeMap::new(),
             block: Span::default(),
         };
         let mut control = Self {

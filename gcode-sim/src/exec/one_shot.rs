@@ -2,6 +2,7 @@
 use super::Core;
 use super::block::{Act, not_simulated};
 use super::eval::{Checked, at};
+use super::notes::Note;
 use super::offsets::Register;
 use super::plan::{Plan, Write};
 use super::state::State;
@@ -178,6 +179,7 @@ impl Core {
         let incremental = plan.state.modal.distance == Distance::Incremental;
         if incremental && !self.settings.unsure.g53_moves_in_g91 {
             given.accept(b"ABCUVWXYZ");
+            plan.note = Some(Note::MachineMoveIgnored);
             return Ok(());
         }
         for (axis, letter) in self.settings.axes.iter() {

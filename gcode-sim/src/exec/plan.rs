@@ -1,5 +1,6 @@
 //! What a block is going to do: made without touching the control, carried out afterwards without failing.
 use super::cycles::Drill;
+use super::notes::Note;
 use super::offsets::Register;
 use super::state::State;
 use super::vars::Locals;
@@ -23,6 +24,7 @@ pub(super) struct Plan {
     pub(super) stop: Option<StopKind>,
     /// An M code for the machine builder's logic.
     pub(super) passed_on: Option<u32>,
+    pub(super) note: Option<Note>,
     pub(super) flow: Flow,
 }
 
@@ -98,6 +100,7 @@ impl Plan {
         self.moved = false;
         self.stop = None;
         self.passed_on = None;
+        self.note = None;
         self.flow = Flow::Next;
     }
 

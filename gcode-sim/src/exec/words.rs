@@ -34,6 +34,8 @@ pub(super) struct Given {
     g_count: usize,
     pub(super) m: [Option<(u32, Span)>; M_CODES],
     pub(super) m_count: usize,
+    /// An M code that a later one of the block has replaced.
+    pub(super) lost_m: Option<u32>,
 }
 
 impl Default for Given {
@@ -46,6 +48,7 @@ impl Default for Given {
             g_count: 0,
             m: [None; M_CODES],
             m_count: 0,
+            lost_m: None,
         }
     }
 }
@@ -123,6 +126,7 @@ impl Core {
         given.read.set(0);
         given.g_count = 0;
         given.m_count = 0;
+        given.lost_m = None;
         for word in &words.list {
             let Some(raw) = self.raw(program, word)? else { continue };
             if word.comma {
@@ -150,6 +154,9 @@ impl Core {
                         return Err(Alarm::PluralM { first: *first, second: code }.at(word.span));
                     }
                     let place = given.m_count.min(most - 1);
+                    if given.m_count == most {
+                        given.lost_m = given.m[place].map(|(code, _)| code);
+                    }
                     given.m[place] = Some((code, word.span));
                     given.m_count = place + 1;
                 }

@@ -1,0 +1,42 @@
+//! What a control does without a word and a programmer hardly means: told once for each kind, with its first block.
+use super::Control;
+use crate::source::Span;
+
+/// A thing worth telling that is no alarm on a control.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Note {
+    /// G53 in G91 is ignored, and with it the block's motion.
+    MachineMoveIgnored,
+    /// A block had another M code after this one, and only the last counts.
+    MCodeLost { code: u32 },
+    /// A drilling block with K0 drills nothing.
+    NoRepeats,
+}
+
+impl Note {
+    /// A stable name, what happened, and what to do.
+    pub fn parts(self) -> (&'static str, String, &'static str) {
+        match self {
+            Self::MachineMoveIgnored => {
+                let message = "G53 in G91 is ignored: the axes of the block don't move".to_owned();
+                ("g53-ignored", message, "command G90 with G53")
+            }
+            Self::MCodeLost { code } => {
+                let message = format!("M{code} is lost: of several M codes in a block only the last counts");
+                ("m-code-lost", message, "give each M code a block, or set M3B=1 if the control takes three")
+            }
+            Self::NoRepeats => (
+                "no-repeats",
+                "a drilling block with K0 drills nothing".to_owned(),
+                "leave K out, or write K1",
+            ),
+        }
+    }
+}
+
+impl Control {
+    /// Each note with the first block it is about.
+    pub fn notes(&self) -> impl Iterator<Item = (Note, Span)> + '_ {
+        self.core.notes.iter().map(|(note, block)| (*note, *block))
+    }
+}
