@@ -4,7 +4,7 @@ use std::sync::Arc;
 use crate::alarm::{Alarm, Code};
 use crate::control::Settings;
 use crate::diag::{Diagnostic, Severity};
-use crate::exec::{Control, Limits, Outcome};
+use crate::exec::{Control, Limits, Note, Outcome};
 use crate::holes::{Extracted, Extractor};
 use crate::machine::Machine;
 use crate::motion::{Place, Sink};
@@ -151,7 +151,9 @@ impl Run {
     pub fn notes(&self) -> impl Iterator<Item = Diagnostic> + '_ {
         self.control.notes().map(|(note, block)| {
             let (code, message, help) = note.parts();
-            Diagnostic::warning(code, message).at(Place { block, calls: None }).help(help)
+            // K0 is meant; the others are slips.
+            let severity = if note == Note::NoRepeats { Severity::Note } else { Severity::Warning };
+            Diagnostic::new(severity, code, message).at(Place { block, calls: None }).help(help)
         })
     }
 

@@ -79,10 +79,8 @@ impl Core {
             let what = "a drilling cycle with an incremental axis that rolls over".into();
             return Err(Alarm::NotSimulated { what }.at(span));
         }
-        if repeats == 0 {
-            plan.note = Some(Note::NoRepeats);
-        }
         if repeats == 0 && !self.settings.unsure.k0_positions {
+            plan.note = Some(Note::NoRepeats);
             return Ok(());
         }
         let mut step = Position::default();

@@ -9,7 +9,8 @@ pub enum Note {
     MachineMoveIgnored,
     /// A block had another M code after this one, and only the last counts.
     MCodeLost { code: u32 },
-    /// A drilling block with K0 drills nothing.
+    /// A drilling block with K0 stores its data and drills nothing, which is what K0 is for; whether its X and Y are
+    /// gone to differs between controls.
     NoRepeats,
 }
 
@@ -25,11 +26,10 @@ impl Note {
                 let message = format!("M{code} is lost: of several M codes in a block only the last counts");
                 ("m-code-lost", message, "give each M code a block, or set M3B=1 if the control takes three")
             }
-            Self::NoRepeats => (
-                "no-repeats",
-                "a drilling block with K0 drills nothing".to_owned(),
-                "leave K out, or write K1",
-            ),
+            Self::NoRepeats => {
+                let message = "K0 stores the cycle without going to the block's X and Y".to_owned();
+                ("no-repeats", message, "K0-MOVES=1 is for a control that goes there")
+            }
         }
     }
 }
