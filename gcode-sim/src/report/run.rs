@@ -19,6 +19,8 @@ pub struct RunReport {
     pub output: Vec<String>,
     /// M codes left to the machine builder's logic.
     pub passed_on: Vec<PassedOnReport>,
+    /// What the control did without a word.
+    pub notes: Vec<NoteReport>,
     #[serde(serialize_with = "variables")]
     pub variables: Vec<(u32, f64)>,
     /// What `--show` asked for; null is vacant.
@@ -65,6 +67,15 @@ pub struct StopReport {
 #[derive(Debug, Serialize)]
 pub struct PassedOnReport {
     pub code: String,
+    pub program: String,
+    pub line: u32,
+}
+
+/// One kind of thing that is no alarm and hardly meant, and the first block that has it.
+#[derive(Debug, Serialize)]
+pub struct NoteReport {
+    pub code: &'static str,
+    pub message: String,
     pub program: String,
     pub line: u32,
 }
@@ -191,6 +202,14 @@ impl RunReport {
                 .map(|(code, span)| {
                     let (program, line) = run.locate(*span);
                     PassedOnReport { code: format!("M{code:02}"), program, line }
+                })
+                .collect(),
+            notes: control
+                .notes()
+                .map(|(note, block)| {
+                    let (code, message, _) = note.parts();
+                    let (program, line) = run.locate(block);
+                    NoteReport { code, message, program, line }
                 })
                 .collect(),
             variables: control.variables().collect(),
