@@ -14,6 +14,18 @@ pub enum Severity {
     Alarm,
 }
 
+impl Severity {
+    /// As JSON, tables and summaries write it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Note => "note",
+            Self::Warning => "warning",
+            Self::Error => "error",
+            Self::Alarm => "alarm",
+        }
+    }
+}
+
 /// One thing to tell. The message alone makes sense on a narrow screen: both numbers with units, wanted and found.
 #[derive(Clone, Debug)]
 pub struct Diagnostic {

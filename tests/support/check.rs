@@ -4,7 +4,6 @@
 use std::fmt::Write as _;
 
 use gcode_sim::check::{Checked, check};
-use gcode_sim::diag::Severity;
 use gcode_sim::program::NoLibrary;
 use gcode_sim::source::Span;
 
@@ -16,12 +15,7 @@ pub(crate) fn run(case: &Case) {
     let checked = check("case.nc", program, &settings, &mut NoLibrary);
     let mut shown = String::new();
     for finding in &checked.findings {
-        let severity = match finding.severity {
-            Severity::Note => "note",
-            Severity::Warning => "warning",
-            Severity::Error => "error",
-            Severity::Alarm => "alarm",
-        };
+        let severity = finding.severity.name();
         if let Some(place) = &finding.place {
             writeln!(shown, "{}", at(&checked, place.block)).unwrap();
         }

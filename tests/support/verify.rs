@@ -4,7 +4,6 @@
 //! wanted, `machine.toml`, where there is one, the machine. Where there is no reference the holes are shown.
 use std::fmt::Write as _;
 
-use gcode_sim::diag::Severity;
 use gcode_sim::machine::Machine;
 use gcode_sim::motion::Call;
 use gcode_sim::part::reference::Reference;
@@ -32,12 +31,7 @@ pub(crate) fn run(case: &Case) {
         None => (holes(&simulation), simulation.extracted.findings.clone()),
     };
     for finding in &findings {
-        let severity = match finding.severity {
-            Severity::Note => "note",
-            Severity::Warning => "warning",
-            Severity::Error => "error",
-            Severity::Alarm => "alarm",
-        };
+        let severity = finding.severity.name();
         write!(shown, "\n{severity} {}: {}\n", finding.code, finding.message).unwrap();
         if let Some(place) = &finding.place {
             writeln!(shown, "  at {}", at(&simulation, place.block)).unwrap();

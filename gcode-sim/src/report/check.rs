@@ -52,7 +52,7 @@ fn report(checked: &Checked, finding: &Diagnostic) -> FindingReport {
     let file = |span: Span| sources.get(span.source).name.clone();
     FindingReport {
         code: finding.code.clone(),
-        severity: severity(finding.severity),
+        severity: finding.severity.name(),
         message: finding.message.clone(),
         program: block.and_then(|span| checked.program(span)).map(|program| program.label()),
         file: at.map(file),
@@ -72,15 +72,6 @@ fn report(checked: &Checked, finding: &Diagnostic) -> FindingReport {
     }
 }
 
-fn severity(severity: Severity) -> &'static str {
-    match severity {
-        Severity::Note => "note",
-        Severity::Warning => "warning",
-        Severity::Error => "error",
-        Severity::Alarm => "alarm",
-    }
-}
-
 /// The findings as the terminal shows them, and their count.
 pub fn text(checked: &Checked) -> String {
     let sources = checked.memory.sources();
@@ -97,12 +88,12 @@ fn summary(checked: &Checked) -> String {
         1 => format!("1 {what}"),
         count => format!("{count} {what}s"),
     };
-    let kinds = [(Severity::Error, "error"), (Severity::Warning, "warning"), (Severity::Note, "note")];
+    let kinds = [Severity::Error, Severity::Warning, Severity::Note];
     let counts: Vec<_> = kinds
         .iter()
-        .filter_map(|(severity, what)| match checked.count(*severity) {
+        .filter_map(|severity| match checked.count(*severity) {
             0 => None,
-            count => Some(counted(count, what)),
+            count => Some(counted(count, severity.name())),
         })
         .collect();
     let found = if counts.is_empty() { "nothing found".to_owned() } else { counts.join(", ") };

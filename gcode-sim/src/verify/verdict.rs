@@ -149,12 +149,7 @@ pub(super) fn verdict(
         findings: told
             .map(|(wanted, finding, from_motion)| Finding {
                 code: finding.code.clone(),
-                severity: match finding.severity {
-                    Severity::Note => "note",
-                    Severity::Warning => "warning",
-                    Severity::Error => "error",
-                    Severity::Alarm => "alarm",
-                },
+                severity: finding.severity.name(),
                 message: finding.message.clone(),
                 help: finding.help.clone(),
                 notes: finding.notes.clone(),
