@@ -4,7 +4,8 @@
 //! earlier jump, which is kept for longer and longer. Where they agree the control itself is copied; when it equals
 //! its copy one turn later, all that follows repeats. Between such finds a jump costs a few instructions.
 use super::Core;
-use super::calls::{Frame, ModalCall};
+use super::frames::Frame;
+use super::modal_calls::ModalCall;
 use super::offsets::Offsets;
 use super::state::State;
 use super::vars::Vars;

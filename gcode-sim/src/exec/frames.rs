@@ -1,0 +1,181 @@
+//! The programs on the way to the block at hand: frames, nesting, returns.
+use std::sync::Arc;
+
+use super::vars::Locals;
+use super::{Control, Core};
+use crate::alarm::Alarm;
+use crate::motion::{Call, Calls};
+use crate::program::{OpIndex, ProgramId};
+use crate::source::{Span, Spanned};
+
+/// One program on the way to the block at hand.
+#[derive(Clone, Debug)]
+pub(super) struct Frame {
+    pub(super) program: ProgramId,
+    pub(super) next: OpIndex,
+    pub(super) kind: FrameKind,
+    /// Where a repetition starts.
+    pub(super) start: OpIndex,
+    /// Passes still to come after this one.
+    pub(super) repeats: u32,
+    /// The arguments, for repetitions that set them anew.
+    pub(super) arguments: Option<Box<Locals>>,
+    /// The calls that led here.
+    pub(super) calls: Calls,
+    /// DO1 to DO3 that are open: their first and last operation.
+    pub(super) loops: [Option<(OpIndex, OpIndex)>; 3],
+    /// How many of the modal calls its moves can trigger.
+    pub(super) modal: usize,
+    /// Called by a G or M code: such codes are ordinary ones inside.
+    pub(super) by_code: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum FrameKind {
+    Main,
+    Subprogram,
+    Macro,
+    /// Called by a modal call: its locals go back there when it returns.
+    Modal(usize),
+}
+
+impl Frame {
+    pub(super) fn main(program: ProgramId) -> Self {
+        Self {
+            program,
+            next: 0,
+            kind: FrameKind::Main,
+            start: 0,
+            repeats: 0,
+            arguments: None,
+            calls: None,
+            loops: [None; 3],
+            modal: usize::MAX,
+            by_code: false,
+        }
+    }
+
+    /// Whether two frames lead to the same blocks from here on.
+    pub(super) fn goes_on_like(&self, other: &Self) -> bool {
+        let Self { program, next, kind, start, repeats, arguments, calls: _, loops, modal, by_code } = self;
+        (*program, *next, *kind, *start, *repeats)
+            == (other.program, other.next, other.kind, other.start, other.repeats)
+            && *arguments == other.arguments
+            && (*loops, *modal, *by_code) == (other.loops, other.modal, other.by_code)
+    }
+
+    /// Goes to an operation and leaves the loops that it is not in.
+    pub(super) fn jump(&mut self, to: OpIndex) {
+        self.next = to;
+        for open in &mut self.loops {
+            if open.is_some_and(|(first, last)| !(first..=last).contains(&to)) {
+                *open = None;
+            }
+        }
+    }
+}
+
+impl Core {
+    pub(super) fn frame(&self) -> &Frame {
+        &self.frames[self.frames.len() - 1]
+    }
+
+    pub(super) fn frame_mut(&mut self) -> &mut Frame {
+        let last = self.frames.len() - 1;
+        &mut self.frames[last]
+    }
+
+    pub(super) fn check_levels(&self, is_macro: bool) -> Result<(), Alarm> {
+        if is_macro && self.vars.level() >= self.settings.macro_levels {
+            return Err(Alarm::TooManyMacroCalls { limit: self.settings.macro_levels });
+        }
+        if self.frames.len() > self.settings.call_levels {
+            return Err(Alarm::TooManyCalls { limit: self.settings.call_levels });
+        }
+        Ok(())
+    }
+
+    pub(super) fn called(
+        &self,
+        program: ProgramId,
+        start: OpIndex,
+        kind: FrameKind,
+        repeats: u32,
+        block: Span,
+    ) -> Frame {
+        let calls = Some(Arc::new(Call { from: block, outer: self.frame().calls.clone() }));
+        Frame { next: start, kind, start, repeats: repeats.saturating_sub(1), calls, ..Frame::main(program) }
+    }
+
+    pub(super) fn push(&mut self, frame: Frame) {
+        self.frames.push(frame);
+    }
+
+    /// Back from a subprogram or macro to the program that called it.
+    pub(super) fn leave(&mut self) {
+        match self.frame().kind {
+            FrameKind::Macro => self.vars.leave(),
+            FrameKind::Modal(index) => {
+                let locals = *self.vars.locals();
+                if let Some(call) = self.modal_calls.get_mut(index)
+                    && self.settings.unsure.modal_keeps_locals
+                {
+                    call.locals = locals;
+                }
+                self.vars.leave();
+            }
+            FrameKind::Main | FrameKind::Subprogram => {}
+        }
+        self.frames.pop();
+    }
+
+    /// M99 without P in a called program: the next pass, or back.
+    pub(super) fn repeat_or_leave(&mut self) {
+        let frame = self.frame_mut();
+        if frame.repeats == 0 {
+            return self.leave();
+        }
+        frame.repeats -= 1;
+        let start = frame.start;
+        frame.loops = [None; 3];
+        frame.next = start;
+        if let Some(arguments) = frame.arguments.clone() {
+            self.vars.set_locals(&arguments);
+        }
+    }
+}
+
+impl Control {
+    /// M99, M99 P.
+    pub(super) fn go_back(
+        &mut self,
+        to: Option<u32>,
+        span: Span,
+    ) -> Result<Option<super::Outcome>, Spanned<Alarm>> {
+        let main = self.core.frame().kind == FrameKind::Main;
+        if main {
+            self.core.cycles += 1;
+            if self.core.settings.cycles.is_some_and(|cycles| self.core.cycles >= cycles) {
+                return Ok(Some(super::Outcome::End));
+            }
+        }
+        let Some(number) = to else {
+            if main {
+                self.core.frame_mut().jump(0);
+            } else {
+                self.core.repeat_or_leave();
+            }
+            return Ok(None);
+        };
+        let caller = if main { self.core.frames.len() - 1 } else { self.core.frames.len() - 2 };
+        let program = self.memory.get(self.core.frames[caller].program);
+        let Some(target) = program.find_number(number, 0) else {
+            return Err(Alarm::SequenceNumberNotFound { number }.at(span));
+        };
+        if !main {
+            self.core.leave();
+        }
+        self.core.frame_mut().jump(target);
+        Ok(None)
+    }
+}

@@ -1,0 +1,91 @@
+//! G66, G66.1 and G67: macro calls that wait for moves, or are made by every block.
+use super::Core;
+use super::eval::Checked;
+use super::frames::{Frame, FrameKind};
+use super::vars::{Locals, Value};
+use crate::alarm::Alarm;
+use crate::program::{Calling, Program, ProgramId, Words};
+use crate::source::Span;
+
+/// G66: waits for moves.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct ModalCall {
+    pub(super) program: ProgramId,
+    pub(super) repeats: u32,
+    pub(super) locals: Locals,
+    /// G66.1: every block calls, and its words are the arguments.
+    pub(super) every: bool,
+}
+
+impl Core {
+    /// After a block with motion: the last modal call that this program's moves can trigger.
+    pub(super) fn call_after_move(&mut self, block: Span) -> Result<(), Alarm> {
+        let Some(index) = self.waiting_call() else { return Ok(()) };
+        self.check_levels(true)?;
+        let ModalCall { program, repeats, locals, .. } = self.modal_calls[index].clone();
+        let frame =
+            Frame { modal: index, ..self.called(program, 0, FrameKind::Modal(index), repeats, block) };
+        self.vars.enter(&locals);
+        self.push(frame);
+        Ok(())
+    }
+
+    /// The modal call that a block of this program can trigger.
+    fn waiting_call(&self) -> Option<usize> {
+        self.frame().modal.min(self.modal_calls.len()).checked_sub(1)
+    }
+
+    /// Under G66.1 a block of words is not executed: its words, G L N P among them, are the macro's arguments.
+    /// M99 and G67 stay what they are.
+    pub(super) fn call_by_block(
+        &mut self,
+        program: &Program,
+        words: &Words,
+        number: Option<u32>,
+        block: Span,
+    ) -> Checked<bool> {
+        if self.modal_calls.is_empty() || !self.waiting_call().is_some_and(|i| self.modal_calls[i].every) {
+            return Ok(false);
+        }
+        match &words.call {
+            Some(call) if matches!(call.kind, Calling::Cancel | Calling::Return) => return Ok(false),
+            Some(call) => {
+                return Err(Alarm::NotSimulated { what: "a call while G66.1 is on".into() }.at(call.span));
+            }
+            None => {}
+        }
+        let mut locals = self.arguments(program, &words.list, true)?;
+        if let Some(number) = number {
+            locals[14] = Value::Number(f64::from(number));
+        }
+        self.check_levels(true).map_err(|alarm| alarm.at(block))?;
+        self.block = block;
+        self.call_with(&locals, block);
+        Ok(true)
+    }
+
+    /// Calls the macro of G66.1.
+    pub(super) fn call_with(&mut self, locals: &Locals, block: Span) {
+        let Some(index) = self.waiting_call() else { return };
+        let ModalCall { program, repeats, .. } = self.modal_calls[index].clone();
+        let frame = Frame { modal: index, ..self.called(program, 0, FrameKind::Macro, repeats, block) };
+        self.vars.enter(locals);
+        self.push(frame);
+    }
+
+    /// #4012.
+    pub(super) fn show_modal_call(&mut self) {
+        use crate::program::modes::ModalCall;
+        self.state.modal.call = match self.modal_calls.last() {
+            None => ModalCall::Off,
+            Some(call) if call.every => ModalCall::EveryBlock,
+            Some(_) => ModalCall::AfterMoves,
+        };
+    }
+
+    /// G67: the last modal call ends.
+    pub(super) fn cancel_modal(&mut self) {
+        self.modal_calls.pop();
+        self.show_modal_call();
+    }
+}
