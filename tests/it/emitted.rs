@@ -1,9 +1,9 @@
 //! What is checked in is what the generator writes: the resident macros and the examples' programs.
 use std::path::{Path, PathBuf};
 
-use gcode_gen::families::pin_holes::macros::Resident;
-use gcode_sim::control::{Dialect, Increment};
-use gcode_sim::job::{HeadKind, Job};
+use gcode_gen::families;
+use gcode_gen::package::Program;
+use gcode_sim::job::Job;
 
 fn workspace() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
@@ -22,23 +22,18 @@ fn holds(path: &Path, text: &str) {
     );
 }
 
-const FILES: [(u32, &str); 2] = [(8101, "O8101_pin_hole.nc"), (8102, "O8102_head_angle.nc")];
+/// The resident macros of all families in the order of their file names.
+fn resident() -> Vec<(&'static str, Program)> {
+    let mut all: Vec<_> = families::ALL.iter().flat_map(|family| (family.resident)()).collect();
+    all.sort_by_key(|(name, _)| *name);
+    all
+}
 
 #[test]
 fn the_resident_macros_are_what_the_defaults_emit() {
-    let resident = Resident {
-        dialect: Dialect::default(),
-        increment: Increment::default(),
-        rotary: 'B',
-        head: HeadKind::Manual,
-        common: 140,
-    };
-    let folder = workspace().join("macros");
-    let programs = resident.programs();
-    assert_eq!(programs.len(), FILES.len());
-    for (program, (number, name)) in programs.iter().zip(FILES) {
-        assert_eq!(program.number, number);
-        holds(&folder.join(name), &program.text);
+    for (name, program) in resident() {
+        assert!(name.starts_with(&format!("O{}_", program.number)), "{name}");
+        holds(&workspace().join("macros").join(name), &program.text);
     }
 }
 
@@ -51,8 +46,8 @@ fn every_resident_macro_has_its_row_and_every_alarm_its_remedy() {
         .filter(|name| name.ends_with(".nc"))
         .collect();
     files.sort();
-    assert_eq!(files, FILES.map(|(_, name)| name.to_owned()));
-    for (number, _) in FILES {
+    assert_eq!(files, resident().iter().map(|(name, _)| *name).collect::<Vec<_>>());
+    for number in resident().iter().map(|(_, program)| program.number) {
         assert!(readme.contains(&format!("| O{number} |")), "O{number} has no row");
     }
 }
@@ -66,7 +61,7 @@ fn the_examples_hold_what_emit_writes() {
     for folder in folders.iter().filter(|path| path.join("job.toml").is_file()) {
         let job = Job::parse(&std::fs::read_to_string(folder.join("job.toml")).unwrap())
             .unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
-        for (name, text) in gcode_gen::families::emit(&job).files() {
+        for (name, text) in families::emit(&job).files() {
             holds(&folder.join(name), text);
         }
         examples += 1;

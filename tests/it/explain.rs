@@ -5,7 +5,7 @@ use std::path::Path;
 use gcode_sim::diag::{Diagnostic, Severity};
 use gcode_sim::exec::Outcome;
 use gcode_sim::machine::Machine;
-use gcode_sim::part::reference::Reference;
+use gcode_sim::part::wanted::Wanted;
 use gcode_sim::program::NoLibrary;
 use gcode_sim::report::explain::{self, PAGES, Page};
 use gcode_sim::session::{Request, simulate};
@@ -103,8 +103,12 @@ fn found(page: &Page, program: &str) -> Vec<Diagnostic> {
     let (jobs, machines): (Vec<&str>, Vec<&str>) =
         page.fenced("toml").into_iter().partition(|text| text.starts_with("family"));
     let machine = machines.first().map_or_else(Machine::default, |text| Machine::parse(text).unwrap());
-    let reference =
-        page.fenced("csv").into_iter().chain(jobs).next().map(|text| Reference::parse(text).unwrap());
+    let reference = page
+        .fenced("csv")
+        .into_iter()
+        .chain(jobs)
+        .next()
+        .map(|text| Wanted::parse(text).unwrap().into_holes().unwrap());
     let request = Request::new("example.nc", program.as_bytes(), machine.clone());
     // Of a job on these pages only the surface counts.
     let surface = reference.as_ref().and_then(|reference| reference.surface);

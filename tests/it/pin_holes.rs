@@ -9,7 +9,7 @@ use gcode_sim::exec::Outcome;
 use gcode_sim::job::Job;
 use gcode_sim::machine::Machine;
 use gcode_sim::motion::{Event, EventKind, Position, Sink};
-use gcode_sim::part::reference::Reference;
+use gcode_sim::part::wanted::Wanted;
 use gcode_sim::program::Library;
 use gcode_sim::session::{Request, Run, run, simulate};
 use gcode_sim::verify::{Answer, Tolerances, Verdict};
@@ -58,7 +58,7 @@ fn edited(text: &str, changes: &[(u32, &str, &str, &str)]) -> Package {
 }
 
 fn verdict(package: &Package, reference: &str) -> Verdict {
-    check(&job(reference), package).unwrap().verdict
+    check(&job(reference), package).unwrap().judgement.into_holes().unwrap()
 }
 
 #[test]
@@ -102,9 +102,10 @@ fn the_printed_equation_8_fails() {
     let printed = "SQRT[1-#18*#18/[#1*#1]]/#2";
     let package = edited(&melon(), &[(8101, "#24=", right, printed), (8102, "#24=", right, printed)]);
     let checked = check(&job(&melon()), &package).unwrap();
-    assert_eq!(checked.verdict.verdict, Answer::Fail);
-    assert_eq!(checked.verdict.missing, ["1", "2", "3", "4", "5"], "no hole is anywhere near its place");
     assert!(checked.refusals.concat().contains("rapid through the part"), "{}", checked.refusals.concat());
+    let verdict = checked.judgement.into_holes().unwrap();
+    assert_eq!(verdict.verdict, Answer::Fail);
+    assert_eq!(verdict.missing, ["1", "2", "3", "4", "5"], "no hole is anywhere near its place");
 }
 
 #[test]
@@ -119,7 +120,7 @@ fn a_table_that_turns_the_other_way_fails() {
 #[test]
 fn neither_the_machine_file_nor_the_range_of_atan_changes_the_verdict() {
     let text = melon();
-    let reference = Reference::of_job(&job(&text)).unwrap();
+    let reference = Wanted::of_job(&job(&text)).unwrap().into_holes().unwrap();
     let package = families::emit(&job(&text));
     let main = package.program(package.main).unwrap();
     for machine in [Machine::default(), Machine::parse(&package.machine).unwrap()] {

@@ -123,9 +123,10 @@ proptest! {
         let text = wanted.text();
         let checked = checked(&text);
         prop_assert!(checked.refusals.is_empty(), "{}\n{text}", checked.refusals.concat());
-        prop_assert!(checked.verdict.verdict == Answer::Pass);
-        prop_assert!(checked.verdict.holes.len() == 24 && checked.verdict.extra.is_empty());
-        let (worst, rounding) = (checked.verdict.worst.unwrap(), checked.verdict.rounding.unwrap());
+        let verdict = checked.judgement.into_holes().unwrap();
+        prop_assert!(verdict.verdict == Answer::Pass);
+        prop_assert!(verdict.holes.len() == 24 && verdict.extra.is_empty());
+        let (worst, rounding) = (verdict.worst.unwrap(), verdict.rounding.unwrap());
         prop_assert!(worst <= rounding + 0.0005, "Φ{worst} where rounding explains Φ{rounding}\n{text}");
     }
 }

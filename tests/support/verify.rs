@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 
 use gcode_sim::machine::Machine;
 use gcode_sim::motion::Call;
-use gcode_sim::part::reference::Reference;
+use gcode_sim::part::wanted::Wanted;
 use gcode_sim::program::NoLibrary;
 use gcode_sim::report::verdict_table::{Layout, table};
 use gcode_sim::session::{Request, Simulation, simulate};
@@ -19,8 +19,10 @@ pub(crate) fn run(case: &Case) {
         case.optional("machine.toml").map_or_else(Machine::default, |text| Machine::parse(&text).unwrap());
     let request = Request::new("case.nc", case.bytes("case.nc"), machine.clone());
     let files = ["reference.toml", "reference.csv", "reference.json"];
-    let reference =
-        files.iter().find_map(|name| case.optional(name)).map(|text| Reference::parse(&text).unwrap());
+    let reference = files
+        .iter()
+        .find_map(|name| case.optional(name))
+        .map(|text| Wanted::parse(&text).unwrap().into_holes().unwrap());
     let surface = reference.as_ref().and_then(|reference| reference.surface);
     let simulation = simulate(&request, &mut NoLibrary, surface).unwrap();
     let (mut shown, findings) = match &reference {

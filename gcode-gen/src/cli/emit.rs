@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use gcode_sim::cli::{Refusal, Status, input, output};
 use gcode_sim::job::Job;
 use gcode_sim::picture::{self, PictureError, Size};
-use gcode_sim::report::verdict_table::{Layout, table};
 
 use crate::check::{Checked, check};
 use crate::families;
@@ -29,7 +28,7 @@ pub(super) fn run(path: &Path, out: &Path) -> Result<Status, Refusal> {
     files.push((out.join(file_name(package.main)).with_extension("png"), &picture));
     let written: Vec<_> = files.iter().map(|(path, bytes)| (path.as_path(), *bytes)).collect();
     output::write_all(&written)?;
-    let mut text = table(&checked.verdict, Layout::default());
+    let mut text = checked.report.clone();
     let minutes = checked.seconds / 60.0;
     let _ = writeln!(text, "running time {minutes:.0} min without the operator's stops\n");
     for (path, _) in &files {
@@ -39,11 +38,11 @@ pub(super) fn run(path: &Path, out: &Path) -> Result<Status, Refusal> {
     Ok(Status::Holds)
 }
 
-/// The top view of what was simulated, as PNG.
+/// The view of what was simulated, as PNG.
 fn picture(checked: &Checked) -> Result<Vec<u8>, Refusal> {
     let refused = |error: PictureError| Refusal::new(error.to_string());
     let size = Size::new(1600, 1200).map_err(refused)?;
-    picture::draw(&picture::top_view(&checked.top), size).map_err(refused)
+    picture::draw(&checked.picture, size).map_err(refused)
 }
 
 /// The folder, and those it stands in.

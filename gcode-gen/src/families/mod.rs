@@ -1,15 +1,18 @@
 //! The part families: each turns its job into programs.
+mod control;
 pub mod pin_holes;
 
 use gcode_sim::job::Job;
 
-use crate::package::Package;
+use crate::package::{Package, Program};
 
 /// One family by the name that job files and the command line use.
 pub struct Family {
     pub name: &'static str,
     /// A commented job file that works as it is.
     pub new_job: &'static str,
+    /// The resident macros as the default settings have them, each with its file's name in `macros/`.
+    pub resident: fn() -> Vec<(&'static str, Program)>,
 }
 
 /// Every family there is.

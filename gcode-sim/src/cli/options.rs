@@ -6,7 +6,7 @@ use super::library::Folders;
 use super::{Refusal, input};
 use crate::exec::Limits;
 use crate::machine::Machine;
-use crate::part::reference::Reference;
+use crate::part::wanted::Wanted;
 use crate::session::Request;
 
 /// Reads the program and the machine, and resolves every setting.
@@ -46,9 +46,8 @@ fn machine(path: &Path) -> Result<Machine, Refusal> {
 }
 
 /// A hole list or a job file.
-pub(super) fn reference(path: &Path) -> Result<Reference, Refusal> {
-    Reference::parse(&input::text(path)?)
-        .map_err(|error| Refusal::new(format!("{}, {error}", path.display())))
+pub(super) fn wanted(path: &Path) -> Result<Wanted, Refusal> {
+    Wanted::parse(&input::text(path)?).map_err(|error| Refusal::new(format!("{}, {error}", path.display())))
 }
 
 /// A tolerance that somebody asked for.

@@ -4,15 +4,22 @@ use std::path::Path;
 use super::args::{RenderArguments, View};
 use super::{Refusal, Status, options, output};
 use crate::part::reference::Reference;
+use crate::part::wanted::Wanted;
 use crate::picture::{self, Size, TopView};
 use crate::report::top;
 use crate::session::{self, Request, Simulation};
 use crate::verify::{Tolerances, Verdict};
 
 pub(super) fn run(arguments: &RenderArguments) -> Result<Status, Refusal> {
+    match arguments.reference.as_deref().map(options::wanted).transpose()? {
+        Some(Wanted::Holes(reference)) => holes(arguments, Some(reference)),
+        None => holes(arguments, None),
+    }
+}
+
+fn holes(arguments: &RenderArguments, reference: Option<Reference>) -> Result<Status, Refusal> {
     let View::Top = arguments.view;
     let (request, mut folders) = options::request(&arguments.program)?;
-    let reference = arguments.reference.as_deref().map(options::reference).transpose()?;
     let asked = options::tolerance("--tolerance", arguments.tolerance)?;
     let surface = reference.as_ref().and_then(|r| r.surface);
     let simulation =

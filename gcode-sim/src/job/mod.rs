@@ -3,6 +3,7 @@
 //! Unknown keys, missing keys and values out of range are errors that name the key, the line and what is allowed.
 mod pin_holes;
 pub(crate) mod reader;
+mod sections;
 mod wording;
 
 use serde::Deserialize;

@@ -133,31 +133,36 @@ fn check(hole: &Hole, index: usize) -> Result<(), String> {
 #[cfg(test)]
 mod tests {
     use super::super::reference::Reference;
+    use super::super::wanted::Wanted;
     use super::*;
 
     const HOLE: &str =
         r#"{"unit": "mm", "holes": [{"id": "1", "entry": [1, 2, 3], "axis": [0, 0.6, 0.8], "depth": 5}]}"#;
 
     fn refused(text: &str) -> String {
-        Reference::parse(text).unwrap_err().to_string()
+        Wanted::parse(text).unwrap_err().to_string()
+    }
+
+    fn read_holes(text: &str) -> Reference {
+        Wanted::parse(text).unwrap().into_holes().unwrap()
     }
 
     #[test]
     fn json_and_csv_say_the_same() {
         let csv = "id,x,y,z,i,j,k,depth,diameter\r\n1, 1, 2, 3, 0, 0.6, 0.8, 5,\r\n";
-        assert_eq!(Reference::parse(HOLE).unwrap(), Reference::parse(csv).unwrap());
+        assert_eq!(Wanted::parse(HOLE).unwrap(), Wanted::parse(csv).unwrap());
     }
 
     #[test]
     fn a_hole_without_an_id_is_named_by_its_number() {
         let csv = "id,x,y,z,i,j,k,depth,diameter\n,0,0,0,0,1,0,5,6\n";
-        assert_eq!(Reference::parse(csv).unwrap().holes[0].id.as_deref(), Some("#1"));
+        assert_eq!(read_holes(csv).holes[0].id.as_deref(), Some("#1"));
     }
 
     #[test]
     fn an_axis_rounded_to_a_few_digits_is_taken() {
         let csv = "id,x,y,z,i,j,k,depth,diameter\n1,0,0,0,0.453,0.879,-0.149,5,6\n";
-        let axis = Reference::parse(csv).unwrap().holes[0].axis;
+        let axis = read_holes(csv).holes[0].axis;
         assert!((Vector3::from(axis).norm() - 1.0).abs() < 1e-15, "{axis:?}");
     }
 

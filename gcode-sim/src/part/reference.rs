@@ -1,16 +1,10 @@
 //! The wanted holes: computed from a job's geometry, or read from a list.
-//!
-//! For a job the entry is found by searching along the hole's axis line for the implicit surface, and the
-//! direction is the surface's gradient there.
-use nalgebra::{Point3, Vector3};
-
 use super::hole::{Hole, HoleList, Unit};
+use super::read;
 pub use super::read::ReferenceError;
-use super::{read, surface::Surface};
-use crate::job::{AxisDirection, HoleWanted, Job};
-use crate::units::Deg;
+use super::surface::Surface;
 
-/// What a program is held against.
+/// What the holes of a program are held against.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reference {
     /// Every hole has an id here.
@@ -23,124 +17,13 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// A job file, or a list of holes as JSON or CSV: told apart by how the text begins, since it may come from a
-    /// pipe.
-    pub fn parse(text: &str) -> Result<Self, ReferenceError> {
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        if text.trim_start().starts_with('{') {
-            return Self::of_list(read::json(text)?);
-        }
-        if read::is_csv(text) {
-            return Self::of_list(read::csv(text)?);
-        }
-        if !text.contains("family") {
-            let message = "neither a hole list (JSON or CSV) nor a job file with its key 'family'".to_owned();
-            return Err(ReferenceError { line: None, message });
-        }
-        let job = Job::parse(text).map_err(|e| ReferenceError { line: e.line, message: e.message })?;
-        Self::of_job(&job)
-    }
-
+    /// A list of holes, each given an id where it has none.
     pub fn of_list(list: HoleList) -> Result<Self, ReferenceError> {
         Ok(Self { holes: read::checked(list.holes)?, position: None, depth: None, surface: None })
-    }
-
-    pub fn of_job(job: &Job) -> Result<Self, ReferenceError> {
-        match job {
-            Job::PinHoles(job) => {
-                let surface = Surface::Ellipsoid { a: job.surface.a, b: job.surface.b };
-                let holes = job.holes.iter().map(|hole| pin_hole(&surface, hole));
-                Ok(Self {
-                    holes: holes.collect::<Result<_, _>>()?,
-                    position: Some(job.position_tolerance),
-                    depth: Some(job.depth_tolerance),
-                    surface: Some(surface),
-                })
-            }
-        }
     }
 
     /// The document that `reference` writes.
     pub fn list(&self) -> HoleList {
         HoleList { unit: Unit::Mm, holes: self.holes.clone() }
-    }
-}
-
-/// The upper half's point over (r·cos α, r·sin α).
-fn pin_hole(surface: &Surface, wanted: &HoleWanted) -> Result<Hole, ReferenceError> {
-    let azimuth = Deg(wanted.azimuth);
-    let under = Point3::new(wanted.radius * azimuth.cos(), 0.0, wanted.radius * azimuth.sin());
-    let missed = || ReferenceError {
-        line: None,
-        message: format!("hole '{}': a line at radius {} misses the surface", wanted.id, wanted.radius),
-    };
-    let entry = surface.exit(&under, &Vector3::y_axis()).ok_or_else(missed)?;
-    let axis = match wanted.axis {
-        AxisDirection::Axial => Vector3::y_axis(),
-        AxisDirection::Normal => surface.normal(&entry).ok_or_else(missed)?,
-    };
-    Ok(Hole {
-        id: Some(wanted.id.clone()),
-        entry: entry.coords.into(),
-        axis: axis.into_inner().into(),
-        depth: wanted.depth,
-        diameter: Some(wanted.diameter),
-        from: None,
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn wanted(radius: f64, azimuth: f64, axis: AxisDirection) -> HoleWanted {
-        HoleWanted { id: "h".into(), radius, azimuth, axis, diameter: 6.0, depth: 15.0, tools: vec![1] }
-    }
-
-    fn near(found: [f64; 3], expected: [f64; 3]) {
-        let off = found.iter().zip(&expected).map(|(f, e)| (f - e).abs()).fold(0.0, f64::max);
-        assert!(off < 1e-9, "{found:?} is not {expected:?}");
-    }
-
-    #[test]
-    fn at_the_pole_the_normal_is_the_axis() {
-        for b in [50.0, 100.0, 300.0] {
-            let surface = Surface::Ellipsoid { a: 100.0, b };
-            let hole = pin_hole(&surface, &wanted(0.0, 77.0, AxisDirection::Normal)).unwrap();
-            near(hole.entry, [0.0, b, 0.0]);
-            near(hole.axis, [0.0, 1.0, 0.0]);
-        }
-    }
-
-    #[test]
-    fn at_the_equator_the_normal_is_radial() {
-        let surface = Surface::Ellipsoid { a: 100.0, b: 60.0 };
-        let hole = pin_hole(&surface, &wanted(100.0, 450.0, AxisDirection::Normal)).unwrap();
-        let off = hole.entry[1].abs().max((hole.entry[2] - 100.0).abs()).max(hole.axis[0].abs());
-        assert!(off < 1e-5, "{hole:?}");
-        assert!((hole.axis[2] - 1.0).abs() < 1e-9);
-    }
-
-    /// a = 5, b = 4: at r = 3 the section's height is 4·4/5 = 3.2, and the normal is the tangent's perpendicular:
-    /// the tangent of (5 cos t, 4 sin t) with cos t = 0.6 is (−5·0.8, 4·0.6), so the normal is (2.4, 4).
-    #[test]
-    fn an_ellipse_worked_by_hand() {
-        let surface = Surface::Ellipsoid { a: 5.0, b: 4.0 };
-        let hole = pin_hole(&surface, &wanted(3.0, -90.0, AxisDirection::Normal)).unwrap();
-        near(hole.entry, [0.0, 3.2, -3.0]);
-        let size = (2.4f64 * 2.4 + 16.0).sqrt();
-        near(hole.axis, [0.0, 4.0 / size, -2.4 / size]);
-        let axial = pin_hole(&surface, &wanted(3.0, 270.0, AxisDirection::Axial)).unwrap();
-        near(axial.entry, [0.0, 3.2, -3.0]);
-        near(axial.axis, [0.0, 1.0, 0.0]);
-    }
-
-    #[test]
-    fn on_a_sphere_the_normal_points_from_the_centre() {
-        let surface = Surface::Ellipsoid { a: 500.0, b: 500.0 };
-        for (radius, azimuth) in [(1e-6, 10.0), (300.0, -200.0), (485.0, 359.999)] {
-            let hole = pin_hole(&surface, &wanted(radius, azimuth, AxisDirection::Normal)).unwrap();
-            near(hole.axis, hole.entry.map(|v| v / 500.0));
-        }
     }
 }

@@ -10,6 +10,7 @@ use crate::holes::script::Script;
 use crate::job::Job;
 use crate::machine::{Head, HeadKind, Machine, Tool};
 use crate::part::reference::Reference;
+use crate::part::wanted::Wanted;
 use crate::units::Deg;
 
 #[derive(Clone, Copy, Debug)]
@@ -54,7 +55,7 @@ impl Section {
                 place.azimuth
             );
         }
-        Reference::of_job(&Job::parse(&text).unwrap()).unwrap()
+        Wanted::of_job(&Job::parse(&text).unwrap()).unwrap().into_holes().unwrap()
     }
 }
 

@@ -1,22 +1,18 @@
 //! The machine file of a pin-hole job: what `gcode-sim --machine` needs to follow the emitted programs.
 use std::fmt::Write;
 
-use gcode_sim::control::{Dialect, Increment};
 use gcode_sim::job::{HeadKind, PinHoles};
+
+use crate::families::control;
 
 /// The text of `machine.toml`.
 pub(super) fn machine_file(job: &PinHoles) -> String {
-    let name_of_dialect = Dialect::ALL.iter().find(|(_, d)| *d == job.control.dialect).map_or("", |(n, _)| n);
-    let name_of_increment =
-        Increment::ALL.iter().find(|(_, i)| *i == job.control.increment).map_or("", |(n, _)| n);
     let rotary = job.machine.rotary;
     let head = job.machine.head;
-    let mut text = format!(
-        "# The machine and control that the programs beside this file are for; lengths in mm, angles in degrees.\n\
-         [control]\n\
-         dialect = \"{name_of_dialect}\"\n\
-         increment = \"{name_of_increment}\"\n\
-         \n\
+    let mut text = control::machine_file(job.control);
+    let _ = write!(
+        text,
+        "\n\
          # The rotary table carries the part about y; its axis goes through the part's origin.\n\
          [[table]]\n\
          letter = \"{}\"\n\

@@ -2,6 +2,7 @@
 use gcode_sim::control::{Dialect, Increment};
 use gcode_sim::job::{HeadKind, PinHoles};
 
+use crate::families::control::fill;
 use crate::nc::number::number;
 use crate::nc::program::name;
 use crate::package::Program;
@@ -68,8 +69,20 @@ impl Resident {
             ("{set_head}", set_head),
             ("{spindle_note}", spindle_note.to_owned()),
         ];
-        marks.iter().fold(text.to_owned(), |text, (mark, value)| text.replace(mark, value))
+        fill(text, &marks)
     }
+}
+
+/// As `macros/` has them.
+pub(super) fn of_the_defaults() -> Vec<(&'static str, Program)> {
+    let resident = Resident {
+        dialect: Dialect::default(),
+        increment: Increment::default(),
+        rotary: 'B',
+        head: HeadKind::Manual,
+        common: 140,
+    };
+    ["O8101_pin_hole.nc", "O8102_head_angle.nc"].into_iter().zip(resident.programs()).collect()
 }
 
 #[cfg(test)]

@@ -6,11 +6,10 @@
 mod machine_file;
 pub mod macros;
 
-use gcode_sim::control::{Dialect, Increment};
 use gcode_sim::job::{AxisDirection, HeadKind, HoleWanted, PinHoles};
 
 use self::macros::{HEAD, HOLE, Resident};
-use super::Family;
+use super::{Family, control};
 use crate::nc::block::Block;
 use crate::nc::number::number;
 use crate::nc::program::Program as Text;
@@ -20,7 +19,8 @@ use crate::package::{Package, Program};
 /// The main program.
 pub const MAIN: u32 = 8100;
 
-pub const FAMILY: Family = Family { name: "pin-holes", new_job: include_str!("new.toml") };
+pub const FAMILY: Family =
+    Family { name: "pin-holes", new_job: include_str!("new.toml"), resident: macros::of_the_defaults };
 
 /// The main program, the resident macros and the machine file of a job.
 pub fn emit(job: &PinHoles) -> Package {
@@ -66,7 +66,7 @@ impl<'j> Main<'j> {
             HeadKind::Manual => "SET BY HAND AT A STOP".to_owned(),
             HeadKind::Axis(letter) => format!("MOVED AS AXIS {letter}"),
         };
-        let control = control_name(job);
+        let control = control::remark(job.control);
         let common = self.resident.common;
         let lines = [
             format!("HOLES {holes}, SURFACE [X*X+Z*Z]/A/A+Y*Y/B/B = 1, A {a} B {b}"),
@@ -169,11 +169,4 @@ fn flag(axis: AxisDirection) -> &'static str {
         AxisDirection::Normal => "0.",
         AxisDirection::Axial => "1.",
     }
-}
-
-/// `FANUC-31I, INCREMENT IS-B`.
-fn control_name(job: &PinHoles) -> String {
-    let dialect = Dialect::ALL.iter().find(|(_, d)| *d == job.control.dialect).map_or("", |(n, _)| n);
-    let increment = Increment::ALL.iter().find(|(_, i)| *i == job.control.increment).map_or("", |(n, _)| n);
-    format!("{dialect}, INCREMENT {increment}")
 }

@@ -6,8 +6,8 @@ use toml::Spanned;
 
 use super::tools::{FileTool, ToolsWanted, assign, default_tools};
 use super::{AxisDirection, Head, HeadKind, HoleWanted, MacroSettings, PinHoles, PinMachine, Surface, Tool};
-use crate::control::{Dialect, Increment};
-use crate::job::{JobControl, JobError, Reader, Rotary};
+use crate::job::sections::{FileControl, FileRotary, FileTolerance, ROTARY_LETTERS, length, within};
+use crate::job::{JobError, Reader};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -26,25 +26,11 @@ struct File {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct FileControl {
-    dialect: Spanned<String>,
-    increment: Spanned<String>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
 struct FileMachine {
     rotary: FileRotary,
     head: Option<FileHead>,
     clearance: Option<Spanned<f64>>,
     retract: Option<Spanned<f64>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct FileRotary {
-    letter: Spanned<String>,
-    sign: Spanned<i64>,
 }
 
 #[derive(Deserialize)]
@@ -65,13 +51,6 @@ struct FileSurface {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct FileTolerance {
-    position: Spanned<f64>,
-    depth: Option<Spanned<f64>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
 struct FileHole {
     id: Spanned<String>,
     radius: Spanned<f64>,
@@ -88,24 +67,13 @@ struct FileMacro {
     common: Spanned<i64>,
 }
 
-/// What lengths may be: within what nine digits can say to a tenth of an increment.
-pub(super) const LENGTH: &str = "0.01 to 99999 mm";
-
-/// Whether a number is within bounds, the bounds included.
-pub(super) fn within(low: f64, high: f64) -> impl Fn(f64) -> bool {
-    move |value| (low..=high).contains(&value)
-}
-
-const ROTARY_LETTERS: [(&str, char); 3] = [("A", 'A'), ("B", 'B'), ("C", 'C')];
-const TOLERANCE: &str = "0.0001 to 1000 mm";
-
 /// Reads the text of a job of this family.
 pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<PinHoles, JobError> {
     let file: File = toml::from_str(reader.text).map_err(|e| reader.syntax(&e))?;
     reader.choice("surface.kind", &file.surface.kind, &[("ellipsoid", ())])?;
     let surface = Surface {
-        a: reader.number("surface.a", &file.surface.a, LENGTH, within(0.01, 99_999.0))?,
-        b: reader.number("surface.b", &file.surface.b, LENGTH, within(0.01, 99_999.0))?,
+        a: length(reader, "surface.a", &file.surface.a)?,
+        b: length(reader, "surface.b", &file.surface.b)?,
     };
     let (tools, tools_of_holes) = file.tools(reader)?;
     let mut holes = Vec::new();
@@ -117,22 +85,11 @@ pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<PinHoles, JobError> {
         None => 140,
     };
     Ok(PinHoles {
-        control: JobControl {
-            dialect: reader.choice("control.dialect", &file.control.dialect, &Dialect::ALL)?,
-            increment: reader.choice("control.increment", &file.control.increment, &Increment::ALL)?,
-        },
+        control: file.control.check(reader)?,
         machine: file.machine.check(reader)?,
         surface,
-        position_tolerance: reader.number(
-            "tolerance.position",
-            &file.tolerance.position,
-            TOLERANCE,
-            within(1e-4, 1e3),
-        )?,
-        depth_tolerance: match &file.tolerance.depth {
-            Some(depth) => reader.number("tolerance.depth", depth, TOLERANCE, within(1e-4, 1e3))?,
-            None => 0.1,
-        },
+        position_tolerance: file.tolerance.position(reader)?,
+        depth_tolerance: file.tolerance.depth(reader)?,
         tools,
         macros: MacroSettings { common },
         holes,
@@ -151,7 +108,7 @@ impl File {
                 let message = format!("key 'hole.id': '{}' is there twice", hole.id.as_ref());
                 return Err(reader.error(&hole.id, message));
             }
-            reader.number("hole.diameter", &hole.diameter, LENGTH, within(0.01, 99_999.0))?;
+            length(reader, "hole.diameter", &hole.diameter)?;
         }
         let wanted: Vec<_> = self.hole.iter().map(FileHole::tools_wanted).collect();
         let Some(tools) = &self.tool else { return default_tools(reader, &wanted) };
@@ -173,18 +130,9 @@ impl File {
 
 impl FileMachine {
     fn check(&self, reader: &Reader<'_>) -> Result<PinMachine, JobError> {
-        let letter = reader.choice("machine.rotary.letter", &self.rotary.letter, &ROTARY_LETTERS)?;
-        let sign = match *self.rotary.sign.as_ref() {
-            1 => 1,
-            -1 => -1,
-            other => {
-                return Err(
-                    reader.error(&self.rotary.sign, format!("key 'machine.rotary.sign' is {other}: 1 or -1"))
-                );
-            }
-        };
+        let rotary = self.rotary.check(reader)?;
         let head = match &self.head {
-            Some(head) => head.check(reader, letter)?,
+            Some(head) => head.check(reader, rotary.letter)?,
             None => Head { kind: HeadKind::Manual, pivot: 0.0 },
         };
         let clearance = match &self.clearance {
@@ -200,7 +148,7 @@ impl FileMachine {
             }
             None => clearance.max(50.0),
         };
-        Ok(PinMachine { rotary: Rotary { letter, sign }, head, clearance, retract })
+        Ok(PinMachine { rotary, head, clearance, retract })
     }
 }
 

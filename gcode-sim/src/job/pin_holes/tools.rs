@@ -3,7 +3,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::Tool;
-use super::file::{LENGTH, within};
+use crate::job::sections::{length, within};
 use crate::job::{JobError, Reader};
 
 #[derive(Deserialize)]
@@ -42,7 +42,7 @@ impl FileTool {
         let feed = reader.number("tool.feed", &self.feed, feed_range, within(0.01, 240_000.0))?;
         Ok(Tool {
             number: number as u32,
-            diameter: reader.number("tool.diameter", &self.diameter, LENGTH, within(0.01, 99_999.0))?,
+            diameter: length(reader, "tool.diameter", &self.diameter)?,
             length: match &self.length {
                 Some(length) => reader.number("tool.length", length, "0 to 9999 mm", within(0.0, 9_999.0))?,
                 None => 0.0,

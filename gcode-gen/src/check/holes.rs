@@ -1,0 +1,55 @@
+//! Runs the programs of a part with holes and holds the holes against the job's geometry.
+use gcode_sim::diag::Severity;
+use gcode_sim::job::Job;
+use gcode_sim::machine::Machine;
+use gcode_sim::part::reference::Reference;
+use gcode_sim::picture;
+use gcode_sim::report::verdict_table::{Layout, table};
+use gcode_sim::report::{diagnostic, top};
+use gcode_sim::session::{Request, Simulation, simulate};
+use gcode_sim::verify::{Answer, Tolerances, Verdict};
+
+use super::{CheckError, Checked, Judgement, Programs, main_program, told};
+use crate::package::{Package, file_name};
+
+pub(super) fn check(job: &Job, package: &Package, reference: &Reference) -> Result<Checked, CheckError> {
+    let machine = Machine::parse(&package.machine).map_err(|e| told("machine.toml", &e))?;
+    let main = main_program(package)?;
+    let request = Request::new(file_name(main.number), main.text.as_bytes(), machine.clone());
+    let simulation = simulate(&request, &mut Programs(package), reference.surface)
+        .map_err(|e| told("the main program", &e))?;
+    let tolerances = Tolerances::of(reference, None);
+    let verdict = simulation.verify(reference, tolerances, &machine);
+    let top = top::of_verdict(&file_name(main.number), &simulation, reference, &verdict, &machine);
+    Ok(Checked {
+        refusals: refusals(job, &simulation, &verdict),
+        seconds: simulation.run.control.seconds().0,
+        report: table(&verdict, Layout::default()),
+        picture: picture::top_view(&top),
+        judgement: Judgement::Holes(verdict),
+    })
+}
+
+/// Every reason with its block; then what rounding has to do with it.
+fn refusals(job: &Job, simulation: &Simulation, verdict: &Verdict) -> Vec<String> {
+    let sources = simulation.run.control.memory().sources();
+    let failed = verdict.diagnostics.iter().filter(|finding| Severity::Error <= finding.severity);
+    let mut refusals: Vec<_> = failed.map(|finding| diagnostic::render(finding, sources)).collect();
+    let increment = job.control().increment;
+    for hole in verdict.holes.iter().filter(|hole| hole.phi > verdict.tolerance) {
+        if hole.rounding > verdict.tolerance - (hole.phi - hole.rounding).max(0.0) {
+            refusals.push(format!(
+                "hole {}: rounding to the least increment of {} mm and degrees alone can make Φ{:.4} here, {} is allowed; \
+                 a finer increment or a wider tolerance is needed\n",
+                hole.id,
+                increment.size(),
+                hole.rounding,
+                verdict.tolerance
+            ));
+        }
+    }
+    if refusals.is_empty() && verdict.verdict == Answer::Fail {
+        refusals.push("the programs fail the job's reference\n".to_owned());
+    }
+    refusals
+}

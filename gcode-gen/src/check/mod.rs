@@ -1,0 +1,70 @@
+//! Runs an emitted package as the control would and holds what it does against the job's geometry. What doesn't pass
+//! here is not written.
+mod holes;
+
+use gcode_sim::job::Job;
+use gcode_sim::part::wanted::Wanted;
+use gcode_sim::picture::Scene;
+use gcode_sim::program::Library;
+use gcode_sim::verify::Verdict;
+
+use crate::package::{Package, Program, file_name};
+
+/// Why the check can't be made at all: the package or the job contradicts itself.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+pub struct CheckError(String);
+
+/// A package that was run.
+#[derive(Debug)]
+pub struct Checked {
+    /// Why it may not be written: findings with their lines, as text for a terminal. Empty where all is well.
+    pub refusals: Vec<String>,
+    /// Predicted running time, operator stops left out.
+    pub seconds: f64,
+    /// What `verify` prints.
+    pub report: String,
+    pub picture: Scene,
+    pub judgement: Judgement,
+}
+
+/// The verdict, by what the part gets.
+#[derive(Debug)]
+pub enum Judgement {
+    Holes(Verdict),
+}
+
+impl Judgement {
+    /// Of a part that gets holes.
+    pub fn into_holes(self) -> Option<Verdict> {
+        match self {
+            Self::Holes(verdict) => Some(verdict),
+        }
+    }
+}
+
+/// Simulates the main program on the machine of the package's own machine file.
+pub fn check(job: &Job, package: &Package) -> Result<Checked, CheckError> {
+    match Wanted::of_job(job).map_err(|e| told("the job's reference", &e))? {
+        Wanted::Holes(reference) => holes::check(job, package, &reference),
+    }
+}
+
+fn told(what: &str, error: &dyn std::fmt::Display) -> CheckError {
+    CheckError(format!("{what}: {error}"))
+}
+
+fn main_program(package: &Package) -> Result<&Program, CheckError> {
+    let missing = || CheckError(format!("the main program O{} was not emitted", package.main));
+    package.program(package.main).ok_or_else(missing)
+}
+
+/// The package's programs as the control's program memory.
+struct Programs<'p>(&'p Package);
+
+impl Library for Programs<'_> {
+    fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)> {
+        let program = self.0.program(number)?;
+        Some((file_name(number), program.text.as_bytes().to_vec()))
+    }
+}

@@ -1,0 +1,31 @@
+//! What the programs and machine files of all families say of the control, and the marks of resident macros.
+use gcode_sim::control::{Dialect, Increment};
+use gcode_sim::job::JobControl;
+
+fn names(control: JobControl) -> (&'static str, &'static str) {
+    let dialect = Dialect::ALL.iter().find(|(_, d)| *d == control.dialect).map_or("", |(name, _)| name);
+    let increment = Increment::ALL.iter().find(|(_, i)| *i == control.increment).map_or("", |(name, _)| name);
+    (dialect, increment)
+}
+
+/// `FANUC-31I, INCREMENT IS-B`, for a comment.
+pub(super) fn remark(control: JobControl) -> String {
+    let (dialect, increment) = names(control);
+    format!("{dialect}, INCREMENT {increment}")
+}
+
+/// How every machine file begins.
+pub(super) fn machine_file(control: JobControl) -> String {
+    let (dialect, increment) = names(control);
+    format!(
+        "# The machine and control that the programs beside this file are for; lengths in mm, angles in degrees.\n\
+         [control]\n\
+         dialect = \"{dialect}\"\n\
+         increment = \"{increment}\"\n"
+    )
+}
+
+/// A macro's text with every `{mark}` replaced by what it stands for.
+pub(super) fn fill(text: &str, marks: &[(&str, String)]) -> String {
+    marks.iter().fold(text.to_owned(), |text, (mark, value)| text.replace(mark, value))
+}

@@ -1,0 +1,90 @@
+//! Sections that job files of several families have: `[control]`, `[tolerance]`, the rotary table, and bounds of lengths.
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::reader::{JobError, Reader};
+use super::{JobControl, Rotary};
+use crate::control::{Dialect, Increment};
+
+/// What lengths may be: within what nine digits can say to a tenth of an increment.
+pub(super) const LENGTH: &str = "0.01 to 99999 mm";
+
+const TOLERANCE: &str = "0.0001 to 1000 mm";
+
+/// Letters a rotary axis may have.
+pub(super) const ROTARY_LETTERS: [(&str, char); 3] = [("A", 'A'), ("B", 'B'), ("C", 'C')];
+
+/// Whether a number is within bounds, the bounds included.
+pub(super) fn within(low: f64, high: f64) -> impl Fn(f64) -> bool {
+    move |value| (low..=high).contains(&value)
+}
+
+/// A length of [`LENGTH`].
+pub(super) fn length(reader: &Reader<'_>, key: &str, value: &Spanned<f64>) -> Result<f64, JobError> {
+    reader.number(key, value, LENGTH, within(0.01, 99_999.0))
+}
+
+/// 1 or −1.
+pub(super) fn sign(reader: &Reader<'_>, key: &str, value: &Spanned<i64>) -> Result<i8, JobError> {
+    match *value.as_ref() {
+        1 => Ok(1),
+        -1 => Ok(-1),
+        other => Err(reader.error(value, format!("key '{key}' is {other}: 1 or -1"))),
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FileControl {
+    dialect: Spanned<String>,
+    increment: Spanned<String>,
+}
+
+impl FileControl {
+    pub(super) fn check(&self, reader: &Reader<'_>) -> Result<JobControl, JobError> {
+        Ok(JobControl {
+            dialect: reader.choice("control.dialect", &self.dialect, &Dialect::ALL)?,
+            increment: reader.choice("control.increment", &self.increment, &Increment::ALL)?,
+        })
+    }
+}
+
+/// `[machine] rotary`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FileRotary {
+    letter: Spanned<String>,
+    sign: Spanned<i64>,
+}
+
+impl FileRotary {
+    pub(super) fn check(&self, reader: &Reader<'_>) -> Result<Rotary, JobError> {
+        Ok(Rotary {
+            letter: reader.choice("machine.rotary.letter", &self.letter, &ROTARY_LETTERS)?,
+            sign: sign(reader, "machine.rotary.sign", &self.sign)?,
+        })
+    }
+}
+
+/// `[tolerance]` of a part with holes.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FileTolerance {
+    position: Spanned<f64>,
+    depth: Option<Spanned<f64>>,
+}
+
+impl FileTolerance {
+    /// Diameter of the zone, mm.
+    pub(super) fn position(&self, reader: &Reader<'_>) -> Result<f64, JobError> {
+        reader.number("tolerance.position", &self.position, TOLERANCE, within(1e-4, 1e3))
+    }
+
+    /// Either way, mm.
+    pub(super) fn depth(&self, reader: &Reader<'_>) -> Result<f64, JobError> {
+        match &self.depth {
+            Some(depth) => reader.number("tolerance.depth", depth, TOLERANCE, within(1e-4, 1e3)),
+            None => Ok(0.1),
+        }
+    }
+}
