@@ -1,5 +1,5 @@
 //! Who calls whom: G65, G66, M98 and the codes that call macros, with the locals that their arguments set.
-use crate::control::Settings;
+use crate::control::{CodeCallKind, Settings};
 use crate::program::{
     ArgumentLocals, CallTarget, Calling, Coded, Input, Memory, OpIndex, OpKind, Program, Words,
 };
@@ -89,25 +89,39 @@ fn site(block: OpIndex, words: &Words, settings: &Settings) -> Option<CallSite> 
     })
 }
 
-/// A G or M code that calls a macro by a parameter; the code comes first, and the other words are arguments.
+/// A code that calls by a parameter: a macro's code comes first, and the other words are its arguments; a subprogram's
+/// may stand anywhere.
 fn by_code(block: OpIndex, words: &Words, settings: &Settings) -> Option<CallSite> {
-    let (first, rest) = words.list.split_first()?;
-    let number = match (first.letter, first.value) {
-        (b'G', Input::G(code, _)) => settings.g_calls.iter().find(|(g, _)| *g == code)?.1,
-        (b'M', _) => {
-            let code = literal::count(first)?;
-            settings.m_calls.iter().find(|(m, _)| *m == code)?.1
-        }
-        _ => return None,
-    };
-    Some(CallSite {
+    if settings.code_calls.is_empty() {
+        return None;
+    }
+    let site = |word: &Coded, program, own_locals, modal, arguments| CallSite {
         block,
-        own_locals: true,
-        modal: false,
-        target: CalledAs::Number(number),
+        own_locals,
+        modal,
+        target: CalledAs::Number(program),
         start: None,
-        arguments: arguments(rest, false, settings),
-        span: first.span,
+        arguments,
+        span: word.span,
+    };
+    words.list.iter().enumerate().find_map(|(place, word)| {
+        let called = match (word.letter, word.value) {
+            (b'G', Input::G(code, _)) => settings.code_calls.find(b'G', code),
+            (b'M', _) => settings.code_calls.find(b'M', literal::count(word)?.checked_mul(10)?),
+            (letter, _) => {
+                let called = settings.code_calls.by_address(letter)?;
+                return Some(site(word, called.program, false, false, Vec::new()));
+            }
+        }?;
+        match called.kind {
+            CodeCallKind::Subprogram => Some(site(word, called.program, false, false, Vec::new())),
+            CodeCallKind::Macro | CodeCallKind::Modal if place == 0 => {
+                let every = called.kind == CodeCallKind::Modal && settings.code_calls.every_block;
+                let arguments = arguments(&words.list[1..], every, settings);
+                Some(site(word, called.program, true, called.kind == CodeCallKind::Modal, arguments))
+            }
+            CodeCallKind::Macro | CodeCallKind::Modal => None,
+        }
     })
 }
 

@@ -1,10 +1,12 @@
 //! The settings of a control that a program's meaning depends on, in one struct: never an `if` in the reader.
+mod code_calls;
 mod dialect;
 mod table;
 
 use crate::motion::{Axes, MAX_AXES, Position};
 use crate::units::MmPerMin;
 
+pub use code_calls::{AddressCall, Called, CodeCallKind, CodeCalls, FAMILIES, RANGES};
 pub use dialect::{DIALECTS, DialectRow};
 pub use table::{ROWS, Row, SettingError};
 
@@ -182,10 +184,8 @@ pub struct Settings {
     pub skip_signal: Option<f64>,
     /// The main program's M99 of this number ends the run.
     pub cycles: Option<u32>,
-    /// 6050…: G codes × 10 that call a macro, and its program.
-    pub g_calls: Vec<(u16, u32)>,
-    /// 6080…: M codes that call a macro, and its program.
-    pub m_calls: Vec<(u32, u32)>,
+    /// Codes and addresses that call programs.
+    pub code_calls: CodeCalls,
     /// 1420: rapid rate of the axes that slide.
     pub rapid: MmPerMin,
     /// 1420: rapid rate of the axes that turn, degrees a minute.
@@ -241,8 +241,7 @@ impl Default for Settings {
             inputs: 0,
             skip_signal: None,
             cycles: None,
-            g_calls: Vec::new(),
-            m_calls: Vec::new(),
+            code_calls: CodeCalls::default(),
             rapid: MmPerMin(24_000.0),
             rapid_rotary: 3_600.0,
             arc_tolerance: 0.02,

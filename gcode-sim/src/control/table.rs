@@ -56,6 +56,11 @@ pub const ROWS: &[Row] = &[
     switch!("NAT", "6004#0: ASIN -90 to 90, ATAN -180 to 180", signed_angles),
     switch!("MFZ", "6004#1: SIN, COS, TAN below 1e-8 become 0", zero_residues),
     switch!("IJK", "6008#7: I J K in G65 are always specification I", plain_ijk),
+    switch!("GMP", "6008#6: G codes call in programs that M, T, S, B called, and the other way round", code_calls.inside_others),
+    switch!("MGE", "6007#3: a G code that 6050.. makes a modal call is G66.1 instead of G66", code_calls.every_block),
+    switch!("TCS", "6001#5: T calls O9000 with its number in #149", code_calls.by_t),
+    switch!("SCS", "S calls O9029 with its number in #147", code_calls.by_s),
+    switch!("BCS", "B, where it is no axis, calls O9028 with its number in #146", code_calls.by_b),
     switch!("V15", "6000#3: geometry and wear change places in tool offset variables", series_15_offsets),
     switch!("AD2", "3403#6: an address twice in a block alarms", no_repeated_address),
     switch!("M3B", "3404#7: up to three M codes in a block", three_m_codes),
@@ -115,7 +120,7 @@ pub const ROWS: &[Row] = &[
 
 impl Settings {
     /// Sets one setting by its key (`NAT`, `5115`), an input by its variable (`#1005`), or a code that calls a
-    /// macro (`G201`, `M50`).
+    /// program (`G201`, `M50`, `T`), by itself or by its parameter (`6050`).
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), SettingError> {
         let bad = |allowed| SettingError::Value { key: key.to_owned(), value: value.to_owned(), allowed };
         if let Some(row) = ROWS.iter().find(|row| row.key.eq_ignore_ascii_case(key)) {
@@ -129,17 +134,15 @@ impl Settings {
             return Ok(());
         }
         let unknown = || SettingError::Unknown { key: key.to_owned() };
-        let code: f64 = key.get(1..).and_then(|n| n.parse().ok()).ok_or_else(unknown)?;
-        let program = whole(value, 1, 99_999_999).ok_or_else(|| bad("a program number"))? as u32;
-        match key.as_bytes().first() {
-            Some(b'G' | b'g') if (1.0..=999.9).contains(&code) => {
-                self.g_calls.push(((code * 10.0).round() as u16, program));
-            }
-            Some(b'M' | b'm') if (1.0..=99_999_999.0).contains(&code) => {
-                self.m_calls.push((code as u32, program));
-            }
-            _ => return Err(unknown()),
+        if let Some(number) = key.parse().ok().filter(|n| self.code_calls.parameter(*n).is_some()) {
+            let set = value.trim().parse().ok().and_then(|v| self.code_calls.set_parameter(number, v));
+            return set.ok_or_else(|| bad("the code that calls, 0 for none"));
         }
+        if !key.starts_with(|c: char| c.is_ascii_alphabetic()) {
+            return Err(unknown());
+        }
+        let program = whole(value, 1, 99_999_999).ok_or_else(|| bad("a program number"))? as u32;
+        self.code_calls.set_code(key, program).ok_or_else(unknown)?;
         Ok(())
     }
 }
@@ -227,7 +230,7 @@ mod tests {
         assert!(settings.signed_angles && settings.roll_over[3]);
         assert_eq!(settings.skip_switches.map(u8::from), [1, 0, 1, 0, 0, 0, 0, 0, 0]);
         assert_eq!((settings.g83_clearance, settings.inputs), (0.2, 1 << 5));
-        assert_eq!(settings.g_calls, [(2010, 9010)]);
+        assert_eq!(settings.code_calls.find(b'G', 2010).map(|called| called.program), Some(9010));
     }
 
     #[test]

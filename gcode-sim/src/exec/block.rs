@@ -50,10 +50,11 @@ impl Core {
             _ => words,
         };
         plan.begin(&self.state);
-        if self.call_by_code(program, words, plan)? {
+        if self.macro_by_code(program, words, plan)? {
             return Ok(());
         }
-        self.collect(program, words, given)?;
+        let calling = self.subprogram_by_code(program, words)?;
+        self.collect(program, words, calling.as_ref(), given)?;
         self.beside_return(words)?;
         let act = self.modal_codes(given, plan, span)?;
         self.codes(given, plan, span)?;
@@ -70,6 +71,9 @@ impl Core {
         }
         if let Some(call) = &words.call {
             self.prepare_call(program, call, plan)?;
+        }
+        if let Some(calling) = calling {
+            self.plan_calling_word(program, words, &calling, plan)?;
         }
         self.check_unread(given, plan)
     }
@@ -347,6 +351,6 @@ impl Core {
     }
 }
 
-pub(super) fn not_simulated(code: u16, help: &str) -> Alarm {
+pub(super) fn not_simulated(code: u32, help: &str) -> Alarm {
     Alarm::NotSimulated { what: format!("G{} ({help})", crate::program::codes::spelled(code)) }
 }

@@ -1,6 +1,6 @@
 //! Calls and returns as a block commands them: prepared, resolved, made.
 use super::eval::{Checked, at};
-use super::frames::{Frame, FrameKind};
+use super::frames::{ByCodes, Frame, FrameKind};
 use super::modal_calls::ModalCall;
 use super::plan::{CallKind, CallPlan, Flow, Plan, Target};
 use super::words::count;
@@ -73,6 +73,7 @@ impl Core {
             start,
             locals,
             calls_now,
+            by_code: ByCodes::default(),
             span: call.span,
         }));
         Ok(())
@@ -119,7 +120,8 @@ impl Core {
             CallKind::Modal | CallKind::EveryBlock => {
                 let every = call.kind == CallKind::EveryBlock;
                 let locals = call.locals;
-                self.modal_calls.push(ModalCall { program, repeats: call.repeats, locals, every });
+                let by_code = call.by_code;
+                self.modal_calls.push(ModalCall { program, repeats: call.repeats, locals, every, by_code });
                 self.show_modal_call();
                 if call.calls_now && every {
                     self.call_with(&call.locals, block);
@@ -127,20 +129,18 @@ impl Core {
                 return;
             }
             CallKind::Subprogram => FrameKind::Subprogram,
-            CallKind::Macro | CallKind::Code => FrameKind::Macro,
+            CallKind::Macro => FrameKind::Macro,
         };
         if kind == FrameKind::Macro {
             self.vars.enter(&call.locals);
         }
         let again = self.settings.unsure.repeats_reset_locals && call.repeats > 1;
         let arguments = again.then(|| Box::new(call.locals));
-        let by_code = call.kind == CallKind::Code || self.frame().by_code;
         let modal = self.frame().modal;
         self.push(Frame {
             arguments,
-            by_code,
             modal,
-            ..self.called(program, start, kind, call.repeats, block)
+            ..self.called(program, start, kind, call.repeats, call.by_code, block)
         });
     }
 }

@@ -1,48 +1,210 @@
-//! Calls by codes: G and M codes that parameters make calls of.
+//! Calls by codes and addresses that parameters make calls of.
 use super::Core;
 use super::eval::{Checked, at};
-use super::plan::{CallKind, CallPlan, Flow, Plan, Target};
+use super::frames::ByCodes;
+use super::plan::{CallKind, CallPlan, Flow, Plan, Target, Write};
+use super::vars::VACANT;
 use super::words::{Raw, count};
-use crate::program::{Program, Words};
+use crate::alarm::Alarm;
+use crate::control::{Called, CodeCallKind};
+use crate::program::{Coded, Program, Words};
+
+/// A word that calls a subprogram, taken out of its block.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct CallingWord {
+    /// Its place in the block.
+    place: usize,
+    /// Behind an M code L repeats the call.
+    repeats: bool,
+    program: u32,
+    /// The common variable that gets the word's number.
+    value: Option<(u32, f64)>,
+}
+
+impl CallingWord {
+    /// Whether a word of the block belongs to the call and not to what acts first.
+    pub(super) fn takes(&self, place: usize, word: &Coded) -> bool {
+        place == self.place || self.repeats && word.letter == b'L'
+    }
+}
 
 impl Core {
-    /// A parameter-defined G or M code that calls a macro: the block's words are its arguments.
-    pub(super) fn call_by_code(&self, program: &Program, words: &Words, plan: &mut Plan) -> Checked<bool> {
-        let settings = &self.settings;
-        if (settings.g_calls.is_empty() && settings.m_calls.is_empty()) || self.frame().by_code {
+    /// A code that calls a macro: it stands first, and the block's other words are the arguments.
+    pub(super) fn macro_by_code(&self, program: &Program, words: &Words, plan: &mut Plan) -> Checked<bool> {
+        if self.settings.code_calls.is_empty() {
             return Ok(false);
         }
-        let Some(first) = words.list.first() else { return Ok(false) };
-        let Some(raw) = self.raw(program, first)? else { return Ok(false) };
-        let number = match first.letter {
-            b'M' => {
-                let code = at(count(raw, b'M'), first.span)?;
-                settings.m_calls.iter().find(|(m, _)| *m == code).map(|(_, program)| *program)
+        for (place, word) in words.list.iter().enumerate() {
+            let Some(called) = self.called_by(program, word)? else { continue };
+            if called.kind == CodeCallKind::Subprogram {
+                continue;
             }
-            b'G' => {
-                let code = match raw {
-                    Raw::Computed(value) => (value * 10.0).round() as u16,
-                    Raw::Literal(_) => return Ok(false),
-                };
-                settings.g_calls.iter().find(|(g, _)| *g == code).map(|(_, program)| *program)
+            if place > 0 {
+                let what = "words before a code that calls a macro".into();
+                return Err(Alarm::MacroFormat { what }.at(words.list[0].span));
             }
-            _ => None,
-        };
-        let Some(number) = number else { return Ok(false) };
-        let locals = self.arguments(program, &words.list[1..], false)?;
-        let repeats = match words.list[1..].iter().find(|w| w.letter == b'L') {
+            if let Some(second) = &words.call {
+                return Err(Alarm::TwoMacroCalls.at(second.span));
+            }
+            let call = self.macro_call(program, called, word, &words.list[1..])?;
+            plan.flow = Flow::Call(Box::new(call));
+            return Ok(true);
+        }
+        Ok(false)
+    }
+
+    fn macro_call(
+        &self,
+        program: &Program,
+        called: Called,
+        code: &Coded,
+        arguments: &[Coded],
+    ) -> Checked<CallPlan> {
+        let every = called.kind == CodeCallKind::Modal && self.settings.code_calls.every_block;
+        for word in arguments.iter().filter(|_| !every) {
+            match word.letter {
+                b'G' => return Err(Alarm::GAsArgument.at(word.span)),
+                // An option of some controls makes an argument of it.
+                b'P' => {
+                    let what = "P as an argument of a code that calls a macro".into();
+                    return Err(Alarm::NotSimulated { what }.at(word.span));
+                }
+                _ => {}
+            }
+        }
+        let repeats = match arguments.iter().find(|word| word.letter == b'L') {
             Some(word) => self.coded_count(program, word)?.unwrap_or(1),
             None => 1,
         };
-        plan.flow = Flow::Call(Box::new(CallPlan {
-            kind: CallKind::Code,
-            target: Target::Number(number),
+        let own = self.settings.unsure.every_block_calls_itself && !arguments.is_empty();
+        Ok(CallPlan {
+            kind: match called.kind {
+                CodeCallKind::Modal if every => CallKind::EveryBlock,
+                CodeCallKind::Modal => CallKind::Modal,
+                CodeCallKind::Macro | CodeCallKind::Subprogram => CallKind::Macro,
+            },
+            target: Target::Number(called.program),
             repeats,
             start: None,
-            locals,
+            locals: self.arguments(program, arguments, every)?,
+            calls_now: !every || own,
+            by_code: by_code(code.letter),
+            span: code.span,
+        })
+    }
+
+    /// The word of a block that calls a subprogram; the words beside it act first.
+    pub(super) fn subprogram_by_code(
+        &self,
+        program: &Program,
+        words: &Words,
+    ) -> Checked<Option<CallingWord>> {
+        if self.settings.code_calls.is_empty() {
+            return Ok(None);
+        }
+        let mut found = None;
+        for (place, word) in words.list.iter().enumerate() {
+            let Some(calling) = self.calling_word(program, place, word)? else { continue };
+            if found.is_some() || words.call.is_some() {
+                return Err(Alarm::TwoSubprogramCalls.at(word.span));
+            }
+            found = Some(calling);
+        }
+        Ok(found)
+    }
+
+    fn calling_word(&self, program: &Program, place: usize, word: &Coded) -> Checked<Option<CallingWord>> {
+        let by_address = self.settings.code_calls.by_address(word.letter);
+        if let Some(call) =
+            by_address.filter(|_| self.code_may_call(word.letter) && !self.is_axis(word.letter))
+        {
+            let Some(raw) = self.raw(program, word)? else { return Ok(None) };
+            let number = match word.letter {
+                b'B' | b'S' | b'T' => f64::from(at(count(raw, word.letter), word.span)?),
+                letter => self.argument(raw, letter),
+            };
+            let value = Some((call.variable, number));
+            return Ok(Some(CallingWord { place, repeats: false, program: call.program, value }));
+        }
+        let called = self.called_by(program, word)?;
+        let called = called.filter(|called| called.kind == CodeCallKind::Subprogram);
+        Ok(called.map(|called| CallingWord { place, repeats: true, program: called.program, value: None }))
+    }
+
+    /// The call that a word has made a plan of, with its repetitions.
+    pub(super) fn plan_calling_word(
+        &self,
+        program: &Program,
+        words: &Words,
+        calling: &CallingWord,
+        plan: &mut Plan,
+    ) -> Checked<()> {
+        let word = &words.list[calling.place];
+        let repeats = match words.list.iter().find(|other| calling.repeats && other.letter == b'L') {
+            Some(word) => self.coded_count(program, word)?.unwrap_or(1),
+            None => 1,
+        };
+        if let Some((number, value)) = calling.value {
+            plan.writes.push(Write::Variable { number, value });
+        }
+        plan.flow = Flow::Call(Box::new(CallPlan {
+            kind: CallKind::Subprogram,
+            target: Target::Number(calling.program),
+            repeats,
+            start: None,
+            locals: VACANT,
             calls_now: true,
-            span: first.span,
+            by_code: by_code(word.letter),
+            span: word.span,
         }));
-        Ok(true)
+        Ok(())
+    }
+
+    /// What a G or M code calls here; inside a program that a code called it is an ordinary one.
+    fn called_by(&self, program: &Program, word: &Coded) -> Checked<Option<Called>> {
+        if !matches!(word.letter, b'G' | b'M') || !self.code_may_call(word.letter) {
+            return Ok(None);
+        }
+        let Some(raw) = self.raw(program, word)? else { return Ok(None) };
+        let tenths = match (word.letter, raw) {
+            (b'G', Raw::Computed(value)) => (value * 10.0).round(),
+            (b'G', Raw::Literal(number)) => number.value() * 10.0,
+            _ => 10.0 * f64::from(at(count(raw, b'M'), word.span)?),
+        };
+        let code = (0.0..=f64::from(u32::MAX)).contains(&tenths).then_some(tenths as u32);
+        Ok(code.and_then(|code| self.settings.code_calls.find(word.letter, code)))
+    }
+
+    fn code_may_call(&self, letter: u8) -> bool {
+        self.frame().by_code.let_call(letter == b'G', self.settings.code_calls.inside_others)
+    }
+
+    fn is_axis(&self, letter: u8) -> bool {
+        self.settings.axes.find(letter).is_some()
+    }
+}
+
+fn by_code(letter: u8) -> ByCodes {
+    ByCodes { g: letter == b'G', other: letter != b'G' }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::control::Settings;
+    use crate::exec::{Control, Limits, Value};
+    use crate::motion::Axes;
+    use crate::program::{Memory, NoLibrary};
+
+    #[test]
+    fn b_calls_where_it_is_no_axis() {
+        for (axes, number) in [("XYZ", Value::Number(7.0)), ("XYZB", Value::Vacant)] {
+            let mut memory = Memory::default();
+            memory.load("b.nc", *b"O1\nB7\nM30\nO9028\n#100=#146\nM99\n");
+            let mut settings = Settings { axes: Axes::new(axes).unwrap(), ..Settings::default() };
+            settings.set("BCS", "1").unwrap();
+            let mut control = Control::new(memory, settings);
+            control.run(Limits::default(), &mut NoLibrary, &mut ());
+            assert_eq!(control.variable(100).unwrap(), number, "{axes}");
+        }
     }
 }

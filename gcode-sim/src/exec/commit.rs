@@ -1,6 +1,7 @@
 //! Carries out what a block has planned, and tells the machine.
 use super::cycles::Drill;
 use super::plan::{Plan, Write};
+use super::vars::{Kind, Value};
 use super::{Core, STOPS, Stop};
 use crate::alarm::Alarm;
 use crate::motion::{Event, EventKind, Sink};
@@ -24,6 +25,11 @@ impl Core {
                 Write::Work { system, axis, value } => self.offsets.work_mut(system)[axis] = value,
                 Write::Tool { register, number, value } => {
                     self.offsets.register(register)[number as usize] = value;
+                }
+                Write::Variable { number, value } => {
+                    if let Kind::Common(index) = self.vars.kind(number) {
+                        self.vars.set_common(index, Value::Number(value));
+                    }
                 }
             }
             self.offsets_changed();

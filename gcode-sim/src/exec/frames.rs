@@ -26,8 +26,30 @@ pub(super) struct Frame {
     pub(super) loops: [Option<(OpIndex, OpIndex)>; 3],
     /// How many of the modal calls its moves can trigger.
     pub(super) modal: usize,
-    /// Called by a G or M code: such codes are ordinary ones inside.
-    pub(super) by_code: bool,
+    pub(super) by_code: ByCodes,
+}
+
+/// The kinds of codes that a program was called by, itself or one of its callers: inside it they are ordinary ones.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct ByCodes {
+    pub(super) g: bool,
+    /// M, T, S, B and the addresses of 6090 and 6091.
+    pub(super) other: bool,
+}
+
+impl ByCodes {
+    fn and(self, more: Self) -> Self {
+        Self { g: self.g || more.g, other: self.other || more.other }
+    }
+
+    /// Whether a code still calls: GMP 6008#6 lets G codes call where another kind has called, and the other way round.
+    pub(super) fn let_call(self, g: bool, inside_others: bool) -> bool {
+        match (inside_others, g) {
+            (false, _) => self == Self::default(),
+            (true, true) => !self.g,
+            (true, false) => !self.other,
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,7 +73,7 @@ impl Frame {
             calls: None,
             loops: [None; 3],
             modal: usize::MAX,
-            by_code: false,
+            by_code: ByCodes::default(),
         }
     }
 
@@ -101,10 +123,20 @@ impl Core {
         start: OpIndex,
         kind: FrameKind,
         repeats: u32,
+        by_code: ByCodes,
         block: Span,
     ) -> Frame {
         let calls = Some(Arc::new(Call { from: block, outer: self.frame().calls.clone() }));
-        Frame { next: start, kind, start, repeats: repeats.saturating_sub(1), calls, ..Frame::main(program) }
+        let by_code = self.frame().by_code.and(by_code);
+        Frame {
+            next: start,
+            kind,
+            start,
+            repeats: repeats.saturating_sub(1),
+            calls,
+            by_code,
+            ..Frame::main(program)
+        }
     }
 
     pub(super) fn push(&mut self, frame: Frame) {

@@ -61,7 +61,7 @@ impl Modal {
     }
 
     /// The G code × 10 in force in a group, as #4001… shows it.
-    pub fn code(&self, group: u32) -> Option<u16> {
+    pub fn code(&self, group: u32) -> Option<u32> {
         Some(match group {
             1 => self.motion.code(),
             2 => self.plane.code(),

@@ -1,7 +1,7 @@
 //! G66, G66.1 and G67: macro calls that wait for moves, or are made by every block.
 use super::Core;
 use super::eval::Checked;
-use super::frames::{Frame, FrameKind};
+use super::frames::{ByCodes, Frame, FrameKind};
 use super::vars::{Locals, Value};
 use crate::alarm::Alarm;
 use crate::program::{Calling, Program, ProgramId, Words};
@@ -15,6 +15,8 @@ pub(super) struct ModalCall {
     pub(super) locals: Locals,
     /// G66.1: every block calls, and its words are the arguments.
     pub(super) every: bool,
+    /// The kind of code that stored it, where it is no G66 or G66.1.
+    pub(super) by_code: ByCodes,
 }
 
 impl Core {
@@ -22,9 +24,11 @@ impl Core {
     pub(super) fn call_after_move(&mut self, block: Span) -> Result<(), Alarm> {
         let Some(index) = self.waiting_call() else { return Ok(()) };
         self.check_levels(true)?;
-        let ModalCall { program, repeats, locals, .. } = self.modal_calls[index].clone();
-        let frame =
-            Frame { modal: index, ..self.called(program, 0, FrameKind::Modal(index), repeats, block) };
+        let ModalCall { program, repeats, locals, by_code, .. } = self.modal_calls[index].clone();
+        let frame = Frame {
+            modal: index,
+            ..self.called(program, 0, FrameKind::Modal(index), repeats, by_code, block)
+        };
         self.vars.enter(&locals);
         self.push(frame);
         Ok(())
@@ -67,8 +71,9 @@ impl Core {
     /// Calls the macro of G66.1.
     pub(super) fn call_with(&mut self, locals: &Locals, block: Span) {
         let Some(index) = self.waiting_call() else { return };
-        let ModalCall { program, repeats, .. } = self.modal_calls[index].clone();
-        let frame = Frame { modal: index, ..self.called(program, 0, FrameKind::Macro, repeats, block) };
+        let ModalCall { program, repeats, by_code, .. } = self.modal_calls[index].clone();
+        let frame =
+            Frame { modal: index, ..self.called(program, 0, FrameKind::Macro, repeats, by_code, block) };
         self.vars.enter(locals);
         self.push(frame);
     }

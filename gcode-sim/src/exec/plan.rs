@@ -1,5 +1,6 @@
 //! What a block is going to do: made without touching the control, carried out afterwards without failing.
 use super::cycles::Drill;
+use super::frames::ByCodes;
 use super::notes::Note;
 use super::offsets::Register;
 use super::state::State;
@@ -28,7 +29,7 @@ pub(super) struct Plan {
     pub(super) flow: Flow,
 }
 
-/// G10.
+/// What G10 and codes that call write.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Write {
     /// System 0 is the external one, 1 to 6 are G54 to G59, 7 and up G54.1 P1….
@@ -39,6 +40,11 @@ pub(super) enum Write {
     },
     Tool {
         register: Register,
+        number: u32,
+        value: f64,
+    },
+    /// The number of a code that calls a subprogram.
+    Variable {
         number: u32,
         value: f64,
     },
@@ -67,6 +73,8 @@ pub(super) struct CallPlan {
     pub(super) locals: Locals,
     /// G66.1: its own words are arguments at once. Other calls always are.
     pub(super) calls_now: bool,
+    /// The kind of code that calls, where it is no G65, G66 or M98.
+    pub(super) by_code: ByCodes,
     pub(super) span: Span,
 }
 
@@ -78,8 +86,6 @@ pub(super) enum CallKind {
     Modal,
     /// G66.1: stored, and called by its own words.
     EveryBlock,
-    /// A G or M code that calls a macro.
-    Code,
 }
 
 #[derive(Clone, Debug)]

@@ -3,6 +3,7 @@
 use std::cell::Cell;
 
 use super::Core;
+use super::code_calls::CallingWord;
 use super::eval::{Checked, at, integer};
 use super::state::State;
 use crate::alarm::Alarm;
@@ -120,14 +121,23 @@ pub(super) fn count(raw: Raw, letter: u8) -> Result<u32, Alarm> {
 }
 
 impl Core {
-    /// Evaluates every word of a block into `given`.
-    pub(super) fn collect(&self, program: &Program, words: &Words, given: &mut Given) -> Checked<()> {
+    /// Evaluates every word of a block into `given`, but for those that belong to a call.
+    pub(super) fn collect(
+        &self,
+        program: &Program,
+        words: &Words,
+        calling: Option<&CallingWord>,
+        given: &mut Given,
+    ) -> Checked<()> {
         given.present = 0;
         given.read.set(0);
         given.g_count = 0;
         given.m_count = 0;
         given.lost_m = None;
-        for word in &words.list {
+        for (place, word) in words.list.iter().enumerate() {
+            if calling.is_some_and(|calling| calling.takes(place, word)) {
+                continue;
+            }
             let Some(raw) = self.raw(program, word)? else { continue };
             if word.comma {
                 let what = format!("corner rounding and chamfer (,{})", char::from(word.letter));
@@ -301,10 +311,10 @@ fn g_row(input: &Input, raw: Raw) -> Result<&'static Row, Alarm> {
         (_, Raw::Computed(value)) => {
             // A computed code keeps one decimal.
             let tenths = (value * 10.0).round();
-            if !(0.0..=9999.0).contains(&tenths) {
+            if !(0.0..=99_999.0).contains(&tenths) {
                 return Err(Alarm::ImproperGCode { code: value.to_string() });
             }
-            tenths as u16
+            tenths as u32
         }
         (_, Raw::Literal(number)) => return Err(Alarm::ImproperGCode { code: number.value().to_string() }),
     };

@@ -61,12 +61,12 @@ pub enum OneShot {
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
     /// G code × 10: 541 is G54.1.
-    pub code: u16,
+    pub code: u32,
     pub effect: Effect,
     pub help: &'static str,
 }
 
-const fn row(code: u16, effect: Effect, help: &'static str) -> Row {
+const fn row(code: u32, effect: Effect, help: &'static str) -> Row {
     Row { code, effect, help }
 }
 
@@ -189,12 +189,12 @@ pub const CODES: &[Row] = &[
 ];
 
 /// The row of a code × 10.
-pub fn find(code: u16) -> Option<&'static Row> {
+pub fn find(code: u32) -> Option<&'static Row> {
     CODES.binary_search_by_key(&code, |row| row.code).ok().map(|index| &CODES[index])
 }
 
 /// A code × 10 as it is written: `54.1`.
-pub fn spelled(code: u16) -> String {
+pub fn spelled(code: u32) -> String {
     if code.is_multiple_of(10) { format!("{}", code / 10) } else { format!("{}.{}", code / 10, code % 10) }
 }
 

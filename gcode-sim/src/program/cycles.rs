@@ -38,7 +38,7 @@ pub enum Step {
 #[derive(Debug, PartialEq, Eq)]
 pub struct Cycle {
     /// G code × 10.
-    pub code: u16,
+    pub code: u32,
     /// G87 goes to R from below, after its shift; all others rapid to R first.
     pub starts_at_r: bool,
     /// G73 and G83 can't do without Q.
@@ -52,7 +52,7 @@ use Step::{
     RapidToInitialAlways, RapidToR, Shift, ShiftBack, SpindleForward, SpindleReverse, SpindleStop,
 };
 
-const fn row(code: u16, steps: &'static [Step], help: &'static str) -> Cycle {
+const fn row(code: u32, steps: &'static [Step], help: &'static str) -> Cycle {
     Cycle { code, starts_at_r: true, needs_q: false, steps, help }
 }
 
@@ -74,6 +74,6 @@ pub const CYCLES: [Cycle; 12] = [
 ];
 
 /// The row of a cycle by its place in [`CYCLES`].
-pub fn find(code: u16) -> Option<&'static Cycle> {
+pub fn find(code: u32) -> Option<&'static Cycle> {
     CYCLES.iter().find(|cycle| cycle.code == code)
 }

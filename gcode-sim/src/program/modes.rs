@@ -10,7 +10,7 @@ macro_rules! group {
 
         impl $name {
             /// The G code × 10 that this state stands for.
-            pub fn code(self) -> u16 {
+            pub fn code(self) -> u32 {
                 match self {
                     $(Self::$state => $code,)+
                 }
@@ -66,9 +66,9 @@ impl Default for WorkSystem {
 }
 
 impl WorkSystem {
-    pub fn code(self) -> u16 {
+    pub fn code(self) -> u32 {
         match self {
-            Self::Standard(number) => 530 + 10 * u16::from(number),
+            Self::Standard(number) => 530 + 10 * u32::from(number),
             Self::Additional(_) => 541,
         }
     }

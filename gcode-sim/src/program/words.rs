@@ -32,7 +32,7 @@ pub enum Input {
     Literal(Decimal),
     Operand(Operand),
     /// A G code × 10 written as a number, with its row.
-    G(u16, Option<&'static Row>),
+    G(u32, Option<&'static Row>),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -89,7 +89,7 @@ impl Lowering {
         for word in words {
             list.push(self.word(word)?);
         }
-        let is = |coded: &Coded, code: u16| matches!(coded.value, Input::G(c, _) if c == code);
+        let is = |coded: &Coded, code: u32| matches!(coded.value, Input::G(c, _) if c == code);
         let call = [(650, Calling::Macro), (660, Calling::AfterMoves), (661, Calling::EveryBlock)];
         for (code, kind) in call {
             if let Some(at) = list.iter().position(|w| is(w, code)) {
@@ -130,7 +130,7 @@ impl Lowering {
 }
 
 /// G code × 10 of a literal with at most one decimal.
-fn g_code(number: Decimal) -> Option<u16> {
+fn g_code(number: Decimal) -> Option<u32> {
     let tenths = match number.places {
         None => number.digits.checked_mul(10)?,
         Some(places) => {
@@ -142,7 +142,7 @@ fn g_code(number: Decimal) -> Option<u16> {
             tenths / unit
         }
     };
-    if number.negative { None } else { u16::try_from(tenths).ok() }
+    if number.negative { None } else { u32::try_from(tenths).ok() }
 }
 
 /// G65, G66, G66.1: everything behind the code is for the macro.

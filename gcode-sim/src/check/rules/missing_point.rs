@@ -11,9 +11,9 @@ use crate::syntax::ast::Decimal;
 pub(super) const NAME: &str = "missing-point";
 
 /// Codes (× 10) whose words are counts or factors and no lengths: G05.1, G10, G51, G68.2.
-const OTHER_WORDS: [u16; 4] = [51, 100, 510, 682];
+const OTHER_WORDS: [u32; 4] = [51, 100, 510, 682];
 /// Cycles whose Q is a length: G73, G76, G83, G87. Older controls take no point there.
-const WITH_Q: [u16; 4] = [730, 760, 830, 870];
+const WITH_Q: [u32; 4] = [730, 760, 830, 870];
 /// A peck or a dwell of this many increments may be meant: many programs write `G4 X500`.
 const LEAST_MEANT: u64 = 100;
 
@@ -47,7 +47,7 @@ fn words(kind: &OpKind) -> Option<&Words> {
     }
 }
 
-fn has(words: &Words, codes: &[u16]) -> bool {
+fn has(words: &Words, codes: &[u32]) -> bool {
     words.list.iter().any(|word| matches!(word.value, Input::G(code, _) if codes.contains(&code)))
 }
 

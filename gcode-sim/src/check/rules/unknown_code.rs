@@ -37,7 +37,7 @@ fn about(subject: &Subject<'_>, word: &Coded) -> Option<(String, String, bool)> 
     match (word.letter, word.value) {
         (b'G', Input::G(code, row)) => {
             let name = format!("G{}", spelled(code));
-            let calls = subject.settings.g_calls.iter().any(|(g, _)| *g == code);
+            let calls = subject.settings.code_calls.find(b'G', code).is_some();
             match row.map(|row| row.effect) {
                 _ if calls => None,
                 None => Some((name.clone(), format!("PS0010: the control has no {name}"), true)),
@@ -50,7 +50,7 @@ fn about(subject: &Subject<'_>, word: &Coded) -> Option<(String, String, bool)> 
         }
         (b'M', _) => {
             let code = literal::count(word)?;
-            let calls = subject.settings.m_calls.iter().any(|(m, _)| *m == code);
+            let calls = subject.settings.code_calls.find(b'M', code.saturating_mul(10)).is_some();
             let name = format!("M{code:02}");
             match m_codes::find(code) {
                 _ if calls => None,

@@ -1,0 +1,312 @@
+//! Calls by codes: the G, M, T, S and B codes and the addresses that call a program, by the parameters that say so.
+
+/// What a code calls, and as what.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Called {
+    pub program: u32,
+    pub kind: CodeCallKind,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CodeCallKind {
+    /// As G65: the other words are arguments.
+    Macro,
+    /// As G66 or, with MGE 6007#3, as G66.1.
+    Modal,
+    /// As M98: the other words act first.
+    Subprogram,
+}
+
+/// Parameters that hold one code each: the first of them calls `program`, the next the program after it.
+#[derive(Debug)]
+pub struct Family {
+    pub letter: u8,
+    pub first: u16,
+    pub last: u16,
+    pub program: u32,
+    pub kind: CodeCallKind,
+}
+
+const fn family(letter: u8, first: u16, last: u16, program: u32, kind: CodeCallKind) -> Family {
+    Family { letter, first, last, program, kind }
+}
+
+pub const FAMILIES: [Family; 3] = [
+    family(b'G', 6050, 6059, 9010, CodeCallKind::Macro),
+    family(b'M', 6071, 6079, 9001, CodeCallKind::Subprogram),
+    family(b'M', 6080, 6089, 9020, CodeCallKind::Macro),
+];
+
+/// Three parameters that make calls of a range of codes: the first code, its program, how many.
+#[derive(Debug)]
+pub struct RangeFamily {
+    pub letter: u8,
+    pub first: u16,
+    pub kind: CodeCallKind,
+}
+
+pub const RANGES: [RangeFamily; 3] = [
+    RangeFamily { letter: b'G', first: 6038, kind: CodeCallKind::Macro },
+    RangeFamily { letter: b'M', first: 6044, kind: CodeCallKind::Subprogram },
+    RangeFamily { letter: b'M', first: 6047, kind: CodeCallKind::Macro },
+];
+
+/// A subprogram call by an address whatever its number, which a common variable gets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct AddressCall {
+    pub program: u32,
+    /// The common variable that holds the number.
+    pub variable: u32,
+}
+
+const BY_T: AddressCall = AddressCall { program: 9000, variable: 149 };
+const BY_S: AddressCall = AddressCall { program: 9029, variable: 147 };
+const BY_B: AddressCall = AddressCall { program: 9028, variable: 146 };
+/// 6090 and 6091, which hold the character code of an address.
+const BY_ADDRESS: [AddressCall; 2] =
+    [AddressCall { program: 9004, variable: 146 }, AddressCall { program: 9005, variable: 147 }];
+const FIRST_ADDRESS: u16 = 6090;
+
+/// Addresses that 6090 and 6091 may name.
+const ADDRESSES: &[u8] = b"ABDFHIJKMPQRSTVXYZ";
+
+/// Codes that are calls or ends themselves.
+const TAKEN: [(u8, u32); 13] = [
+    (b'G', 650),
+    (b'G', 660),
+    (b'G', 661),
+    (b'G', 670),
+    (b'M', 0),
+    (b'M', 10),
+    (b'M', 20),
+    (b'M', 300),
+    (b'M', 960),
+    (b'M', 970),
+    (b'M', 980),
+    (b'M', 990),
+    (b'M', 1980),
+];
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct CodeCall {
+    letter: u8,
+    /// × 10, as G codes are counted everywhere.
+    code: u32,
+    called: Called,
+}
+
+/// Every code that calls. `Default` is none.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CodeCalls {
+    codes: Vec<CodeCall>,
+    /// The values of the parameters of [`RANGES`].
+    ranges: [[i64; 3]; 3],
+    addresses: [Option<u8>; 2],
+    /// TCS 6001#5.
+    pub by_t: bool,
+    /// S calls O9029.
+    pub by_s: bool,
+    /// B, where it is no axis, calls O9028.
+    pub by_b: bool,
+    /// MGE 6007#3: a modal call by a G code is G66.1 instead of G66.
+    pub every_block: bool,
+    /// GMP 6008#6: G codes call in programs that other codes called, and the other way round.
+    pub inside_others: bool,
+}
+
+impl CodeCalls {
+    pub fn is_empty(&self) -> bool {
+        let Self { codes, ranges, addresses, by_t, by_s, by_b, every_block: _, inside_others: _ } = self;
+        let none = codes.is_empty() && ranges.iter().all(|range| range[2] == 0);
+        none && *addresses == [None; 2] && !(*by_t || *by_s || *by_b)
+    }
+
+    /// What a G or M code × 10 calls. A code of its own goes before a range.
+    pub fn find(&self, letter: u8, code: u32) -> Option<Called> {
+        let own = self.codes.iter().find(|call| call.letter == letter && call.code == code);
+        own.map(|call| call.called).or_else(|| self.in_range(letter, code))
+    }
+
+    fn in_range(&self, letter: u8, code: u32) -> Option<Called> {
+        let number = code.is_multiple_of(10).then_some(i64::from(code / 10))?;
+        RANGES.iter().zip(&self.ranges).find_map(|(family, [first, program, count])| {
+            let place = number - first.abs();
+            if family.letter != letter || !(0..*count).contains(&place) {
+                return None;
+            }
+            let kind = if *first < 0 { CodeCallKind::Modal } else { family.kind };
+            Some(Called { program: u32::try_from(program + place).ok()?, kind })
+        })
+    }
+
+    /// What an address calls whatever its number.
+    pub fn by_address(&self, letter: u8) -> Option<AddressCall> {
+        let place = self.addresses.iter().position(|address| *address == Some(letter));
+        match letter {
+            b'T' if self.by_t => Some(BY_T),
+            b'S' if self.by_s => Some(BY_S),
+            b'B' if self.by_b => Some(BY_B),
+            _ => place.map(|place| BY_ADDRESS[place]),
+        }
+    }
+
+    /// The value of one of the parameters here; `None` for any other number.
+    pub fn parameter(&self, number: u16) -> Option<i64> {
+        if let Some(family) = FAMILIES.iter().find(|f| (f.first..=f.last).contains(&number)) {
+            let program = family.program + u32::from(number - family.first);
+            let own = self.codes.iter().find(|call| {
+                let subprogram = call.called.kind == CodeCallKind::Subprogram;
+                let same = subprogram == (family.kind == CodeCallKind::Subprogram);
+                same && call.letter == family.letter && call.called.program == program
+            });
+            return Some(own.map_or(0, |call| {
+                let code = i64::from(call.code / 10);
+                if call.called.kind == CodeCallKind::Modal { -code } else { code }
+            }));
+        }
+        if let Some((range, place)) = range_of(number) {
+            return Some(self.ranges[range][place]);
+        }
+        let place = usize::from(number.checked_sub(FIRST_ADDRESS)?);
+        self.addresses.get(place).map(|address| address.map_or(0, i64::from))
+    }
+
+    /// Sets one of the parameters here; `None` where it is none of them, or can't have this value.
+    pub fn set_parameter(&mut self, number: u16, value: i64) -> Option<()> {
+        if let Some(family) = FAMILIES.iter().find(|f| (f.first..=f.last).contains(&number)) {
+            let program = family.program + u32::from(number - family.first);
+            let modal = value < 0 && family.letter == b'G';
+            let kind = if modal { CodeCallKind::Modal } else { family.kind };
+            if value < 0 && !modal {
+                return None;
+            }
+            let subprogram = family.kind == CodeCallKind::Subprogram;
+            self.codes.retain(|call| {
+                let same = subprogram == (call.called.kind == CodeCallKind::Subprogram);
+                !(same && call.letter == family.letter && call.called.program == program)
+            });
+            if value != 0 {
+                let code = u32::try_from(value.unsigned_abs()).ok()?.checked_mul(10)?;
+                self.add(family.letter, code, Called { program, kind })?;
+            }
+            return Some(());
+        }
+        if let Some((range, place)) = range_of(number) {
+            let least = if place == 0 && RANGES[range].letter == b'G' { -9999 } else { 0 };
+            let kept = (least..=99_999_999).contains(&value).then_some(value)?;
+            self.ranges[range][place] = kept;
+            return Some(());
+        }
+        let place = usize::from(number.checked_sub(FIRST_ADDRESS)?);
+        let address = self.addresses.get_mut(place)?;
+        let letter = u8::try_from(value).ok().filter(|letter| *letter == 0 || ADDRESSES.contains(letter))?;
+        *address = (letter != 0).then_some(letter);
+        Some(())
+    }
+
+    /// `G201=9010`, `M50=9020`, `M6=9001`, `G-201=9010` for a modal call, `T=9000`, `S=9029`, `B=9028`, `V=9004`: a
+    /// program O9001 to O9009 is a subprogram where M calls it, any other a macro.
+    pub fn set_code(&mut self, key: &str, program: u32) -> Option<()> {
+        let letter = key.bytes().next()?.to_ascii_uppercase();
+        let number = key.get(1..)?.trim();
+        if number.is_empty() {
+            return self.set_address(letter, program);
+        }
+        let code: f64 = number.parse().ok()?;
+        let tenths = (code.abs() * 10.0).round();
+        let kind = match letter {
+            b'G' if (10.0..=99_990.0).contains(&tenths) && code < 0.0 => CodeCallKind::Modal,
+            b'G' if (10.0..=99_990.0).contains(&tenths) => CodeCallKind::Macro,
+            b'M' if (1.0..=99_999_999.0).contains(&code) && code.fract() == 0.0 => match program {
+                9001..=9009 => CodeCallKind::Subprogram,
+                _ => CodeCallKind::Macro,
+            },
+            _ => return None,
+        };
+        self.add(letter, tenths as u32, Called { program, kind })
+    }
+
+    fn set_address(&mut self, letter: u8, program: u32) -> Option<()> {
+        match (letter, program) {
+            (b'T', 9000) => self.by_t = true,
+            (b'S', 9029) => self.by_s = true,
+            (b'B', 9028) => self.by_b = true,
+            _ => {
+                let place = BY_ADDRESS.iter().position(|call| call.program == program)?;
+                self.addresses[place] = ADDRESSES.contains(&letter).then_some(Some(letter))?;
+            }
+        }
+        Some(())
+    }
+
+    fn add(&mut self, letter: u8, code: u32, called: Called) -> Option<()> {
+        if TAKEN.contains(&(letter, code)) {
+            return None;
+        }
+        self.codes.retain(|call| (call.letter, call.code) != (letter, code));
+        self.codes.push(CodeCall { letter, code, called });
+        Some(())
+    }
+}
+
+/// The family of a range's parameter, and which of its three it is.
+fn range_of(number: u16) -> Option<(usize, usize)> {
+    RANGES.iter().enumerate().find_map(|(range, family)| {
+        let place = usize::from(number.checked_sub(family.first)?);
+        (place < 3).then_some((range, place))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn called(program: u32, kind: CodeCallKind) -> Option<Called> {
+        Some(Called { program, kind })
+    }
+
+    #[test]
+    fn each_parameter_has_its_program() {
+        let mut calls = CodeCalls::default();
+        for (parameter, code) in [(6050, 201), (6059, -81), (6071, 6), (6079, 60), (6080, 50), (6089, 59)] {
+            calls.set_parameter(parameter, code).unwrap();
+            assert_eq!(calls.parameter(parameter), Some(code), "{parameter}");
+        }
+        assert_eq!(calls.find(b'G', 2010), called(9010, CodeCallKind::Macro));
+        assert_eq!(calls.find(b'G', 810), called(9019, CodeCallKind::Modal));
+        assert_eq!(calls.find(b'M', 60), called(9001, CodeCallKind::Subprogram));
+        assert_eq!(calls.find(b'M', 600), called(9009, CodeCallKind::Subprogram));
+        assert_eq!(calls.find(b'M', 500), called(9020, CodeCallKind::Macro));
+        assert_eq!(calls.find(b'M', 590), called(9029, CodeCallKind::Macro));
+        assert_eq!((calls.find(b'G', 500), calls.parameter(6060)), (None, None));
+        calls.set_parameter(6050, 0).unwrap();
+        assert_eq!(calls.find(b'G', 2010), None, "0 calls nothing");
+    }
+
+    #[test]
+    fn a_range_ends_and_a_code_of_its_own_goes_first() {
+        let mut calls = CodeCalls::default();
+        for (parameter, value) in [(6038, -900), (6039, 3000), (6040, 10), (6047, 200), (6048, 50), (6049, 2)]
+        {
+            calls.set_parameter(parameter, value).unwrap();
+        }
+        calls.set_code("G905", 9010).unwrap();
+        assert_eq!(calls.find(b'G', 9000), called(3000, CodeCallKind::Modal));
+        assert_eq!(calls.find(b'G', 9090), called(3009, CodeCallKind::Modal));
+        assert_eq!(calls.find(b'G', 9050), called(9010, CodeCallKind::Macro));
+        assert_eq!((calls.find(b'G', 9100), calls.find(b'G', 8990)), (None, None));
+        assert_eq!(calls.find(b'M', 2010), called(51, CodeCallKind::Macro));
+        assert_eq!(calls.find(b'M', 2020), None);
+    }
+
+    #[test]
+    fn what_ends_or_calls_by_itself_is_refused() {
+        let mut calls = CodeCalls::default();
+        for key in ["G65", "M99", "M30", "M0", "X1", "M1.5", "M-5"] {
+            assert_eq!(calls.set_code(key, 9020), None, "{key}");
+        }
+        assert_eq!(calls.set_parameter(6080, 98), None);
+        assert_eq!(calls.set_parameter(6090, i64::from(b'N')), None);
+        assert!(calls.is_empty());
+    }
+}
