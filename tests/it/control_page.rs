@@ -23,7 +23,7 @@ fn the_page_on_the_control_shows_what_happens() {
     let mut wrong = String::new();
     for (program, end) in &shown {
         let mut text = program.replace("; ", "\n");
-        if !program.starts_with(['O', ':', '<']) && !program.contains("; O1") {
+        if !program.starts_with(['O', ':', '<', '%']) && !program.contains("; O1") {
             text = format!("O1\n{text}");
         }
         if !program.contains("M30") {

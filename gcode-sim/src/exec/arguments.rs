@@ -13,7 +13,7 @@ impl Core {
         for word in words {
             let local = letters.next(word.letter).map_err(|alarm| alarm.at(word.span))?;
             let Some(local) = local else { continue };
-            if let Some(raw) = self.raw(program, word)? {
+            if let Some(raw) = self.raw_argument(program, word)? {
                 locals[local] = Value::Number(self.argument(raw, word.letter));
             }
         }

@@ -32,18 +32,34 @@ impl Stack {
     }
 }
 
+/// What ROUND in a word rounds to.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum RoundsTo {
+    Increment,
+    Whole,
+}
+
 impl Core {
     pub(super) fn operand(&self, program: &Program, operand: Operand) -> Checked<Value> {
+        self.value(program, operand, RoundsTo::Increment)
+    }
+
+    /// The value of an argument of a macro call, where ROUND gives whole numbers as in any macro statement.
+    pub(super) fn argument_operand(&self, program: &Program, operand: Operand) -> Checked<Value> {
+        self.value(program, operand, RoundsTo::Whole)
+    }
+
+    fn value(&self, program: &Program, operand: Operand, rounds: RoundsTo) -> Checked<Value> {
         match operand {
             Operand::Number(number) => Ok(Value::Number(number)),
             Operand::Variable { number, span } => self.read(number).map_err(|alarm| alarm.at(span)),
-            Operand::Code(code) => self.run_code(program, code),
+            Operand::Code(code) => self.run_code(program, code, rounds),
         }
     }
 
     /// Whether a condition holds.
     pub(super) fn holds(&self, program: &Program, condition: Code) -> Checked<bool> {
-        self.run_code(program, condition).map(|value| value.number() != 0.0)
+        self.run_code(program, condition, RoundsTo::Whole).map(|value| value.number() != 0.0)
     }
 
     /// The value of a variable of any kind.
@@ -56,18 +72,24 @@ impl Core {
         }
     }
 
-    fn run_code(&self, program: &Program, code: Code) -> Checked<Value> {
+    fn run_code(&self, program: &Program, code: Code, rounds: RoundsTo) -> Checked<Value> {
         let mut stack = Stack { values: [Value::Vacant; STACK], used: 0 };
         for instruction in program.code(code) {
             let value = self
-                .instruction(program, instruction, &mut stack)
+                .instruction(program, instruction, &mut stack, rounds)
                 .map_err(|alarm| alarm.at(instruction.span))?;
             stack.push(value);
         }
         Ok(stack.pop())
     }
 
-    fn instruction(&self, program: &Program, code: &Instruction, stack: &mut Stack) -> Result<Value, Alarm> {
+    fn instruction(
+        &self,
+        program: &Program,
+        code: &Instruction,
+        stack: &mut Stack,
+        rounds: RoundsTo,
+    ) -> Result<Value, Alarm> {
         let unsure = &self.settings.unsure;
         Ok(match code.operation {
             Operation::Push(number) => Value::Number(number),
@@ -76,6 +98,10 @@ impl Core {
             Operation::Negate => match stack.pop() {
                 Value::Vacant if unsure.minus_keeps_vacancy => Value::Vacant,
                 value => Value::Number(-value.number()),
+            },
+            Operation::Reverse => match stack.pop() {
+                Value::Vacant => Value::Vacant,
+                Value::Number(number) => Value::Number(-number),
             },
             Operation::Plus => stack.pop(),
             Operation::Bracket => match stack.pop() {
@@ -98,6 +124,7 @@ impl Core {
                 let right = stack.pop().number();
                 Value::Number(power(stack.pop().number(), right)?)
             }
+            Operation::RoundTo(_) if rounds == RoundsTo::Whole => Value::Number(stack.pop().number().round()),
             Operation::RoundTo(letter) => Value::Number(self.round_to(letter, stack.pop().number())),
             Operation::Compare(relation) => {
                 let right = stack.pop();

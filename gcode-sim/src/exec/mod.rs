@@ -250,8 +250,8 @@ impl Control {
         let program = memory.get(id);
         let Some(op) = program.ops.get(place) else {
             core.block = Span { start: program.span.end, ..program.span };
-            // A main program may end without M30 here; a called one has nowhere to go back from.
-            if main {
+            // A text may just stop; running into `%` or another program is running off the tape.
+            if main && !program.closed {
                 return Ok(Some(Outcome::End));
             }
             return Err(Alarm::EndOfRecord.at(core.block));

@@ -191,6 +191,16 @@ impl Core {
         })
     }
 
+    /// The value of a word that is an argument of a macro.
+    pub(super) fn raw_argument(&self, program: &Program, word: &Coded) -> Checked<Option<Raw>> {
+        match word.value {
+            Input::Operand(operand) => {
+                Ok(self.argument_operand(program, operand)?.given().map(Raw::Computed))
+            }
+            Input::Literal(_) | Input::G(..) => self.raw(program, word),
+        }
+    }
+
     /// How many decimals the least increment of an address has in the unit in force.
     fn decimals(&self, letter: u8, unit: Unit) -> usize {
         let metric = match self.settings.increment {

@@ -39,6 +39,8 @@ pub enum Operation {
     /// Takes a variable's number, gives its value.
     LoadIndirect,
     Negate,
+    /// The sign between an address and its value: `X-#1`. Unlike a minus in an expression it keeps vacancy.
+    Reverse,
     Plus,
     Bracket,
     Binary(BinaryOp),
@@ -86,6 +88,14 @@ impl Lowering {
             _ => {}
         }
         self.code(expr.span, |this| this.expr(expr, context, 0)).map(Operand::Code)
+    }
+
+    /// The value of a word, whose own sign is no part of an expression.
+    pub(super) fn word_value(&mut self, expr: &Expr, letter: u8) -> Lowered<Operand> {
+        let context = Context::Address(letter);
+        let ExprKind::Negate(inner) = &expr.kind else { return self.operand(expr, context) };
+        let write = |this: &mut Self| this.unary(inner, Operation::Reverse, expr.span, context, 0);
+        self.code(expr.span, write).map(Operand::Code)
     }
 
     pub(super) fn condition(&mut self, condition: &Condition, span: Span) -> Lowered<Code> {

@@ -3,6 +3,7 @@ use super::expr::{Context, Instruction};
 use super::{Op, OpKind, PrintPart, Program, Statement, flow};
 use crate::alarm::Alarm;
 use crate::source::{SourceId, Span, Spanned};
+use crate::syntax::ast::ProgramName;
 use crate::syntax::{self, Parts, ast};
 
 /// What grows while a program is lowered.
@@ -20,17 +21,24 @@ pub(super) fn lower(source: SourceId, bytes: &[u8]) -> Vec<Program> {
 }
 
 /// What takes the whole program: the partners of loops, and the order of sequence numbers.
-fn finish(Parts { name, span, context, blocks: mut ops }: Parts<Lowering, Op>) -> Program {
+fn finish(Parts { name, span, context, blocks: mut ops, closed }: Parts<Lowering, Op>) -> Program {
     flow::pair_loops(&mut ops);
     ops.shrink_to_fit();
+    let number = match name {
+        ProgramName::Number(number) => Some(number),
+        ProgramName::Name(_) => None,
+        ProgramName::Unnamed => ops.iter().filter_map(|op| op.number).find(|number| *number > 0),
+    };
     let end = ops.last().map_or(span.end, |op| op.span.end.max(span.end));
     Program {
         name,
+        number,
         span: Span { end, ..span },
         numbers: flow::numbers(&ops),
         ops,
         instructions: context.instructions,
         names: context.names,
+        closed,
     }
 }
 

@@ -96,8 +96,13 @@ impl Memory {
         self.numbers.get(&number).copied()
     }
 
+    /// The program called `<name>`; `<O0123>` is program O0123.
     pub fn find_name(&self, name: &str) -> Option<ProgramId> {
-        self.names.get(name).copied()
+        match ProgramName::of(name.to_owned()) {
+            ProgramName::Number(number) => self.find(number),
+            ProgramName::Name(name) => self.names.get(&name).copied(),
+            ProgramName::Unnamed => None,
+        }
     }
 
     /// The program with this O number, asked of the library where it isn't in memory yet.

@@ -29,6 +29,7 @@ pub type OpIndex = usize;
 #[derive(Debug)]
 pub struct Program {
     pub name: ProgramName,
+    number: Option<u32>,
     /// From the O word, or the first block, to the end of the last block.
     pub span: Span,
     pub ops: Vec<Op>,
@@ -38,6 +39,8 @@ pub struct Program {
     numbers: Vec<(u32, OpIndex)>,
     /// The names that [`Operation::NameNumber`] counts.
     names: Vec<String>,
+    /// Whether `%` or another program stands behind its last block.
+    pub(crate) closed: bool,
 }
 
 /// One block.
@@ -121,12 +124,10 @@ pub enum PrintPart {
 }
 
 impl Program {
-    /// The O number, or `None` for a program with a name or without any.
+    /// The O number; of a program without any the first sequence number, which a control takes for it. `None` for a
+    /// program with a name.
     pub fn number(&self) -> Option<u32> {
-        match self.name {
-            ProgramName::Number(number) => Some(number),
-            ProgramName::Name(_) | ProgramName::Unnamed => None,
-        }
+        self.number
     }
 
     /// The name as a control shows it: `O8101`, `<BRACKET-OP1>`; `MAIN` where there is none.

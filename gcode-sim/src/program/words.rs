@@ -1,6 +1,5 @@
 //! Blocks of words: codes looked up, calls taken out, the rest left for the run to evaluate.
 use super::codes::{self, Row};
-use super::expr::Context;
 use super::lower::Lowering;
 use super::{OpKind, Operand};
 use crate::alarm::Alarm;
@@ -121,7 +120,7 @@ impl Lowering {
                 }
             },
             WordValue::Literal(number) => Input::Literal(*number),
-            WordValue::Expr(expr) => Input::Operand(self.operand(expr, Context::Address(letter))?),
+            WordValue::Expr(expr) => Input::Operand(self.word_value(expr, letter)?),
             // Taken up by the call in the same block.
             WordValue::Name(_) => Input::Literal(Decimal { negative: false, digits: 0, places: None }),
         };

@@ -25,6 +25,17 @@ pub enum ProgramName {
     Unnamed,
 }
 
+impl ProgramName {
+    /// The program that `<text>` names: O and a number is that number.
+    pub(crate) fn of(text: String) -> Self {
+        let digits = text.strip_prefix('O').filter(|digits| digits.bytes().all(|b| b.is_ascii_digit()));
+        match digits.and_then(|digits| digits.parse().ok()) {
+            Some(number @ 1..=99_999_999) => Self::Number(number),
+            _ => Self::Name(text),
+        }
+    }
+}
+
 /// One line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Block {

@@ -65,7 +65,7 @@ fn item<'a>(line: Line, at: Input<'a>, block: &mut Block) -> Read<'a, ()> {
     let (rest, item) = match at {
         [b'/', ..] => {
             let (rest, switch) = skip(line, at)?;
-            if beginning && block.number.is_none() && block.skip.is_none() {
+            if beginning && block.skip.is_none() {
                 block.skip = Some(switch);
                 return Ok((rest, ()));
             }

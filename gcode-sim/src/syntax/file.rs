@@ -223,8 +223,7 @@ fn program_word(at: Input<'_>) -> Option<(Input<'_>, ProgramName)> {
         return Some((rest, ProgramName::Number(number)));
     }
     let (rest, text) = program_name(at).ok()?;
-    let number = text.strip_prefix('O').and_then(|digits| digits.parse().ok());
-    Some((rest, number.map_or(ProgramName::Name(text), ProgramName::Number)))
+    Some((rest, ProgramName::of(text)))
 }
 
 /// One program of [`parse_with`].
@@ -234,6 +233,8 @@ pub struct Parts<C, B> {
     pub span: Span,
     pub context: C,
     pub blocks: Vec<B>,
+    /// Whether `%` or another program follows, and not just the end of the text.
+    pub closed: bool,
 }
 
 /// All programs of a file. Blocks before the first O word of a section are a program without a name; where nothing in
@@ -255,6 +256,7 @@ pub fn parse_with<C: Default, B>(
     for piece in Pieces::new(source, bytes) {
         let (name, span, block) = match piece {
             Piece::Section => {
+                close(&mut programs);
                 open = false;
                 continue;
             }
@@ -263,7 +265,9 @@ pub fn parse_with<C: Default, B>(
         };
         if let Some(name) = name {
             let silent = name == ProgramName::Unnamed;
-            programs.push((Parts { name, span, context: C::default(), blocks: Vec::new() }, silent));
+            close(&mut programs);
+            let (context, blocks) = (C::default(), Vec::new());
+            programs.push((Parts { name, span, context, blocks, closed: false }, silent));
             open = true;
         }
         if let (Some(block), Some((program, silent))) = (block, programs.last_mut()) {
@@ -273,6 +277,13 @@ pub fn parse_with<C: Default, B>(
     }
     let alone = programs.len() == 1;
     programs.into_iter().filter(|(_, silent)| alone || !silent).map(|(program, _)| program).collect()
+}
+
+/// Something follows the last program.
+fn close<C, B>(programs: &mut [(Parts<C, B>, bool)]) {
+    if let Some((program, _)) = programs.last_mut() {
+        program.closed = true;
+    }
 }
 
 #[cfg(test)]
