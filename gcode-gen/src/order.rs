@@ -64,7 +64,7 @@ mod tests {
                 "[[hole]]\nid = \"{id}\"\nradius = {radius}\nazimuth = {azimuth}\naxis = \"{axis}\"\ndiameter = 6\ndepth = 15\n"
             ));
         }
-        let Job::PinHoles(job) = Job::parse(&text).unwrap();
+        let Ok(Job::PinHoles(job)) = Job::parse(&text) else { panic!("no pin holes: {text}") };
         let shown: Vec<_> = passes(&job)
             .iter()
             .map(|pass| {

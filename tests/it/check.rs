@@ -5,6 +5,7 @@ use gcode_sim::check::rules::ALL;
 use gcode_sim::check::{Checked, check};
 use gcode_sim::cli::library::Folders;
 use gcode_sim::control::Settings;
+use gcode_sim::diag::Severity;
 use gcode_sim::program::NoLibrary;
 
 fn workspace() -> PathBuf {
@@ -41,7 +42,9 @@ fn macros_and_examples_have_no_findings() {
         let mut folders = Folders::new(&path, &beside).unwrap();
         let bytes = std::fs::read(&path).unwrap();
         let checked = check(path.display().to_string(), bytes, &Settings::default(), &mut folders);
-        assert_eq!(messages(&checked), [""; 0], "{}", path.display());
+        // What a clamp's M code does only the machine's builder knows: that is told, as a note.
+        let faults = checked.findings.iter().filter(|f| Severity::Note < f.severity);
+        assert_eq!(faults.map(|f| &f.message).collect::<Vec<_>>(), [""; 0], "{}", path.display());
         seen += 1;
     }
     assert!(seen > 5);

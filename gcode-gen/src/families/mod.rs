@@ -1,5 +1,6 @@
 //! The part families: each turns its job into programs.
 mod control;
+pub mod honeycomb;
 pub mod pin_holes;
 
 use gcode_sim::job::Job;
@@ -16,11 +17,12 @@ pub struct Family {
 }
 
 /// Every family there is.
-pub const ALL: &[Family] = &[pin_holes::FAMILY];
+pub const ALL: &[Family] = &[pin_holes::FAMILY, honeycomb::FAMILY];
 
 /// The programs of a job.
 pub fn emit(job: &Job) -> Package {
     match job {
         Job::PinHoles(job) => pin_holes::emit(job),
+        Job::Honeycomb(job) => honeycomb::emit(job),
     }
 }

@@ -1,6 +1,7 @@
 //! Job files: what to make, on which machine and control. Read by both programs; neither's formulas live here.
 //!
 //! Unknown keys, missing keys and values out of range are errors that name the key, the line and what is allowed.
+mod honeycomb;
 mod pin_holes;
 pub(crate) mod reader;
 mod sections;
@@ -9,6 +10,7 @@ mod wording;
 use serde::Deserialize;
 use toml::Spanned;
 
+pub use honeycomb::{Clamp, CombMachine, Cylinder, Drill, Honeycomb, Metric, Spacing};
 pub use pin_holes::{
     AxisDirection, Head, HeadKind, HoleWanted, MacroSettings, PinHoles, PinMachine, Surface, Tool,
 };
@@ -21,6 +23,7 @@ use crate::control::{Dialect, Increment};
 #[derive(Clone, Debug, PartialEq)]
 pub enum Job {
     PinHoles(PinHoles),
+    Honeycomb(Honeycomb),
 }
 
 /// The control a job is for.
@@ -42,7 +45,7 @@ struct Family {
     family: Spanned<String>,
 }
 
-pub const FAMILIES: [&str; 1] = ["pin-holes"];
+pub const FAMILIES: [&str; 2] = ["pin-holes", "honeycomb"];
 
 impl Job {
     /// Reads a job file's text.
@@ -58,6 +61,7 @@ impl Job {
         let Family { family } = toml::from_str(text).map_err(|e| reader.syntax(&e))?;
         match family.as_ref().as_str() {
             "pin-holes" => pin_holes::parse(&reader).map(Self::PinHoles),
+            "honeycomb" => honeycomb::parse(&reader).map(Self::Honeycomb),
             other => Err(reader
                 .error(&family, format!("family '{other}' is not known: one of {}", FAMILIES.join(", ")))),
         }
@@ -66,6 +70,7 @@ impl Job {
     pub fn control(&self) -> JobControl {
         match self {
             Self::PinHoles(job) => job.control,
+            Self::Honeycomb(job) => job.control,
         }
     }
 }

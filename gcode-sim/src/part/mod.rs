@@ -3,6 +3,7 @@
 //! This module knows no NC code and shares no formula with the generator: a verifier that did would agree with
 //! its mistakes.
 pub mod hole;
+pub mod honeycomb;
 mod pin_holes;
 mod read;
 pub mod reference;

@@ -1,5 +1,6 @@
 //! The wanted holes: computed from a job's geometry, or read from a list.
 use super::hole::{Hole, HoleList, Unit};
+use super::honeycomb::Pattern;
 use super::read;
 pub use super::read::ReferenceError;
 use super::surface::Surface;
@@ -14,12 +15,20 @@ pub struct Reference {
     /// How far a depth may be off, in mm, where the reference says it.
     pub depth: Option<f64>,
     pub surface: Option<Surface>,
+    /// What the holes' neighbours must be like, of a part where that matters.
+    pub pattern: Option<Pattern>,
 }
 
 impl Reference {
     /// A list of holes, each given an id where it has none.
     pub fn of_list(list: HoleList) -> Result<Self, ReferenceError> {
-        Ok(Self { holes: read::checked(list.holes)?, position: None, depth: None, surface: None })
+        Ok(Self {
+            holes: read::checked(list.holes)?,
+            position: None,
+            depth: None,
+            surface: None,
+            pattern: None,
+        })
     }
 
     /// The document that `reference` writes.

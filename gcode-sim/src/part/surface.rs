@@ -6,6 +6,8 @@ use nalgebra::{Point3, Unit, Vector3};
 pub enum Surface {
     /// Of revolution about y: `a` its equatorial, `b` its polar radius.
     Ellipsoid { a: f64, b: f64 },
+    /// About x, without ends: what stands beyond them isn't known.
+    Cylinder { radius: f64 },
 }
 
 impl Surface {
@@ -16,6 +18,7 @@ impl Surface {
                 let (x, y, z) = (p.x / a, p.y / b, p.z / a);
                 x * x + y * y + z * z - 1.0
             }
+            Self::Cylinder { radius } => (p.y * p.y + p.z * p.z) / (radius * radius) - 1.0,
         }
     }
 
@@ -24,6 +27,7 @@ impl Surface {
             Self::Ellipsoid { a, b } => {
                 Vector3::new(2.0 * p.x / (a * a), 2.0 * p.y / (b * b), 2.0 * p.z / (a * a))
             }
+            Self::Cylinder { radius } => Vector3::new(0.0, 2.0 * p.y, 2.0 * p.z) / (radius * radius),
         }
     }
 

@@ -33,6 +33,7 @@ impl Wanted {
     pub fn of_job(job: &Job) -> Result<Self, ReferenceError> {
         match job {
             Job::PinHoles(job) => super::pin_holes::reference(job).map(Self::Holes),
+            Job::Honeycomb(job) => super::honeycomb::reference(job).map(Self::Holes),
         }
     }
 

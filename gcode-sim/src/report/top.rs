@@ -71,11 +71,19 @@ pub fn of_verdict(
     });
     TopView {
         name: name.to_owned(),
-        outline: reference.surface.map(|Surface::Ellipsoid { a, .. }| a),
+        outline: reference.surface.and_then(outline),
         tolerance: Some(verdict.tolerance),
         rotary: rotary.letter(),
         holes: judged.chain(missing).chain(extra).collect(),
         ..TopView::default()
+    }
+}
+
+/// The radius of the part seen along y, where that is a circle.
+fn outline(surface: Surface) -> Option<f64> {
+    match surface {
+        Surface::Ellipsoid { a, .. } => Some(a),
+        Surface::Cylinder { .. } => None,
     }
 }
 

@@ -157,7 +157,7 @@ depth = 15.0
             ("depth = 15.0", "depth = nan", "line 19: key 'hole.depth' is NaN: 0.01 to 9999 mm"),
             ("axial", "radial", "line 17: key 'hole.axis' is 'radial': one of axial, normal"),
             ("IS-B", "IS-Z", "line 4: key 'control.increment' is 'IS-Z': one of IS-A, IS-B, IS-C"),
-            ("pin-holes", "pinholes", "line 1: family 'pinholes' is not known: one of pin-holes"),
+            ("pin-holes", "pinholes", "line 1: family 'pinholes' is not known: one of pin-holes, honeycomb"),
             (
                 "[control]\n",
                 "[contrl]\n",
@@ -194,8 +194,10 @@ depth = 15.0
     }
 
     fn job(text: &str) -> PinHoles {
-        let Job::PinHoles(job) = Job::parse(text).unwrap();
-        job
+        match Job::parse(text) {
+            Ok(Job::PinHoles(job)) => job,
+            other => panic!("{other:?}"),
+        }
     }
 
     #[test]

@@ -1,0 +1,40 @@
+//! The machine file of a honeycomb job: what `gcode-sim --machine` needs to follow the emitted programs.
+use std::fmt::Write;
+
+use gcode_sim::job::Honeycomb;
+
+use crate::families::control;
+
+/// The text of `machine.toml`.
+pub(super) fn machine_file(job: &Honeycomb) -> String {
+    let rotary = job.machine.rotary;
+    let mut text = control::machine_file(job.control);
+    let _ = write!(
+        text,
+        "\n\
+         # The rotary table carries the part about x; its axis is the cylinder's.\n\
+         [[table]]\n\
+         letter = \"{}\"\n\
+         turns = \"x\"\n\
+         sign = {}\n\
+         \n\
+         # The spindle stands along z.\n\
+         [head]\n\
+         kind = \"fixed\"\n\
+         direction = [0.0, 0.0, 1.0]\n\
+         \n\
+         # The part's origin is on the cylinder's axis, the programs' Z0 on its surface.\n\
+         [part]\n\
+         origin = [0.0, 0.0, {:?}]\n\
+         \n\
+         [[tool]]\n\
+         number = {}\n\
+         diameter = {:?}\n",
+        rotary.letter,
+        rotary.sign,
+        -job.cylinder.outer / 2.0,
+        job.drill.number,
+        job.drill.diameter
+    );
+    text
+}

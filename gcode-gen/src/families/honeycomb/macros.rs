@@ -1,0 +1,84 @@
+//! The resident macro of the honeycomb: NC text with marks for what differs between machines and controls.
+use gcode_sim::control::Dialect;
+use gcode_sim::job::{Clamp, Honeycomb};
+
+use crate::families::control::fill;
+use crate::nc::program::name;
+use crate::package::Program;
+
+/// The whole pattern: rows, angles, pitch.
+pub const COMB: u32 = 8301;
+
+/// As many digits as all three dialects take in one number: on a metre of circumference 1 nm is lost.
+const PI: &str = "3.14159265";
+
+/// What the macro depends on. Everything else is an argument, so that one copy in a control serves all jobs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Resident {
+    pub dialect: Dialect,
+    pub rotary: char,
+    pub clamp: Option<Clamp>,
+}
+
+impl Resident {
+    pub fn of(job: &Honeycomb) -> Self {
+        Self { dialect: job.control.dialect, rotary: job.machine.rotary.letter, clamp: job.machine.clamp }
+    }
+
+    pub fn program(&self) -> Program {
+        let code = |code: Option<u32>| code.map_or_else(String::new, |code| format!("\nM{code}"));
+        let marks = [
+            ("{comb}", name(COMB, self.dialect)),
+            ("{pi}", PI.to_owned()),
+            ("{rotary}", self.rotary.to_string()),
+            ("{unclamp}", code(self.clamp.map(|clamp| clamp.off))),
+            ("{clamp}", code(self.clamp.map(|clamp| clamp.on))),
+        ];
+        Program { number: COMB, text: fill(include_str!("comb.nc"), &marks) }
+    }
+}
+
+/// As `macros/` has it.
+pub(super) fn of_the_defaults() -> Vec<(&'static str, Program)> {
+    let resident = Resident { dialect: Dialect::default(), rotary: 'B', clamp: None };
+    vec![("O8301_honeycomb.nc", resident.program())]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn all() -> Vec<Program> {
+        let clamps = [None, Some(Clamp { on: 10, off: 11 })];
+        let residents = Dialect::ALL
+            .into_iter()
+            .flat_map(|(_, dialect)| clamps.map(|clamp| Resident { dialect, rotary: 'B', clamp }.program()));
+        residents.collect()
+    }
+
+    #[test]
+    fn every_mark_is_filled_and_every_character_is_displayable() {
+        for program in all() {
+            let shown = |b: u8| b == b'\n' || (b.is_ascii_graphic() || b == b' ') && !b.is_ascii_lowercase();
+            assert!(!program.text.contains(['{', '}']), "{}", program.text);
+            assert!(program.text.bytes().all(shown), "{}", program.text);
+        }
+    }
+
+    #[test]
+    fn a_message_fits_the_26_characters_of_an_old_control() {
+        for program in all() {
+            for line in program.text.lines().filter(|line| line.contains("#3000=")) {
+                let message = line.split_once("#3000=").unwrap().1.split_once('(').unwrap().1;
+                assert!(message.trim_end_matches(')').len() <= 26, "{message}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_rotary_is_let_go_before_it_turns_and_held_before_the_drill_comes() {
+        let clamp = Some(Clamp { on: 10, off: 11 });
+        let text = Resident { dialect: Dialect::Fanuc31i, rotary: 'A', clamp }.program().text;
+        assert!(text.contains("DO1\nM11\nA[#21*#18*#15]\nM10\n#20="), "{text}");
+    }
+}

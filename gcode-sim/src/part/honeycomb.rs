@@ -1,0 +1,180 @@
+//! The holes of a honeycomb on a cylinder about x, found by measuring distances between points of the cylinder: rows are
+//! laid round it, and the pitch is the one at which a hole's neighbours in the next row are as far as those in its own.
+//!
+//! The part's frame: x along the cylinder's axis, its origin where x = 0 in the first row's first hole; the first row lies at
+//! +z, and azimuth counts from z towards y. Both senses give the same holes.
+use nalgebra::{Point3, Vector3};
+
+use super::hole::Hole;
+use super::read::ReferenceError;
+use super::reference::Reference;
+use super::surface::Surface;
+use crate::job::{Honeycomb, Metric, Spacing};
+use crate::units::Deg;
+
+/// No cylinder that is drilled hole by hole has more.
+const MOST_HOLES: f64 = 200_000.0;
+
+/// What a hole's neighbours must be like.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pattern {
+    pub metric: Metric,
+    /// Of the cylinder on which the distances count, mm.
+    pub diameter: f64,
+    /// Rows of both groups together.
+    pub rows: u32,
+    /// The distance of all neighbours once the pattern closes, mm.
+    pub pitch: f64,
+    /// The pitch that was asked for, mm; `None` where divisions were.
+    pub asked: Option<f64>,
+    /// Holes stand at 0 ≤ x ≤ length, mm.
+    pub length: f64,
+}
+
+impl Pattern {
+    /// The distance of two points of the cylinder in the pattern's metric, mm.
+    pub fn distance(&self, a: &Point3<f64>, b: &Point3<f64>) -> f64 {
+        match self.metric {
+            Metric::Chord => (b - a).norm(),
+            Metric::Arc => libm::hypot(b.x - a.x, self.arc(angle(a, b))),
+        }
+    }
+
+    /// So long is an angle on the cylinder, mm.
+    pub fn arc(&self, angle: Deg) -> f64 {
+        self.diameter / 2.0 * angle.to_rad()
+    }
+
+    /// Where a straight line out of the part crosses the cylinder on which the distances count; `None` where it
+    /// doesn't.
+    pub fn crossing(&self, on: &Point3<f64>, out: &Vector3<f64>) -> Option<Point3<f64>> {
+        // |p + t·u| = r in the yz plane, the outer one of both solutions.
+        let (p, u) = (on.yz().coords, out.yz());
+        let (a, half_b, c) = (u.dot(&u), p.dot(&u), p.dot(&p) - self.diameter * self.diameter / 4.0);
+        let root = half_b * half_b - a * c;
+        (a > 1e-12 && root >= 0.0).then(|| on + out * ((root.sqrt() - half_b) / a))
+    }
+
+    /// From one row to the next.
+    pub fn step(&self) -> Deg {
+        Deg(360.0 / f64::from(self.rows))
+    }
+}
+
+/// Azimuth of a point, from z towards y, −180 to 180.
+pub fn azimuth(p: &Point3<f64>) -> Deg {
+    Deg::atan2(p.y, p.z)
+}
+
+/// From the one azimuth to the other, 0 to 180.
+fn angle(a: &Point3<f64>, b: &Point3<f64>) -> Deg {
+    let (cross, dot) = (a.y * b.z - a.z * b.y, a.y * b.y + a.z * b.z);
+    Deg::atan2(cross.abs(), dot)
+}
+
+/// A point of the cylinder of this radius.
+fn point(x: f64, azimuth: Deg, radius: f64) -> Point3<f64> {
+    Point3::new(x, radius * azimuth.sin(), radius * azimuth.cos())
+}
+
+/// What the job's part should get.
+pub(super) fn reference(job: &Honeycomb) -> Result<Reference, ReferenceError> {
+    let pattern = pattern(job)?;
+    let (outer, drill) = (job.cylinder.outer / 2.0, job.drill);
+    possible(job, &pattern)?;
+    let mut holes = Vec::new();
+    for row in 0..pattern.rows {
+        let azimuth = Deg(f64::from(row) * 360.0 / f64::from(pattern.rows));
+        let start = if row % 2 == 0 { 0.0 } else { pattern.pitch / 2.0 };
+        let places = (0u32..).map(|hole| (hole, start + f64::from(hole) * pattern.pitch));
+        for (hole, x) in places.take_while(|(_, x)| *x <= job.cylinder.length) {
+            holes.push(Hole {
+                id: Some(format!("r{row}h{hole}")),
+                entry: point(x, azimuth, outer).coords.into(),
+                axis: [0.0, azimuth.sin(), azimuth.cos()],
+                depth: drill.depth,
+                diameter: Some(drill.diameter),
+                from: None,
+            });
+        }
+    }
+    Ok(Reference {
+        holes,
+        position: Some(job.position_tolerance),
+        depth: Some(job.depth_tolerance),
+        surface: Some(Surface::Cylinder { radius: outer }),
+        pattern: Some(pattern),
+    })
+}
+
+/// How many rows, and the pitch at which all six neighbours are equally far.
+fn pattern(job: &Honeycomb) -> Result<Pattern, ReferenceError> {
+    let diameter = job.cylinder.diameter;
+    let (rows, asked) = match job.spacing {
+        Spacing::Divisions(divisions) => (2 * divisions, None),
+        Spacing::Pitch(pitch) => {
+            // Two rows further the holes stand abreast again: two heights of an equilateral triangle.
+            let height = (pitch * pitch - pitch * pitch / 4.0).sqrt();
+            let fit = std::f64::consts::PI * diameter / (2.0 * height);
+            // As many as leave least of the circumference over, or lack least of it.
+            let (fewer, more) = (fit.floor(), fit.ceil());
+            let count = if fit - fewer < more - fit { fewer } else { more };
+            (2 * count as u32, Some(pitch))
+        }
+    };
+    if rows < 4 {
+        let message = format!(
+            "key 'pattern.pitch': fewer than two rows of one group fit round diameter {diameter}: a smaller pitch"
+        );
+        return Err(ReferenceError { line: None, message });
+    }
+    let guess =
+        Pattern { metric: job.metric, diameter, rows, pitch: 0.0, asked, length: job.cylinder.length };
+    // The neighbour in the next row stands half a pitch further: with a small pitch it is farther than the pitch.
+    let next = |pitch: f64| {
+        let (here, there) =
+            (point(0.0, Deg::ZERO, diameter / 2.0), point(pitch / 2.0, guess.step(), diameter / 2.0));
+        guess.distance(&here, &there)
+    };
+    let (mut low, mut high) = (0.0, 2.0 * next(0.0));
+    loop {
+        let middle = low + (high - low) / 2.0;
+        if middle <= low || high <= middle {
+            return Ok(Pattern { pitch: middle, ..guess });
+        }
+        if next(middle) > middle {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+}
+
+/// Whether the part can have these holes: they must not run into each other, down to where they end in the material.
+fn possible(job: &Honeycomb, pattern: &Pattern) -> Result<(), ReferenceError> {
+    let deepest = (job.cylinder.outer / 2.0 - job.drill.depth).max(job.cylinder.bore / 2.0);
+    let p = pattern.pitch;
+    let apart = |x: f64, rows: f64, radius: f64| {
+        (point(x, pattern.step() * rows, radius) - point(0.0, Deg::ZERO, radius)).norm()
+    };
+    let told = |message: String| Err(ReferenceError { line: None, message });
+    for (x, rows, what) in
+        [(p, 0.0, "in a row"), (p / 2.0, 1.0, "of neighbouring rows"), (0.0, 2.0, "of one group")]
+    {
+        let distance = apart(x, rows, deepest);
+        if distance <= job.drill.diameter {
+            return told(format!(
+                "the holes overlap: with {} rows the pitch is {p:.3} mm, and holes {what} are {distance:.3} mm apart at \
+                 radius {deepest:.3}, where they end, with a drill of {} mm: a larger pitch, a smaller drill or depth",
+                pattern.rows, job.drill.diameter
+            ));
+        }
+    }
+    let holes = f64::from(pattern.rows) * (job.cylinder.length / p + 1.0);
+    if holes > MOST_HOLES {
+        return told(format!(
+            "the pattern has {holes:.0} holes, {MOST_HOLES} at most: a larger pitch, or a part of it"
+        ));
+    }
+    Ok(())
+}
