@@ -75,6 +75,18 @@ pub enum Alarm {
         value: f64,
     },
     SkipInCompensation,
+    /// G31 P or G04 Q other than 1 to 4.
+    SkipSignals {
+        letter: char,
+    },
+    /// G31 Q other than 1 to 99.
+    SkipTorque,
+    /// G93 wants F in every cutting block.
+    NoInverseTime,
+    /// A code that changes the coordinate system or goes to the reference position, in G51.
+    CodeInScaling {
+        code: String,
+    },
     NotAtReference {
         letter: char,
     },

@@ -28,6 +28,10 @@ impl Core {
             given.accept(b"IJK");
             if start == end {
                 // The start is the end: with R there is nothing to go round.
+                if goal.programmed != state.programmed {
+                    let what = "an arc by R that ends where it starts while another axis moves".into();
+                    return Err(Alarm::NotSimulated { what }.at(span));
+                }
                 return Ok(());
             }
             at(self.centre_by_radius(start, end, radius, clockwise), given.span(b'R'))?
@@ -46,14 +50,26 @@ impl Core {
             }
             (start.0 + i, start.1 + j)
         };
+        let (radius, sweep) = self.radius_and_sweep(start, end, centre, clockwise, span)?;
+        self.tell_arc(plan, given, goal, plane, centre, sweep, radius, span)
+    }
+
+    /// The mean radius and the sweep of an arc, if its end is near enough to the circle of its start.
+    fn radius_and_sweep(
+        &self,
+        start: (f64, f64),
+        end: (f64, f64),
+        centre: (f64, f64),
+        clockwise: bool,
+        span: Span,
+    ) -> Checked<(f64, f64)> {
         let radius = |p: (f64, f64)| libm::hypot(p.0 - centre.0, p.1 - centre.1);
         let (from, to) = (radius(start), radius(end));
         if (from - to).abs() > self.settings.arc_tolerance + 1e-9 {
             let alarm = Alarm::RadiusTolerance { start: from, end: to, allowed: self.settings.arc_tolerance };
             return Err(alarm.at(span));
         }
-        let sweep = sweep(start, end, centre, clockwise);
-        self.tell_arc(plan, given, goal, plane, centre, sweep, (from + to) / 2.0, span)
+        Ok(((from + to) / 2.0, sweep(start, end, centre, clockwise)))
     }
 
     #[expect(clippy::too_many_arguments, reason = "an arc is all of this")]
@@ -73,22 +89,29 @@ impl Core {
         if state.transform.tilt.is_some() {
             return Err(Alarm::NotSimulated { what: "an arc in a tilted plane".into() }.at(span));
         }
-        if !round {
-            return Err(Alarm::NotSimulated { what: "an arc scaled to an ellipse".into() }.at(span));
-        }
         let mut middle = state.programmed;
         (middle[plane.0], middle[plane.1]) = centre;
         let middle = self.to_machine(state, middle);
-        let factor = state.transform.scaling.as_ref().map_or(1.0, |s| s.factor[plane.0].abs());
-        let length = radius * factor * sweep.abs().to_radians();
+        let centre = (middle[plane.0], middle[plane.1]);
+        let (radius, sweep) = if round {
+            let factor = state.transform.scaling.as_ref().map_or(1.0, |s| s.factor[plane.0].abs());
+            (radius * factor, if mirrored { -sweep } else { sweep })
+        } else {
+            if given.has(b'R') {
+                return Err(Alarm::NotSimulated { what: "an arc by R under unequal scaling".into() }.at(span));
+            }
+            let (start, end) = (&state.machine, &goal.machine);
+            let (start, end) = ((start[plane.0], start[plane.1]), (end[plane.0], end[plane.1]));
+            self.radius_and_sweep(start, end, centre, (sweep < 0.0) != mirrored, span)?
+        };
+        let length = radius * sweep.abs().to_radians();
         // F is along the arc; all other axes follow (1403#5 HTG = 0).
         let timed = self.time_along(state, length, length, 0.0, given.has(b'F'));
-        let (rate, seconds) = timed.map_err(|_| Alarm::ArcFeedZero.at(span))?;
-        let arc = Arc2 {
-            plane,
-            centre: (middle[plane.0], middle[plane.1]),
-            sweep: Deg(if mirrored { -sweep } else { sweep }),
-        };
+        let (rate, seconds) = timed.map_err(|alarm| match alarm {
+            Alarm::FeedZero => Alarm::ArcFeedZero.at(span),
+            other => other.at(span),
+        })?;
+        let arc = Arc2 { plane, centre, sweep: Deg(sweep) };
         plan.events.push((EventKind::Arc { to: goal.machine, arc, rate }, seconds));
         plan.state.machine = goal.machine;
         Ok(())

@@ -138,6 +138,12 @@ impl Core {
         if modal.plane != before.plane && state.transform.rotation.is_some() {
             return Err(Alarm::PlaneInRotation.at(span));
         }
+        if before.scaling == Scaling::On
+            && modal.scaling == Scaling::On
+            && let Some(row) = given.g_codes().find(|row| row.effect.needs_plain_coordinates())
+        {
+            return Err(Alarm::CodeInScaling { code: crate::program::codes::spelled(row.code) }.at(span));
+        }
         if modal.scaling == Scaling::Off {
             state.transform.scaling = None;
         }
@@ -146,7 +152,7 @@ impl Core {
             state.transform.tilt = None;
         }
         if modal.polar == Polar::On && before.polar == Polar::Off {
-            state.polar = (0.0, 0.0);
+            state.polar = super::state::PolarPoint::default();
         }
         if modal.work != before.work || state.transform != self.state.transform {
             self.recompute(state);
@@ -300,6 +306,11 @@ impl Core {
             if self.drills(given) {
                 return self.prepare_drill(plan, given, cycle, span);
             }
+            // P and Q are stored by blocks that drill only.
+            if given.has_any(b"PQ") {
+                given.accept(b"PQ");
+                plan.note = Some(Note::CycleDataLost);
+            }
             if lengthened {
                 self.recompute(&mut plan.state);
             }
@@ -308,12 +319,17 @@ impl Core {
         let motion = plan.state.modal.motion;
         let arcs = matches!(motion, Motion::Clockwise | Motion::Counterclockwise);
         let named = self.names_axis(given);
+        // A code of group 01 behind that of a cycle: a plain move, the cycle's own words are nothing.
+        let overruled = given.g_codes().any(|row| matches!(row.effect, Effect::Cycle(Some(_))));
+        if overruled {
+            given.accept(b"KPQR");
+        }
         if !(named || arcs && given.has_any(b"IJKR")) {
             return self.settle(given, plan, lengthened, span);
         }
         // Some controls round corners by R or read I J K here; cutter compensation off takes a vector.
         let vector = given.g_codes().any(|row| row.effect == Effect::Cutter(CutterSide::Off));
-        if let Some(letter) = b"IJKR".iter().find(|l| given.has(**l) && !arcs && !vector) {
+        if let Some(letter) = b"IJKR".iter().find(|l| given.has(**l) && !arcs && !vector && !overruled) {
             let what = format!("{} beside a straight move", char::from(*letter));
             return Err(Alarm::NotSimulated { what }.at(given.span(*letter)));
         }

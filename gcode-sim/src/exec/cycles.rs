@@ -3,12 +3,12 @@ use super::Core;
 use super::eval::{Checked, at};
 use super::notes::Note;
 use super::plan::Plan;
-use super::state::{Drilling, Level, State};
+use super::state::{Drilling, Level, PolarPoint, State};
 use super::words::Given;
 use crate::alarm::Alarm;
 use crate::motion::{Axis, EventKind, Position, Spindle, StopKind};
 use crate::program::cycles::{Cycle, Step};
-use crate::program::modes::{Distance, ReturnTo};
+use crate::program::modes::{Distance, Polar, ReturnTo};
 use crate::source::Span;
 use crate::units::{MmPerMin, Rpm, Seconds};
 
@@ -24,12 +24,22 @@ pub(super) struct Drill {
     /// The first hole, as programmed, and from hole to hole.
     hole: Position,
     step: Position,
+    circle: Option<Circle>,
     repeats: u32,
     axis: Axis,
     shift: (Axis, f64),
     rate: MmPerMin,
     /// Seconds.
     dwell: f64,
+}
+
+/// Holes that K repeats in polar coordinates.
+#[derive(Clone, Copy, Debug)]
+struct Circle {
+    plane: (Axis, Axis),
+    first: PolarPoint,
+    /// Degrees from hole to hole.
+    turn: f64,
 }
 
 impl Core {
@@ -91,11 +101,13 @@ impl Core {
         }
         let first = self.plane_axes(plan.state.modal.plane).map_or(0, |(first, _)| first);
         let shift = plan.state.drilling.q.unwrap_or(0.0).abs();
+        let circle = self.circle(plan, given, incremental, repeats)?;
         let drill = Drill {
             cycle,
             from: State { machine: from.machine, ..plan.state },
             hole: goal,
             step,
+            circle,
             repeats: repeats.max(1),
             axis,
             shift: (if first == axis { self.other_axis(axis) } else { first }, shift),
@@ -124,6 +136,26 @@ impl Core {
             self.rapid(plan, to);
         }
         Ok(())
+    }
+
+    /// How the holes of a block with K follow one another in polar coordinates; the next block's angle counts from the
+    /// last of them.
+    fn circle(
+        &self,
+        plan: &mut Plan,
+        given: &Given,
+        incremental: bool,
+        repeats: u32,
+    ) -> Checked<Option<Circle>> {
+        let state = &mut plan.state;
+        let Ok(plane) = self.plane_axes(state.modal.plane) else { return Ok(None) };
+        if state.modal.polar == Polar::Off || !incremental {
+            return Ok(None);
+        }
+        let turn = self.angle(given, self.settings.axes.letter(plane.1) as u8)?.unwrap_or(0.0);
+        let first = state.polar;
+        state.polar.angle += f64::from(repeats.max(1) - 1) * turn;
+        Ok(Some(Circle { plane, first, turn }))
     }
 
     fn other_axis(&self, axis: Axis) -> Axis {
@@ -157,11 +189,9 @@ impl Core {
         let state = &drill.from;
         let data = &state.drilling;
         let (r, z) = (data.r_level(), data.z_level());
+        let mut hole = drill.hole;
         for turn in 0..drill.repeats {
-            let mut hole = drill.hole;
-            for place in 0..self.settings.axes.len() {
-                hole[place] = self.clean(hole[place] + f64::from(turn) * drill.step[place]);
-            }
+            drill.advance(self, turn, &mut hole);
             let level = |value: f64| {
                 let mut point = hole;
                 point[drill.axis] = value;
@@ -273,11 +303,27 @@ fn pecks(r: f64, z: f64, data: &Drilling) -> f64 {
 }
 
 impl Drill {
+    /// From a hole to the one that K repeats as number `turn`; 0 is the block's own.
+    fn advance(&self, core: &Core, turn: u32, hole: &mut Position) {
+        if turn == 0 {
+            return;
+        }
+        let from = *hole;
+        for (place, _) in core.settings.axes.iter() {
+            hole[place] = core.clean(self.hole[place] + f64::from(turn) * self.step[place]);
+        }
+        if let Some(Circle { plane, first, turn: angle }) = self.circle {
+            (hole[plane.0], hole[plane.1]) = (from[plane.0], from[plane.1]);
+            let here = PolarPoint { angle: first.angle + f64::from(turn) * angle, ..first };
+            core.polar_point(&here, plane, hole);
+        }
+    }
+
     /// Where the last hole is.
     fn last(&self, core: &Core) -> Position {
         let mut hole = self.hole;
-        for (place, _) in core.settings.axes.iter() {
-            hole[place] = core.clean(hole[place] + f64::from(self.repeats - 1) * self.step[place]);
+        for turn in 0..self.repeats {
+            self.advance(core, turn, &mut hole);
         }
         hole
     }

@@ -81,6 +81,9 @@ impl Modal {
             16 => self.rotation.code(),
             17 => self.polar.code(),
             18 | 19 => 401,
+            // In-feed control and polar interpolation are always off.
+            20 => 1600,
+            21 => 131,
             22 => self.mirror.code(),
             _ => return None,
         })

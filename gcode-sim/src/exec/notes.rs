@@ -9,6 +9,8 @@ pub enum Note {
     MachineMoveIgnored,
     /// A block had another M code after this one, and only the last counts.
     MCodeLost { code: u32 },
+    /// P or Q in cycle mode, in a block that names no axis and no R: it drills nothing and stores nothing.
+    CycleDataLost,
     /// A drilling block with K0 stores its data and drills nothing, which is what K0 is for; whether its X and Y are
     /// gone to differs between controls.
     NoRepeats,
@@ -25,6 +27,10 @@ impl Note {
             Self::MCodeLost { code } => {
                 let message = format!("M{code} is lost: of several M codes in a block only the last counts");
                 ("m-code-lost", message, "give each M code a block, or set M3B=1 if the control takes three")
+            }
+            Self::CycleDataLost => {
+                let message = "P or Q is not stored: the block drills nothing".to_owned();
+                ("cycle-data-lost", message, "write P and Q in the block of a hole")
             }
             Self::NoRepeats => {
                 let message = "K0 stores the cycle without going to the block's X and Y".to_owned();

@@ -126,6 +126,12 @@ impl Core {
         if self.settings.roll_over[axis] { self.clean(value.rem_euclid(360.0)) } else { value }
     }
 
+    /// Where an axis ends that is sent to machine coordinates: one that rolls over goes there by the shorter way and
+    /// unwinds no turns.
+    pub(super) fn turned_to(&self, axis: Axis, from: f64, to: f64) -> f64 {
+        if self.settings.roll_over[axis] { self.clean(from + shorter_way(from, to)) } else { to }
+    }
+
     /// What is stored of an offset that is written in the unit in force: mm, a multiple of the increment.
     pub(super) fn stored(&self, state: &State, axis: Option<Axis>, value: f64) -> f64 {
         let turns = axis.is_some_and(|axis| self.settings.axes.is_rotary(axis));

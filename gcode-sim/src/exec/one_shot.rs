@@ -66,10 +66,12 @@ impl Core {
                 Ok(())
             }
             OneShot::SetSystem => {
-                // The point where the program stands gets these coordinates; the length offset stays out of it.
+                // The point where the program stands gets these coordinates; the length offset stays out of it, and
+                // G52 ends on these axes.
                 self.each_axis(given, plan, |core, state, axis, value| {
                     let work = state.transform.forward(state.programmed)[axis];
-                    state.shift[axis] = core.clean(state.shift[axis] + work - value);
+                    state.shift[axis] = core.clean(state.shift[axis] + state.local[axis] + work - value);
+                    state.local[axis] = 0.0;
                 })?;
                 self.recompute(&mut plan.state);
                 Ok(())
@@ -102,6 +104,10 @@ impl Core {
     }
 
     fn dwell(&self, given: &Given, plan: &mut Plan) -> Checked<()> {
+        self.skip_signals(given, b'Q')?;
+        if given.has(b'Q') {
+            return Err(not_simulated(40, "dwell until a skip signal").at(given.span(b'Q')));
+        }
         let seconds = if let Some(milliseconds) = given.count(b'P')? {
             f64::from(milliseconds) / 1000.0
         } else {
@@ -122,18 +128,20 @@ impl Core {
         let mut home = plan.state.machine;
         for (axis, letter) in self.settings.axes.iter() {
             if given.has(letter as u8) {
-                plan.state.intermediate[axis] = goal.machine[axis];
+                plan.state.intermediate[axis] = goal.machine[axis] - self.zero(&plan.state, axis);
                 plan.state.has_intermediate |= 1 << axis;
-                home[axis] = reference[axis];
+                home[axis] = self.turned_to(axis, home[axis], reference[axis]);
             }
         }
         self.rapid(plan, home);
         // The length offset is cancelled where its axis reaches the reference position.
         let z = self.settings.axes.find(b'Z');
-        if z.is_some_and(|z| plan.state.length[z] != 0.0 && given.has(b'Z')) {
+        if z.is_some() && given.has(b'Z') && plan.state.modal.length != Length::Off {
+            if plan.state.length != Position::default() {
+                plan.tell(EventKind::ToolLength { offset: Position::default() });
+            }
             plan.state.length = Position::default();
             plan.state.modal.length = Length::Off;
-            plan.tell(EventKind::ToolLength { offset: Position::default() });
         }
         self.recompute(&mut plan.state);
         plan.moved = true;
@@ -150,7 +158,7 @@ impl Core {
             if plan.state.has_intermediate >> axis & 1 == 0 {
                 return Err(Alarm::NoIntermediatePoint.at(span));
             }
-            over[axis] = plan.state.intermediate[axis];
+            over[axis] = self.clean(plan.state.intermediate[axis] + self.zero(&plan.state, axis));
         }
         self.rapid(plan, over);
         self.recompute(&mut plan.state);
@@ -166,10 +174,11 @@ impl Core {
         self.rapid(plan, goal.machine);
         plan.state.programmed = goal.programmed;
         for (axis, letter) in self.settings.axes.iter() {
-            if given.has(letter as u8) && plan.state.machine[axis] != 0.0 {
+            if given.has(letter as u8) && self.rolled(axis, plan.state.machine[axis]) != 0.0 {
                 return Err(Alarm::NotAtReference { letter }.at(span));
             }
         }
+        plan.moved = true;
         Ok(())
     }
 
@@ -184,7 +193,10 @@ impl Core {
         }
         for (axis, letter) in self.settings.axes.iter() {
             if let Some(value) = self.dimension(given, letter as u8, &plan.state)? {
-                to[axis] = if incremental { self.clean(to[axis] + value) } else { value };
+                to[axis] = match incremental {
+                    true => self.clean(to[axis] + value),
+                    false => self.turned_to(axis, to[axis], value),
+                };
             }
         }
         self.rapid(plan, to);
@@ -193,10 +205,24 @@ impl Core {
         Ok(())
     }
 
+    /// G31 P and G04 Q name a set of skip signals.
+    fn skip_signals(&self, given: &Given, letter: u8) -> Checked<()> {
+        match given.count(letter)? {
+            Some(set) if !(1..=4).contains(&set) => {
+                Err(Alarm::SkipSignals { letter: char::from(letter) }.at(given.span(letter)))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// G31: a straight cut that ends where the skip signal comes.
     fn skip(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<()> {
         if plan.state.modal.cutter != CutterSide::Off {
             return Err(Alarm::SkipInCompensation.at(span));
+        }
+        self.skip_signals(given, b'P')?;
+        if given.count(b'Q')?.is_some_and(|torque| !(1..=99).contains(&torque)) {
+            return Err(Alarm::SkipTorque.at(given.span(b'Q')));
         }
         if given.has_any(b"PQ") {
             return Err(not_simulated(310, "multi-step and torque limit skip").at(span));

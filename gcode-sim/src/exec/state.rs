@@ -19,7 +19,8 @@ pub struct State {
     pub shift: Position,
     /// The tool length offset in effect on each axis.
     pub length: Position,
-    /// G28: the intermediate point in machine coordinates, for G29; and the axes that have one.
+    /// G28: the intermediate point for G29, from the work coordinate system's zero, tool length included; and the axes
+    /// that have one.
     pub intermediate: Position,
     pub has_intermediate: u8,
     /// #5061…: where the last G31 ended, in machine coordinates.
@@ -27,12 +28,22 @@ pub struct State {
     pub transform: Transform,
     pub drilling: Drilling,
     pub codes: Codes,
-    /// The last radius and angle of G16.
-    pub polar: (f64, f64),
+    pub polar: PolarPoint,
     pub spindle: Spindle,
     pub coolant: bool,
     /// The tool in the spindle.
     pub tool: u32,
+}
+
+/// What G16 keeps from block to block.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PolarPoint {
+    /// mm.
+    pub radius: f64,
+    /// Degrees.
+    pub angle: f64,
+    /// The radius was commanded in G91: it is measured from where the tool stands, not from the work zero.
+    pub from_here: bool,
 }
 
 /// Codes with a number that stays: #4107…#4130.

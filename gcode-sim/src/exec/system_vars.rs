@@ -45,7 +45,8 @@ const ROWS: &[Row] = &[
     // Setting data: of its bits only INI (2), inch input, has an effect here.
     row(3005, 3005, Some(|c, _| Ok(if c.state.modal.unit == crate::program::modes::Unit::Inch { 4.0 } else { 0.0 })), Some(|_, _, _| Err(Alarm::NotSimulated { what: "writing #3005".into() }))),
     row(3006, 3006, None, None),
-    row(3007, 3007, Some(|c, _| Ok(f64::from(c.state.transform.mirrored))), None),
+    // Mirror image by setting or signal: there is none; G51.1 is none of them.
+    row(3007, 3007, Some(|_, _| Ok(0.0)), None),
     row(3008, 3008, Some(|_, _| Ok(0.0)), None),
     row(3011, 3011, Some(|c, _| Ok(f64::from(c.settings.date))), None),
     row(3012, 3012, Some(|c, _| Ok(c.time_of_day())), None),

@@ -3,7 +3,7 @@ use super::Core;
 use super::block::not_simulated;
 use super::eval::{Checked, at};
 use super::plan::Plan;
-use super::transform::{Scale, Tilt, Turn};
+use super::transform::{Scale, Tilt, Transform, Turn};
 use super::words::Given;
 use crate::alarm::Alarm;
 use crate::motion::{MAX_AXES, Position};
@@ -19,7 +19,13 @@ impl Core {
         let first = self.dimension(given, letter(plane.0), state)?.unwrap_or(state.programmed[plane.0]);
         let second = self.dimension(given, letter(plane.1), state)?.unwrap_or(state.programmed[plane.1]);
         let angle = self.angle(given, b'R')?.unwrap_or(0.0);
-        state.transform.rotation = Some(Turn::new(plane, (first, second), angle));
+        // Mirror and scaling act before the rotation, on its centre too; a mirror image turns the other way round.
+        let mut centre = state.programmed;
+        (centre[plane.0], centre[plane.1]) = (first, second);
+        let centre = Transform { rotation: None, tilt: None, ..state.transform }.forward(centre);
+        let (mirrored, _) = state.transform.on_arcs(plane);
+        let angle = if mirrored { -angle } else { angle };
+        state.transform.rotation = Some(Turn::new(plane, (centre[plane.0], centre[plane.1]), angle));
         self.recompute(state);
         Ok(())
     }

@@ -2,7 +2,7 @@
 use super::Core;
 use super::eval::Checked;
 use super::plan::Plan;
-use super::state::State;
+use super::state::{PolarPoint, State};
 use super::words::Given;
 use crate::alarm::Alarm;
 use crate::motion::{Axis, EventKind, MAX_AXES, Position};
@@ -95,14 +95,22 @@ impl Core {
             return Ok(());
         }
         let incremental = state.modal.distance == Distance::Incremental;
-        let centre = if incremental { (point[first], point[second]) } else { (0.0, 0.0) };
-        let (last_radius, last_angle) = state.polar;
-        let radius = radius.unwrap_or(last_radius);
-        let angle = angle.map_or(last_angle, |a| if incremental { last_angle + a } else { a });
-        state.polar = (radius, angle);
-        point[first] = self.clean(centre.0 + radius * Deg(angle).cos());
-        point[second] = self.clean(centre.1 + radius * Deg(angle).sin());
+        // Radius and angle are each absolute or incremental, as the block that commands them has it.
+        if let Some(radius) = radius {
+            state.polar = PolarPoint { radius, from_here: incremental, ..state.polar };
+        }
+        if let Some(angle) = angle {
+            state.polar.angle = if incremental { state.polar.angle + angle } else { angle };
+        }
+        self.polar_point(&state.polar, (first, second), point);
         Ok(())
+    }
+
+    /// Moves a point to where radius and angle lead.
+    pub(super) fn polar_point(&self, polar: &PolarPoint, plane: (Axis, Axis), point: &mut Position) {
+        let centre = if polar.from_here { (point[plane.0], point[plane.1]) } else { (0.0, 0.0) };
+        point[plane.0] = self.clean(centre.0 + polar.radius * Deg(polar.angle).cos());
+        point[plane.1] = self.clean(centre.1 + polar.radius * Deg(polar.angle).sin());
     }
 
     /// Tells a rapid to a point in machine coordinates; nothing where the tool already is there.
@@ -168,7 +176,10 @@ impl Core {
     ) -> Result<(MmPerMin, f64), Alarm> {
         let f = state.codes.f;
         if state.modal.feed_mode == FeedMode::InverseTime {
-            if f <= 0.0 || !f_in_block {
+            if !f_in_block {
+                return Err(Alarm::NoInverseTime);
+            }
+            if f <= 0.0 {
                 return Err(Alarm::FeedZero);
             }
             return Ok((MmPerMin(length * f), 60.0 / f));

@@ -40,6 +40,18 @@ pub enum Effect {
     NotSimulated,
 }
 
+impl Effect {
+    /// Reference returns and what changes the coordinate system: not while G51 is on (operator's manual, scaling).
+    pub fn needs_plain_coordinates(self) -> bool {
+        use OneShot::{DataInput, DataInputEnd, Dwell, Skip};
+        match self {
+            Self::Work(_) | Self::AdditionalWork => true,
+            Self::OneShot(one) => !matches!(one, Dwell | DataInput | DataInputEnd | Skip),
+            _ => false,
+        }
+    }
+}
+
 /// Group 00: acts in its own block only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OneShot {
@@ -81,7 +93,9 @@ pub const CODES: &[Row] = &[
     row(0, Effect::Motion(Motion::Rapid), "rapid"),
     row(10, Effect::Motion(Motion::Linear), "straight feed"),
     row(20, Effect::Motion(Motion::Clockwise), "arc, clockwise"),
+    row(24, Effect::NotSimulated, "arc in space, clockwise"),
     row(30, Effect::Motion(Motion::Counterclockwise), "arc, counterclockwise"),
+    row(34, Effect::NotSimulated, "arc in space, counterclockwise"),
     row(40, Effect::OneShot(OneShot::Dwell), "dwell"),
     row(50, Effect::NoEffect, "look-ahead contour control"),
     row(51, Effect::NoEffect, "look-ahead contour control"),
@@ -109,7 +123,9 @@ pub const CODES: &[Row] = &[
     row(280, Effect::OneShot(OneShot::Reference), "go to the reference position"),
     row(290, Effect::OneShot(OneShot::FromReference), "come from the reference position"),
     row(300, Effect::OneShot(OneShot::SecondReference), "go to the second reference position"),
+    row(301, Effect::NotSimulated, "floating reference position"),
     row(310, Effect::OneShot(OneShot::Skip), "feed until the skip signal"),
+    row(318, Effect::NotSimulated, "skip by the electronic gear box"),
     row(330, Effect::NotSimulated, "threading"),
     row(370, Effect::NotSimulated, "tool length measurement"),
     row(390, Effect::NotSimulated, "corner arc"),
@@ -117,21 +133,35 @@ pub const CODES: &[Row] = &[
     row(401, Effect::NoEffect, "normal direction control off"),
     row(410, Effect::Cutter(CutterSide::Left), "cutter compensation left"),
     row(411, Effect::NotSimulated, "normal direction control"),
+    row(412, Effect::NotSimulated, "cutter compensation in space"),
+    row(413, Effect::NotSimulated, "cutter compensation in space"),
+    row(414, Effect::NotSimulated, "cutter compensation in space"),
+    row(415, Effect::NotSimulated, "cutter compensation in space"),
+    row(416, Effect::NotSimulated, "cutter compensation in space"),
     row(420, Effect::Cutter(CutterSide::Right), "cutter compensation right"),
     row(421, Effect::NotSimulated, "normal direction control"),
+    row(422, Effect::NotSimulated, "cutter compensation in space"),
+    row(424, Effect::NotSimulated, "cutter compensation in space"),
+    row(425, Effect::NotSimulated, "cutter compensation in space"),
+    row(426, Effect::NotSimulated, "cutter compensation in space"),
     row(430, Effect::Length(Length::Plus), "tool length compensation"),
+    row(431, Effect::NotSimulated, "tool length compensation along the tool"),
     row(434, Effect::NotSimulated, "tool centre point control"),
     row(435, Effect::NotSimulated, "tool centre point control with tool vectors"),
+    row(437, Effect::NotSimulated, "tool offset"),
     row(440, Effect::Length(Length::Minus), "tool length compensation, negative"),
     row(450, Effect::NotSimulated, "tool offset"),
     row(460, Effect::NotSimulated, "tool offset"),
     row(470, Effect::NotSimulated, "tool offset"),
     row(480, Effect::NotSimulated, "tool offset"),
     row(490, Effect::Length(Length::Off), "tool length compensation off"),
+    row(491, Effect::NotSimulated, "tool length compensation along the tool off"),
     row(500, Effect::Scaling(Scaling::Off), "scaling off"),
     row(501, Effect::Mirror(Mirror::Off), "mirror image off"),
+    row(502, Effect::NoEffect, "polygon turning off"),
     row(510, Effect::Scaling(Scaling::On), "scaling"),
     row(511, Effect::Mirror(Mirror::On), "mirror image"),
+    row(512, Effect::NotSimulated, "polygon turning"),
     row(520, Effect::OneShot(OneShot::LocalSystem), "local coordinate system"),
     row(530, Effect::OneShot(OneShot::MachineSystem), "machine coordinates in this block"),
     row(531, Effect::NotSimulated, "turn the tool to the tilted plane"),
@@ -154,6 +184,7 @@ pub const CODES: &[Row] = &[
     row(661, Effect::Call, "macro call by every block"),
     row(670, Effect::Call, "modal macro call off"),
     row(680, Effect::Rotation(Rotation::On), "rotation"),
+    row(681, Effect::NotSimulated, "rotation in space"),
     row(682, Effect::Rotation(Rotation::Tilted), "tilted plane"),
     row(683, Effect::NotSimulated, "tilted plane by the tool"),
     row(684, Effect::NotSimulated, "tilted plane, incremental"),
@@ -164,7 +195,10 @@ pub const CODES: &[Row] = &[
     cycle(1),
     cycle(2),
     row(800, Effect::Cycle(None), "drilling cycle off"),
+    row(804, Effect::NoEffect, "electronic gear box off"),
     cycle(3),
+    row(811, Effect::NotSimulated, "chopping"),
+    row(814, Effect::NotSimulated, "electronic gear box"),
     cycle(4),
     cycle(5),
     cycle(6),
@@ -186,6 +220,11 @@ pub const CODES: &[Row] = &[
     row(970, Effect::SpindleMode(SpindleMode::Speed), "spindle speed"),
     row(980, Effect::ReturnTo(ReturnTo::Initial), "cycles return to the initial level"),
     row(990, Effect::ReturnTo(ReturnTo::R), "cycles return to R"),
+    row(1500, Effect::NoEffect, "normal direction control off"),
+    row(1510, Effect::NotSimulated, "normal direction control"),
+    row(1520, Effect::NotSimulated, "normal direction control"),
+    row(1600, Effect::NoEffect, "in-feed control off"),
+    row(1610, Effect::NotSimulated, "in-feed control"),
 ];
 
 /// The row of a code × 10.
