@@ -37,6 +37,8 @@ pub mod picture;
 
 pub mod session;
 
+pub mod changes;
+
 pub mod report;
 
 pub mod cli;

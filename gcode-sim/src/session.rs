@@ -118,8 +118,18 @@ pub fn simulate(
     library: &mut impl Library,
     surface: Option<Surface>,
 ) -> Result<Simulation, SessionError> {
+    simulate_beside(request, library, surface, &mut ())
+}
+
+/// As [`simulate`], with another listener beside the one that follows the tool.
+pub fn simulate_beside<S: Sink>(
+    request: &Request,
+    library: &mut impl Library,
+    surface: Option<Surface>,
+    listener: &mut S,
+) -> Result<Simulation, SessionError> {
     let mut extractor = Extractor::new(&request.machine).with_surface(surface);
-    let run = run(request, library, &mut extractor)?;
+    let run = run(request, library, &mut (&mut extractor, listener))?;
     let mut extracted = extractor.finish();
     extracted.findings.extend(run.notes());
     extracted.findings.extend(run.stopped());

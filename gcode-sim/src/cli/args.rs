@@ -1,5 +1,5 @@
 //! The command line as written: clap's types, and the help texts with their examples.
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
@@ -75,6 +75,18 @@ Examples:
 A comment (CHECK-OFF DOUBLED-N) on a block silences that rule there, at the head of a program in all of it.")]
     Check(CheckArguments),
 
+    /// Compare two revisions of a program by what they do: holes, motion, stops, what they leave behind
+    #[command(after_help = "\
+Examples:
+  gcode-sim diff old/O8100.nc new/O8100.nc
+  gcode-sim diff old/O8100.nc new/O8100.nc --tolerance 0.01 --picture changes.png
+  git show HEAD:O8100.nc | gcode-sim diff - O8100.nc
+
+Sequence numbers, spaces, comments, names of locals and the way numbers are written make no difference.
+Called programs come from each revision's own folder first, then from --lib.
+Exit code 0: nothing changes; 1: something does; 3: a revision stops with an alarm or a limit.")]
+    Diff(DiffArguments),
+
     /// List the settings of the control that --control takes
     Settings,
 
@@ -101,6 +113,13 @@ pub(super) struct ProgramArguments {
     #[arg(value_name = "PROGRAM.nc")]
     pub(super) program: PathBuf,
 
+    #[command(flatten)]
+    pub(super) conditions: RunConditions,
+}
+
+/// Everything a run depends on but its program.
+#[derive(Clone, Debug, Default, Args)]
+pub(super) struct RunConditions {
     /// A folder that holds called programs (repeatable; the program's own folder is searched first)
     #[arg(long = "lib", value_name = "DIR")]
     pub(super) libraries: Vec<PathBuf>,
@@ -140,6 +159,13 @@ pub(super) struct ProgramArguments {
     /// End the run at the main program's N-th M99
     #[arg(long, value_name = "N")]
     pub(super) cycles: Option<u32>,
+}
+
+impl RunConditions {
+    /// These, and a program.
+    pub(super) fn of(&self, program: &Path) -> ProgramArguments {
+        ProgramArguments { program: program.to_owned(), conditions: self.clone() }
+    }
 }
 
 #[derive(Debug, Args)]
@@ -281,6 +307,32 @@ pub(super) struct CheckArguments {
     /// A code that calls a macro, e.g. G201=9010 or M50=9020 (repeatable)
     #[arg(long, value_name = "CODE=PROGRAM")]
     pub(super) code: Vec<String>,
+
+    /// How the result is written
+    #[arg(long, value_enum, default_value_t = TextFormat::Text)]
+    pub(super) format: TextFormat,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct DiffArguments {
+    /// The revision on the machine
+    #[arg(value_name = "OLD.nc")]
+    pub(super) old: PathBuf,
+
+    /// The revision to review
+    #[arg(value_name = "NEW.nc")]
+    pub(super) new: PathBuf,
+
+    #[command(flatten)]
+    pub(super) run: RunConditions,
+
+    /// What differs by no more than this is the same, mm or degrees
+    #[arg(long, value_name = "MM", default_value_t = 0.0001, allow_negative_numbers = true)]
+    pub(super) tolerance: f64,
+
+    /// Also draw the new holes over the old ones to this file
+    #[arg(long, value_name = "OUT.png")]
+    pub(super) picture: Option<PathBuf>,
 
     /// How the result is written
     #[arg(long, value_enum, default_value_t = TextFormat::Text)]

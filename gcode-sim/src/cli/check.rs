@@ -1,20 +1,19 @@
 //! `gcode-sim check`: what can be known of a program without running it.
-use super::args::{CheckArguments, ProgramArguments, TextFormat};
+use super::args::{CheckArguments, RunConditions, TextFormat};
 use super::{Refusal, Status, options, output};
 use crate::check::check;
 use crate::report::check::{CheckReport, text};
 
 pub(super) fn run(arguments: &CheckArguments) -> Result<Status, Refusal> {
-    let program = ProgramArguments {
-        program: arguments.program.clone(),
+    let conditions = RunConditions {
         libraries: arguments.libraries.clone(),
         dialect: arguments.dialect.clone(),
         control: arguments.control.clone(),
         machine: arguments.machine.clone(),
         code: arguments.code.clone(),
-        ..ProgramArguments::default()
+        ..RunConditions::default()
     };
-    let (request, mut folders) = options::request(&program)?;
+    let (request, mut folders) = options::request(&conditions.of(&arguments.program))?;
     let checked = check(request.name.clone(), request.bytes, &request.settings, &mut folders);
     if checked.programs == 0 {
         return Err(Refusal::new(format!("{} holds no program", request.name)));

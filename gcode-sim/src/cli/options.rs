@@ -10,15 +10,16 @@ use crate::part::wanted::Wanted;
 use crate::session::Request;
 
 /// Reads the program and the machine, and resolves every setting.
-pub(super) fn request(arguments: &ProgramArguments) -> Result<(Request, Folders), Refusal> {
+pub(super) fn request(program: &ProgramArguments) -> Result<(Request, Folders), Refusal> {
+    let ProgramArguments { program, conditions: arguments } = program;
     let machine = match &arguments.machine {
         Some(path) => machine(path)?,
         None => Machine::default(),
     };
-    let folders = Folders::new(&arguments.program, &arguments.libraries)?;
-    let piped = arguments.program == Path::new("-");
-    let name = if piped { "standard input".to_owned() } else { arguments.program.display().to_string() };
-    let mut request = Request::new(name, input::bytes(&arguments.program)?, machine);
+    let folders = Folders::new(program, &arguments.libraries)?;
+    let piped = program == Path::new("-");
+    let name = if piped { "standard input".to_owned() } else { program.display().to_string() };
+    let mut request = Request::new(name, input::bytes(program)?, machine);
     let mut settings: Vec<(&str, String)> = Vec::new();
     // The family first: what stands behind --control changes it.
     settings.extend(arguments.dialect.iter().map(|name| ("--dialect", format!("DIALECT={name}"))));

@@ -66,6 +66,8 @@ pub struct Cut {
     /// Of the tool, in mm, where the tool table has it.
     pub diameter: Option<f64>,
     pub place: Place,
+    /// Where the axes stood at the bottom.
+    pub at: Position,
 }
 
 /// The holes in the order in which their first passes were made.
@@ -131,6 +133,7 @@ fn holes_of(group: &[&Pass], machine: &Machine, found: &mut Vec<Found>) {
         tool: pass.tool,
         diameter: diameter(pass),
         place: pass.place.clone(),
+        at: pass.at,
     };
     let others = cutting.iter().filter(|pass| !std::ptr::eq(**pass, finish)).map(cut).collect();
     let one = |pass: &Pass, starts: &[&Pass], bottom: f64, others: Vec<Cut>| {

@@ -1,0 +1,246 @@
+//! Which step of one run is which of the other, so that one inserted move doesn't make all that follow different.
+//!
+//! First the longest common sequence of steps that do the same (E. Myers, *An O(ND) Difference Algorithm and Its
+//! Variations*); in the gaps between them moves that go the same way from another point; in what is left the pairs
+//! whose ends lie nearest to one another.
+use super::steps::{Step, difference};
+use crate::motion::MAX_AXES;
+
+/// A step of the old run, of the new one, or one of each that belong together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Link {
+    Same(usize, usize),
+    /// The same step, done differently.
+    Changed(usize, usize),
+    Lost(usize),
+    Added(usize),
+}
+
+/// The search gives up beyond so many lost and added steps: what is left then counts as changed from end to end.
+const MOST_EDITS: usize = 1_000;
+
+/// Gaps up to this many possible pairs are searched for the nearest ends; in larger ones the steps are paired in order.
+const MOST_PAIRS: usize = 10_000;
+
+/// All steps of both runs, in an order that keeps both.
+pub(super) fn align(old: &[Step], new: &[Step], tolerance: f64) -> Vec<Link> {
+    let mut links = Vec::with_capacity(old.len().max(new.len()));
+    let same = common(old.len(), new.len(), |i, j| old[i].is_same(&new[j], tolerance));
+    let (mut i, mut j) = (0, 0);
+    for (to_i, to_j) in same.into_iter().chain([(old.len(), new.len())]) {
+        gap((old, i..to_i), (new, j..to_j), tolerance, &mut links);
+        if to_i < old.len() {
+            links.push(Link::Same(to_i, to_j));
+        }
+        (i, j) = (to_i + 1, to_j + 1);
+    }
+    links
+}
+
+type Side<'a> = (&'a [Step], std::ops::Range<usize>);
+
+/// Links the steps between two that are the same.
+fn gap((old, range_i): Side<'_>, (new, range_j): Side<'_>, tolerance: f64, links: &mut Vec<Link>) {
+    let (first_i, first_j) = (range_i.start, range_j.start);
+    let parallel = common(range_i.len(), range_j.len(), |i, j| {
+        old[first_i + i].is_parallel(&new[first_j + j], tolerance)
+    });
+    let (mut i, mut j) = (first_i, first_j);
+    let ends = [(range_i.len(), range_j.len())];
+    for (to_i, to_j) in parallel.into_iter().chain(ends).map(|(i, j)| (first_i + i, first_j + j)) {
+        nearest((old, i..to_i), (new, j..to_j), links);
+        if to_i < range_i.end {
+            links.push(Link::Changed(to_i, to_j));
+        }
+        (i, j) = (to_i + 1, to_j + 1);
+    }
+}
+
+/// Links what is left: as many pairs as possible, of these the ones whose ends lie nearest.
+fn nearest((old, range_i): Side<'_>, (new, range_j): Side<'_>, links: &mut Vec<Link>) {
+    let (rows, columns) = (range_i.len(), range_j.len());
+    if rows == columns || rows == 0 || columns == 0 || rows * columns > MOST_PAIRS {
+        in_order((old, range_i), (new, range_j), links);
+        return;
+    }
+    // cost[r][c]: the best that can be done with the steps from r and c on. Fewer pairs are worse than any distance.
+    let unpaired = 1e12;
+    let width = columns + 1;
+    let mut cost = vec![0.0; (rows + 1) * width];
+    for r in (0..=rows).rev() {
+        for c in (0..=columns).rev() {
+            if r == rows || c == columns {
+                cost[r * width + c] = unpaired * ((rows - r) + (columns - c)) as f64;
+                continue;
+            }
+            let apart = apart(&old[range_i.start + r], &new[range_j.start + c]);
+            let pair = apart.map_or(f64::INFINITY, |mm| mm + cost[(r + 1) * width + c + 1]);
+            let skip = unpaired + cost[(r + 1) * width + c].min(cost[r * width + c + 1]);
+            cost[r * width + c] = pair.min(skip);
+        }
+    }
+    let (mut r, mut c) = (0, 0);
+    while r < rows || c < columns {
+        let (i, j) = (range_i.start + r, range_j.start + c);
+        let best = cost[r * width + c];
+        if r < rows
+            && c < columns
+            && apart(&old[i], &new[j]).is_some_and(|mm| mm + cost[(r + 1) * width + c + 1] <= best)
+        {
+            links.push(Link::Changed(i, j));
+            (r, c) = (r + 1, c + 1);
+        } else if r < rows && unpaired + cost[(r + 1) * width + c] <= best {
+            links.push(Link::Lost(i));
+            r += 1;
+        } else {
+            links.push(Link::Added(j));
+            c += 1;
+        }
+    }
+}
+
+/// Pairs steps of one category as they come.
+fn in_order((old, range_i): Side<'_>, (new, range_j): Side<'_>, links: &mut Vec<Link>) {
+    let (mut i, mut j) = (range_i.start, range_j.start);
+    while i < range_i.end && j < range_j.end {
+        if old[i].kind.category() == new[j].kind.category() {
+            links.push(Link::Changed(i, j));
+            (i, j) = (i + 1, j + 1);
+        } else if range_i.end - i >= range_j.end - j {
+            links.push(Link::Lost(i));
+            i += 1;
+        } else {
+            links.push(Link::Added(j));
+            j += 1;
+        }
+    }
+    links.extend((i..range_i.end).map(Link::Lost));
+    links.extend((j..range_j.end).map(Link::Added));
+}
+
+/// How far apart two steps end, of one category; a rapid is no likely pair of a feed.
+fn apart(a: &Step, b: &Step) -> Option<f64> {
+    if a.kind.category() != b.kind.category() {
+        return None;
+    }
+    let way = difference(&a.to, &b.to);
+    let distance = (0..MAX_AXES).map(|axis| way[axis].abs()).sum::<f64>();
+    let other_kind = std::mem::discriminant(&a.kind) != std::mem::discriminant(&b.kind);
+    Some(distance + if other_kind { 1e3 } else { 0.0 })
+}
+
+/// The longest common sequence of two lists of these lengths, as pairs of places; where that takes more than
+/// [`MOST_EDITS`], what is common at their beginnings and ends.
+fn common(old: usize, new: usize, same: impl Fn(usize, usize) -> bool) -> Vec<(usize, usize)> {
+    let shorter = old.min(new);
+    let before = (0..shorter).take_while(|k| same(*k, *k)).count();
+    let after = (0..shorter - before).take_while(|k| same(old - 1 - k, new - 1 - k)).count();
+    let (rows, columns) = (old - before - after, new - before - after);
+    let mut pairs: Vec<_> = (0..before).map(|k| (k, k)).collect();
+    if rows > 0 && columns > 0 {
+        let middle = search(rows, columns, |i, j| same(before + i, before + j)).unwrap_or_default();
+        pairs.extend(middle.into_iter().map(|(i, j)| (before + i, before + j)));
+    }
+    pairs.extend((0..after).rev().map(|k| (old - 1 - k, new - 1 - k)));
+    pairs
+}
+
+/// Myers' greedy search: for every number of edits the farthest point on each diagonal.
+fn search(rows: usize, columns: usize, same: impl Fn(usize, usize) -> bool) -> Option<Vec<(usize, usize)>> {
+    let (n, m) = (rows as isize, columns as isize);
+    let most = (rows + columns).min(MOST_EDITS) as isize;
+    let place = |k: isize| (k + most + 1) as usize;
+    let mut farthest = vec![0_isize; 2 * most as usize + 3];
+    let mut history: Vec<Vec<isize>> = Vec::new();
+    for edits in 0..=most {
+        history.push(farthest[place(-edits - 1)..=place(edits + 1)].to_vec());
+        for k in (-edits..=edits).step_by(2) {
+            let down = k == -edits || k != edits && farthest[place(k - 1)] < farthest[place(k + 1)];
+            let mut x = if down { farthest[place(k + 1)] } else { farthest[place(k - 1)] + 1 };
+            while x < n && x - k < m && same(x as usize, (x - k) as usize) {
+                x += 1;
+            }
+            farthest[place(k)] = x;
+            if x >= n && x - k >= m {
+                return Some(trace(&history, n, m));
+            }
+        }
+    }
+    None
+}
+
+/// Walks back through the farthest points and collects the diagonal steps.
+fn trace(history: &[Vec<isize>], n: isize, m: isize) -> Vec<(usize, usize)> {
+    let mut pairs = Vec::new();
+    let (mut x, mut y) = (n, m);
+    for (edits, farthest) in history.iter().enumerate().rev() {
+        let edits = edits as isize;
+        let at = |k: isize| farthest[(k + edits + 1) as usize];
+        let k = x - y;
+        let down = k == -edits || k != edits && at(k - 1) < at(k + 1);
+        let (before_x, before_y) = match (edits, down) {
+            (0, _) => (0, 0),
+            (_, true) => (at(k + 1), at(k + 1) - k - 1),
+            (_, false) => (at(k - 1), at(k - 1) - k + 1),
+        };
+        let (start_x, start_y) = match (edits, down) {
+            (0, _) => (0, 0),
+            (_, true) => (before_x, before_y + 1),
+            (_, false) => (before_x + 1, before_y),
+        };
+        while x > start_x && y > start_y {
+            (x, y) = (x - 1, y - 1);
+            pairs.push((x as usize, y as usize));
+        }
+        (x, y) = (before_x, before_y);
+    }
+    pairs.reverse();
+    pairs
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn pairs(old: &str, new: &str) -> Vec<(usize, usize)> {
+        let (old, new) = (old.as_bytes(), new.as_bytes());
+        common(old.len(), new.len(), |i, j| old[i] == new[j])
+    }
+
+    /// The example of the paper: ABCABBA and CBABAC have a common sequence of four.
+    #[test]
+    fn the_papers_example_has_four_in_common() {
+        assert_eq!(pairs("ABCABBA", "CBABAC").len(), 4);
+    }
+
+    #[test]
+    fn one_inserted_step_leaves_the_others_paired() {
+        assert_eq!(pairs("ABCD", "ABXCD"), [(0, 0), (1, 1), (2, 3), (3, 4)]);
+        assert_eq!(pairs("ABXCD", "ABCD"), [(0, 0), (1, 1), (3, 2), (4, 3)]);
+        assert_eq!(pairs("", "AB"), []);
+    }
+
+    /// By the quadratic table of every textbook.
+    fn longest(a: &[u8], b: &[u8]) -> usize {
+        let mut table = vec![vec![0; b.len() + 1]; a.len() + 1];
+        for i in 0..a.len() {
+            for j in 0..b.len() {
+                table[i + 1][j + 1] =
+                    if a[i] == b[j] { table[i][j] + 1 } else { table[i][j + 1].max(table[i + 1][j]) };
+            }
+        }
+        table[a.len()][b.len()]
+    }
+
+    proptest! {
+        #[test]
+        fn the_common_sequence_is_common_and_the_longest(old in "[ABC]{0,30}", new in "[ABC]{0,30}") {
+            let found = pairs(&old, &new);
+            prop_assert!(found.iter().all(|(i, j)| old.as_bytes()[*i] == new.as_bytes()[*j]));
+            prop_assert!(found.windows(2).all(|w| w[0].0 < w[1].0 && w[0].1 < w[1].1));
+            prop_assert_eq!(found.len(), longest(old.as_bytes(), new.as_bytes()));
+        }
+    }
+}

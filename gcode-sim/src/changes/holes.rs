@@ -1,0 +1,283 @@
+//! Which holes are moved, tilted, deeper, made by another tool or at another time, lost or added.
+use std::collections::{BTreeMap, BTreeSet};
+
+use nalgebra::{Point3, Vector3};
+
+use super::align::Link;
+use super::{Change, Revision, listed};
+use crate::holes::Found;
+use crate::motion::Position;
+use crate::part::hole::Hole;
+use crate::source::Span;
+use crate::units::Deg;
+use crate::verify::{Comparison, Tolerances};
+
+/// The changes of holes, and what of the motion they explain.
+pub(super) struct Compared {
+    pub changes: Vec<Change>,
+    pub moved: Explained,
+}
+
+/// Steps that are different because a hole is: its feeds, by their numbers in either run.
+#[derive(Default)]
+pub(super) struct Explained {
+    /// Of holes that are somewhere else now.
+    pub shifted: (BTreeSet<usize>, BTreeSet<usize>),
+    /// Of holes that are lost, added, or made at another time.
+    pub elsewhen: (BTreeSet<usize>, BTreeSet<usize>),
+    /// Tool numbers, before and now, that an entry about holes names.
+    pub tools: BTreeSet<(u32, u32)>,
+}
+
+pub(super) fn compare(old: &Revision, new: &Revision, links: &[Link], tolerance: f64) -> Compared {
+    let (found_old, found_new) = (&old.simulation.extracted.holes, &new.simulation.extracted.holes);
+    let wanted: Vec<Hole> = found_old.iter().map(|hole| hole.hole(nowhere)).collect();
+    let limits = Tolerances { position: 2.0 * tolerance, depth: tolerance, diameter: tolerance };
+    let comparison = Comparison::new(&wanted, found_new, limits);
+    let cuts = (Cuts::of(old), Cuts::of(new));
+    let mut partner: Vec<Option<usize>> = vec![None; found_old.len()];
+    for pair in &comparison.pairs {
+        partner[pair.wanted] = Some(pair.found);
+    }
+    pair_by_motion(&mut partner, &comparison, links, &cuts);
+    let mut told =
+        Told { old: found_old, new: found_new, tolerance, moved: Explained::default(), cuts: &cuts };
+    let mut changes = told.pairs(&partner);
+    changes.extend(told.order(&partner));
+    changes.extend(told.lost_and_added(&partner));
+    Compared { changes, moved: told.moved }
+}
+
+fn nowhere(_: Span) -> (String, u32) {
+    (String::new(), 0)
+}
+
+/// Which steps cut which hole.
+struct Cuts {
+    of_hole: Vec<Vec<usize>>,
+    of_step: BTreeMap<usize, usize>,
+}
+
+impl Cuts {
+    /// A pass remembers its block and where the axes stood at its end; that is its step.
+    fn of(revision: &Revision) -> Self {
+        let mut steps: BTreeMap<_, Vec<usize>> = BTreeMap::new();
+        for (index, step) in revision.steps.iter().enumerate().filter(|(_, step)| step.is_move()) {
+            steps.entry(key(step.place.block, &step.at)).or_default().push(index);
+        }
+        let (mut of_hole, mut of_step) = (Vec::new(), BTreeMap::new());
+        for (hole, found) in revision.simulation.extracted.holes.iter().enumerate() {
+            let passes = found.others.iter().map(|cut| key(cut.place.block, &cut.at));
+            let all = passes.chain([key(found.place.block, &found.at)]);
+            let mine: Vec<usize> = all.filter_map(|key| steps.get_mut(&key)?.pop()).collect();
+            of_step.extend(mine.iter().map(|step| (*step, hole)));
+            of_hole.push(mine);
+        }
+        Self { of_hole, of_step }
+    }
+}
+
+fn key(block: Span, at: &Position) -> (u32, u32, [u64; crate::motion::MAX_AXES]) {
+    (block.source.0, block.start, at.0.map(f64::to_bits))
+}
+
+/// A hole too far from its old place to be known by it is the same hole if the same feed makes it.
+fn pair_by_motion(
+    partner: &mut [Option<usize>],
+    comparison: &Comparison<'_>,
+    links: &[Link],
+    cuts: &(Cuts, Cuts),
+) {
+    let mut left: BTreeSet<usize> = comparison.extra.iter().copied().collect();
+    for link in links {
+        let Link::Changed(i, j) = link else { continue };
+        if let (Some(hole), Some(other)) = (cuts.0.of_step.get(i), cuts.1.of_step.get(j))
+            && partner[*hole].is_none()
+            && left.remove(other)
+        {
+            partner[*hole] = Some(*other);
+        }
+    }
+}
+
+struct Told<'a> {
+    old: &'a [Found],
+    new: &'a [Found],
+    tolerance: f64,
+    moved: Explained,
+    cuts: &'a (Cuts, Cuts),
+}
+
+impl Told<'_> {
+    /// Holes that are there before and now, those that changed alike in one entry.
+    fn pairs(&mut self, partner: &[Option<usize>]) -> Vec<Change> {
+        let mut groups: Vec<(&'static str, String, Vec<usize>)> = Vec::new();
+        for (hole, other) in partner.iter().enumerate() {
+            let Some(other) = other else { continue };
+            let aspects = self.aspects(&self.old[hole], &self.new[*other]);
+            let Some((code, _)) = aspects.first() else { continue };
+            if aspects.iter().any(|(code, _)| ["hole-moved", "hole-tilted", "hole-depth"].contains(code)) {
+                self.moved.shifted.0.extend(&self.cuts.0.of_hole[hole]);
+                self.moved.shifted.1.extend(&self.cuts.1.of_hole[*other]);
+            }
+            let text = aspects.iter().map(|(_, text)| text.as_str()).collect::<Vec<_>>().join(", ");
+            match groups.iter_mut().find(|(_, known, _)| *known == text) {
+                Some((_, _, holes)) => holes.push(hole),
+                None => groups.push((code, text, vec![hole])),
+            }
+        }
+        let change = |(code, text, holes): (&'static str, String, Vec<usize>)| {
+            let first = holes[0];
+            let message = format!("{}: {text}", named(&holes));
+            let change = Change::new(code, message).once_at(&self.old[first].place);
+            match partner[first] {
+                Some(other) => change.now_at(&self.new[other].place),
+                None => change,
+            }
+        };
+        groups.into_iter().map(change).collect()
+    }
+
+    /// All that is different about one hole.
+    fn aspects(&mut self, old: &Found, new: &Found) -> Vec<(&'static str, String)> {
+        let mut aspects = Vec::new();
+        let apart = Apart::new(old, new);
+        if apart.entry.norm() > self.tolerance {
+            let [x, y, z] = [apart.entry.x, apart.entry.y, apart.entry.z].map(plain);
+            aspects.push(("hole-moved", format!("moved by {x:+.4} {y:+.4} {z:+.4} mm")));
+        }
+        if (apart.bottom - apart.entry).norm() > self.tolerance {
+            let tilt = Deg::atan2(old.axis.cross(&new.axis).norm(), old.axis.dot(&new.axis));
+            aspects.push(("hole-tilted", format!("tilted by {:.4}°", tilt.0)));
+        }
+        if apart.deeper.abs() > self.tolerance {
+            let word = if apart.deeper > 0.0 { "deeper" } else { "less deep" };
+            aspects.push(("hole-depth", format!("{:.4} mm {word}", apart.deeper.abs())));
+        }
+        if let (Some(before), Some(now)) = (old.diameter, new.diameter)
+            && (before - now).abs() > self.tolerance
+        {
+            aspects.push(("hole-diameter", format!("Φ{now} instead of Φ{before}")));
+        }
+        if let (Some(before), Some(now)) = (old.tool, new.tool)
+            && before != now
+        {
+            self.moved.tools.insert((before, now));
+            aspects.push(("hole-tool", format!("made by T{now} instead of T{before}")));
+        }
+        aspects
+    }
+
+    /// Holes made in another order: the fewest that can be called moved.
+    fn order(&mut self, partner: &[Option<usize>]) -> Option<Change> {
+        let paired: Vec<(usize, usize)> =
+            partner.iter().enumerate().filter_map(|(old, new)| Some((old, (*new)?))).collect();
+        let stays = rising(&paired.iter().map(|(_, new)| *new).collect::<Vec<_>>());
+        let late: Vec<_> = (0..paired.len()).filter(|k| !stays.contains(k)).map(|k| paired[k]).collect();
+        let (first, other) = *late.first()?;
+        for (old, new) in &late {
+            self.moved.elsewhen.0.extend(&self.cuts.0.of_hole[*old]);
+            self.moved.elsewhen.1.extend(&self.cuts.1.of_hole[*new]);
+        }
+        let holes: Vec<usize> = late.iter().map(|(old, _)| *old).collect();
+        let before = paired.iter().filter(|(_, new)| *new < other).max_by_key(|(_, new)| *new);
+        let after = match before {
+            Some((hole, _)) => format!("after hole {}", hole + 1),
+            None => "first of all".to_owned(),
+        };
+        let message = match holes.len() {
+            1 => format!("{}: made at another time, {after}", named(&holes)),
+            _ => format!("{}: made at other times, hole {} {after}", named(&holes), first + 1),
+        };
+        Some(Change::new("hole-order", message).once_at(&self.old[first].place).now_at(&self.new[other].place))
+    }
+
+    fn lost_and_added(&mut self, partner: &[Option<usize>]) -> Vec<Change> {
+        let mut changes = Vec::new();
+        for (hole, found) in self.old.iter().enumerate().filter(|(hole, _)| partner[*hole].is_none()) {
+            self.moved.elsewhen.0.extend(&self.cuts.0.of_hole[hole]);
+            let message = format!("hole {}: lost, {}", hole + 1, described(found));
+            changes.push(Change::new("hole-lost", message).once_at(&found.place));
+        }
+        let known: BTreeSet<usize> = partner.iter().flatten().copied().collect();
+        for (hole, found) in self.new.iter().enumerate().filter(|(hole, _)| !known.contains(hole)) {
+            self.moved.elsewhen.1.extend(&self.cuts.1.of_hole[hole]);
+            let message = format!("a hole added: {}", described(found));
+            changes.push(Change::new("hole-added", message).now_at(&found.place));
+        }
+        changes
+    }
+}
+
+/// How far the new hole is from the old one where the old one begins and ends.
+struct Apart {
+    entry: Vector3<f64>,
+    bottom: Vector3<f64>,
+    deeper: f64,
+}
+
+impl Apart {
+    fn new(old: &Found, new: &Found) -> Self {
+        let (bottom, deepest) = (old.bottom(), new.bottom());
+        let slope = new.axis.dot(&old.axis);
+        // Where the new axis crosses the plane through `p`, square to the old axis; axes that are square to one
+        // another never do, and the entries are compared as they are.
+        let off = |p: &Point3<f64>, otherwise: &Point3<f64>| {
+            if slope.abs() < 1e-9 {
+                return otherwise - p;
+            }
+            deepest + new.axis.into_inner() * ((p - deepest).dot(&old.axis) / slope) - p
+        };
+        Self {
+            entry: off(&old.entry, &new.entry),
+            bottom: off(&bottom, &deepest),
+            deeper: (bottom - deepest).dot(&old.axis),
+        }
+    }
+}
+
+/// The places of a longest rising subsequence.
+fn rising(values: &[usize]) -> BTreeSet<usize> {
+    // The last place of the best sequence of each length, and what each place follows.
+    let mut ends: Vec<usize> = Vec::new();
+    let mut follows: Vec<Option<usize>> = Vec::with_capacity(values.len());
+    for (place, value) in values.iter().enumerate() {
+        let length = ends.partition_point(|end| values[*end] < *value);
+        follows.push(length.checked_sub(1).map(|shorter| ends[shorter]));
+        match ends.get_mut(length) {
+            Some(end) => *end = place,
+            None => ends.push(place),
+        }
+    }
+    std::iter::successors(ends.last().copied(), |place| follows[*place]).collect()
+}
+
+/// `hole 5`, `holes 1, 2, 5`.
+fn named(holes: &[usize]) -> String {
+    let names: Vec<String> = holes.iter().map(|hole| (hole + 1).to_string()).collect();
+    format!("{} {}", if holes.len() == 1 { "hole" } else { "holes" }, listed(&names))
+}
+
+fn described(found: &Found) -> String {
+    let [x, y, z] = [found.entry.x, found.entry.y, found.entry.z].map(plain);
+    let diameter = found.diameter.map(|d| format!("Φ{d} ")).unwrap_or_default();
+    format!("{diameter}at {x:.3} {y:.3} {z:.3}, fed {:.3} mm", found.depth)
+}
+
+/// Nobody wants to read −0.
+fn plain(value: f64) -> f64 {
+    if value.abs() < 5e-5 { 0.0 } else { value }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_fewest_holes_are_called_moved() {
+        assert_eq!(rising(&[0, 1, 2, 3]), BTreeSet::from([0, 1, 2, 3]));
+        assert_eq!(rising(&[1, 2, 0, 3]), BTreeSet::from([0, 1, 3]));
+        assert_eq!(rising(&[3, 2, 1, 0]).len(), 1);
+        assert_eq!(rising(&[]), BTreeSet::new());
+    }
+}

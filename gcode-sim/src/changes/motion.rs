@@ -1,0 +1,250 @@
+//! Moves, feeds, tools, spindle and stops that are different and that no changed hole explains.
+use std::collections::BTreeSet;
+
+use super::align::Link;
+use super::holes::Explained;
+use super::steps::{Category, Kind, Step, difference, is_same_arc};
+use super::{Change, Revision};
+use crate::motion::{Axes, Place, Position, Spindle, StopKind};
+
+pub(super) fn compare(
+    old: &Revision,
+    new: &Revision,
+    links: &[Link],
+    explained: &Explained,
+    tolerance: f64,
+) -> Vec<Change> {
+    let mut motion = Motion {
+        old: &old.steps,
+        new: &new.steps,
+        axes: old.simulation.run.control.settings().axes.clone(),
+        tolerance,
+        groups: Vec::new(),
+    };
+    for region in regions(links, &old.steps, &new.steps) {
+        motion.region(&region, explained);
+    }
+    for link in links {
+        motion.step(*link, explained);
+    }
+    motion.groups.into_iter().map(Group::change).collect()
+}
+
+/// Moves next to one another that are all different; other steps between them don't part them.
+fn regions(links: &[Link], old: &[Step], new: &[Step]) -> Vec<Vec<Link>> {
+    let mut regions = vec![Vec::new()];
+    for link in links {
+        let is_move = match *link {
+            Link::Same(i, _) | Link::Changed(i, _) | Link::Lost(i) => old[i].is_move(),
+            Link::Added(j) => new[j].is_move(),
+        };
+        match (is_move, link) {
+            (false, _) => {}
+            (true, Link::Same(..)) => regions.push(Vec::new()),
+            (true, _) => regions.last_mut().into_iter().for_each(|region| region.push(*link)),
+        }
+    }
+    regions.retain(|region| !region.is_empty());
+    regions
+}
+
+/// Differences of one kind that say the same.
+struct Group {
+    code: &'static str,
+    /// What is different, without how often.
+    text: String,
+    /// What it is that is different: "move", "dwell".
+    what: &'static str,
+    count: usize,
+    old: Option<Place>,
+    new: Option<Place>,
+}
+
+impl Group {
+    fn change(self) -> Change {
+        let times = match self.count {
+            1 => String::new(),
+            n => format!(" ({n} {}s)", self.what),
+        };
+        let mut change = Change::new(self.code, format!("{}{times}", self.text));
+        (change.old, change.new) = (self.old, self.new);
+        change
+    }
+}
+
+struct Motion<'a> {
+    old: &'a [Step],
+    new: &'a [Step],
+    axes: Axes,
+    tolerance: f64,
+    groups: Vec<Group>,
+}
+
+impl Motion<'_> {
+    fn tell(
+        &mut self,
+        code: &'static str,
+        what: &'static str,
+        text: String,
+        old: Option<&Step>,
+        new: Option<&Step>,
+    ) {
+        if let Some(group) = self.groups.iter_mut().find(|g| g.code == code && g.text == text) {
+            group.count += 1;
+            return;
+        }
+        let place = |step: Option<&Step>| step.map(|step| step.place.clone());
+        self.groups.push(Group { code, text, what, count: 1, old: place(old), new: place(new) });
+    }
+
+    /// Moves that are different, but for those of changed holes: their way there and back is part of the change.
+    fn region(&mut self, region: &[Link], explained: &Explained) {
+        let has = |steps: &(BTreeSet<usize>, BTreeSet<usize>)| {
+            region.iter().any(|link| match link {
+                Link::Changed(i, j) | Link::Same(i, j) => steps.0.contains(i) || steps.1.contains(j),
+                Link::Lost(i) => steps.0.contains(i),
+                Link::Added(j) => steps.1.contains(j),
+            })
+        };
+        let (shifted, elsewhen) = (has(&explained.shifted), has(&explained.elsewhen));
+        for link in region {
+            match *link {
+                Link::Changed(i, j) if !shifted && !elsewhen => self.changed(&self.old[i], &self.new[j]),
+                Link::Lost(i) if !elsewhen => {
+                    let step = &self.old[i];
+                    let text = format!("a {} to {} is no longer there", step.kind.name(), self.point(step));
+                    self.tell("move-lost", "move", text, Some(step), None);
+                }
+                Link::Added(j) if !elsewhen => {
+                    let step = &self.new[j];
+                    let text = format!("a {} to {} is new", step.kind.name(), self.point(step));
+                    self.tell("move-added", "move", text, None, Some(step));
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// A move that goes elsewhere or in another way.
+    fn changed(&mut self, old: &Step, new: &Step) {
+        let (was, is) = (old.kind.name(), new.kind.name());
+        if was != is {
+            self.tell("move-kind", "move", format!("a {is} where a {was} was"), Some(old), Some(new));
+        }
+        let way = difference(&new.to, &old.to);
+        let shift = self.coordinates(&way, self.tolerance, true);
+        if !shift.is_empty() {
+            let text = format!("a {is} ends elsewhere, by {shift}");
+            self.tell("move-shifted", "move", text, Some(old), Some(new));
+        } else if let (Kind::Arc(a, _), Kind::Arc(b, _)) = (&old.kind, &new.kind)
+            && !is_same_arc(a, b, self.tolerance)
+        {
+            let text = format!(
+                "an arc sweeps {:+.3}° about {:.4} {:.4} instead of {:+.3}° about {:.4} {:.4}",
+                b.sweep.0, b.centre.0, b.centre.1, a.sweep.0, a.centre.0, a.centre.1
+            );
+            self.tell("move-arc", "arc", text, Some(old), Some(new));
+        }
+    }
+
+    /// Feeds, and everything that is no move.
+    fn step(&mut self, link: Link, explained: &Explained) {
+        match link {
+            Link::Same(i, j) | Link::Changed(i, j) => {
+                let (old, new) = (&self.old[i], &self.new[j]);
+                if let (Some(was), Some(is)) = (old.kind.rate(), new.kind.rate())
+                    && (was - is).abs() > 1e-6 * was.abs().max(is.abs())
+                {
+                    let text = format!("feed F{} instead of F{}", short(is), short(was));
+                    self.tell("feed", "move", text, Some(old), Some(new));
+                }
+                if matches!(link, Link::Changed(..)) {
+                    self.swapped(old, new, explained);
+                }
+            }
+            Link::Lost(i) if !self.old[i].is_move() => {
+                let step = &self.old[i];
+                let text = format!("{} is no longer there", self.described(&step.kind));
+                self.tell(lost_code(&step.kind), step.kind.name(), text, Some(step), None);
+            }
+            Link::Added(j) if !self.new[j].is_move() => {
+                let step = &self.new[j];
+                let text = format!("{} is new", self.described(&step.kind));
+                self.tell(lost_code(&step.kind), step.kind.name(), text, None, Some(step));
+            }
+            Link::Lost(_) | Link::Added(_) => {}
+        }
+    }
+
+    /// The same kind of step with other values.
+    fn swapped(&mut self, old: &Step, new: &Step, explained: &Explained) {
+        if let (Kind::Tool(was), Kind::Tool(is)) = (&old.kind, &new.kind)
+            && explained.tools.contains(&(*was, *is))
+        {
+            return;
+        }
+        if !old.is_move() {
+            let text = format!("{} instead of {}", self.described(&new.kind), self.described(&old.kind));
+            self.tell(lost_code(&old.kind), old.kind.name(), text, Some(old), Some(new));
+        }
+    }
+
+    fn described(&self, kind: &Kind) -> String {
+        match kind {
+            Kind::Dwell(seconds) => format!("a dwell of {seconds} s"),
+            Kind::Tool(number) => format!("tool T{number}"),
+            Kind::Length(offset) => match self.coordinates(offset, 0.0, false).as_str() {
+                "" => "no tool length offset".to_owned(),
+                values => format!("tool length offset {values}"),
+            },
+            Kind::Spindle(Spindle::Off, _) => "spindle stop".to_owned(),
+            Kind::Spindle(Spindle::Clockwise, speed) => format!("M03 S{speed}"),
+            Kind::Spindle(Spindle::Counterclockwise, speed) => format!("M04 S{speed}"),
+            Kind::Coolant(true) => "coolant on".to_owned(),
+            Kind::Coolant(false) => "coolant off".to_owned(),
+            Kind::Stop(StopKind::M00, _) => "the stop M00".to_owned(),
+            Kind::Stop(StopKind::M01, _) => "the stop M01".to_owned(),
+            Kind::Stop(StopKind::Message, text) => format!("the stop #3006 ({text})"),
+            Kind::Rapid | Kind::Feed(_) | Kind::Arc(..) | Kind::Probe(_) => format!("a {}", kind.name()),
+        }
+    }
+
+    /// Where a move ends, in machine coordinates without the tool's length.
+    fn point(&self, step: &Step) -> String {
+        let way = difference(&step.to, &step.from);
+        let moving: Vec<String> = self
+            .axes
+            .iter()
+            .filter(|(axis, _)| way[*axis] != 0.0)
+            .map(|(axis, letter)| format!("{letter}{:.4}", step.at[axis]))
+            .collect();
+        if moving.is_empty() { "where it begins".to_owned() } else { moving.join(" ") }
+    }
+
+    /// The axes whose values are beyond `least`.
+    fn coordinates(&self, values: &Position, least: f64, signed: bool) -> String {
+        let far = self.axes.iter().filter(|(axis, _)| values[*axis].abs() > least);
+        let told = far.map(|(axis, letter)| match signed {
+            true => format!("{letter} {:+.4}", values[axis]),
+            false => format!("{letter} {:.4}", values[axis]),
+        });
+        told.collect::<Vec<_>>().join(" ")
+    }
+}
+
+fn lost_code(kind: &Kind) -> &'static str {
+    match kind.category() {
+        Category::Move => "move",
+        Category::Dwell => "dwell",
+        Category::Tool => "tool",
+        Category::Length => "tool-length",
+        Category::Spindle => "spindle",
+        Category::Coolant => "coolant",
+        Category::Stop => "stop",
+    }
+}
+
+/// A feed without digits nobody can set.
+fn short(rate: f64) -> f64 {
+    (rate * 1e4).round() / 1e4
+}

@@ -1,0 +1,185 @@
+//! What a machine was told, step by step, in a form that two runs can be compared by.
+use crate::motion::{Arc2, Event, EventKind, MAX_AXES, Place, Position, Sink, Spindle, StopKind};
+
+use super::MOST_STEPS;
+
+/// One thing the machine was told.
+#[derive(Clone, Debug)]
+pub(super) struct Step {
+    pub kind: Kind,
+    /// Where the axes stand before and after it, the tool length offset taken out: a longer tool is one difference, not
+    /// one in every move.
+    pub from: Position,
+    pub to: Position,
+    /// Where the axes stand after it, in machine coordinates.
+    pub at: Position,
+    pub place: Place,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Kind {
+    Rapid,
+    /// With its feed in mm/min.
+    Feed(f64),
+    Arc(Arc2, f64),
+    /// G31 with its feed.
+    Probe(f64),
+    /// Seconds.
+    Dwell(f64),
+    Tool(u32),
+    Length(Position),
+    Spindle(Spindle, f64),
+    Coolant(bool),
+    Stop(StopKind, String),
+}
+
+/// What can be paired with what.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Category {
+    Move,
+    Dwell,
+    Tool,
+    Length,
+    Spindle,
+    Coolant,
+    Stop,
+}
+
+impl Kind {
+    pub(super) fn category(&self) -> Category {
+        match self {
+            Self::Rapid | Self::Feed(_) | Self::Arc(..) | Self::Probe(_) => Category::Move,
+            Self::Dwell(_) => Category::Dwell,
+            Self::Tool(_) => Category::Tool,
+            Self::Length(_) => Category::Length,
+            Self::Spindle(..) => Category::Spindle,
+            Self::Coolant(_) => Category::Coolant,
+            Self::Stop(..) => Category::Stop,
+        }
+    }
+
+    /// The feed of a cut.
+    pub(super) fn rate(&self) -> Option<f64> {
+        match self {
+            Self::Feed(rate) | Self::Arc(_, rate) | Self::Probe(rate) => Some(*rate),
+            _ => None,
+        }
+    }
+
+    /// As people say it.
+    pub(super) fn name(&self) -> &'static str {
+        match self {
+            Self::Rapid => "rapid",
+            Self::Feed(_) => "feed",
+            Self::Arc(..) => "arc",
+            Self::Probe(_) => "probing move",
+            Self::Dwell(_) => "dwell",
+            Self::Tool(_) => "tool change",
+            Self::Length(_) => "tool length offset",
+            Self::Spindle(..) => "spindle command",
+            Self::Coolant(_) => "coolant command",
+            Self::Stop(..) => "stop",
+        }
+    }
+}
+
+impl Step {
+    pub(super) fn is_move(&self) -> bool {
+        self.kind.category() == Category::Move
+    }
+
+    /// The same thing done: a move to the same point in the same way, at whatever feed.
+    pub(super) fn is_same(&self, other: &Self, tolerance: f64) -> bool {
+        match (&self.kind, &other.kind) {
+            (Kind::Rapid, Kind::Rapid)
+            | (Kind::Feed(_), Kind::Feed(_))
+            | (Kind::Probe(_), Kind::Probe(_)) => near(&self.to, &other.to, tolerance),
+            (Kind::Arc(a, _), Kind::Arc(b, _)) => {
+                near(&self.to, &other.to, tolerance) && is_same_arc(a, b, tolerance)
+            }
+            (Kind::Length(a), Kind::Length(b)) => near(a, b, tolerance),
+            (a, b) => a == b,
+        }
+    }
+
+    /// Two moves that go the same way from wherever they begin.
+    pub(super) fn is_parallel(&self, other: &Self, tolerance: f64) -> bool {
+        self.is_move() && other.is_move() && near(&self.way(), &other.way(), tolerance)
+    }
+
+    fn way(&self) -> Position {
+        difference(&self.to, &self.from)
+    }
+}
+
+/// The same curve about the same centre.
+pub(super) fn is_same_arc(a: &Arc2, b: &Arc2, tolerance: f64) -> bool {
+    let off = (a.centre.0 - b.centre.0).abs().max((a.centre.1 - b.centre.1).abs());
+    a.plane == b.plane && off <= tolerance && (a.sweep.0 - b.sweep.0).abs() <= 1e-3
+}
+
+/// How far each axis of `to` is from that of `from`.
+pub(super) fn difference(to: &Position, from: &Position) -> Position {
+    let mut way = Position::default();
+    for axis in 0..MAX_AXES {
+        way[axis] = to[axis] - from[axis];
+    }
+    way
+}
+
+fn near(a: &Position, b: &Position, tolerance: f64) -> bool {
+    (0..MAX_AXES).all(|axis| (a[axis] - b[axis]).abs() <= tolerance)
+}
+
+/// Writes the steps down as the control tells them.
+#[derive(Debug, Default)]
+pub(super) struct Recorder {
+    pub steps: Vec<Step>,
+    /// There were more than [`MOST_STEPS`].
+    pub too_many: bool,
+    at: Position,
+    length: Position,
+}
+
+impl Recorder {
+    fn push(&mut self, kind: Kind, from: Position, event: &Event<'_>) {
+        self.too_many |= self.steps.len() >= MOST_STEPS;
+        if !self.too_many {
+            let (from, to) = (difference(&from, &self.length), difference(&self.at, &self.length));
+            self.steps.push(Step { kind, from, to, at: self.at, place: event.place() });
+        }
+    }
+
+    fn go(&mut self, kind: Kind, to: Position, event: &Event<'_>) {
+        let from = std::mem::replace(&mut self.at, to);
+        // A move to where the axes stand does nothing; a full circle ends where it begins.
+        if from != to || matches!(kind, Kind::Arc(..)) {
+            self.push(kind, from, event);
+        }
+    }
+}
+
+impl Sink for Recorder {
+    fn event(&mut self, event: &Event<'_>) {
+        let here = self.at;
+        match &event.kind {
+            EventKind::Rapid { to } => self.go(Kind::Rapid, *to, event),
+            EventKind::Feed { to, rate } => self.go(Kind::Feed(rate.0), *to, event),
+            EventKind::Arc { to, arc, rate } => self.go(Kind::Arc(*arc, rate.0), *to, event),
+            EventKind::Skip { to, rate, .. } => self.go(Kind::Probe(rate.0), *to, event),
+            EventKind::Dwell { time } => self.push(Kind::Dwell(time.0), here, event),
+            EventKind::Tool { number } => self.push(Kind::Tool(*number), here, event),
+            EventKind::ToolLength { offset } => {
+                self.length = *offset;
+                self.push(Kind::Length(*offset), here, event);
+            }
+            EventKind::Spindle { turning, speed } => {
+                // At a standstill the speed is what it will turn at later: that is told then.
+                let speed = if *turning == Spindle::Off { 0.0 } else { speed.0 };
+                self.push(Kind::Spindle(*turning, speed), here, event);
+            }
+            EventKind::Coolant { on } => self.push(Kind::Coolant(*on), here, event),
+            EventKind::Stop { kind, text, .. } => self.push(Kind::Stop(*kind, text.clone()), here, event),
+        }
+    }
+}
