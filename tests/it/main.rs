@@ -1,6 +1,7 @@
 //! Laws and whole-program tests that are not cases: house rules, round trips, published numbers, the README.
 #![expect(clippy::unwrap_used, clippy::disallowed_methods, reason = "tests read files and may panic")]
 
+mod changes;
 mod check;
 mod control;
 mod control_page;

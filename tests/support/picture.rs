@@ -4,7 +4,8 @@
 //! was drawn instead, and where it differs, is left in `target/pictures/`.
 use gcode_sim::part::hole::Hole;
 use gcode_sim::picture::{
-    Difference, DrawnHole, PathPiece, Sheet, Size, Standing, TopView, compare, lay_out, paint, png, top_view,
+    Difference, DrawnHole, PathPiece, Question, Sheet, Size, Standing, TopView, compare, lay_out, paint, png,
+    top_view,
 };
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ImageFormat, RgbImage};
@@ -78,6 +79,7 @@ fn draw(text: &str) -> (Picture, Sheet) {
         outline: picture.outline,
         tolerance: picture.tolerance,
         rotary: "B".to_owned(),
+        question: Question::Verdict,
         holes: picture.hole.iter().map(drawn).collect(),
         path: picture.path.iter().map(|p| PathPiece { points: p.points.clone(), rapid: p.rapid }).collect(),
         lines: Vec::new(),

@@ -189,7 +189,9 @@ impl Told<'_> {
             1 => format!("{}: made at another time, {after}", named(&holes)),
             _ => format!("{}: made at other times, hole {} {after}", named(&holes), first + 1),
         };
-        Some(Change::new("hole-order", message).once_at(&self.old[first].place).now_at(&self.new[other].place))
+        Some(
+            Change::new("hole-order", message).once_at(&self.old[first].place).now_at(&self.new[other].place),
+        )
     }
 
     fn lost_and_added(&mut self, partner: &[Option<usize>]) -> Vec<Change> {

@@ -8,16 +8,19 @@ use crate::motion::{Axes, Place};
 use crate::session::Run;
 use crate::source::Span;
 
-pub(super) fn compare(old: &Run, new: &Run, tolerance: f64) -> Vec<Change> {
-    let mut changes = Vec::new();
+/// Whether the runs ended in the same way.
+pub(super) fn outcome(old: &Run, new: &Run) -> Option<Change> {
     let (was, is) = (ending(old), ending(new));
-    if was != is {
-        let mut change = Change::new("outcome", format!("{is} instead of: {was}"));
-        change.old = stopped_at(old);
-        change.new = stopped_at(new);
-        changes.push(change);
-    }
-    changes.extend(printed(old, new));
+    let change = || Change {
+        old: stopped_at(old),
+        new: stopped_at(new),
+        ..Change::new("outcome", format!("{is}; before: {was}"))
+    };
+    (was != is).then(change)
+}
+
+pub(super) fn compare(old: &Run, new: &Run, tolerance: f64) -> Vec<Change> {
+    let mut changes: Vec<Change> = printed(old, new).into_iter().collect();
     changes.extend(passed_on(old, new));
     changes.extend(values(old, new, tolerance));
     changes

@@ -73,15 +73,17 @@ impl Change {
     }
 }
 
-/// Everything that is different: the holes first, then the motion that no changed hole explains, then the rest.
+/// Everything that is different: how the runs ended and the holes first, then the motion that no changed hole explains, then the rest.
 ///
 /// `tolerance` is in mm, and in degrees for axes that turn: what differs by less is the same.
 pub fn changes(old: &Revision, new: &Revision, tolerance: f64) -> Vec<Change> {
     let links = align(&old.steps, &new.steps, tolerance);
     let holes = holes::compare(old, new, &links, tolerance);
-    let mut all = holes.changes;
+    let (run_old, run_new) = (&old.simulation.run, &new.simulation.run);
+    let mut all: Vec<Change> = left::outcome(run_old, run_new).into_iter().collect();
+    all.extend(holes.changes);
     all.extend(motion::compare(old, new, &links, &holes.moved, tolerance));
-    all.extend(left::compare(&old.simulation.run, &new.simulation.run, tolerance));
+    all.extend(left::compare(run_old, run_new, tolerance));
     all
 }
 

@@ -48,6 +48,20 @@ fn regions(links: &[Link], old: &[Step], new: &[Step]) -> Vec<Vec<Link>> {
     regions
 }
 
+/// For every link the last one so far that is wanted.
+fn nearest<'a>(
+    links: impl Iterator<Item = &'a Link>,
+    wanted: impl Fn(&Link) -> bool,
+) -> Vec<Option<&'a Link>> {
+    let mut last = None;
+    links
+        .map(|link| {
+            last = if wanted(link) { Some(link) } else { last };
+            last
+        })
+        .collect()
+}
+
 /// Differences of one kind that say the same.
 struct Group {
     code: &'static str,
@@ -80,14 +94,14 @@ struct Motion<'a> {
     groups: Vec<Group>,
 }
 
-impl Motion<'_> {
+impl<'a> Motion<'a> {
     fn tell(
         &mut self,
         code: &'static str,
         what: &'static str,
         text: String,
-        old: Option<&Step>,
-        new: Option<&Step>,
+        old: Option<&'a Step>,
+        new: Option<&'a Step>,
     ) {
         if let Some(group) = self.groups.iter_mut().find(|g| g.code == code && g.text == text) {
             group.count += 1;
@@ -97,25 +111,31 @@ impl Motion<'_> {
         self.groups.push(Group { code, text, what, count: 1, old: place(old), new: place(new) });
     }
 
-    /// Moves that are different, but for those of changed holes: their way there and back is part of the change.
+    /// Moves that are different, but for those of changed holes: the way there and back is part of the change.
     fn region(&mut self, region: &[Link], explained: &Explained) {
-        let has = |steps: &(BTreeSet<usize>, BTreeSet<usize>)| {
-            region.iter().any(|link| match link {
-                Link::Changed(i, j) | Link::Same(i, j) => steps.0.contains(i) || steps.1.contains(j),
-                Link::Lost(i) => steps.0.contains(i),
-                Link::Added(j) => steps.1.contains(j),
-            })
+        let (shifted, elsewhen) = (&explained.shifted, &explained.elsewhen);
+        let feed = |link: &Link, steps: &(BTreeSet<usize>, BTreeSet<usize>)| match link {
+            Link::Changed(i, j) | Link::Same(i, j) => steps.0.contains(i) || steps.1.contains(j),
+            Link::Lost(i) => steps.0.contains(i),
+            Link::Added(j) => steps.1.contains(j),
         };
-        let (shifted, elsewhen) = (has(&explained.shifted), has(&explained.elsewhen));
-        for link in region {
+        let any = |link: &Link| feed(link, shifted) || feed(link, elsewhen);
+        // For every move the nearest feed of a changed hole before and behind it.
+        let before = nearest(region.iter(), any);
+        let mut behind = nearest(region.iter().rev(), any);
+        behind.reverse();
+        let gone = region.iter().any(|link| feed(link, elsewhen));
+        for (k, link) in region.iter().enumerate() {
+            let feeds = [before[k], behind[k]];
+            let is_part = feeds.iter().flatten().any(|feed| self.is_part_of_hole(link, feed));
             match *link {
-                Link::Changed(i, j) if !shifted && !elsewhen => self.changed(&self.old[i], &self.new[j]),
-                Link::Lost(i) if !elsewhen => {
+                Link::Changed(i, j) if !is_part => self.changed(&self.old[i], &self.new[j]),
+                Link::Lost(i) if !(is_part && gone) => {
                     let step = &self.old[i];
                     let text = format!("a {} to {} is no longer there", step.kind.name(), self.point(step));
                     self.tell("move-lost", "move", text, Some(step), None);
                 }
-                Link::Added(j) if !elsewhen => {
+                Link::Added(j) if !(is_part && gone) => {
                     let step = &self.new[j];
                     let text = format!("a {} to {} is new", step.kind.name(), self.point(step));
                     self.tell("move-added", "move", text, None, Some(step));
@@ -125,8 +145,25 @@ impl Motion<'_> {
         }
     }
 
+    /// Whether a move belongs to the hole that `feed` cuts: a rapid next to it, or a feed on the same line.
+    fn is_part_of_hole(&self, link: &Link, feed: &Link) -> bool {
+        self.sides(link).into_iter().flatten().all(|step| {
+            let feeds = self.sides(feed).into_iter().flatten();
+            step.kind == Kind::Rapid || feeds.into_iter().any(|feed| step.is_on_line_of(feed))
+        })
+    }
+
+    /// The steps of a link, old and new.
+    fn sides(&self, link: &Link) -> [Option<&'a Step>; 2] {
+        match *link {
+            Link::Same(i, j) | Link::Changed(i, j) => [Some(&self.old[i]), Some(&self.new[j])],
+            Link::Lost(i) => [Some(&self.old[i]), None],
+            Link::Added(j) => [None, Some(&self.new[j])],
+        }
+    }
+
     /// A move that goes elsewhere or in another way.
-    fn changed(&mut self, old: &Step, new: &Step) {
+    fn changed(&mut self, old: &'a Step, new: &'a Step) {
         let (was, is) = (old.kind.name(), new.kind.name());
         if was != is {
             self.tell("move-kind", "move", format!("a {is} where a {was} was"), Some(old), Some(new));
@@ -177,7 +214,7 @@ impl Motion<'_> {
     }
 
     /// The same kind of step with other values.
-    fn swapped(&mut self, old: &Step, new: &Step, explained: &Explained) {
+    fn swapped(&mut self, old: &'a Step, new: &'a Step, explained: &Explained) {
         if let (Kind::Tool(was), Kind::Tool(is)) = (&old.kind, &new.kind)
             && explained.tools.contains(&(*was, *is))
         {

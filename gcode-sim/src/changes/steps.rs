@@ -107,6 +107,15 @@ impl Step {
         self.is_move() && other.is_move() && near(&self.way(), &other.way(), tolerance)
     }
 
+    /// It ends on the line that `feed` runs along.
+    pub(super) fn is_on_line_of(&self, feed: &Self) -> bool {
+        let (along, aside) = (feed.way(), difference(&self.to, &feed.to));
+        let dot = |a: &Position, b: &Position| (0..MAX_AXES).map(|axis| a[axis] * b[axis]).sum::<f64>();
+        let part = dot(&aside, &along) / dot(&along, &along).max(f64::MIN_POSITIVE);
+        // Rounded end points stand this far beside a slanting line.
+        (0..MAX_AXES).all(|axis| (aside[axis] - part * along[axis]).abs() <= 0.002)
+    }
+
     fn way(&self) -> Position {
         difference(&self.to, &self.from)
     }

@@ -2,10 +2,8 @@
 use super::args::{DiffArguments, TextFormat};
 use super::{Refusal, Status, options, output, render};
 use crate::changes::{Revision, changes};
-use crate::part::reference::Reference;
 use crate::report::changes::ChangesReport;
-use crate::report::diagnostic;
-use crate::verify::Tolerances;
+use crate::report::{diagnostic, top};
 
 pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
     let tolerance = options::tolerance("--tolerance", Some(arguments.tolerance))?.unwrap_or_default();
@@ -21,16 +19,9 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
         TextFormat::Text => output::print(&report.text())?,
     }
     if let Some(path) = &arguments.picture {
-        // The old holes are what the new ones are held against: the picture marks what is off, lost and added.
-        let mut list = old.simulation.list();
-        for (index, hole) in list.holes.iter_mut().enumerate() {
-            hole.id = Some((index + 1).to_string());
-        }
-        let reference = Reference::of_list(list).map_err(|error| Refusal::new(error.to_string()))?;
-        let tolerances = Tolerances { position: 2.0 * tolerance, depth: tolerance, diameter: tolerance };
-        let verdict = new.simulation.verify(&reference, tolerances, &new_request.machine);
-        let view = render::view(&new_request, &new.simulation, &reference, &verdict);
-        render::write(&view, "1600x1200", path)?;
+        let name = format!("{} against {}", render::name(&new_request), render::name(&old_request));
+        let view = top::of_changes(&name, &old.simulation, &new.simulation, &new_request.machine, tolerance);
+        render::write(&view.map_err(Refusal::new)?, "1600x1200", path)?;
         if arguments.format == TextFormat::Text {
             output::print(&format!("picture: {}\n", path.display()))?;
         }

@@ -55,7 +55,7 @@ pub(super) fn write(view: &TopView, size: &str, path: &Path) -> Result<(), Refus
 }
 
 /// The file's name without its folder.
-fn name(request: &Request) -> String {
+pub(super) fn name(request: &Request) -> String {
     let file = Path::new(&request.name).file_name();
     file.map_or_else(|| request.name.clone(), |name| name.to_string_lossy().into_owned())
 }

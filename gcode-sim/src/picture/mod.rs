@@ -28,6 +28,7 @@ pub use raster::{paint, png};
 pub use scene::{Axis, LegendItem, Mark, Misfit, Pen, Point, Sample, Scene, Shape, Standing, Stroke, Title};
 pub use sheet::{Sheet, lay_out};
 pub use size::Size;
+pub use views::question::Question;
 pub use views::top::{DrawnHole, PathPiece, TopView, top_view};
 
 /// Why a picture can't be made or compared.

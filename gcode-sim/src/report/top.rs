@@ -6,9 +6,9 @@ use crate::machine::{Link, LinkMotion, Machine};
 use crate::motion::Axis;
 use crate::part::reference::Reference;
 use crate::part::surface::Surface;
-use crate::picture::{DrawnHole, Standing, TopView};
+use crate::picture::{DrawnHole, Question, Standing, TopView};
 use crate::session::Simulation;
-use crate::verify::Verdict;
+use crate::verify::{Tolerances, Verdict};
 
 /// The holes of a program nobody has judged.
 pub fn of_holes(name: &str, simulation: &Simulation, machine: &Machine) -> TopView {
@@ -77,6 +77,33 @@ pub fn of_verdict(
         holes: judged.chain(missing).chain(extra).collect(),
         ..TopView::default()
     }
+}
+
+/// The holes of a new revision over those of the old one, which they are held against.
+pub fn of_changes(
+    name: &str,
+    old: &Simulation,
+    new: &Simulation,
+    machine: &Machine,
+    tolerance: f64,
+) -> Result<TopView, String> {
+    let mut list = old.list();
+    for (index, hole) in list.holes.iter_mut().enumerate() {
+        hole.id = Some((index + 1).to_string());
+    }
+    let reference = Reference::of_list(list).map_err(|error| error.to_string())?;
+    let tolerances = Tolerances { position: 2.0 * tolerance, depth: tolerance, diameter: tolerance };
+    let verdict = new.verify(&reference, tolerances, machine);
+    let changed = verdict.holes.iter().filter(|hole| !hole.ok).map(|hole| hole.phi).fold(0.0, f64::max);
+    let view = of_verdict(name, new, &reference, &verdict, machine);
+    Ok(TopView { question: Question::Change, tolerance: Some(round_up(changed.max(tolerance))), ..view })
+}
+
+/// The next of 1, 2, 5, 10, 20, … from `value` on.
+fn round_up(value: f64) -> f64 {
+    let decade = libm::pow(10.0, libm::floor(libm::log10(value)));
+    let step = [1.0, 2.0, 5.0, 10.0].into_iter().find(|step| value <= step * decade * (1.0 + 1e-9));
+    step.unwrap_or(10.0) * decade
 }
 
 /// The radius of the part seen along y, where that is a circle.

@@ -1,2 +1,3 @@
 //! What can be shown of a part, one view a file: each turns holes and paths into a scene.
+pub(super) mod question;
 pub(super) mod top;

@@ -8,6 +8,7 @@ use super::super::measure::plain;
 use super::super::scene::{
     Axis, LegendItem, Mark, Misfit, Pen, Point, Sample, Scene, Shape, Standing, Stroke, Title,
 };
+use super::question::Question;
 use crate::part::hole::Hole;
 
 /// What a top view is made of. Everything but the holes may be unknown.
@@ -22,6 +23,8 @@ pub struct TopView {
     /// The letter of the axis that `DrawnHole::turn` is about.
     pub rotary: String,
     pub holes: Vec<DrawnHole>,
+    /// What the holes are held against.
+    pub question: Question,
     pub path: Vec<PathPiece>,
     /// Further lines of the title block.
     pub lines: Vec<String>,
@@ -54,7 +57,7 @@ const MOST_CIRCLES: usize = 12;
 
 /// The scene of a top view.
 pub fn top_view(view: &TopView) -> Scene {
-    let marks: Vec<Mark> = view.holes.iter().filter_map(|hole| mark(hole, &view.rotary)).collect();
+    let marks: Vec<Mark> = view.holes.iter().filter_map(|hole| mark(hole, view)).collect();
     let mut strokes: Vec<Stroke> = view.path.iter().map(path).collect();
     let circles = circles(&view.holes);
     let has_circles = !circles.is_empty();
@@ -67,9 +70,9 @@ pub fn top_view(view: &TopView) -> Scene {
     let title = Title {
         name: view.name.clone(),
         view: "Top view, seen from +y".to_owned(),
-        position: view.tolerance,
-        verdict: verdict(&view.holes),
-        lines: worst(&view.holes).into_iter().chain(view.lines.iter().cloned()).collect(),
+        position: view.tolerance.filter(|_| view.question == Question::Verdict),
+        verdict: headline(view),
+        lines: worst(view).into_iter().chain(view.lines.iter().cloned()).collect(),
         caution: "Predicted by simulation, not measured".to_owned(),
     };
     let legend = legend(view, &marks, has_circles);
@@ -94,14 +97,13 @@ fn path(piece: &PathPiece) -> Stroke {
     Stroke { shape: Shape::Line(piece.points.iter().map(|p| seen(*p)).collect()), pen, caption: None }
 }
 
-fn mark(hole: &DrawnHole, rotary: &str) -> Option<Mark> {
+fn mark(hole: &DrawnHole, view: &TopView) -> Option<Mark> {
     let shown = hole.nominal.as_ref().or(hole.found.as_ref())?;
     let mut label = vec![hole.id.clone()];
-    let turn = hole.turn.map(|turn| format!("{rotary} {}°", signed(turn, 3)));
+    let turn = hole.turn.map(|turn| format!("{} {}°", view.rotary, signed(turn, 3)));
     let phi = hole.phi.map(|phi| format!("Φ{phi:.3}"));
     let words = match hole.standing {
-        Standing::Missing => Some("missing".to_owned()),
-        Standing::Extra => Some("extra".to_owned()),
+        Standing::Missing | Standing::Extra => Some(view.question.word(hole.standing).to_owned()),
         Standing::Good | Standing::Bad | Standing::Unjudged => hole.remark.clone(),
     };
     if hole.standing == Standing::Good {
@@ -175,53 +177,33 @@ fn count(holes: &[DrawnHole], standing: Standing) -> usize {
     holes.iter().filter(|h| h.standing == standing).count()
 }
 
-fn verdict(holes: &[DrawnHole]) -> Option<(Standing, String)> {
-    let of = |standing| count(holes, standing);
-    let (good, bad, missing, extra) =
-        (of(Standing::Good), of(Standing::Bad), of(Standing::Missing), of(Standing::Extra));
-    if good + bad + missing == 0 && extra == 0 {
-        return None;
-    }
-    if bad + missing + extra == 0 {
-        return Some((Standing::Good, format!("PASS: {good} of {good} holes")));
-    }
-    let mut words = vec![format!("{good} of {} good", good + bad + missing)];
-    for (number, what) in [(bad, "bad"), (missing, "missing"), (extra, "extra")] {
-        if 0 < number {
-            words.push(format!("{number} {what}"));
-        }
-    }
-    Some((Standing::Bad, format!("FAIL: {}", words.join(", "))))
+fn headline(view: &TopView) -> Option<(Standing, String)> {
+    let of = |standing| count(&view.holes, standing);
+    let counts = [Standing::Good, Standing::Bad, Standing::Missing, Standing::Extra].map(of);
+    view.question.headline(counts)
 }
 
-fn worst(holes: &[DrawnHole]) -> Option<String> {
-    let known = holes.iter().filter_map(|h| Some((h.phi?, &h.id)));
+fn worst(view: &TopView) -> Option<String> {
+    let known = view.holes.iter().filter_map(|h| Some((h.phi?, &h.id)));
     let (phi, id) = known.fold(None, |worst: Option<(f64, &String)>, next| match worst {
         Some(worst) if next.0 <= worst.0 => Some(worst),
         _ => Some(next),
     })?;
-    Some(format!("worst position: Φ{phi:.4} (hole\u{a0}{id})"))
+    Some(format!("{}: Φ{phi:.4} (hole\u{a0}{id})", view.question.worst()))
 }
 
 fn legend(view: &TopView, marks: &[Mark], has_circles: bool) -> Vec<LegendItem> {
     let mut items = Vec::new();
     let mut add = |sample: Sample, text: &str| items.push(LegendItem { sample, text: text.to_owned() });
-    let words = [
-        (Standing::Good, "within tolerance"),
-        (Standing::Bad, "out of tolerance"),
-        (Standing::Missing, "missing: not made"),
-        (Standing::Extra, "extra: not wanted"),
-        (Standing::Unjudged, "hole, not judged"),
-    ];
-    for (standing, text) in words {
+    for standing in [Standing::Good, Standing::Bad, Standing::Missing, Standing::Extra, Standing::Unjudged] {
         if 0 < count(&view.holes, standing) {
-            add(Sample::Standing(standing), text);
+            add(Sample::Standing(standing), view.question.legend(standing));
         }
     }
     if marks.iter().any(|m| m.misfit.is_some())
         && let Some(zone) = view.tolerance
     {
-        let text = format!("misfit in its zone Φ{}, seen along the hole,", plain(zone));
+        let text = format!("{} Φ{}, seen along the hole,", view.question.misfit(), plain(zone));
         add(Sample::Misfit, &text);
     }
     if marks.iter().any(|m| m.direction.is_some_and(|d| 0.02 < libm::hypot(d[0], d[1]))) {
@@ -304,18 +286,5 @@ mod tests {
         let misfit = misfit(&hole([420.0, 675.0, 0.0], [0.0, 1.0, 0.0]), &found).unwrap();
         assert!(libm::hypot(misfit.entry[0], misfit.entry[1]) < 1e-9);
         assert!((misfit.bottom[0] + 15.0 * tilt.tan()).abs() < 1e-9, "{misfit:?}");
-    }
-
-    #[test]
-    fn the_verdict_names_what_is_wrong() {
-        let up = [0.0, 1.0, 0.0];
-        let mut holes = vec![drawn(hole([1.0, 0.0, 0.0], up), hole([1.0, 0.0, 0.0], up)); 4];
-        assert_eq!(verdict(&holes), Some((Standing::Good, "PASS: 4 of 4 holes".to_owned())));
-        holes[0].standing = Standing::Missing;
-        holes[1].standing = Standing::Extra;
-        assert_eq!(
-            verdict(&holes),
-            Some((Standing::Bad, "FAIL: 2 of 3 good, 1 missing, 1 extra".to_owned()))
-        );
     }
 }

@@ -1,0 +1,101 @@
+//! What a picture of holes answers: are they where the drawing wants them, or where they were before?
+use super::super::scene::Standing;
+
+/// The question, and with it the words of the title block and the legend.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Question {
+    /// Held against a reference.
+    #[default]
+    Verdict,
+    /// Held against another revision of the program.
+    Change,
+}
+
+impl Question {
+    /// Beside a hole, where it isn't there or shouldn't be.
+    pub(super) fn word(self, standing: Standing) -> &'static str {
+        match (self, standing) {
+            (Self::Verdict, Standing::Good) => "good",
+            (Self::Verdict, Standing::Bad) => "bad",
+            (Self::Verdict, Standing::Missing) => "missing",
+            (Self::Verdict, Standing::Extra) => "extra",
+            (Self::Change, Standing::Good) => "unchanged",
+            (Self::Change, Standing::Bad) => "changed",
+            (Self::Change, Standing::Missing) => "lost",
+            (Self::Change, Standing::Extra) => "added",
+            (_, Standing::Unjudged) => "not judged",
+        }
+    }
+
+    /// In the legend.
+    pub(super) fn legend(self, standing: Standing) -> &'static str {
+        match (self, standing) {
+            (Self::Verdict, Standing::Good) => "within tolerance",
+            (Self::Verdict, Standing::Bad) => "out of tolerance",
+            (Self::Verdict, Standing::Missing) => "missing: not made",
+            (Self::Verdict, Standing::Extra) => "extra: not wanted",
+            (Self::Change, Standing::Good) => "as before",
+            (Self::Change, Standing::Bad) => "changed: sign at the old place",
+            (Self::Change, Standing::Missing) => "lost: made before",
+            (Self::Change, Standing::Extra) => "added: not made before",
+            (_, Standing::Unjudged) => "hole, not judged",
+        }
+    }
+
+    /// Before the largest deviation.
+    pub(super) fn worst(self) -> &'static str {
+        match self {
+            Self::Verdict => "worst position",
+            Self::Change => "largest change of position",
+        }
+    }
+
+    /// Before the diameter of the circle that a misfit is drawn in.
+    pub(super) fn misfit(self) -> &'static str {
+        match self {
+            Self::Verdict => "misfit in its zone",
+            Self::Change => "way from the old place in a circle",
+        }
+    }
+
+    /// `PASS: 5 of 5 holes`, `3 of 5 holes unchanged, 2 lost`; `counts` are the holes that are good, bad, missing, extra.
+    pub(super) fn headline(self, counts: [usize; 4]) -> Option<(Standing, String)> {
+        let [good, bad, missing, extra] = counts;
+        let all = good + bad + missing;
+        if all + extra == 0 {
+            return None;
+        }
+        let is_good = all == good && extra == 0;
+        if is_good && self == Self::Verdict {
+            return Some((Standing::Good, format!("PASS: {good} of {good} holes")));
+        }
+        let mut words = vec![format!("{good} of {all} {}", self.word(Standing::Good))];
+        let others = [(bad, Standing::Bad), (missing, Standing::Missing), (extra, Standing::Extra)];
+        for (number, standing) in others.into_iter().filter(|(number, _)| 0 < *number) {
+            words.push(format!("{number} {}", self.word(standing)));
+        }
+        let words = words.join(", ");
+        Some(match (self, is_good) {
+            (Self::Change, true) => (Standing::Good, words),
+            (Self::Change, false) => (Standing::Bad, words),
+            (Self::Verdict, _) => (Standing::Bad, format!("FAIL: {words}")),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_headline_names_what_is_wrong_and_what_has_changed() {
+        let headline = |question: Question, counts| question.headline(counts);
+        let good = |text: &str| Some((Standing::Good, text.to_owned()));
+        let bad = |text: &str| Some((Standing::Bad, text.to_owned()));
+        assert_eq!(headline(Question::Verdict, [4, 0, 0, 0]), good("PASS: 4 of 4 holes"));
+        assert_eq!(headline(Question::Verdict, [2, 0, 1, 1]), bad("FAIL: 2 of 3 good, 1 missing, 1 extra"));
+        assert_eq!(headline(Question::Change, [4, 0, 0, 0]), good("4 of 4 unchanged"));
+        assert_eq!(headline(Question::Change, [2, 1, 0, 1]), bad("2 of 3 unchanged, 1 changed, 1 added"));
+        assert_eq!(headline(Question::Change, [0; 4]), None);
+    }
+}

@@ -1,0 +1,70 @@
+//! Laws of `diff`: a program and itself are the same, whatever its numbers, comments and spaces.
+use gcode_sim::changes::{Revision, changes};
+use gcode_sim::machine::Machine;
+use gcode_sim::program::NoLibrary;
+use gcode_sim::session::Request;
+use proptest::prelude::*;
+
+fn revision(text: &str) -> Revision {
+    let request = Request::new("O1.nc", text.as_bytes().to_vec(), Machine::default());
+    Revision::of(&request, &mut NoLibrary).unwrap()
+}
+
+/// A block and what it may look like after a rewrite: `{}` stands for the number of a local.
+const BLOCKS: [&str; 12] = [
+    "G0 X#{} Y5.",
+    "G1 X10. Y#{} F100",
+    "G81 X#{} Y0 Z-5. R2. F50",
+    "X20.",
+    "G80",
+    "#{}=#{}+1.5",
+    "M00",
+    "T2 M6",
+    "G2 X5. Y5. R20. F80",
+    "G4 P500",
+    "G91 G0 Z1.",
+    "G90 G54 S500 M3",
+];
+
+fn program(blocks: &[usize], local: u32) -> String {
+    let lines = blocks.iter().map(|block| BLOCKS[*block].replace("{}", &local.to_string()) + "\n");
+    format!("O1\n#{local}=7\n{}M30\n", lines.collect::<String>())
+}
+
+/// Sequence numbers, comments and spaces in every block.
+fn rewritten(text: &str) -> String {
+    let lines = text.lines().enumerate().map(|(n, line)| match n {
+        0 => format!("{line}(REWRITTEN)\n"),
+        _ => format!("N{} {} (LINE {n})\n", 10 * n, line.replace(' ', "  ")),
+    });
+    lines.collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn what_a_rewrite_keeps_is_no_change(blocks in prop::collection::vec(0..BLOCKS.len(), 0..24)) {
+        let old = revision(&program(&blocks, 1));
+        let new = revision(&rewritten(&program(&blocks, 14)));
+        let found = changes(&old, &new, 0.0001);
+        prop_assert!(found.is_empty(), "{found:?}");
+    }
+
+    /// One move more, in a place where nothing else depends on it, is one entry and leaves the others alone.
+    #[test]
+    fn one_inserted_dwell_is_one_entry(
+        blocks in prop::collection::vec(0..BLOCKS.len(), 0..24),
+        at in 0..25_usize,
+    ) {
+        let old = program(&blocks, 1);
+        // Behind an alarm nothing is executed.
+        prop_assume!(revision(&old).stopped().next().is_none());
+        let mut lines: Vec<&str> = old.lines().collect();
+        let at = 2 + at.min(blocks.len());
+        lines.insert(at, "G4 P123");
+        let found = changes(&revision(&old), &revision(&(lines.join("\n") + "\n")), 0.0001);
+        let codes: Vec<_> = found.iter().map(|change| change.code).collect();
+        prop_assert_eq!(codes, ["dwell"]);
+    }
+}
