@@ -72,7 +72,10 @@ fn block(block: &Block, sources: &Sources) -> String {
 
 fn word(word: &Word) -> String {
     let comma = if word.address.comma { "," } else { "" };
-    let letter = char::from(word.address.letter);
+    let letter = match &word.axis {
+        Some(axis) => format!("AX({})", expr(axis)),
+        None => char::from(word.address.letter).to_string(),
+    };
     match &word.value {
         WordValue::Literal(number) => format!("{comma}{letter}{}", decimal(*number)),
         WordValue::Expr(value) => format!("{comma}{letter}={}", expr(value)),
@@ -135,6 +138,7 @@ fn expr(value: &Expr) -> String {
             let axis = axis.as_ref().map(|axis| format!(" axis {}", expr(axis))).unwrap_or_default();
             format!("parameter({}{bit}{axis})", expr(number))
         }
+        ExprKind::AxisNumber(letter) => format!("number of axis {}", char::from(*letter)),
     }
 }
 

@@ -147,6 +147,19 @@ pub enum Alarm {
         value: f64,
     },
     NameFormat,
+    /// AXNUM of what is no axis.
+    AxisAddress {
+        text: String,
+    },
+    /// A number that no axis has.
+    AxisNumber {
+        number: i64,
+    },
+    /// A block between G10 L52 and G11.
+    ParameterFormat {
+        what: String,
+    },
+    DrillingAxis,
     TooManyMacroCalls {
         limit: usize,
     },

@@ -44,7 +44,11 @@ pub(super) fn constant(expr: &Expr) -> Option<f64> {
         ExprKind::Negate(inner) => constant(inner).map(|v| -v),
         ExprKind::Plus(inner) | ExprKind::Bracket(inner) => constant(inner),
         ExprKind::Binary(op, left, right) => arithmetic(*op, constant(left)?, constant(right)?),
-        ExprKind::Variable(_) | ExprKind::Named(_) | ExprKind::Call(..) | ExprKind::Parameter { .. } => None,
+        ExprKind::Variable(_)
+        | ExprKind::Named(_)
+        | ExprKind::Call(..)
+        | ExprKind::Parameter { .. }
+        | ExprKind::AxisNumber(_) => None,
     }
 }
 

@@ -203,7 +203,7 @@ fn value_of(expr: &Expr, state: &Locals) -> Value {
             Some(value) => Value::Number(value.abs()),
             None => Value::Some,
         },
-        ExprKind::Call(..) | ExprKind::Parameter { .. } => Value::Some,
+        ExprKind::Call(..) | ExprKind::Parameter { .. } | ExprKind::AxisNumber(_) => Value::Some,
     }
 }
 

@@ -42,6 +42,7 @@ pub(super) fn of_block(block: &Block) -> Uses {
     for item in &block.items {
         match item {
             Item::Word(word) => {
+                word.axis.iter().for_each(|axis| uses.expr(axis, Use::Computed));
                 if let WordValue::Expr(expr) = &word.value {
                     uses.expr(expr, if call { Use::Passed } else { Use::Word });
                 }
@@ -156,6 +157,7 @@ impl Uses {
                 self.expr(number, inside);
                 bit.iter().chain(axis).for_each(|part| self.expr(part, inside));
             }
+            ExprKind::AxisNumber(_) => {}
         }
     }
 

@@ -1,6 +1,7 @@
 //! The settings of a control that a program's meaning depends on, in one struct: never an `if` in the reader.
 mod code_calls;
 mod dialect;
+mod parameters;
 mod table;
 
 use crate::motion::{Axes, MAX_AXES, Position};
@@ -8,6 +9,7 @@ use crate::units::MmPerMin;
 
 pub use code_calls::{AddressCall, Called, CodeCallKind, CodeCalls, FAMILIES, RANGES};
 pub use dialect::{DIALECTS, DialectRow};
+pub use parameters::{ParameterError, ParameterPlace, is_without_effect};
 pub use table::{ROWS, Row, SettingError};
 
 /// The least input increment (parameter 1013).
@@ -147,6 +149,10 @@ pub struct Settings {
     pub zero_residues: bool,
     /// IJK 6008#7: I J K in G65 are always specification I.
     pub plain_ijk: bool,
+    /// CVA 6007#4: arguments of macro calls are converted when they are passed, so that ADP finds nothing to do.
+    pub converts_arguments: bool,
+    /// FXY 5101#0: cycles drill along the normal of the plane, or along the axis that their block names, instead of Z.
+    pub drills_by_plane: bool,
     /// V15 6000#3: geometry and wear change places in the variables of tool offsets.
     pub series_15_offsets: bool,
     /// AD2 3403#6: an address twice in a block raises PS5074.
@@ -222,6 +228,8 @@ impl Default for Settings {
             signed_angles: false,
             zero_residues: false,
             plain_ijk: false,
+            converts_arguments: false,
+            drills_by_plane: false,
             series_15_offsets: false,
             no_repeated_address: false,
             plural_m_alarms: false,

@@ -14,7 +14,8 @@ impl Core {
             let local = letters.next(word.letter).map_err(|alarm| alarm.at(word.span))?;
             let Some(local) = local else { continue };
             if let Some(raw) = self.raw_argument(program, word)? {
-                locals[local] = Value::Number(self.argument(raw, word.letter));
+                let decimals = self.argument_decimals(raw, word.letter);
+                locals.set(local, Value::Number(self.argument(raw, word.letter)), decimals);
             }
         }
         Ok(locals)

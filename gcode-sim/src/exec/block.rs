@@ -158,7 +158,8 @@ impl Core {
             self.recompute(state);
         }
         if modal.cycle.is_some() && !latched {
-            let axis = self.settings.axes.find(b'Z').unwrap_or_default();
+            let axis = at(self.drilling_axis(given, state), span)?;
+            state.drilling.axis = Some(axis);
             state.drilling.initial = state.programmed[axis];
         }
         // G54 P is G54.1 P.

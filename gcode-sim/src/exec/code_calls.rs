@@ -3,7 +3,7 @@ use super::Core;
 use super::eval::{Checked, at};
 use super::frames::ByCodes;
 use super::plan::{CallKind, CallPlan, Flow, Plan, Target, Write};
-use super::vars::VACANT;
+use super::vars::{VACANT, Value};
 use super::words::{Raw, count};
 use crate::alarm::Alarm;
 use crate::control::{Called, CodeCallKind};
@@ -145,7 +145,7 @@ impl Core {
             None => 1,
         };
         if let Some((number, value)) = calling.value {
-            plan.writes.push(Write::Variable { number, value });
+            plan.writes.push(Write::Variable { number, value: Value::Number(value) });
         }
         plan.flow = Flow::Call(Box::new(CallPlan {
             kind: CallKind::Subprogram,

@@ -1,7 +1,7 @@
 //! Carries out what a block has planned, and tells the machine.
 use super::cycles::Drill;
 use super::plan::{Plan, Write};
-use super::vars::{Kind, Value};
+use super::vars::Kind;
 use super::{Core, STOPS, Stop};
 use crate::alarm::Alarm;
 use crate::motion::{Event, EventKind, Sink};
@@ -26,9 +26,10 @@ impl Core {
                 Write::Tool { register, number, value } => {
                     self.offsets.register(register)[number as usize] = value;
                 }
+                Write::Parameter { place, value, kept } => self.set_parameter(place, value, kept),
                 Write::Variable { number, value } => {
                     if let Kind::Common(index) = self.vars.kind(number) {
-                        self.vars.set_common(index, Value::Number(value));
+                        self.vars.set_common(index, value);
                     }
                 }
             }

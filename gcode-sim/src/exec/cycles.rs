@@ -8,7 +8,7 @@ use super::words::Given;
 use crate::alarm::Alarm;
 use crate::motion::{Axis, EventKind, Position, Spindle, StopKind};
 use crate::program::cycles::{Cycle, Step};
-use crate::program::modes::{Distance, Polar, ReturnTo};
+use crate::program::modes::{Distance, Plane, Polar, ReturnTo};
 use crate::source::Span;
 use crate::units::{MmPerMin, Rpm, Seconds};
 
@@ -48,6 +48,34 @@ impl Core {
         given.has(b'R') || self.names_axis(given)
     }
 
+    /// Z; with FXY 5101#0 the plane's normal or the axis beside it that the block names, which stays the same until
+    /// G80.
+    pub(super) fn drilling_axis(&self, given: &Given, state: &State) -> Result<Axis, Alarm> {
+        let find = |letter: u8| {
+            let missing = Alarm::ImproperAddress { letter: char::from(letter) };
+            self.settings.axes.find(letter).ok_or(missing)
+        };
+        if !self.settings.drills_by_plane {
+            return find(b'Z');
+        }
+        let along = match state.modal.plane {
+            Plane::Xy => b"ZW",
+            Plane::Zx => b"YV",
+            Plane::Yz => b"XU",
+        };
+        let mut named = along.iter().filter(|letter| given.has(**letter));
+        match (state.drilling.axis, named.next(), named.next()) {
+            (_, Some(_), Some(_)) => Err(Alarm::DrillingAxis),
+            (None, named, None) => find(*named.unwrap_or(&along[0])),
+            (Some(axis), named, None) => {
+                let letter = self.settings.axes.letter(axis) as u8;
+                let same = along.contains(&letter) && named.is_none_or(|named| *named == letter);
+                if same { Ok(axis) } else { Err(Alarm::DrillingAxis) }
+            }
+            (_, None, Some(_)) => Err(Alarm::DrillingAxis),
+        }
+    }
+
     /// Checks a drilling block and works out where it ends.
     pub(super) fn prepare_drill(
         &self,
@@ -56,8 +84,7 @@ impl Core {
         cycle: &'static Cycle,
         span: Span,
     ) -> Checked<()> {
-        let missing = Alarm::ImproperAddress { letter: 'Z' };
-        let axis = at(self.settings.axes.find(b'Z').ok_or(missing), span)?;
+        let axis = at(self.drilling_axis(given, &plan.state), span)?;
         let scaled = plan.state.transform.scaling.is_some_and(|s| s.factor[axis] != 1.0);
         if plan.state.transform.tilt.is_some() || scaled || plan.state.transform.mirrored >> axis & 1 == 1 {
             let what = "a drilling cycle whose axis is tilted, scaled or mirrored".into();
@@ -72,7 +99,7 @@ impl Core {
         // The block's own depth words are not a move.
         let mut goal = self.goal(given, &mut plan.state)?.programmed;
         goal[axis] = from.programmed[axis];
-        self.drilling_words(plan, given, incremental)?;
+        self.drilling_words(plan, given, axis, incremental)?;
         if cycle.needs_q && plan.state.drilling.q.is_none_or(|q| q == 0.0) {
             return Err(Alarm::NoPeckDepth.at(span));
         }
@@ -162,14 +189,14 @@ impl Core {
         self.settings.axes.find(b'X').filter(|x| *x != axis).unwrap_or_default()
     }
 
-    /// Z R P Q stay in force from hole to hole.
-    fn drilling_words(&self, plan: &mut Plan, given: &Given, incremental: bool) -> Checked<()> {
+    /// The depth, R, P and Q stay in force from hole to hole.
+    fn drilling_words(&self, plan: &mut Plan, given: &Given, axis: Axis, incremental: bool) -> Checked<()> {
         let state = &plan.state;
         let mut data = state.drilling;
         if let Some(value) = self.dimension(given, b'R', state)? {
             data.r = Level { value, incremental };
         }
-        if let Some(value) = self.dimension(given, b'Z', state)? {
+        if let Some(value) = self.dimension(given, self.settings.axes.letter(axis) as u8, state)? {
             data.z = Level { value, incremental };
         }
         if let Some(value) = self.dimension(given, b'Q', state)? {

@@ -9,6 +9,7 @@ use super::modal_calls::ModalCall;
 use super::offsets::Offsets;
 use super::state::State;
 use super::vars::Vars;
+use crate::control::{ParameterPlace, Settings};
 use crate::program::{OpIndex, ProgramId};
 use crate::source::Span;
 
@@ -38,6 +39,8 @@ struct Copy {
     parts: [f64; 2],
     cycles: u32,
     output_open: bool,
+    settings: Settings,
+    parameters: std::collections::BTreeMap<ParameterPlace, f64>,
 }
 
 /// The jump that the loop is told by: the one to the earliest block of the outermost program.
@@ -146,6 +149,8 @@ impl Copy {
             parts: core.parts,
             cycles: core.cycles,
             output_open: core.printed.open,
+            settings: core.settings.clone(),
+            parameters: core.parameters.clone(),
         }
     }
 
@@ -161,6 +166,7 @@ impl Copy {
             && (self.outputs, self.clocks, self.idle) == (core.outputs, core.clocks, core.idle)
             && (self.switches, self.parts) == (core.switches, core.parts)
             && self.output_open == core.printed.open
+            && (&self.settings, &self.parameters) == (&core.settings, &core.parameters)
             // M99 of the main program counts only where the count ends the run.
             && (core.settings.cycles.is_none() || self.cycles == core.cycles)
     }

@@ -140,7 +140,23 @@ impl Core {
                 };
                 Value::Number(f64::from(u8::from(holds)))
             }
-            Operation::Parameter => Value::Number(self.parameter(stack.pop().number())?),
+            Operation::Parameter { bit, axis } => {
+                let axis = if axis { Some(stack.pop().number()) } else { None };
+                let bit = if bit { Some(stack.pop().number()) } else { None };
+                Value::Number(self.parameter(stack.pop().number(), bit, axis)?)
+            }
+            Operation::AxisNumber(letter) => {
+                let axis = self.settings.axes.find(letter);
+                let unknown = || Alarm::AxisAddress { text: char::from(letter).into() };
+                Value::Number(axis.ok_or_else(unknown)? as f64 + 1.0)
+            }
+            Operation::AddPoint => {
+                let number = index(stack.pop())?;
+                match self.vars.kind(number) {
+                    Kind::Local(local) => Value::Number(self.vars.locals().with_point(local)),
+                    _ => return Err(Alarm::ArgumentFormat { function: "ADP".into() }),
+                }
+            }
             Operation::NameNumber(name) => Value::Number(f64::from(self.named(program.variable_name(name))?)),
             Operation::SystemNumber(row) => {
                 let number = if self.settings.series_15_offsets { row.series_15 } else { row.number };

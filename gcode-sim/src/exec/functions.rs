@@ -116,7 +116,7 @@ pub(super) fn function(name: Function, x: f64, settings: &Settings) -> Result<f6
             domain(number.is_some())?;
             f64::from(number.unwrap_or_default())
         }
-        Function::Adp => return Err(Alarm::NotSimulated { what: "ADP".into() }),
+        Function::Adp => return Err(Alarm::ArgumentFormat { function: "ADP".into() }),
         Function::Pow => return Err(Alarm::MissingComma),
     })
 }

@@ -15,6 +15,7 @@ mod modal_calls;
 mod notes;
 mod offsets;
 mod one_shot;
+mod parameters;
 mod plan;
 mod print;
 mod state;
@@ -42,7 +43,7 @@ use self::offsets::Offsets;
 use self::plan::{Flow, Plan};
 use self::words::Given;
 use crate::alarm::Alarm;
-use crate::control::Settings;
+use crate::control::{ParameterPlace, Settings};
 use crate::motion::{Place, Sink, StopKind};
 use crate::program::{Library, Memory, OpKind, ProgramId};
 use crate::source::{Span, Spanned};
@@ -142,6 +143,8 @@ pub(crate) struct Core {
     /// M codes that went to the machine builder's logic, with the block of the first of each.
     passed_on: BTreeMap<u32, Span>,
     notes: BTreeMap<Note, Span>,
+    /// Parameters that the program has written and that have no effect.
+    parameters: BTreeMap<ParameterPlace, f64>,
     block: Span,
 }
 
@@ -172,6 +175,7 @@ impl Control {
             printed: print::Printed::default(),
             passed_on: BTreeMap::new(),
             notes: BTreeMap::new(),
+            parameters: BTreeMap::new(),
             block: Span::default(),
         };
         let mut control = Self {
@@ -273,6 +277,9 @@ impl Control {
             }
         }
         match kind {
+            OpKind::Empty if core.state.parameter_input && op.number.is_some() => {
+                return Err(Alarm::ParameterFormat { what: "R is missing".into() }.at(op.span));
+            }
             OpKind::Empty | OpKind::If { .. } => {}
             OpKind::Alarm(alarm) => return Err((**alarm).clone()),
             OpKind::Statement(statement) => {
@@ -282,6 +289,11 @@ impl Control {
                     return Ok(endless.map(|_| Outcome::Limit));
                 }
                 return Ok(outcome);
+            }
+            OpKind::Words(words) if core.state.parameter_input => {
+                let span = op.span;
+                core.prepare_parameter(program, (words, op.number), given, plan, span)?;
+                return self.finish(span, library, sink);
             }
             OpKind::Words(words) => {
                 if core.call_by_block(program, words, op.number, op.span)? {

@@ -60,7 +60,7 @@ impl Core {
         }
         let mut locals = self.arguments(program, &words.list, true)?;
         if let Some(number) = number {
-            locals[14] = Value::Number(f64::from(number));
+            locals.set(14, Value::Number(f64::from(number)), 0);
         }
         self.check_levels(true).map_err(|alarm| alarm.at(block))?;
         self.block = block;

@@ -14,6 +14,8 @@ pub enum Note {
     /// A drilling block with K0 stores its data and drills nothing, which is what K0 is for; whether its X and Y are
     /// gone to differs between controls.
     NoRepeats,
+    /// G10 L52 has written a parameter that nothing here depends on.
+    ParameterWithoutEffect { number: u16 },
 }
 
 impl Note {
@@ -35,6 +37,10 @@ impl Note {
             Self::NoRepeats => {
                 let message = "K0 stores the cycle without going to the block's X and Y".to_owned();
                 ("no-repeats", message, "K0-MOVES=1 is for a control that goes there")
+            }
+            Self::ParameterWithoutEffect { number } => {
+                let message = format!("parameter {number} is kept for PRM and has no effect here");
+                ("parameter-without-effect", message, "docs/control.md says what is not simulated")
             }
         }
     }

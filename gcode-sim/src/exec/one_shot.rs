@@ -6,6 +6,7 @@ use super::notes::Note;
 use super::offsets::Register;
 use super::plan::{Plan, Write};
 use super::state::State;
+use super::vars::{Kind, Value};
 use super::words::Given;
 use crate::alarm::Alarm;
 use crate::motion::{EventKind, MAX_AXES, Position};
@@ -249,7 +250,8 @@ impl Core {
         Ok(())
     }
 
-    /// G10: L2 and L20 work offsets, L10 to L13 tool offsets.
+    /// G10: L2 and L20 work offsets, L10 to L13 tool offsets, L50 and L52 parameters, L85
+    /// variables.
     fn data_input(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<()> {
         let format = |what: &str| Alarm::G10Format { what: what.to_owned() }.at(span);
         let adds = plan.state.modal.distance == Distance::Incremental;
@@ -293,7 +295,27 @@ impl Core {
                 plan.writes.push(Write::Tool { register, number, value });
                 Ok(())
             }
-            3 | 14 | 50 | 52 | 85 => Err(Alarm::NotSimulated { what: format!("G10 L{l}") }.at(span)),
+            50 | 52 => {
+                plan.state.parameter_input = true;
+                Ok(())
+            }
+            85 => {
+                let number = p.ok_or_else(|| format("P, the variable, is missing"))?;
+                if !matches!(self.vars.kind(number), Kind::Common(_)) {
+                    return Err(Alarm::NoSuchVariable { number: i64::from(number) }.at(given.span(b'P')));
+                }
+                let bits = given.punched.ok_or_else(|| format("L85 needs sixteen digits in brackets"))?;
+                let value = match f64::from_bits(bits) {
+                    value if value.is_finite() => Value::Number(value),
+                    // All bits set are a vacant variable.
+                    _ if bits == u64::MAX => Value::Vacant,
+                    _ => return Err(format("the digits are no number")),
+                };
+                plan.writes.push(Write::Variable { number, value });
+                Ok(())
+            }
+            3 => Err(Alarm::NotSimulated { what: "G10 L3 (tool life management)".into() }.at(span)),
+            14 => Err(Alarm::NotSimulated { what: "G10 L14 (tool geometry)".into() }.at(span)),
             _ => Err(format(&format!("L{l} is not known"))),
         }
     }

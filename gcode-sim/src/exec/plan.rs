@@ -4,7 +4,8 @@ use super::frames::ByCodes;
 use super::notes::Note;
 use super::offsets::Register;
 use super::state::State;
-use super::vars::Locals;
+use super::vars::{Locals, Value};
+use crate::control::ParameterPlace;
 use crate::motion::{EventKind, StopKind};
 use crate::program::{OpIndex, ProgramId};
 use crate::source::Span;
@@ -43,10 +44,16 @@ pub(super) enum Write {
         number: u32,
         value: f64,
     },
-    /// The number of a code that calls a subprogram.
+    /// G10 L52; `kept` where it has no effect.
+    Parameter {
+        place: ParameterPlace,
+        value: f64,
+        kept: bool,
+    },
+    /// The number of a code that calls a subprogram, or G10 L85.
     Variable {
         number: u32,
-        value: f64,
+        value: Value,
     },
 }
 

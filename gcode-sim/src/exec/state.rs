@@ -2,7 +2,7 @@
 //! leaves no trace.
 use super::modal::Modal;
 use super::transform::Transform;
-use crate::motion::{Position, Spindle};
+use crate::motion::{Axis, Position, Spindle};
 
 /// The control between two blocks. Lengths in mm, whatever G20 says.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -31,6 +31,8 @@ pub struct State {
     pub polar: PolarPoint,
     pub spindle: Spindle,
     pub coolant: bool,
+    /// Between G10 L52 and G11.
+    pub parameter_input: bool,
     /// The tool in the spindle.
     pub tool: u32,
 }
@@ -64,7 +66,9 @@ pub struct Codes {
 /// The modal data of a drilling cycle; G80 and group 01 clear it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Drilling {
-    /// The drilling axis when the cycle began.
+    /// The axis that the cycle drills along, from its first block on.
+    pub axis: Option<Axis>,
+    /// Where that axis stood when the cycle began.
     pub initial: f64,
     pub r: Level,
     pub z: Level,

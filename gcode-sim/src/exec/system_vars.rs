@@ -275,17 +275,6 @@ impl Core {
         let geometry = self.offsets.tool(Register::DGeometry, d).ok()?;
         Some(geometry + self.offsets.tool(Register::DWear, d).ok()?)
     }
-
-    /// `PRM[n]`: the parameters that are settings here.
-    pub(super) fn parameter(&self, number: f64) -> Result<f64, Alarm> {
-        let settings = &self.settings;
-        Ok(match number.round() as i64 {
-            3410 => settings.arc_tolerance,
-            5114 => settings.g73_retract,
-            5115 => settings.g83_clearance,
-            other => return Err(Alarm::NotSimulated { what: format!("PRM[{other}]") }),
-        })
-    }
 }
 
 #[cfg(test)]

@@ -31,10 +31,36 @@ impl Value {
 }
 
 /// #1 to #33 of one macro level, by number; #0 stays vacant.
-pub(super) type Locals = [Value; 34];
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Locals {
+    values: [Value; 34],
+    /// The decimals of an argument that was written without a point and counts increments; 0 for all others.
+    decimals: [u8; 34],
+}
 
 /// A level that nothing has been written to.
-pub(super) const VACANT: Locals = [Value::Vacant; 34];
+pub(super) const VACANT: Locals = Locals { values: [Value::Vacant; 34], decimals: [0; 34] };
+
+impl Locals {
+    /// Sets an argument; `decimals` where it was written without a point and counts increments.
+    pub(super) fn set(&mut self, local: usize, value: Value, decimals: u8) {
+        self.values[local] = value;
+        self.decimals[local] = decimals;
+    }
+
+    /// ADP: the value as if it had been passed with a point.
+    pub(super) fn with_point(&self, local: usize) -> f64 {
+        self.values[local].number() * 10_f64.powi(i32::from(self.decimals[local]))
+    }
+}
+
+impl std::ops::Index<usize> for Locals {
+    type Output = Value;
+
+    fn index(&self, local: usize) -> &Value {
+        &self.values[local]
+    }
+}
 
 /// Where a number belongs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -94,9 +120,9 @@ impl Vars {
     }
 
     pub(super) fn set_local(&mut self, index: usize, value: Value) {
-        let place = &mut self.levels[self.level][index];
-        self.digest ^= mix(self.level + 1, index, *place) ^ mix(self.level + 1, index, value);
-        *place = value;
+        let locals = &mut self.levels[self.level];
+        self.digest ^= mix(self.level + 1, index, locals[index]) ^ mix(self.level + 1, index, value);
+        locals.set(index, value, 0);
     }
 
     pub(super) fn set_locals(&mut self, locals: &Locals) {
@@ -148,7 +174,7 @@ impl Vars {
 
     /// The variables that aren't vacant, by number: the locals of the main program and the commons.
     pub fn known(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
-        let locals = self.levels[0].iter().enumerate();
+        let locals = self.levels[0].values.iter().enumerate();
         let (commons, more) = self.commons.split_at(COMMONS);
         let more = (self.more.0 as usize..).zip(more);
         let all = locals.chain(commons.iter().enumerate()).chain(more);
@@ -163,7 +189,7 @@ fn mix(level: usize, index: usize, value: Value) -> u64 {
 }
 
 fn mix_all(level: usize, locals: &Locals) -> u64 {
-    locals.iter().enumerate().fold(0, |digest, (index, value)| digest ^ mix(level, index, *value))
+    locals.values.iter().enumerate().fold(0, |digest, (index, value)| digest ^ mix(level, index, *value))
 }
 
 #[cfg(test)]
@@ -190,7 +216,7 @@ mod tests {
         vars.set_local(3, Value::Number(0.0));
         let before = vars.digest();
         let mut locals = VACANT;
-        locals[7] = Value::Number(5.0);
+        locals.set(7, Value::Number(5.0), 0);
         vars.enter(&locals);
         vars.set_local(7, Value::Number(6.0));
         assert_ne!(vars.digest(), before);

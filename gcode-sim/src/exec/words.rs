@@ -37,6 +37,8 @@ pub(super) struct Given {
     pub(super) m_count: usize,
     /// An M code that a later one of the block has replaced.
     pub(super) lost_m: Option<u32>,
+    /// The value in the comment of `G10 L85`.
+    pub(super) punched: Option<u64>,
 }
 
 impl Default for Given {
@@ -50,6 +52,7 @@ impl Default for Given {
             m: [None; M_CODES],
             m_count: 0,
             lost_m: None,
+            punched: None,
         }
     }
 }
@@ -82,6 +85,11 @@ impl Given {
         let left = self.present & !self.read.get();
         let letter = (left != 0).then(|| b'A' + left.trailing_zeros() as u8)?;
         Some((char::from(letter), self.span(letter)))
+    }
+
+    /// A word's value before anything is made of it.
+    pub(super) fn raw(&self, letter: u8) -> Option<Raw> {
+        self.get(letter).map(|(raw, _)| raw)
     }
 
     pub(super) fn span(&self, letter: u8) -> Span {
@@ -134,6 +142,7 @@ impl Core {
         given.g_count = 0;
         given.m_count = 0;
         given.lost_m = None;
+        given.punched = words.punched;
         for (place, word) in words.list.iter().enumerate() {
             if calling.is_some_and(|calling| calling.takes(place, word)) {
                 continue;
@@ -143,7 +152,14 @@ impl Core {
                 let what = format!("corner rounding and chamfer (,{})", char::from(word.letter));
                 return Err(Alarm::NotSimulated { what }.at(word.span));
             }
-            match word.letter {
+            let letter = match word.axis {
+                Some(axis) => {
+                    let number = self.operand(program, axis)?.number();
+                    self.settings.axes.letter(at(self.axis_of(number), word.span)?) as u8
+                }
+                None => word.letter,
+            };
+            match letter {
                 b'G' => {
                     let row = at(g_row(&word.value, raw), word.span)?;
                     if given.g_count == G_CODES {
@@ -296,15 +312,25 @@ impl Core {
     /// An argument of a macro call: computed values and points as they are, otherwise counted in the increments of
     /// the address (6007#4 CVA = 0).
     pub(super) fn argument(&self, raw: Raw, letter: u8) -> f64 {
-        let number = match raw {
-            Raw::Computed(value) => return value,
-            Raw::Literal(number) => number,
-        };
-        let counts = number.places.is_none() && !self.settings.calculator_input;
-        match letter {
-            b'D' | b'E' | b'F' | b'H' | b'M' | b'S' | b'T' | b'L' | b'N' | b'P' => number.value(),
-            _ if counts => number.value() / POWERS[self.decimals(letter, self.state.modal.unit)],
-            _ => number.value(),
+        match raw {
+            Raw::Computed(value) => value,
+            Raw::Literal(number) => number.value() / POWERS[self.counted_decimals(raw, letter)],
+        }
+    }
+
+    /// The decimals that ADP takes back from an argument: none with CVA 6007#4.
+    pub(super) fn argument_decimals(&self, raw: Raw, letter: u8) -> u8 {
+        if self.settings.converts_arguments { 0 } else { self.counted_decimals(raw, letter) as u8 }
+    }
+
+    /// How many decimals an argument without a point has that counts the increments of its address.
+    fn counted_decimals(&self, raw: Raw, letter: u8) -> usize {
+        match (raw, letter) {
+            (_, b'D' | b'E' | b'F' | b'H' | b'M' | b'S' | b'T' | b'L' | b'N' | b'P' | b'G') => 0,
+            (Raw::Literal(number), _) if number.places.is_none() && !self.settings.calculator_input => {
+                self.decimals(letter, self.state.modal.unit)
+            }
+            _ => 0,
         }
     }
 }

@@ -52,8 +52,15 @@ pub enum Operation {
     RoundTo(u8),
     Compare(Relation),
     Logic(BinaryOp),
-    /// `PRM[n]`: takes the number.
-    Parameter,
+    /// PRM: takes the axis, the bit and the number, the last of them always.
+    Parameter {
+        bit: bool,
+        axis: bool,
+    },
+    /// `AXNUM[X]`.
+    AxisNumber(u8),
+    /// ADP: takes a variable's number, gives its value as if it had been passed with a point.
+    AddPoint,
     /// The number of a variable named by SETVN: an index into the program's names.
     NameNumber(u32),
     /// Takes a suffix, gives the number of the system variable; of `[#_NAME]` without a suffix it takes nothing.
@@ -153,13 +160,17 @@ impl Lowering {
                 left.max(right + 1)
             }
             ExprKind::Call(function, form) => self.call(*function, form, span, context, brackets + 1)?,
-            ExprKind::Parameter { number, bit: None, axis: None } => {
-                let depth = self.expr(number, Context::Macro, brackets + 1)?;
-                self.emit(Operation::Parameter, span);
+            ExprKind::Parameter { number, bit, axis } => {
+                let mut depth = self.expr(number, Context::Macro, brackets + 1)?;
+                for (place, part) in bit.iter().chain(axis).enumerate() {
+                    depth = depth.max(self.expr(part, Context::Macro, brackets + 1)? + place + 1);
+                }
+                self.emit(Operation::Parameter { bit: bit.is_some(), axis: axis.is_some() }, span);
                 depth
             }
-            ExprKind::Parameter { .. } => {
-                return Err(Alarm::NotSimulated { what: "PRM of a bit or an axis".into() }.at(span));
+            ExprKind::AxisNumber(letter) => {
+                self.emit(Operation::AxisNumber(*letter), span);
+                1
             }
         })
     }
@@ -199,6 +210,12 @@ impl Lowering {
             (Function::Pow, CallForm::One(_), _) => Err(Alarm::MissingComma.at(span)),
             (Function::Round, CallForm::One(inner), Context::Address(letter)) => {
                 self.unary(inner, Operation::RoundTo(letter), span, context, brackets)
+            }
+            (Function::Adp, CallForm::One(inner), _) => {
+                let ExprKind::Variable(index) = &inner.kind else {
+                    return Err(Alarm::ArgumentFormat { function: "ADP".into() }.at(span));
+                };
+                self.unary(index, Operation::AddPoint, span, Context::Macro, brackets)
             }
             (_, CallForm::One(inner), _) => {
                 self.unary(inner, Operation::Function(function), span, context, brackets)

@@ -98,7 +98,9 @@ impl Lowering {
                         (*switch, &words[*from..to])
                     })
                     .collect();
-                self.words(&words[..first], &tails).map(OpKind::from)
+                let mut lowered = self.words(&words[..first], &tails)?;
+                lowered.punched = block.comments.first().and_then(|comment| sixteen_digits(&comment.text));
+                Ok(lowered.into())
             }
         }
     }
@@ -181,6 +183,13 @@ impl Lowering {
         }
         Ok(Statement::Print { kind, parts: lowered })
     }
+}
+
+/// A double as a control punches it.
+fn sixteen_digits(text: &[u8]) -> Option<u64> {
+    let text = std::str::from_utf8(text).ok()?.trim();
+    let hexadecimal = text.len() == 16 && text.bytes().all(|b| b.is_ascii_hexdigit());
+    hexadecimal.then(|| u64::from_str_radix(text, 16).ok()).flatten()
 }
 
 fn loop_number(number: &Spanned<i64>) -> Lowered<u8> {

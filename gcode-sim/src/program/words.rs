@@ -1,10 +1,11 @@
 //! Blocks of words: codes looked up, calls taken out, the rest left for the run to evaluate.
 use super::codes::{self, Row};
+use super::expr::Context;
 use super::lower::Lowering;
 use super::{OpKind, Operand};
 use crate::alarm::Alarm;
 use crate::source::{Span, Spanned};
-use crate::syntax::ast::{Decimal, Word, WordValue};
+use crate::syntax::ast::{AX, Decimal, Word, WordValue};
 
 /// The words of one block.
 #[derive(Debug)]
@@ -13,12 +14,16 @@ pub struct Words {
     pub call: Option<Box<CallOp>>,
     /// `/n` inside the block: what is left of it while switch n is on.
     pub short: Option<(u8, Box<Words>)>,
+    /// Sixteen hexadecimal digits in the block's comment: the value behind `G10 L85 P500`, as controls punch it.
+    pub punched: Option<u64>,
 }
 
 /// A word ready to be evaluated.
 #[derive(Clone, Debug)]
 pub struct Coded {
     pub letter: u8,
+    /// `AX[…]`: the number of the axis that the word is for.
+    pub axis: Option<Operand>,
     /// `,R` and `,C`.
     pub comma: bool,
     pub value: Input,
@@ -105,7 +110,7 @@ impl Lowering {
                 arguments: Vec::new(),
                 span,
             };
-            return Ok(Words { list: list.into(), call: Some(Box::new(call)), short: None });
+            return Ok(Words { list: list.into(), call: Some(Box::new(call)), short: None, punched: None });
         }
         subprogram(list, words)
     }
@@ -120,11 +125,17 @@ impl Lowering {
                 }
             },
             WordValue::Literal(number) => Input::Literal(*number),
+            // Axes have one increment.
+            WordValue::Expr(expr) if letter == AX => Input::Operand(self.word_value(expr, b'X')?),
             WordValue::Expr(expr) => Input::Operand(self.word_value(expr, letter)?),
             // Taken up by the call in the same block.
             WordValue::Name(_) => Input::Literal(Decimal { negative: false, digits: 0, places: None }),
         };
-        Ok(Coded { letter, comma: word.address.comma, value, span: word.span })
+        let axis = match &word.axis {
+            Some(axis) => Some(self.operand(axis, Context::Macro)?),
+            None => None,
+        };
+        Ok(Coded { letter, axis, comma: word.address.comma, value, span: word.span })
     }
 }
 
@@ -177,7 +188,7 @@ fn macro_call(
             _ => call.arguments.push(coded),
         }
     }
-    Ok(Words { list: Box::default(), call: Some(Box::new(call)), short: None })
+    Ok(Words { list: Box::default(), call: Some(Box::new(call)), short: None, punched: None })
 }
 
 /// M98 and M99 with their P, L and Q; the other words act first.
@@ -195,7 +206,7 @@ fn subprogram(list: Vec<Coded>, words: &[Word]) -> Result<Words, Spanned<Alarm>>
         if let Some(word) = words.iter().find(|w| matches!(w.value, WordValue::Name(_))) {
             return Err(Alarm::NotAWord { text: "a name without M98 or G65".into() }.at(word.span));
         }
-        return Ok(Words { list: list.into(), call: None, short: None });
+        return Ok(Words { list: list.into(), call: None, short: None, punched: None });
     };
     if let Some(second) = calls.next() {
         return Err(Alarm::TwoSubprogramCalls.at(second.span));
@@ -223,7 +234,7 @@ fn subprogram(list: Vec<Coded>, words: &[Word]) -> Result<Words, Spanned<Alarm>>
             _ => left.push(coded),
         }
     }
-    Ok(Words { list: left.into(), call: Some(Box::new(op)), short: None })
+    Ok(Words { list: left.into(), call: Some(Box::new(op)), short: None, punched: None })
 }
 
 impl From<Words> for OpKind {

@@ -93,17 +93,22 @@ pub enum CommentMark {
     Slashes,
 }
 
+/// Stands for the letter of an axis that only a run knows.
+pub const AX: u8 = b'@';
+
 /// An address and its value: `X10.`, `X-#1`, `F[#7/3.]`, `,R10.`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Word {
     pub address: Address,
+    /// `AX[1]=10.`: the axis by its number; the letter is [`AX`].
+    pub axis: Option<Box<Expr>>,
     pub value: WordValue,
     pub span: Span,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Address {
-    /// `A` to `Z`, upper case.
+    /// `A` to `Z`, upper case, or [`AX`].
     pub letter: u8,
     /// `,R` and `,C`: corner rounding and chamfer.
     pub comma: bool,
@@ -169,6 +174,8 @@ pub enum ExprKind {
         bit: Option<Box<Expr>>,
         axis: Option<Box<Expr>>,
     },
+    /// `AXNUM[X]`: the number of an axis by its letter.
+    AxisNumber(u8),
 }
 
 #[derive(Clone, Debug, PartialEq)]

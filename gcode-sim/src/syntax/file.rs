@@ -198,7 +198,9 @@ fn show(unreadable: &mut Unreadable, bytes: &[u8], end: usize) {
     *span = trimmed(span.source, bytes, span.start as usize, end);
     *text = bytes[span.start as usize..span.end as usize].to_vec();
     alarm.span.end = span.end.max(alarm.span.start);
-    if let Alarm::NotAWord { text } | Alarm::Expression { text } = &mut alarm.node {
+    if let Alarm::NotAWord { text } | Alarm::Expression { text } | Alarm::AxisAddress { text } =
+        &mut alarm.node
+    {
         let rest = String::from_utf8_lossy(&bytes[alarm.span.start as usize..alarm.span.end as usize]);
         let shown: String = rest.chars().take(12).collect();
         *text = shown.trim_end().to_owned();

@@ -43,6 +43,9 @@ pub(super) fn call(line: Line, input: Input<'_>, depth: u8) -> Read<'_, Expr> {
     if let (rest, 3) = letters(input, "PRM") {
         return parameter(line, input, rest, depth);
     }
+    if let (rest, 5) = letters(input, "AXNUM") {
+        return axis_number(line, input, rest, depth);
+    }
     let enough = |name: &str| if name == "POW" { 3 } else { 2 };
     let found = Function::ALL.iter().find_map(|(name, function)| {
         let (rest, count) = letters(input, name);
@@ -102,6 +105,22 @@ fn parameter<'a>(line: Line, input: Input<'a>, after: Input<'a>, depth: u8) -> R
     let (rest, (number, bit)) = arguments(line, after, depth)?;
     let (rest, axis) = divided_by(line, rest, depth)?;
     Ok((rest, Expr { kind: ExprKind::Parameter { number, bit, axis }, span: line.span(input, rest) }))
+}
+
+/// `AXNUM[X]`.
+fn axis_number<'a>(line: Line, input: Input<'a>, after: Input<'a>, depth: u8) -> Read<'a, Expr> {
+    let Some((b'[', inside)) = next(after) else {
+        return fail(spaces(after), Alarm::MissingOpenBracket);
+    };
+    deeper(spaces(after), depth)?;
+    match next(inside) {
+        Some((letter, rest)) if letter.is_ascii_alphabetic() && matches!(next(rest), Some((b']', _))) => {
+            let (rest, ()) = close(rest)?;
+            let kind = ExprKind::AxisNumber(letter.to_ascii_uppercase());
+            Ok((rest, Expr { kind, span: line.span(input, rest) }))
+        }
+        _ => fail(spaces(inside), Alarm::AxisAddress { text: String::new() }),
+    }
 }
 
 /// `[#_` or `[#A`.

@@ -67,9 +67,11 @@ fn primary(levels: u32) -> BoxedStrategy<Expr> {
             expr(ExprKind::Parameter { number: boxed(number), bit, axis })
         },
     );
+    let axis_number = (b'A'..=b'Z').prop_map(|letter| expr(ExprKind::AxisNumber(letter)));
     prop_oneof![
         4 => literal,
         4 => numbered,
+        1 => axis_number,
         2 => bracket(levels - 1),
         1 => indirect,
         1 => named,
@@ -171,11 +173,11 @@ fn word() -> impl Strategy<Value = Item> {
     let value = prop_oneof![3 => literal, 1 => value];
     let word = ("[A-MQ-Z]", any::<bool>(), value).prop_map(|(letter, comma, value)| {
         let address = Address { letter: letter.as_bytes()[0], comma };
-        Item::Word(Word { address, value, span: NOWHERE })
+        Item::Word(Word { address, axis: None, value, span: NOWHERE })
     });
     let call = "[A-Z0-9+_.-]{1,32}".prop_map(|name| {
         let address = Address { letter: b'P', comma: false };
-        Item::Word(Word { address, value: WordValue::Name(name), span: NOWHERE })
+        Item::Word(Word { address, axis: None, value: WordValue::Name(name), span: NOWHERE })
     });
     prop_oneof![9 => word, 1 => call]
 }

@@ -85,7 +85,10 @@ fn skip(switch: u8) -> String {
 
 fn print_word(word: &Word) -> String {
     let comma = if word.address.comma { "," } else { "" };
-    let letter = char::from(word.address.letter);
+    let letter = match &word.axis {
+        Some(axis) => format!("AX[{}]=", expr(axis)),
+        None => char::from(word.address.letter).to_string(),
+    };
     match &word.value {
         WordValue::Literal(number) => format!("{comma}{letter}{}", decimal(*number)),
         WordValue::Expr(value) => format!("{comma}{letter}{}", expr(value)),
@@ -130,6 +133,7 @@ pub fn expr(value: &Expr) -> String {
             let axis = axis.as_ref().map(|axis| format!("/[{}]", expr(axis))).unwrap_or_default();
             format!("PRM[{}{bit}]{axis}", expr(number))
         }
+        ExprKind::AxisNumber(letter) => format!("AXNUM[{}]", char::from(*letter)),
     }
 }
 

@@ -1,8 +1,8 @@
 //! Words: an address and its value.
-use super::ast::{Address, Expr, ExprKind, Word, WordValue};
-use super::expr::single;
+use super::ast::{AX, Address, Expr, ExprKind, Word, WordValue};
+use super::expr::{close, expr, single, wanted};
 use super::number::{WORD_DIGITS, decimal};
-use super::token::{Input, Line, Read, comment_before, fail, other, round_brackets, spaces};
+use super::token::{Input, Line, Read, comment_before, fail, letters, next, other, round_brackets, spaces};
 use crate::alarm::Alarm;
 
 /// The longest program name.
@@ -14,12 +14,38 @@ pub(super) fn word(line: Line, input: Input<'_>) -> Read<'_, Word> {
         [b',', rest @ ..] => (true, spaces(rest)),
         _ => (false, input),
     };
+    if let (rest, 2) = letters(from, "AX")
+        && !comma
+        && let Some((b'[', inside)) = next(rest)
+    {
+        return axis_word(line, input, inside);
+    }
     let letter = match from.first() {
         // O stands first in its line (see `file`) and takes no variable.
         Some(byte) if byte.is_ascii_alphabetic() && !matches!(byte, b'O' | b'o') => byte.to_ascii_uppercase(),
         _ => return other(input),
     };
-    let start = spaces(&from[1..]);
+    let (rest, value) = word_value(line, input, &from[1..], letter)?;
+    let address = Address { letter, comma };
+    Ok((rest, Word { address, axis: None, value, span: line.span(input, rest) }))
+}
+
+/// `AX[1]=10.`, `AX[#1]10.`: what stands behind `[`.
+fn axis_word<'a>(line: Line, input: Input<'a>, inside: Input<'a>) -> Read<'a, Word> {
+    let (rest, axis) = wanted(expr(line, inside, 1), inside)?;
+    let (rest, ()) = close(rest)?;
+    let behind = match next(rest) {
+        Some((b'=', behind)) => behind,
+        _ => rest,
+    };
+    let (rest, value) = word_value(line, input, behind, b'A')?;
+    let address = Address { letter: AX, comma: false };
+    Ok((rest, Word { address, axis: Some(Box::new(axis)), value, span: line.span(input, rest) }))
+}
+
+/// What stands behind an address.
+fn word_value<'a>(line: Line, input: Input<'a>, behind: Input<'a>, letter: u8) -> Read<'a, WordValue> {
+    let start = spaces(behind);
     let (negative, unsigned) = match start {
         [b'-', rest @ ..] => (true, spaces(rest)),
         [b'+', rest @ ..] => (false, spaces(rest)),
@@ -29,34 +55,33 @@ pub(super) fn word(line: Line, input: Input<'_>) -> Read<'_, Word> {
         letter if comment_before(after) => round_brackets(after, Some(letter)),
         letter => fail(input, Alarm::NoDataAfterAddress { letter }),
     };
-    let (rest, value) = match unsigned.first() {
+    match unsigned.first() {
         Some(b'0'..=b'9' | b'.') => match decimal(unsigned, negative, WORD_DIGITS) {
-            Ok((rest, number)) => (rest, WordValue::Literal(number)),
-            Err(nom::Err::Error(_)) => return nothing(&from[1..]),
-            Err(error) => return Err(error),
+            Ok((rest, number)) => Ok((rest, WordValue::Literal(number))),
+            Err(nom::Err::Error(_)) => nothing(behind),
+            Err(error) => Err(error),
         },
         Some(b'#' | b'[') => {
             let (rest, mut value) = single(line, unsigned)?;
             if negative {
                 value = Expr { kind: ExprKind::Negate(Box::new(value)), span: line.span(start, rest) };
             }
-            (rest, WordValue::Expr(value))
+            Ok((rest, WordValue::Expr(value)))
         }
         Some(b'<') if letter == b'P' => {
             let (rest, name) = program_name(unsigned)?;
-            (rest, WordValue::Name(name))
+            Ok((rest, WordValue::Name(name)))
         }
-        Some(b'-' | b'+') => return fail(unsigned, Alarm::IllegalMinus { letter: char::from(letter) }),
-        _ => return nothing(&from[1..]),
-    };
-    Ok((rest, Word { address: Address { letter, comma }, value, span: line.span(input, rest) }))
+        Some(b'-' | b'+') => fail(unsigned, Alarm::IllegalMinus { letter: char::from(letter) }),
+        _ => nothing(behind),
+    }
 }
 
 /// `M98 <NAME>`: the name stands for the word P.
 pub(super) fn name_word(line: Line, input: Input<'_>) -> Read<'_, Word> {
     let (rest, name) = program_name(input)?;
     let address = Address { letter: b'P', comma: false };
-    Ok((rest, Word { address, value: WordValue::Name(name), span: line.span(input, rest) }))
+    Ok((rest, Word { address, axis: None, value: WordValue::Name(name), span: line.span(input, rest) }))
 }
 
 /// `<NAME>`: letters, digits and `+ - _ .`; with folders in a call also `/`.

@@ -2,7 +2,9 @@
 //! what it has read already.
 use std::collections::BTreeMap;
 
+use crate::check::literal;
 use crate::check::subject::{Finding, Subject, Unit};
+use crate::program::{Coded, Input, OpKind, Words};
 use crate::source::Span;
 
 pub(super) const NAME: &str = "doubled-n";
@@ -10,7 +12,16 @@ pub(super) const NAME: &str = "doubled-n";
 pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     let mut first: BTreeMap<u32, (Span, bool)> = BTreeMap::new();
     let mut found = Vec::new();
+    let mut parameters = false;
     for (block, op) in unit.program.ops.iter().enumerate() {
+        // Behind G10 L52 N is a parameter's number.
+        let before = parameters;
+        if let OpKind::Words(words) = &op.kind {
+            parameters = if parameters { !has_g(words, 110) } else { enters_parameters(words) };
+        }
+        if before && parameters {
+            continue;
+        }
         let Some(number) = op.number.filter(|number| *number > 0) else { continue };
         match first.get_mut(&number) {
             None => {
@@ -34,6 +45,16 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     found
 }
 
+fn has_g(words: &Words, code: u32) -> bool {
+    words.list.iter().any(|word| matches!(word.value, Input::G(c, _) if c == code))
+}
+
+fn enters_parameters(words: &Words) -> bool {
+    let is_l = |word: &&Coded| word.letter == b'L';
+    has_g(words, 100)
+        && words.list.iter().find(is_l).and_then(literal::count).is_some_and(|l| l == 50 || l == 52)
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::testing::{NOWHERE, lines};
@@ -42,6 +63,8 @@ mod tests {
     #[test]
     fn each_number_is_told_once() {
         assert_eq!(lines(NAME, "O1\nN10 G0\nN010 G0\nN10 G0\nN20 M30\n"), [3]);
+        let parameters = "O1\nN1241 G10 L52\nN1241 P1 R1.\nN1241 P2 R1.\nG11\nN1241 M30\n";
+        assert_eq!(lines(NAME, parameters), [6], "behind G10 L52 N is no sequence number");
         assert_eq!(lines(NAME, "O1\nN10 M30\nO2\nN10 M99\n(N10)\n"), NOWHERE, "each program has its own");
     }
 }

@@ -85,7 +85,7 @@ fn of_words(settings: &Settings, words: &Words) -> Option<bool> {
             },
             // Coolant and spindle don't wait; what the machine's builder made of other codes nobody knows.
             (b'M', _) if !matches!(literal::count(word), Some(3 | 4 | 5 | 7 | 8 | 9)) => return Some(false),
-            (letter, _) => axis |= settings.axes.find(letter).is_some(),
+            (letter, _) => axis |= word.axis.is_some() || settings.axes.find(letter).is_some(),
         }
     }
     axis.then_some(true)
