@@ -38,7 +38,9 @@ fn macros_and_examples_have_no_findings() {
     let all =
         programs(&workspace().join("macros")).into_iter().chain(programs(&workspace().join("examples")));
     let mut seen = 0;
-    for path in all {
+    // What was published is wrong on purpose: docs/examples/published-honeycomb.md shows what is found in it.
+    let published = workspace().join("examples/published-honeycomb");
+    for path in all.filter(|path| !path.starts_with(&published) || path.ends_with("O8300.nc")) {
         let mut folders = Folders::new(&path, &beside).unwrap();
         let bytes = std::fs::read(&path).unwrap();
         let checked = check(path.display().to_string(), bytes, &Settings::default(), &mut folders);

@@ -110,11 +110,11 @@ fn found(page: &Page, program: &str) -> Vec<Diagnostic> {
         .next()
         .map(|text| Wanted::parse(text).unwrap().into_holes().unwrap());
     let request = Request::new("example.nc", program.as_bytes(), machine.clone());
-    // Of a job on these pages only the surface counts.
+    // Of a job on these pages only the surface counts, or the pattern.
     let surface = reference.as_ref().and_then(|reference| reference.surface);
     let simulation = simulate(&request, &mut NoLibrary, surface).unwrap();
     match reference {
-        Some(reference) if surface.is_none() => {
+        Some(reference) if surface.is_none() || reference.pattern.is_some() => {
             simulation.verify(&reference, Tolerances::of(&reference, None), &machine).diagnostics
         }
         _ => simulation.extracted.findings,

@@ -33,7 +33,7 @@ pub(super) fn compare(old: &Revision, new: &Revision, links: &[Link], tolerance:
     let (found_old, found_new) = (&old.simulation.extracted.holes, &new.simulation.extracted.holes);
     let wanted: Vec<Hole> = found_old.iter().map(|hole| hole.hole(nowhere)).collect();
     let limits = Tolerances { position: 2.0 * tolerance, depth: tolerance, diameter: tolerance };
-    let comparison = Comparison::new(&wanted, found_new, limits);
+    let comparison = Comparison::new(&wanted, found_new, limits, None);
     let cuts = (Cuts::of(old), Cuts::of(new));
     let mut partner: Vec<Option<usize>> = vec![None; found_old.len()];
     for pair in &comparison.pairs {

@@ -121,6 +121,10 @@ pub const PAGES: &[Page] = pages![
     "rapid-beyond-cut"
     "rapid-into-part"
     "rotary-sign"
+    "row-angle"
+    "row-group"
+    "row-pitch"
+    "row-seam"
     "spindle-stopped"
     "tool-unknown"
 ];

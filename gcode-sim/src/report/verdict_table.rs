@@ -1,7 +1,7 @@
 //! A verdict as the table an inspector knows: nominal, actual, deviation, position, out of tolerance.
 use std::fmt::Write;
 
-use crate::verify::{Answer, HoleVerdict, Placed, Verdict};
+use crate::verify::{Answer, Distance, HoleVerdict, Neighbours, Placed, Verdict};
 
 /// How much of it, and in which order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -15,15 +15,23 @@ pub struct Layout {
 /// How many ids of missing holes, and how many extra ones, are written out; the rest is counted.
 const LISTED: usize = 12;
 
+/// So many holes have a line each; of more, those that fail and the worst of the others, as many as are listed here.
+const LINES: usize = 100;
+const OF_MANY: usize = 24;
+
 /// Lengths in mm, angles in degrees; judged unrounded, shown rounded.
 pub fn table(verdict: &Verdict, layout: Layout) -> String {
-    let mut holes: Vec<&HoleVerdict> = verdict.holes.iter().collect();
+    let all = verdict.holes.len();
+    let mut holes: Vec<&HoleVerdict> = match layout.full || all <= LINES {
+        true => verdict.holes.iter().collect(),
+        false => worst(&verdict.holes),
+    };
     if layout.worst_first {
         holes.sort_by(|a, b| b.phi.total_cmp(&a.phi));
     }
     let mut text = format!(
         "Position of {} against Φ{}: {}\nmm and degrees; deviations are actual less nominal\n\n",
-        count(holes.len(), "hole"),
+        count(all, "hole"),
         verdict.tolerance,
         verdict.basis
     );
@@ -31,9 +39,24 @@ pub fn table(verdict: &Verdict, layout: Layout) -> String {
         holes.iter().for_each(|hole| full(&mut text, hole, verdict.tolerance));
     } else {
         lines(&mut text, &holes);
+        if holes.len() < all {
+            put(&mut text, &format!("the worst {} of {all} holes; --full lists them all\n", holes.len()));
+        }
     }
     summary(&mut text, verdict);
     text
+}
+
+/// Of many holes those that fail, then the farthest off, in the order of the reference.
+fn worst(holes: &[HoleVerdict]) -> Vec<&HoleVerdict> {
+    let mut order: Vec<usize> = (0..holes.len()).collect();
+    order.sort_by(|a, b| {
+        let (a, b) = (&holes[*a], &holes[*b]);
+        a.ok.cmp(&b.ok).then(b.phi.total_cmp(&a.phi))
+    });
+    order.truncate(OF_MANY);
+    order.sort_unstable();
+    order.into_iter().map(|index| &holes[index]).collect()
 }
 
 /// One line a hole.
@@ -143,6 +166,9 @@ fn summary(text: &mut String, verdict: &Verdict) {
             put(text, &format!("         made by {}", made_by(hole)));
         }
     }
+    if let Some(neighbours) = &verdict.neighbours {
+        say_neighbours(text, neighbours);
+    }
     if let Some(rounding) = verdict.rounding {
         let share = rounding / verdict.tolerance * 100.0;
         let said = "rounding alone, to the control's least increment, can use up";
@@ -156,6 +182,22 @@ fn summary(text: &mut String, verdict: &Verdict) {
     }
     if !verdict.extra.is_empty() {
         put(text, &format!("extra    {}", some(&verdict.extra, |extra| extra.why.clone(), "\n         ")));
+    }
+}
+
+/// How far neighbours are from one another, and where the extremes are.
+fn say_neighbours(text: &mut String, neighbours: &Neighbours) {
+    let Neighbours { metric, wanted, with_six, with_six_wanted, min, max } = neighbours;
+    put(
+        text,
+        &format!(
+            "neighbours wanted {wanted:.4} mm apart ({metric}); {with_six} of {with_six_wanted} holes have all six"
+        ),
+    );
+    for (what, extreme) in [("nearest", min), ("farthest", max)] {
+        if let Some(Distance { distance, between: [one, other] }) = extreme {
+            put(text, &format!("           {what:<8} {distance:.4} mm: {one} and {other}"));
+        }
     }
 }
 
@@ -242,6 +284,7 @@ mod tests {
             actual: placed(420.0 + phi / 2.0),
             from: Origin { program: "O8101".into(), line: 31, tool: Some(2) },
             calls: vec![Origin { program: "O8100".into(), line: 20, tool: None }],
+            neighbours: None,
             objections: objections.iter().map(|o| (*o).to_owned()).collect(),
         }
     }
@@ -259,6 +302,7 @@ mod tests {
             missing: (3..18).map(|id| id.to_string()).collect(),
             extra: Vec::new(),
             findings: Vec::new(),
+            neighbours: None,
             not_checked: Vec::new(),
             diagnostics: Vec::new(),
         }

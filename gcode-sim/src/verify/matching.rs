@@ -8,6 +8,7 @@ use super::position::Deviation;
 use crate::holes::Found;
 use crate::holes::near::PointTree;
 use crate::part::hole::Hole;
+use crate::part::honeycomb::Pattern;
 
 /// A drilled hole can be a wanted one when its axis passes the wanted entry and bottom this near, in mm.
 const REACH: f64 = 5.0;
@@ -29,6 +30,8 @@ pub struct Comparison<'a> {
     pub wanted: &'a [Hole],
     pub found: &'a [Found],
     pub tolerances: Tolerances,
+    /// What the neighbours must be like, where the reference says it.
+    pub pattern: Option<&'a Pattern>,
     /// In the order of the wanted holes.
     pub pairs: Vec<Pair>,
     /// Wanted and not there.
@@ -40,8 +43,15 @@ pub struct Comparison<'a> {
 }
 
 impl<'a> Comparison<'a> {
-    pub fn new(wanted: &'a [Hole], found: &'a [Found], tolerances: Tolerances) -> Self {
-        let reach = REACH.max(2.0 * tolerances.position);
+    pub fn new(
+        wanted: &'a [Hole],
+        found: &'a [Found],
+        tolerances: Tolerances,
+        pattern: Option<&'a Pattern>,
+    ) -> Self {
+        // Beyond half the way to its neighbour a hole is another one.
+        let near = pattern.map_or(REACH, |pattern| REACH.min(pattern.pitch / 4.0));
+        let reach = near.max(2.0 * tolerances.position);
         let tree = PointTree::new(wanted.iter().map(|hole| Point3::from(hole.entry)));
         let mut candidates = Vec::with_capacity(found.len());
         for (index, hole) in found.iter().enumerate() {
@@ -77,7 +87,7 @@ impl<'a> Comparison<'a> {
         let on_line = pairs.iter().map(|pair| (found[pair.found].first, pair.wanted)).collect();
         let missing = (0..wanted.len()).filter(|index| !is_there[*index]).collect();
         let extra = (0..found.len()).filter(|index| !is_taken[*index]).collect();
-        Self { wanted, found, tolerances, pairs, missing, extra, on_line }
+        Self { wanted, found, tolerances, pattern, pairs, missing, extra, on_line }
     }
 
     /// The wanted hole that was drilled already on the line of one that nobody asked for.

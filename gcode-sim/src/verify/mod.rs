@@ -1,13 +1,16 @@
 //! Holds the holes a program makes against the wanted ones: which is which, how far off, and whether that will do.
 mod checks;
 mod matching;
+mod neighbours;
 pub mod position;
 mod rounding;
+mod rows;
 #[cfg(test)]
 mod tests;
 mod verdict;
 
 pub use matching::{Comparison, Pair};
+pub use neighbours::{Around, Distance, Neighbours};
 pub use rounding::{Rounding, Share};
 pub use verdict::{Answer, Extra, Finding, HoleVerdict, Placed, Verdict};
 
@@ -56,7 +59,8 @@ pub fn verify(
     machine: &Machine,
     locate: &dyn Fn(Span) -> (String, u32),
 ) -> Verdict {
-    let comparison = Comparison::new(&reference.holes, &extracted.holes, tolerances);
+    let pattern = reference.pattern.as_ref();
+    let comparison = Comparison::new(&reference.holes, &extracted.holes, tolerances, pattern);
     let rounding = rounding::shares(&comparison, machine);
     let mut objections = Vec::new();
     for check in checks::ALL {
@@ -68,6 +72,9 @@ pub fn verify(
         }
     }
     let mut verdict = verdict::verdict(&comparison, rounding, objections, &extracted.findings, locate);
+    if let Some(pattern) = pattern {
+        verdict.say_neighbours(neighbours::neighbours(&comparison, pattern));
+    }
     verdict.not_checked = not_checked(&comparison, reference, machine);
     verdict
 }

@@ -3,7 +3,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::{Comparison, Objection, Rounding};
+use super::{Around, Comparison, Neighbours, Objection, Rounding};
 use crate::diag::{Diagnostic, Severity};
 use crate::motion::{Call, Calls};
 use crate::part::hole::{Hole, Origin};
@@ -37,6 +37,9 @@ pub struct Verdict {
     pub missing: Vec<String>,
     pub extra: Vec<Extra>,
     pub findings: Vec<Finding>,
+    /// Of a part where it matters how far neighbours stand.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub neighbours: Option<Neighbours>,
     /// What the verdict says nothing about, in words.
     pub not_checked: Vec<String>,
     /// The findings with their places, for people.
@@ -66,6 +69,9 @@ pub struct HoleVerdict {
     pub calls: Vec<Origin>,
     /// The codes of the findings against it.
     pub objections: Vec<String>,
+    /// What stands round it, of a part where that matters.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub neighbours: Option<Around>,
     /// Which of the holes that the program makes it is, counted from 0.
     #[serde(skip)]
     pub found: usize,
@@ -158,9 +164,20 @@ pub(super) fn verdict(
                 from: origin(finding),
             })
             .collect(),
+        neighbours: None,
         not_checked: Vec::new(),
         holes,
         diagnostics: readable(objections.into_iter().map(|o| o.finding).chain(findings.iter().cloned())),
+    }
+}
+
+impl Verdict {
+    /// Adds what is round each hole, and the summary.
+    pub(super) fn say_neighbours(&mut self, (around, summary): (Vec<Option<Around>>, Neighbours)) {
+        for hole in &mut self.holes {
+            hole.neighbours = around[hole.found];
+        }
+        self.neighbours = Some(summary);
     }
 }
 
@@ -223,6 +240,7 @@ fn hole_verdict(
         from: Origin { program, line, tool: found.tool },
         calls: calls(&found.place.calls, locate),
         objections,
+        neighbours: None,
         found: pair.found,
     }
 }

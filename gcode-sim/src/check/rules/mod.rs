@@ -11,6 +11,7 @@ mod missing_point;
 mod missing_program;
 mod relation_symbol;
 mod round_brackets;
+mod rounded_pi;
 mod unknown_check;
 mod unknown_code;
 mod unreachable;
@@ -48,6 +49,7 @@ pub const ALL: &[Rule] = &[
     Rule { name: missing_argument::NAME, about: "a macro call without a letter that the macro needs", find: missing_argument::find },
     Rule { name: unset_variable::NAME, about: "a local variable that is read before it is set", find: unset_variable::find },
     Rule { name: missing_point::NAME, about: "a number without a point that means thousandths", find: missing_point::find },
+    Rule { name: rounded_pi::NAME, about: "a rounded π as a factor", find: rounded_pi::find },
     Rule { name: live_position::NAME, about: "a position read while a move may be under way", find: live_position::find },
     Rule { name: endless_loop::NAME, about: "a loop that never ends", find: endless_loop::find },
     Rule { name: unreachable_alarm::NAME, about: "a #3000 that can't be reached", find: unreachable_alarm::find },

@@ -15,7 +15,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
     }
     for (axis, name) in [(2, 'z'), (0, 'x'), (1, 'y')] {
         let turned: Vec<_> = comparison.found.iter().map(|found| mirror(found, axis)).collect();
-        let again = Comparison::new(comparison.wanted, &turned, comparison.tolerances);
+        let again = Comparison::new(comparison.wanted, &turned, comparison.tolerances, comparison.pattern);
         let agree = again.pairs.len();
         if agree <= comparison.pairs.len() || (agree as f64) < MOST * comparison.wanted.len() as f64 {
             continue;

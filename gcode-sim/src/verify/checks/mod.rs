@@ -5,6 +5,10 @@ mod diameter;
 mod mirrored;
 mod missing;
 mod position;
+mod row_angle;
+mod row_group;
+mod row_pitch;
+mod row_seam;
 pub(super) mod surplus;
 mod tools;
 
@@ -14,6 +18,10 @@ type Check = fn(&Comparison<'_>, &mut Vec<Objection>);
 
 pub(super) const ALL: &[Check] = &[
     mirrored::check,
+    row_group::check,
+    row_angle::check,
+    row_seam::check,
+    row_pitch::check,
     missing::check,
     surplus::check,
     position::check,

@@ -1,4 +1,6 @@
 //! One program through the whole chain: what the command line, the generator and tests call.
+mod still;
+
 use std::sync::Arc;
 
 use crate::alarm::{Alarm, Code};
@@ -200,6 +202,9 @@ impl Run {
             "the program never ends: from line {from} of {program} to {to} all repeats and nothing changes"
         );
         let finding = Diagnostic::new(Severity::Alarm, "limit", message).at(self.control.place());
+        if let Some(why) = still::still(&self.control, first, last) {
+            return finding.note(why).help("a step that is 0 makes no progress: where does it come from?");
+        }
         finding.help("a wait for an input ends with --input '#1005=1', a main program's M99 with --cycles 1")
     }
 }

@@ -1,0 +1,60 @@
+//! The rows of a honeycomb stand at the angle with which the pattern closes: another one is told with the distance it
+//! makes round the circumference and the diameter it would be right for.
+use super::{Comparison, Objection};
+use crate::diag::Diagnostic;
+use crate::part::honeycomb::Pattern;
+use crate::units::Deg;
+use crate::verify::rows::Rows;
+
+/// An angle that is off by less than this makes no hole of a turn stand aside, in parts of a row.
+const SHARE: f64 = 0.1;
+
+pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>) {
+    let Some(pattern) = comparison.pattern else { return };
+    let Some(rows) = Rows::of(comparison, pattern) else { return };
+    let (usual, wanted) = (rows.usual, rows.wanted(pattern));
+    // After a whole turn the error has added up.
+    let turn = (usual - wanted).abs() * (360.0 / wanted.0);
+    if turn.0 < SHARE * pattern.step().0 {
+        return;
+    }
+    let (found, right) = (pattern.arc(usual), pattern.arc(wanted));
+    let fits = pattern.diameter * wanted.0 / usual.0;
+    let message = format!(
+        "the rows stand {}° apart, {:.4}° wanted: neighbours round the circumference are {found:.2} mm apart instead of \
+         {right:.2}",
+        plain(usual),
+        wanted.0
+    );
+    let mut finding = Diagnostic::error("row-angle", message)
+        .help(help(pattern))
+        .at(comparison.found[rows.rows[1].first].place.clone());
+    if whole(usual) && !whole(wanted) {
+        let cut = if usual.0 < wanted.0 { "FIX or ROUND" } else { "FUP or ROUND" };
+        finding = finding
+            .note(format!("{}° is a whole number of degrees: what did {cut} leave off?", plain(usual)));
+    } else {
+        finding = finding.note(format!(
+            "this angle would be right for a diameter of {fits:.2} mm, the pitch is to hold on {}",
+            pattern.diameter
+        ));
+    }
+    objections.push(Objection { wanted: None, finding });
+}
+
+fn help(pattern: &Pattern) -> String {
+    format!(
+        "{} rows of each group close it: 360/{0}° from one to the next of its group, unrounded",
+        pattern.rows / 2
+    )
+}
+
+fn whole(angle: Deg) -> bool {
+    (angle.0 - angle.0.round()).abs() < 1e-6
+}
+
+/// Without needless zeros.
+fn plain(angle: Deg) -> String {
+    let text = format!("{:.4}", angle.0);
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}

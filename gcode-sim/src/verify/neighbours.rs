@@ -1,0 +1,120 @@
+//! How far each hole's neighbours stand: in a honeycomb every hole inside has six, all at the pitch.
+use nalgebra::{Point3, Vector3};
+use serde::Serialize;
+
+use super::Comparison;
+use crate::holes::near::PointTree;
+use crate::part::honeycomb::{Pattern, azimuth};
+
+/// Halfway from the pitch to the next but one row, √3 pitches away: what is nearer counts as a neighbour.
+const REACH: f64 = 1.366;
+
+/// A hole has so many at most.
+const SIX: usize = 6;
+
+/// The neighbours of all holes, lengths in mm.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Neighbours {
+    /// How distances count: `arc` or `chord`.
+    pub metric: &'static str,
+    /// The distance wanted of all neighbours: the pitch with which the pattern closes.
+    pub wanted: f64,
+    /// Holes that have all six, and how many should.
+    pub with_six: usize,
+    pub with_six_wanted: usize,
+    /// The two neighbours that are nearest to one another, and those that are farthest apart.
+    pub min: Option<Distance>,
+    pub max: Option<Distance>,
+}
+
+/// Between two holes.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Distance {
+    pub distance: f64,
+    /// The holes by their ids; one nobody asked for by its place.
+    pub between: [String; 2],
+}
+
+/// Of one hole.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Around {
+    pub count: usize,
+    pub min: f64,
+    pub max: f64,
+    #[serde(skip)]
+    nearest: usize,
+    #[serde(skip)]
+    farthest: usize,
+}
+
+/// For every drilled hole what is round it, in the order of the holes; the summary.
+pub(super) fn neighbours(
+    comparison: &Comparison<'_>,
+    pattern: &Pattern,
+) -> (Vec<Option<Around>>, Neighbours) {
+    let found = comparison.found.iter().map(|hole| (hole.bottom(), hole.axis.into_inner()));
+    let (around, places) = around(found, pattern);
+    let wanted = comparison.wanted.iter().map(|hole| (Point3::from(hole.entry), Vector3::from(hole.axis)));
+    let (around_wanted, _) = self::around(wanted, pattern);
+    let mut names = vec![None; comparison.found.len()];
+    for pair in &comparison.pairs {
+        names[pair.found] = Some(comparison.id(pair.wanted).to_owned());
+    }
+    let name = |index: usize| names[index].clone().unwrap_or_else(|| place(&places[index]));
+    let known = || around.iter().enumerate().filter_map(|(index, around)| Some((index, (*around)?)));
+    let distance = |index: usize, other: usize, distance: f64| Distance {
+        distance,
+        between: [name(index.min(other)), name(index.max(other))],
+    };
+    let min = known().min_by(|a, b| a.1.min.total_cmp(&b.1.min));
+    // Of equal ones the first, as for the smallest.
+    let max = known().rev().max_by(|a, b| a.1.max.total_cmp(&b.1.max));
+    let six = |around: &[Option<Around>]| around.iter().flatten().filter(|a| a.count == SIX).count();
+    let summary = Neighbours {
+        metric: pattern.metric.name(),
+        wanted: pattern.pitch,
+        with_six: six(&around),
+        with_six_wanted: six(&around_wanted),
+        min: min.map(|(index, around)| distance(index, around.nearest, around.min)),
+        max: max.map(|(index, around)| distance(index, around.farthest, around.max)),
+    };
+    (around, summary)
+}
+
+/// What is round each of the holes, given by a point of the axis and its direction out of the part; `None` for one that
+/// stands alone or misses the cylinder. And where they cross the cylinder.
+fn around(
+    holes: impl Iterator<Item = (Point3<f64>, Vector3<f64>)>,
+    pattern: &Pattern,
+) -> (Vec<Option<Around>>, Vec<Point3<f64>>) {
+    let nowhere = Point3::from(Vector3::repeat(f64::INFINITY));
+    let places: Vec<_> = holes.map(|(on, out)| pattern.crossing(&on, &out).unwrap_or(nowhere)).collect();
+    let here: Vec<usize> = (0..places.len()).filter(|index| places[*index] != nowhere).collect();
+    let tree = PointTree::new(here.iter().map(|index| places[*index]));
+    let reach = REACH * pattern.pitch;
+    let mut all = vec![None; places.len()];
+    let mut near: Vec<(f64, usize)> = Vec::new();
+    for index in &here {
+        let (at, margin) = (places[*index], Vector3::repeat(reach));
+        near.clear();
+        // No way on the surface is shorter than the straight one: all neighbours are in the box.
+        tree.in_box(&(at - margin), &(at + margin), &mut |other| {
+            let other = here[other];
+            let distance = pattern.distance(&at, &places[other]);
+            if other != *index && distance <= reach {
+                near.push((distance, other));
+            }
+        });
+        near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        near.truncate(SIX);
+        if let (Some(first), Some(last)) = (near.first(), near.last()) {
+            let (nearest, farthest) = (first.1, last.1);
+            all[*index] = Some(Around { count: near.len(), min: first.0, max: last.0, nearest, farthest });
+        }
+    }
+    (all, places)
+}
+
+fn place(p: &Point3<f64>) -> String {
+    format!("x {:.3} at {:.3}°", p.x, azimuth(p).0)
+}

@@ -1,0 +1,106 @@
+//! The rows round a cylinder that the drilled holes stand in: at which azimuth, and where each begins in x.
+use super::Comparison;
+use crate::part::honeycomb::{Pattern, azimuth};
+use crate::units::Deg;
+
+/// Holes of one azimuth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Row {
+    /// 0 to 360.
+    pub(super) azimuth: Deg,
+    /// The least x, mm.
+    pub(super) start: f64,
+    /// The hole there, by its number.
+    pub(super) first: usize,
+}
+
+/// All rows in the order of their azimuths.
+#[derive(Debug)]
+pub(super) struct Rows {
+    pub(super) rows: Vec<Row>,
+    /// From each row to the next, from the last one round to the first.
+    pub(super) gaps: Vec<Deg>,
+    /// The gap that half of them don't exceed.
+    pub(super) usual: Deg,
+    /// From hole to hole in the first row that has several, mm: the distance that half of them don't exceed; and that
+    /// row.
+    pub(super) spacing: Option<(f64, Row)>,
+}
+
+/// Fewer rows show no order.
+const FEWEST: usize = 4;
+
+impl Rows {
+    /// `None` where there are too few to speak of.
+    pub(super) fn of(comparison: &Comparison<'_>, pattern: &Pattern) -> Option<Self> {
+        let mut places: Vec<(Deg, f64, usize)> = Vec::with_capacity(comparison.found.len());
+        for (index, hole) in comparison.found.iter().enumerate() {
+            let at = pattern.crossing(&hole.bottom(), &hole.axis)?;
+            places.push((Deg(azimuth(&at).0.rem_euclid(360.0)), at.x, index));
+        }
+        places.sort_by(|a, b| a.0.0.total_cmp(&b.0.0));
+        // What is drilled at one angle lies at one angle; a row drilled twice may lie near by.
+        let same = pattern.step().0 / 100.0;
+        let mut rows: Vec<Row> = Vec::new();
+        let mut along: Vec<Vec<f64>> = Vec::new();
+        let mut last = Deg(f64::NEG_INFINITY);
+        for (azimuth, start, first) in places {
+            match rows.last_mut() {
+                Some(row) if (azimuth - last).0 <= same => {
+                    along.last_mut().into_iter().for_each(|xs| xs.push(start));
+                    if start < row.start {
+                        (row.start, row.first) = (start, first);
+                    }
+                }
+                _ => {
+                    rows.push(Row { azimuth, start, first });
+                    along.push(vec![start]);
+                }
+            }
+            last = azimuth;
+        }
+        // What is just below 360 belongs to what is at 0.
+        if let (Some(end), Some(begin)) = (rows.last().copied(), rows.first().copied())
+            && rows.len() > 1
+            && begin.azimuth.0 + 360.0 - last.0 <= same
+        {
+            rows.pop();
+            if end.start < begin.start {
+                (rows[0].start, rows[0].first) = (end.start, end.first);
+            }
+        }
+        if rows.len() < FEWEST {
+            return None;
+        }
+        let round = rows.iter().skip(1).map(|row| row.azimuth).chain([rows[0].azimuth + Deg(360.0)]);
+        let gaps: Vec<Deg> = rows.iter().zip(round).map(|(row, next)| next - row.azimuth).collect();
+        let usual = Deg(median(gaps.iter().map(|gap| gap.0))?);
+        let several = rows.iter().zip(&mut along).find(|(_, xs)| xs.len() > 2);
+        let spacing = several.and_then(|(row, xs)| {
+            xs.sort_by(f64::total_cmp);
+            Some((median(xs.windows(2).map(|pair| pair[1] - pair[0]))?, *row))
+        });
+        Some(Self { rows, gaps, usual, spacing })
+    }
+
+    /// Whether every row begins where the first does, where every second one should begin half a pitch later.
+    pub(super) fn in_step(&self, pattern: &Pattern) -> bool {
+        let off = |row: &Row| {
+            let pitches = (row.start - self.rows[0].start) / pattern.pitch;
+            (pitches - pitches.round()).abs()
+        };
+        self.rows.iter().all(|row| off(row) < 0.1)
+    }
+
+    /// From row to row as the pattern wants it, of rows that stand as these do: both groups in turn, or one alone.
+    pub(super) fn wanted(&self, pattern: &Pattern) -> Deg {
+        if self.in_step(pattern) { pattern.step() * 2.0 } else { pattern.step() }
+    }
+}
+
+/// What half of the numbers don't exceed.
+fn median(numbers: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut sorted: Vec<f64> = numbers.collect();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len().checked_sub(1)? / 2).copied()
+}
