@@ -215,8 +215,7 @@ fn a_feed_beside_the_tool_is_a_finding_and_the_hole_has_the_tools_axis() {
 
 #[test]
 fn a_head_nobody_has_set_is_an_error() {
-    let machine =
-        Machine { head: Head { kind: HeadKind::Manual { start: None }, pivot: 0.0 }, ..Machine::default() };
+    let machine = Machine { head: Head::new(HeadKind::Manual { start: None }, 0.0), ..Machine::default() };
     let script = Script::new().rapid("Z2").feed("Z-5").rapid("Z2");
     let found = extract(&machine, None, &script);
     assert!(told(&found).ends_with("head-not-set"), "{}", told(&found));

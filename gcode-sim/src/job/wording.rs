@@ -76,7 +76,7 @@ impl Place {
     fn beside(&self, field: &str) -> String {
         match &self.key {
             Some(key) if key != field => join(&[&self.table, key, field]),
-            None if self.table == field => field.to_owned(),
+            None if self.table == field || self.table.ends_with(&format!(".{field}")) => self.table.clone(),
             _ => join(&[&self.table, field]),
         }
     }
@@ -120,5 +120,10 @@ mod tests {
             "key 'hole.radius' is string \"x\": a number is needed"
         );
         assert_eq!(told(5, "duplicate key"), "duplicate key");
+        let nested = "[errors.part]\nx = 1\n";
+        assert_eq!(
+            reword(nested, Some(8..12), "unknown field `part`, expected `linear` or `head`"),
+            "key 'errors.part' is not known; allowed: linear, head"
+        );
     }
 }

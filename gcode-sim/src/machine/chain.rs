@@ -2,6 +2,7 @@
 use nalgebra::{Point3, Rotation3, Translation3, Unit, Vector3};
 
 use super::Frame;
+use super::error::Wave;
 use crate::motion::{Axes, Axis, Position};
 use crate::units::Deg;
 
@@ -16,6 +17,8 @@ pub struct Link {
     pub motion: LinkMotion,
     /// 1 or −1: which way a positive command goes.
     pub sign: f64,
+    /// How far beyond its commanded place the axis stands, counted as commands are.
+    pub error: Wave,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -33,15 +36,15 @@ pub(super) fn turn(about: &Unit<Vector3<f64>>, angle: Deg) -> Rotation3<f64> {
 
 impl Link {
     pub fn turn(axis: Axis, about: Unit<Vector3<f64>>, centre: Point3<f64>, sign: f64) -> Self {
-        Self { axis, motion: LinkMotion::Turn { about, centre }, sign }
+        Self { axis, motion: LinkMotion::Turn { about, centre }, sign, error: Wave::default() }
     }
 
     pub fn slide(axis: Axis, along: Unit<Vector3<f64>>, sign: f64) -> Self {
-        Self { axis, motion: LinkMotion::Slide { along }, sign }
+        Self { axis, motion: LinkMotion::Slide { along }, sign, error: Wave::default() }
     }
 
     fn frame(&self, at: &Position) -> Frame {
-        let value = self.sign * at[self.axis];
+        let value = self.sign * (at[self.axis] + self.error.at(at[self.axis]));
         match &self.motion {
             LinkMotion::Turn { about, centre } => {
                 let rotation = turn(about, Deg(value));

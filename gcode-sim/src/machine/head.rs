@@ -2,6 +2,7 @@
 use nalgebra::{Unit, Vector3};
 
 use super::Setup;
+use super::error::Wave;
 use crate::motion::{Axis, Position};
 use crate::units::Deg;
 
@@ -10,6 +11,8 @@ pub struct Head {
     pub kind: HeadKind,
     /// From the pivot to the spindle's gauge line.
     pub pivot: f64,
+    /// How far beyond its angle a head that turns stands.
+    pub error: Wave,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -25,22 +28,27 @@ pub enum HeadKind {
 }
 
 impl Head {
+    pub fn new(kind: HeadKind, pivot: f64) -> Self {
+        Self { kind, pivot, error: Wave::default() }
+    }
+
     /// From the tip to the spindle. An angle h counts from +x towards +y: (cos h, sin h, 0).
     pub fn direction(&self, at: &Position, setup: &Setup) -> Option<Unit<Vector3<f64>>> {
         match &self.kind {
-            HeadKind::Free => setup.head_angle.map(in_plane),
+            HeadKind::Free => setup.head_angle.map(|angle| self.in_plane(angle)),
             HeadKind::Fixed(direction) => Some(*direction),
-            HeadKind::Manual { start } => setup.head_angle.or(*start).map(in_plane),
-            HeadKind::Axis { axis, sign, zero } => Some(in_plane(Deg(sign * at[*axis]) + *zero)),
+            HeadKind::Manual { start } => setup.head_angle.or(*start).map(|angle| self.in_plane(angle)),
+            HeadKind::Axis { axis, sign, zero } => Some(self.in_plane(Deg(sign * at[*axis]) + *zero)),
         }
+    }
+
+    fn in_plane(&self, angle: Deg) -> Unit<Vector3<f64>> {
+        let angle = angle + Deg(self.error.at(angle.0));
+        Unit::new_unchecked(Vector3::new(angle.cos(), angle.sin(), 0.0))
     }
 
     /// Whether the operator can set its angle: a head about which nothing is known might well be such a one.
     pub fn is_set_by_hand(&self) -> bool {
         matches!(self.kind, HeadKind::Free | HeadKind::Manual { .. })
     }
-}
-
-fn in_plane(angle: Deg) -> Unit<Vector3<f64>> {
-    Unit::new_unchecked(Vector3::new(angle.cos(), angle.sin(), 0.0))
 }

@@ -7,7 +7,8 @@ use crate::motion::Position;
 use crate::units::Deg;
 
 impl Machine {
-    /// Every position at which a tool that points out of the part along `axis` stands with its tip at `tip`.
+    /// Every position at which a tool that points out of the part along `axis` stands with its tip at `tip`, on a
+    /// machine whose axes have no errors.
     ///
     /// Closed for one rotary table under three slides and a head that tilts in the plane of X and Y: the table has
     /// to turn `axis` into that plane, which has two solutions. Along the table's own axis any angle does; the
@@ -121,7 +122,7 @@ mod tests {
             } else {
                 HeadKind::Manual { start: None }
             };
-            machine.head = Head { kind, pivot };
+            machine.head = Head::new(kind, pivot);
             let out = Vector3::new(
                 Deg(polar).sin() * Deg(azimuth).cos(),
                 Deg(polar).cos(),

@@ -1,15 +1,21 @@
 //! The machine as data: which axes carry the part, which carry the tool, the head, the tools, and where the part
 //! stands. Forward kinematics is the definition; everything else has to agree with it.
 mod chain;
+pub mod error;
 mod file;
 mod head;
 mod inverse;
 pub mod path;
+mod probe;
+pub mod random;
+pub mod sources;
 
 use nalgebra::{IsometryMatrix3, Point3, Translation3, Unit, Vector3};
 
 pub use chain::{Chain, Link, LinkMotion};
+pub use file::error_file;
 pub use head::{Head, HeadKind};
+pub use probe::Probe;
 
 use crate::control::{Dialect, Increment};
 use crate::motion::{Axes, Axis, Position};
@@ -32,6 +38,7 @@ pub struct Machine {
     pub tools: Vec<Tool>,
     pub offsets: Vec<WorkOffset>,
     pub part: Placement,
+    pub probe: Option<Probe>,
 }
 
 /// A tool of the machine's tool table.
@@ -90,10 +97,11 @@ impl Default for Machine {
             axes,
             dialect: Dialect::default(),
             increment: Increment::default(),
-            head: Head { kind: HeadKind::Free, pivot: 0.0 },
+            head: Head::new(HeadKind::Free, 0.0),
             tools: Vec::new(),
             offsets: Vec::new(),
             part: Placement::default(),
+            probe: None,
         }
     }
 }
@@ -208,7 +216,7 @@ mod tests {
     #[test]
     fn the_tip_is_pivot_and_tool_length_below_the_pivot_point_along_the_head() {
         let machine = Machine {
-            head: Head { kind: HeadKind::Manual { start: None }, pivot: 100.0 },
+            head: Head::new(HeadKind::Manual { start: None }, 100.0),
             tools: vec![Tool { number: 2, length: Some(150.0), diameter: None }],
             ..Machine::default()
         };

@@ -301,7 +301,7 @@ proptest! {
         }
 
         // The same holes with a head that has a pivot and a tool of a length: the pivot point is programmed.
-        machine.head = Head { kind: HeadKind::Manual { start: None }, pivot };
+        machine.head = Head::new(HeadKind::Manual { start: None }, pivot);
         machine.tools = vec![Tool { number: 7, length: Some(length), diameter: None }];
         let reach = pivot + length;
         let mut script = start(section).tool(7);

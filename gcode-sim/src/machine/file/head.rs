@@ -76,7 +76,7 @@ impl FileHead {
                 }
             }
         };
-        Ok(Head { kind, pivot })
+        Ok(Head::new(kind, pivot))
     }
 
     /// A key that means nothing for this kind of head is a mistake, not an extra.

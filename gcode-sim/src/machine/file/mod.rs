@@ -1,10 +1,16 @@
 //! The machine file: axes, table, head, tools, offsets and the part's place, as TOML.
 //!
 //! Unknown keys, missing keys and values out of range are errors that name the key, the line and what is allowed.
+mod errors;
 mod head;
+mod probe;
+mod spread;
 
+use errors::FileErrors;
+pub use errors::error_file;
 use head::FileHead;
 use nalgebra::{Point3, Unit, Vector3};
+use probe::FileProbe;
 use serde::Deserialize;
 use toml::{Spanned, Table};
 
@@ -24,6 +30,8 @@ struct File {
     tool: Option<Vec<FileTool>>,
     offsets: Option<Spanned<Table>>,
     part: Option<FilePart>,
+    probe: Option<FileProbe>,
+    errors: Option<FileErrors>,
 }
 
 #[derive(Default, Deserialize)]
@@ -88,7 +96,7 @@ impl Machine {
         };
         let head = match &file.head {
             Some(head) => head.check(&reader, &axes, &table)?,
-            None => Head { kind: HeadKind::Free, pivot: 0.0 },
+            None => Head::new(HeadKind::Free, 0.0),
         };
         let mut tools: Vec<Tool> = Vec::new();
         for tool in file.tool.iter().flatten() {
@@ -99,7 +107,7 @@ impl Machine {
             }
             tools.push(checked);
         }
-        Ok(Self {
+        let mut machine = Self {
             dialect: match &control.dialect {
                 Some(dialect) => reader.choice("control.dialect", dialect, &Dialect::ALL)?,
                 None => Dialect::default(),
@@ -115,7 +123,12 @@ impl Machine {
             head,
             tools,
             part,
-        })
+            probe: file.probe.map(|probe| probe.check(&reader)).transpose()?,
+        };
+        if let Some(errors) = &file.errors {
+            errors.apply(&reader, &mut machine)?;
+        }
+        Ok(machine)
     }
 }
 
@@ -357,7 +370,7 @@ tilt = [0.0, 0.0, 1.0]
         let cases = [
             (
                 "tables = []\n",
-                "line 1: key 'tables' is not known; allowed: control, table, head, tool, offsets, part",
+                "line 1: key 'tables' is not known; allowed: control, table, head, tool, offsets, part, probe, errors",
             ),
             ("[[table]]\nletter = \"B\"\nturns = \"y\"\n", "line 1: key 'table.sign' is missing"),
             (
