@@ -9,6 +9,7 @@ mod corpus;
 mod docs;
 mod emitted;
 mod explain;
+mod misplaced;
 mod pin_holes;
 mod round_trip;
 mod tidy;
