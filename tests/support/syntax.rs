@@ -2,7 +2,7 @@
 use gcode_sim::source::{SourceId, Sources};
 use gcode_sim::syntax::ast::{
     BinaryOp, Block, CallForm, CommentMark, Condition, Expr, ExprKind, Item, PrintPart, Program, ProgramName,
-    Statement, Word, WordValue,
+    Statement, Word, WordValue, Written,
 };
 use gcode_sim::syntax::{parse, print::decimal};
 
@@ -155,13 +155,20 @@ fn operator(op: BinaryOp) -> &'static str {
     }
 }
 
+fn sign(written: Written) -> &'static str {
+    match written {
+        Written::Letters => "",
+        Written::Sign => " by its sign",
+    }
+}
+
 fn condition(value: &Condition) -> String {
     match value {
-        Condition::Compare { left, relation, right, .. } => {
-            format!("{} {relation:?} {}", expr(left), expr(right))
+        Condition::Compare { left, relation, written, right, .. } => {
+            format!("{} {relation:?}{} {}", expr(left), sign(*written), expr(right))
         }
-        Condition::Logic(op, left, right) => {
-            format!("({} {} {})", condition(left), operator(*op), condition(right))
+        Condition::Logic(op, written, left, right) => {
+            format!("({} {}{} {})", condition(left), operator(*op), sign(*written), condition(right))
         }
         Condition::Bracket(inner) => format!("[{}]", condition(inner)),
     }

@@ -42,6 +42,10 @@ pub enum Alarm {
     NotAWord {
         text: String,
     },
+    /// Letters in lower case, where the control takes capitals only.
+    LowerCase,
+    /// `WH`, `GO`, where the control wants the whole word.
+    ShortWord,
     /// A `;`, and behind it what could be a block or a remark.
     TwoBlocksInOneLine,
     NoDataAfterAddress {
@@ -113,8 +117,10 @@ pub enum Alarm {
         p: i64,
     },
     ProgramNumber,
-    /// M98 or G65 without P.
+    /// A call without P.
     ProgramNotNamed,
+    /// M98 without P, where the control takes that for a bad name.
+    NoNameInCall,
     ProgramNotFound {
         number: u32,
     },

@@ -108,7 +108,9 @@ impl Flow {
             Statement::Assign { target, .. } if literal::of_operand(*target) == Some(3000.0) => {
                 Ways { leaves: true, ..Ways::default() }
             }
+            Statement::Several(all) if all.iter().any(is_raise) => Ways { leaves: true, ..Ways::default() },
             Statement::Assign { .. }
+            | Statement::Several(_)
             | Statement::Do { .. }
             | Statement::SetNames { .. }
             | Statement::Print { .. }
@@ -198,7 +200,11 @@ pub(crate) fn raises(kind: &OpKind) -> bool {
 }
 
 fn is_raise(statement: &Statement) -> bool {
-    matches!(statement, Statement::Assign { target, .. } if literal::of_operand(*target) == Some(3000.0))
+    match statement {
+        Statement::Assign { target, .. } => literal::of_operand(*target) == Some(3000.0),
+        Statement::Several(all) => all.iter().any(is_raise),
+        _ => false,
+    }
 }
 
 /// Loops without a partner, which a rule of their own tells.

@@ -121,6 +121,12 @@ fn steps(unit: &Unit<'_>, block: OpIndex, state: &Locals) -> Vec<(OpIndex, Local
             }
             steps
         }
+        (OpKind::Statement(crate::program::Statement::Several(_)), _) => {
+            for (target, value) in unit.blocks[block].items.iter().filter_map(variables::assigned_by) {
+                assign(target, value, &mut after);
+            }
+            both(after)
+        }
         (OpKind::Statement(_), Some(Statement::Assign { target, value })) => {
             assign(target, value, &mut after);
             both(after)
@@ -222,7 +228,7 @@ pub(crate) fn truth(condition: &Condition, state: &Locals) -> Option<bool> {
         Condition::Compare { left, relation, right, .. } => {
             compare(value_of(left, state), *relation, value_of(right, state))
         }
-        Condition::Logic(op, left, right) => match (op, truth(left, state), truth(right, state)) {
+        Condition::Logic(op, _, left, right) => match (op, truth(left, state), truth(right, state)) {
             (BinaryOp::And, Some(false), _) | (BinaryOp::And, _, Some(false)) => Some(false),
             (BinaryOp::Or, Some(true), _) | (BinaryOp::Or, _, Some(true)) => Some(true),
             (BinaryOp::And | BinaryOp::Or, Some(left), Some(right)) => {
@@ -274,11 +280,11 @@ fn refine(condition: &Condition, answer: bool, state: &mut Locals) {
             }
         }
         Condition::Compare { .. } => {}
-        Condition::Logic(BinaryOp::And, left, right) if answer => {
+        Condition::Logic(BinaryOp::And, _, left, right) if answer => {
             refine(left, true, state);
             refine(right, true, state);
         }
-        Condition::Logic(BinaryOp::Or, left, right) if !answer => {
+        Condition::Logic(BinaryOp::Or, _, left, right) if !answer => {
             refine(left, false, state);
             refine(right, false, state);
         }

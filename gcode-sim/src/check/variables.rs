@@ -112,7 +112,7 @@ impl Uses {
                 self.expr(left, usage(right));
                 self.expr(right, usage(left));
             }
-            Condition::Logic(_, left, right) => {
+            Condition::Logic(_, _, left, right) => {
                 self.condition(left);
                 self.condition(right);
             }
@@ -171,10 +171,15 @@ impl Uses {
 
 /// What a block assigns, alone or behind IF … THEN.
 pub(super) fn assignment(block: &Block) -> Option<(&Expr, &Expr)> {
-    block.items.iter().find_map(|item| match item {
+    block.items.iter().find_map(assigned_by)
+}
+
+/// What a part of a block assigns.
+pub(super) fn assigned_by(item: &Item) -> Option<(&Expr, &Expr)> {
+    match item {
         Item::Statement(statement) => assigned(&statement.node),
         _ => None,
-    })
+    }
 }
 
 pub(super) fn assigned(statement: &Statement) -> Option<(&Expr, &Expr)> {

@@ -15,12 +15,12 @@ pub struct DialectRow {
 pub const DIALECTS: &[DialectRow] = &[
     DialectRow { dialect: Dialect::Fanuc31i, name: "fanuc-31i", sets: &[
         ("MACRO-LEVELS", "5"), ("CALL-LEVELS", "15"), ("MORE-COMMONS", "98000-98499"), ("OFFSET-VARIABLES", "fanuc"),
-        ("ALARM-BASE", "3000"), ("PRINT-EXPANDS", "0"), ("PRINT-DIGITS", "8"), ("PLAIN-IF", "0"), ("THEN-WORDS", "0"),
+        ("ALARM-BASE", "3000"), ("ALARM-MOST", "200"), ("PRINT-EXPANDS", "0"), ("PRINT-DIGITS", "8"), ("PLAIN-IF", "0"), ("THEN-WORDS", "0"),
         ("THEN-GOTO", "0"), ("G67-ALARM", "1"),
     ] },
     DialectRow { dialect: Dialect::Fanuc0iF, name: "fanuc-0i-f", sets: &[
         ("MACRO-LEVELS", "5"), ("CALL-LEVELS", "15"), ("MORE-COMMONS", "98000-98499"), ("OFFSET-VARIABLES", "fanuc"),
-        ("ALARM-BASE", "3000"), ("PRINT-EXPANDS", "0"), ("PRINT-DIGITS", "8"), ("PLAIN-IF", "0"), ("THEN-WORDS", "0"),
+        ("ALARM-BASE", "3000"), ("ALARM-MOST", "200"), ("PRINT-EXPANDS", "0"), ("PRINT-DIGITS", "8"), ("PLAIN-IF", "0"), ("THEN-WORDS", "0"),
         ("THEN-GOTO", "0"), ("G67-ALARM", "1"),
     ] },
     // Nine macro levels in all; commons #10000 to #10999; offsets as #2001 and #2201 length and its wear, #2401 and
@@ -28,7 +28,7 @@ pub const DIALECTS: &[DialectRow] = &[
     // without THEN (operator's manual, macros).
     DialectRow { dialect: Dialect::HaasNgc, name: "haas-ngc", sets: &[
         ("MACRO-LEVELS", "9"), ("CALL-LEVELS", "9"), ("MORE-COMMONS", "10000-10999"), ("OFFSET-VARIABLES", "haas"),
-        ("ALARM-BASE", "1000"), ("PRINT-EXPANDS", "1"), ("PRINT-DIGITS", "7"), ("PLAIN-IF", "1"), ("THEN-WORDS", "1"),
+        ("ALARM-BASE", "1000"), ("ALARM-MOST", "999"), ("PRINT-EXPANDS", "1"), ("PRINT-DIGITS", "7"), ("PLAIN-IF", "1"), ("THEN-WORDS", "1"),
         ("THEN-GOTO", "1"), ("G67-ALARM", "0"),
     ] },
 ];

@@ -111,7 +111,7 @@ pub struct Unsure {
     pub negative_bits_alarm: bool,
     /// #5001… under mirror, scaling and rotation are the coordinates after them instead of those programmed.
     pub shows_transformed: bool,
-    /// POW and MOD are known.
+    /// POW, MOD and ATAN with a comma are known.
     pub new_functions: bool,
     /// `ATAN[0]/[0]` raises PS0119 instead of answering 0.
     pub atan_of_nothing_alarms: bool,
@@ -131,6 +131,37 @@ pub struct Unsure {
     pub g67_alarms: bool,
     /// An arc whose R can't reach its end raises PS0020 instead of a half circle.
     pub small_radius_alarms: bool,
+    /// Several assignments may stand in a block.
+    pub several_assignments: bool,
+    /// Conditions may be written with `=`, `<>`, `>`, `>=`, `<`, `<=`, `&` and `|`.
+    pub signs: bool,
+    /// Words of statements may be cut to two letters.
+    pub short_words: bool,
+    /// Lower case is read as capitals instead of raising PS0004.
+    pub lower_case: bool,
+    /// `#3000=n` shows a number that is too large instead of raising PS0119.
+    pub large_alarm_numbers: bool,
+    /// M98 without P raises PS0311 instead of PS0076.
+    pub missing_p_is_311: bool,
+    /// What E and F without a point are as arguments.
+    pub argument_e: ArgumentScale,
+    pub argument_f: ArgumentScale,
+}
+
+/// What a number without a point is when it is an argument of a macro call.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ArgumentScale {
+    /// As it stands.
+    Whole,
+    /// As the word F counts in the feed mode in force.
+    Feed,
+    /// So many least increments of a length.
+    Increments,
+}
+
+impl ArgumentScale {
+    pub const ALL: [(&'static str, Self); 3] =
+        [("whole", Self::Whole), ("feed", Self::Feed), ("increments", Self::Increments)];
 }
 
 /// Everything a run depends on besides the programs. `Default` is a 30i / 0i-F class mill, metric, IS-B.
@@ -163,6 +194,8 @@ pub struct Settings {
     pub three_m_codes: bool,
     /// `#3000=n` shows MC with this number added; MCA 6008#1 makes it 0.
     pub macro_alarm_base: u16,
+    /// The largest n that the manual names for `#3000=n`.
+    pub macro_alarm_most: u16,
     /// `IF[…]` is followed by an assignment or by words without THEN.
     pub plain_if: bool,
     /// `IF[…]THEN` takes words.
@@ -235,6 +268,7 @@ impl Default for Settings {
             plural_m_alarms: false,
             three_m_codes: false,
             macro_alarm_base: 3000,
+            macro_alarm_most: 200,
             plain_if: false,
             then_takes_words: false,
             more_commons: Some((98_000, 98_499)),
@@ -291,6 +325,14 @@ impl Default for Unsure {
             tap_dwells_at_r: true,
             g67_alarms: true,
             small_radius_alarms: true,
+            several_assignments: false,
+            signs: false,
+            short_words: true,
+            lower_case: true,
+            large_alarm_numbers: true,
+            missing_p_is_311: false,
+            argument_e: ArgumentScale::Whole,
+            argument_f: ArgumentScale::Feed,
         }
     }
 }

@@ -1,5 +1,5 @@
 //! The settings by their names: the parameter a manual names, its key on the command line, how it is read.
-use super::{Dialect, Increment, OffsetVariables, Settings};
+use super::{ArgumentScale, Dialect, Increment, OffsetVariables, Settings};
 use crate::motion::Position;
 use crate::units::MmPerMin;
 
@@ -25,6 +25,7 @@ pub struct Row {
 const SWITCH: &str = "0 or 1";
 const LENGTH: &str = "a length in mm, 0 or more";
 const POINT: &str = "axes and their machine coordinates, as in X10,Z-5";
+const SCALE: &str = "whole, feed (as the word F) or increments";
 const COUNT: &str = "a whole number";
 
 macro_rules! switch {
@@ -70,8 +71,9 @@ pub const ROWS: &[Row] = &[
     number!("1241", "the second reference position", POINT, |s, v| s.references[0] = point(s, v)?),
     number!("1242", "the third reference position", POINT, |s, v| s.references[1] = point(s, v)?),
     number!("1243", "the fourth reference position", POINT, |s, v| s.references[2] = point(s, v)?),
-    number!("MCA", "6008#1: #3000=n shows MC n", SWITCH, |s, v| s.macro_alarm_base = if switch(v)? { 0 } else { 3000 }),
+    number!("MCA", "6008#1: #3000=n shows MC n", SWITCH, |s, v| (s.macro_alarm_base, s.macro_alarm_most) = if switch(v)? { (0, 4095) } else { (3000, 200) }),
     number!("ALARM-BASE", "what #3000=n adds to n", "0 to 9000", |s, v| s.macro_alarm_base = whole(v, 0, 9000)? as u16),
+    number!("ALARM-MOST", "the largest n that the manual names for #3000=n", "1 to 4095", |s, v| s.macro_alarm_most = whole(v, 1, 4095)? as u16),
     number!("MORE-COMMONS", "common variables beyond #999", "a range as 98000-98499, or 0", |s, v| s.more_commons = range(v)?),
     number!("OFFSET-VARIABLES", "how the variables of tool offsets are numbered", "fanuc or haas", |s, v| s.offset_variables = choice(v, &OffsetVariables::ALL)?),
     switch!("PLAIN-IF", "IF[..] takes an assignment or words without THEN", plain_if),
@@ -108,7 +110,7 @@ pub const ROWS: &[Row] = &[
     switch!("MISSING-N-78", "GOTO without its target is PS0078, not PS0128", unsure.missing_target_is_78),
     switch!("BITS-ALARM", "AND, OR, XOR of a negative number alarm", unsure.negative_bits_alarm),
     switch!("SHOWN-TRANSFORMED", "#5001.. under G51, G51.1, G68, G68.2 are the coordinates after them", unsure.shows_transformed),
-    switch!("NEW-FUNCTIONS", "POW and MOD are known", unsure.new_functions),
+    switch!("NEW-FUNCTIONS", "POW, MOD and ATAN[a,b] are known", unsure.new_functions),
     switch!("ATAN-0-ALARM", "ATAN[0]/[0] alarms", unsure.atan_of_nothing_alarms),
     switch!("TAN-90-ALARM", "TAN[90] alarms", unsure.tan_90_alarms),
     switch!("G53-IN-G91", "G53 moves by increments in G91", unsure.g53_moves_in_g91),
@@ -118,6 +120,14 @@ pub const ROWS: &[Row] = &[
     switch!("TAP-DWELL-R", "G84 and G74 dwell at R too", unsure.tap_dwells_at_r),
     switch!("G67-ALARM", "G67 without G66 alarms", unsure.g67_alarms),
     switch!("SMALL-R-ALARM", "an arc whose R is too small alarms", unsure.small_radius_alarms),
+    switch!("TWO-ASSIGNMENTS", "several assignments in a block are taken", unsure.several_assignments),
+    switch!("SIGNS", "conditions take = <> > >= < <= & and |", unsure.signs),
+    switch!("SHORT-WORDS", "words of statements may be cut to two letters: WH GO EN TH PO PC DP BP SE", unsure.short_words),
+    switch!("LOWER-CASE", "lower case is read as capitals, not refused", unsure.lower_case),
+    switch!("LARGE-ALARMS", "#3000=n shows an n that is too large", unsure.large_alarm_numbers),
+    switch!("M98-NO-P-311", "M98 without P is PS0311, not PS0076", unsure.missing_p_is_311),
+    number!("ARGUMENT-E", "what E without a point is as an argument", SCALE, |s, v| s.unsure.argument_e = choice(v, &ArgumentScale::ALL)?),
+    number!("ARGUMENT-F", "what F without a point is as an argument", SCALE, |s, v| s.unsure.argument_f = choice(v, &ArgumentScale::ALL)?),
 ];
 
 impl Settings {

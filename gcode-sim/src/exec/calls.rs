@@ -38,7 +38,11 @@ impl Core {
             Calling::AfterMoves => CallKind::Modal,
             Calling::Subprogram => CallKind::Subprogram,
         };
-        let missing = Alarm::ProgramNotNamed.at(call.span);
+        let unsure = &self.settings.unsure;
+        let missing = match kind {
+            CallKind::Subprogram if unsure.missing_p_is_311 => Alarm::NoNameInCall.at(call.span),
+            _ => Alarm::ProgramNotNamed.at(call.span),
+        };
         let mut repeats = match &call.repeats {
             Some(word) => self.coded_count(program, word)?,
             None => None,

@@ -117,9 +117,6 @@ impl Core {
                 let right = stack.pop().number();
                 Value::Number(atan2(stack.pop().number(), right, &self.settings)?)
             }
-            Operation::Power if !unsure.new_functions => {
-                return Err(Alarm::Expression { text: "POW".into() });
-            }
             Operation::Power => {
                 let right = stack.pop().number();
                 Value::Number(power(stack.pop().number(), right)?)

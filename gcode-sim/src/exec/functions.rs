@@ -18,7 +18,6 @@ pub(super) fn binary(op: BinaryOp, left: f64, right: f64, unsure: &Unsure) -> Re
         BinaryOp::Mul => left * right,
         BinaryOp::Div if right == 0.0 => return Err(Alarm::DivideByZero),
         BinaryOp::Div => left / right,
-        BinaryOp::Mod if !unsure.new_functions => return Err(Alarm::Expression { text: "MOD".into() }),
         BinaryOp::Mod => {
             let (left, right) = (left.round(), right.round());
             if right == 0.0 {

@@ -45,7 +45,7 @@ use self::words::Given;
 use crate::alarm::Alarm;
 use crate::control::{ParameterPlace, Settings};
 use crate::motion::{Place, Sink, StopKind};
-use crate::program::{Library, Memory, OpKind, ProgramId};
+use crate::program::{Form, Library, Memory, OpKind, ProgramId};
 use crate::source::{Span, Spanned};
 
 /// How long a run may take.
@@ -266,15 +266,19 @@ impl Control {
         if op.skip.is_some_and(|switch| core.skips(switch)) {
             return Ok(None);
         }
+        for form in &op.forms {
+            if !form.node.is_taken(&core.settings) {
+                return Err(form.node.alarm().at(form.span));
+            }
+            if form.node == Form::LowerCase {
+                core.notes.entry(Note::LowerCase).or_insert(op.span);
+            }
+        }
         let mut kind = &op.kind;
-        if let OpKind::If { condition, has_then, then } = kind {
-            let taken = if *has_then { core.settings.then_takes_words } else { core.settings.plain_if };
-            if !taken {
-                return Err(Alarm::IfFormat.at(op.span));
-            }
-            if core.holds(program, *condition)? {
-                kind = then;
-            }
+        if let OpKind::If { condition, then } = kind
+            && core.holds(program, *condition)?
+        {
+            kind = then;
         }
         match kind {
             OpKind::Empty if core.state.parameter_input && op.number.is_some() => {

@@ -16,6 +16,10 @@ pub enum Note {
     NoRepeats,
     /// G10 L52 has written a parameter that nothing here depends on.
     ParameterWithoutEffect { number: u16 },
+    /// The program has letters in lower case, which some controls refuse.
+    LowerCase,
+    /// `#3000=n` with a number beyond those that the manual names.
+    LargeAlarm { number: u16, most: u16 },
 }
 
 impl Note {
@@ -41,6 +45,14 @@ impl Note {
             Self::ParameterWithoutEffect { number } => {
                 let message = format!("parameter {number} is kept for PRM and has no effect here");
                 ("parameter-without-effect", message, "docs/control.md says what is not simulated")
+            }
+            Self::LowerCase => {
+                let message = "lower case is read as capitals; some controls refuse it".to_owned();
+                ("lower-case", message, "write capitals, or set LOWER-CASE=0 if the control refuses it")
+            }
+            Self::LargeAlarm { number, most } => {
+                let message = format!("#3000={number}: a control's manual names numbers up to {most}");
+                ("large-alarm-number", message, "use a smaller number")
             }
         }
     }

@@ -1,11 +1,15 @@
 //! Macro statements: assignments, branches and loops. They never tell the machine anything, but for #3000 and #3006.
 use super::eval::{Checked, index, integer};
+use super::notes::Note;
 use super::vars::{Kind, Value};
 use super::{Core, Outcome};
 use crate::alarm::Alarm;
 use crate::motion::{EventKind, Sink, StopKind};
 use crate::program::{Operand, Program, Statement};
 use crate::source::{Span, Spanned};
+
+/// No control has numbers beyond this for alarms of its programs.
+const MOST_RAISED: u16 = 4095;
 
 impl Core {
     /// Does one statement. The frame already stands at the next block; jumps change that.
@@ -22,6 +26,11 @@ impl Core {
                 let value = self.operand(program, *value)?;
                 self.write(number, value, text.as_deref(), *target_span, sink)?;
             }
+            Statement::Several(assignments) => {
+                for one in assignments {
+                    self.statement(program, one, span, sink)?;
+                }
+            }
             Statement::Goto(to) => self.goto(program, to)?,
             Statement::IfGoto { condition, to } => {
                 if self.holds(program, *condition)? {
@@ -29,10 +38,6 @@ impl Core {
                 }
             }
             Statement::IfThen { condition, then } => {
-                let allowed = self.settings.unsure.then_takes_goto;
-                if matches!(**then, Statement::Goto(_)) && !allowed {
-                    return Err(Alarm::IfFormat.at(span));
-                }
                 if self.holds(program, *condition)? {
                     // An assignment or a GOTO: lowering lets nothing else stand here.
                     return self.statement(program, then, span, sink);
@@ -118,19 +123,28 @@ impl Core {
             Kind::Common(index) => self.vars.set_common(index, value),
             Kind::Vacant => return Err(Alarm::WriteProtected { number }.at(span)),
             Kind::System if number == 3000 => {
-                let number = integer(value.number()).map_err(|alarm| alarm.at(span))?;
-                let text = shown(text);
-                let number =
-                    u16::try_from(number).map_err(|_| Alarm::NoSuchVariable { number: 3000 }.at(span))?;
-                let base = self.settings.macro_alarm_base;
-                let (number, plain) =
-                    if base == 3000 { (number, false) } else { (number.saturating_add(base), true) };
-                return Err(Alarm::Raised { number, text, plain }.at(span));
+                return Err(self.raised(value.number(), shown(text)).at(span));
             }
             Kind::System if number == 3006 => self.message(&shown(text), sink),
             Kind::System => self.write_system(number, value.number()).map_err(|alarm| alarm.at(span))?,
         }
         Ok(())
+    }
+
+    /// `#3000=n(TEXT)`. A number beyond those that the manual names is shown as it is, or alarms by itself.
+    fn raised(&mut self, value: f64, text: String) -> Alarm {
+        let out_of_range = Alarm::OutOfRange { function: "#3000".into(), value };
+        let (base, most) = (self.settings.macro_alarm_base, self.settings.macro_alarm_most);
+        let number = integer(value).ok().and_then(|number| u16::try_from(number).ok());
+        let Some(number) = number.filter(|number| *number <= MOST_RAISED) else { return out_of_range };
+        if number > most {
+            if !self.settings.unsure.large_alarm_numbers {
+                return out_of_range;
+            }
+            self.notes.entry(Note::LargeAlarm { number, most }).or_insert(self.block);
+        }
+        let plain = base != 3000;
+        Alarm::Raised { number: if plain { number + base } else { number }, text, plain }
     }
 
     /// `#3006=1(TEXT)`: the program waits, and the operator reads the text and the variables it names; a vacant

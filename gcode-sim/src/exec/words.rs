@@ -7,6 +7,7 @@ use super::code_calls::CallingWord;
 use super::eval::{Checked, at, integer};
 use super::state::State;
 use crate::alarm::Alarm;
+use crate::control::ArgumentScale;
 use crate::program::codes::{self, Row};
 use crate::program::m_codes;
 use crate::program::modes::{FeedMode, Unit};
@@ -295,12 +296,8 @@ impl Core {
     pub(super) fn feed_word(&self, given: &Given, state: &State) -> Checked<Option<f64>> {
         let Some((raw, span)) = given.get(b'F') else { return Ok(None) };
         let value = match raw {
-            Raw::Literal(number)
-                if number.places.is_none() && state.modal.feed_mode == FeedMode::PerRevolution =>
-            {
-                number.value() / if state.modal.unit == Unit::Inch { 10_000.0 } else { 100.0 }
-            }
-            Raw::Literal(number) => number.value(),
+            Raw::Literal(number) if number.places.is_some() => number.value(),
+            Raw::Literal(number) => number.value() / POWERS[feed_decimals(state)],
             Raw::Computed(value) => value,
         };
         if value < 0.0 {
@@ -325,13 +322,28 @@ impl Core {
 
     /// How many decimals an argument without a point has that counts the increments of its address.
     fn counted_decimals(&self, raw: Raw, letter: u8) -> usize {
-        match (raw, letter) {
-            (_, b'D' | b'E' | b'F' | b'H' | b'M' | b'S' | b'T' | b'L' | b'N' | b'P' | b'G') => 0,
-            (Raw::Literal(number), _) if number.places.is_none() && !self.settings.calculator_input => {
-                self.decimals(letter, self.state.modal.unit)
-            }
-            _ => 0,
+        let Raw::Literal(Decimal { places: None, .. }) = raw else { return 0 };
+        let scale = match letter {
+            b'D' | b'G' | b'H' | b'L' | b'M' | b'N' | b'P' | b'S' | b'T' => ArgumentScale::Whole,
+            b'E' => self.settings.unsure.argument_e,
+            b'F' => self.settings.unsure.argument_f,
+            _ => ArgumentScale::Increments,
+        };
+        match scale {
+            ArgumentScale::Whole => 0,
+            ArgumentScale::Feed => feed_decimals(&self.state),
+            ArgumentScale::Increments if self.settings.calculator_input => 0,
+            ArgumentScale::Increments => self.decimals(letter, self.state.modal.unit),
         }
+    }
+}
+
+/// How many decimals F has where it is written without a point.
+fn feed_decimals(state: &State) -> usize {
+    match (state.modal.feed_mode, state.modal.unit) {
+        (FeedMode::PerRevolution, Unit::Inch) => 4,
+        (FeedMode::PerRevolution, Unit::Metric) => 2,
+        (FeedMode::PerMinute | FeedMode::InverseTime, _) => 0,
     }
 }
 

@@ -1,9 +1,10 @@
 //! Expressions in postfix order, so that evaluating one needs neither recursion nor memory of its own.
+use super::Form;
 use super::lower::Lowering;
 use super::names::{self, NameRow, OTHER_MEMORIES};
 use crate::alarm::Alarm;
 use crate::source::{Span, Spanned};
-use crate::syntax::ast::{BinaryOp, CallForm, Condition, Expr, ExprKind, Function, Name, Relation};
+use crate::syntax::ast::{BinaryOp, CallForm, Condition, Expr, ExprKind, Function, Name, Relation, Written};
 
 /// A value: known, one variable, or code to evaluate. The first two are most of what programs contain.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -154,6 +155,9 @@ impl Lowering {
             ExprKind::Plus(inner) => self.unary(inner, Operation::Plus, span, context, brackets)?,
             ExprKind::Bracket(inner) => self.unary(inner, Operation::Bracket, span, context, brackets + 1)?,
             ExprKind::Binary(op, left, right) => {
+                if *op == BinaryOp::Mod {
+                    self.note(Form::NewFunction("MOD"), span);
+                }
                 let left = self.expr(left, context, brackets)?;
                 let right = self.expr(right, context, brackets)?;
                 self.emit(Operation::Binary(*op), span);
@@ -202,6 +206,14 @@ impl Lowering {
             this.emit(operation, span);
             Ok(first.max(second + 1))
         };
+        let new = match (function, form) {
+            (Function::Pow, _) => Some("POW"),
+            (Function::Atan, CallForm::Comma(..)) => Some("ATAN[a,b]"),
+            _ => None,
+        };
+        if let Some(name) = new {
+            self.note(Form::NewFunction(name), span);
+        }
         match (function, form, context) {
             (Function::Atan, CallForm::Slash(a, b) | CallForm::Comma(a, b), _) => {
                 two(self, a, b, Operation::Atan2)
@@ -266,16 +278,22 @@ impl Lowering {
 
     fn test(&mut self, condition: &Condition) -> Lowered<usize> {
         match condition {
-            Condition::Compare { left, relation, right, span } => {
+            Condition::Compare { left, relation, written, right, span } => {
+                if *written == Written::Sign {
+                    self.note(Form::Signs, *span);
+                }
                 let left = self.expr(left, Context::Macro, 1)?;
                 let right = self.expr(right, Context::Macro, 1)?;
                 self.emit(Operation::Compare(*relation), *span);
                 Ok(left.max(right + 1))
             }
-            Condition::Logic(op, first, second) => {
+            Condition::Logic(op, written, first, second) => {
                 let left = self.test(first)?;
                 let right = self.test(second)?;
                 let span = self.instructions.last().map_or_else(Span::default, |i| i.span);
+                if *written == Written::Sign {
+                    self.note(Form::Signs, span);
+                }
                 self.emit(Operation::Logic(*op), span);
                 Ok(left.max(right + 1))
             }

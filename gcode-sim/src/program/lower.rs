@@ -1,6 +1,6 @@
 //! Lowers a tree to operations, block by block; what can't run becomes the alarm it raises when it is reached.
 use super::expr::{Context, Instruction};
-use super::{Op, OpKind, PrintPart, Program, Statement, flow};
+use super::{Form, Op, OpKind, PrintPart, Program, Statement, flow};
 use crate::alarm::Alarm;
 use crate::source::{SourceId, Span, Spanned};
 use crate::syntax::ast::ProgramName;
@@ -12,11 +12,14 @@ pub(super) struct Lowering {
     pub(super) instructions: Vec<Instruction>,
     /// Variables called by names that SETVN gives.
     pub(super) names: Vec<String>,
+    /// What the block at hand has that not every control takes.
+    forms: Vec<Spanned<Form>>,
 }
 
 /// Reads and lowers the programs of a file, line by line.
 pub(super) fn lower(source: SourceId, bytes: &[u8]) -> Vec<Program> {
-    let programs = syntax::parse_with(source, bytes, |lowering: &mut Lowering, block| lowering.block(&block));
+    let programs =
+        syntax::parse_with(source, bytes, |lowering: &mut Lowering, block| lowering.block(&block, bytes));
     programs.into_iter().map(finish).collect()
 }
 
@@ -45,12 +48,24 @@ fn finish(Parts { name, span, context, blocks: mut ops, closed }: Parts<Lowering
 type Lowered<T> = Result<T, Spanned<Alarm>>;
 
 impl Lowering {
-    fn block(&mut self, block: &ast::Block) -> Op {
+    /// Notes a way of writing for the block at hand.
+    pub(super) fn note(&mut self, form: Form, span: Span) {
+        self.forms.push(Spanned::new(form, span));
+    }
+
+    fn block(&mut self, block: &ast::Block, bytes: &[u8]) -> Op {
+        if let Some(span) = lower_case(block, bytes) {
+            self.note(Form::LowerCase, span);
+        }
+        if let Some(span) = block.short {
+            self.note(Form::ShortWord, span);
+        }
         let kind = self.kind(block).unwrap_or_else(|alarm| OpKind::Alarm(Box::new(alarm)));
         Op {
             span: block.span,
             skip: block.skip.as_ref().map(|s| s.node),
             number: block.number.as_ref().map(|n| n.node),
+            forms: self.forms.drain(..).collect(),
             kind,
         }
     }
@@ -59,13 +74,17 @@ impl Lowering {
         if let Some(ast::Item::Statement(first)) = block.items.first()
             && let ast::Statement::If { condition, has_then } = &first.node
         {
+            self.note(if *has_then { Form::ThenWords } else { Form::PlainIf }, first.span);
             let condition = self.condition(condition, first.span)?;
             let rest = ast::Block { items: block.items[1..].to_vec(), ..block.clone() };
             let then = match self.kind(&rest)? {
                 then @ (OpKind::Words(_) | OpKind::Statement(Statement::Assign { .. })) => Box::new(then),
                 _ => return Err(Alarm::IfFormat.at(first.span)),
             };
-            return Ok(OpKind::If { condition, has_then: *has_then, then });
+            return Ok(OpKind::If { condition, then });
+        }
+        if let Some(several) = self.several(block)? {
+            return Ok(OpKind::Statement(several));
         }
         let mut words = Vec::new();
         let mut skips = Vec::new();
@@ -105,6 +124,20 @@ impl Lowering {
         }
     }
 
+    /// A block of nothing but assignments, two or more.
+    fn several(&mut self, block: &ast::Block) -> Lowered<Option<Statement>> {
+        let [_, second, ..] = &block.items[..] else { return Ok(None) };
+        let ast::Item::Statement(second) = second else { return Ok(None) };
+        let mut several = Vec::new();
+        for item in &block.items {
+            let ast::Item::Statement(found) = item else { return Ok(None) };
+            let ast::Statement::Assign { target, value } = &found.node else { return Ok(None) };
+            several.push(self.assign(target, value, found.span, block)?);
+        }
+        self.note(Form::SeveralAssignments, second.span);
+        Ok(Some(Statement::Several(several)))
+    }
+
     fn statement(
         &mut self,
         statement: &ast::Statement,
@@ -120,7 +153,9 @@ impl Lowering {
             ast::Statement::IfThen { condition, then } => {
                 let condition = self.condition(condition, span)?;
                 let then = match &**then {
-                    ast::Statement::Assign { .. } | ast::Statement::Goto(_) => {
+                    ast::Statement::Assign { .. } => self.statement(then, span, block)?,
+                    ast::Statement::Goto(_) => {
+                        self.note(Form::ThenGoto, span);
                         self.statement(then, span, block)?
                     }
                     _ => Statement::Alarm(Box::new(Alarm::IfFormat.at(span))),
@@ -190,6 +225,25 @@ fn sixteen_digits(text: &[u8]) -> Option<u64> {
     let text = std::str::from_utf8(text).ok()?.trim();
     let hexadecimal = text.len() == 16 && text.bytes().all(|b| b.is_ascii_hexdigit());
     hexadecimal.then(|| u64::from_str_radix(text, 16).ok()).flatten()
+}
+
+/// The first letter in lower case outside comments, and what follows it. What can't be read has an alarm of its own.
+fn lower_case(block: &ast::Block, bytes: &[u8]) -> Option<Span> {
+    if matches!(block.items.last(), Some(ast::Item::Unreadable(_))) {
+        return None;
+    }
+    let mut from = block.span.start as usize;
+    let small = |from: usize, to: usize| {
+        let at = bytes.get(from..to)?.iter().position(u8::is_ascii_lowercase)?;
+        Some(Span { start: (from + at) as u32, ..block.span })
+    };
+    for comment in &block.comments {
+        if let Some(found) = small(from, comment.span.start as usize) {
+            return Some(found);
+        }
+        from = comment.span.end as usize;
+    }
+    small(from, block.span.end as usize)
 }
 
 fn loop_number(number: &Spanned<i64>) -> Lowered<u8> {

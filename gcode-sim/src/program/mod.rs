@@ -6,6 +6,7 @@ pub mod codes;
 pub mod cycles;
 mod expr;
 mod flow;
+mod forms;
 mod lower;
 pub mod m_codes;
 mod memory;
@@ -15,6 +16,7 @@ mod words;
 
 pub use arguments::{ArgumentLocals, argument_letter};
 pub use expr::{Code, Instruction, Operand, Operation, STACK};
+pub use forms::Form;
 pub use memory::{Library, Memory, NoLibrary, ProgramId};
 pub use words::{CallOp, CallTarget, Calling, Coded, Input, Words};
 
@@ -50,6 +52,8 @@ pub struct Op {
     /// The block skip switch at its start.
     pub skip: Option<u8>,
     pub number: Option<u32>,
+    /// What is written in it that not every control takes, in the order it is held against the settings.
+    pub forms: Box<[Spanned<Form>]>,
     pub kind: OpKind,
 }
 
@@ -59,10 +63,9 @@ pub enum OpKind {
     Empty,
     Words(Box<Words>),
     Statement(Statement),
-    /// `IF[…]` before words or a statement, with THEN or without: settings say whether the control takes it.
+    /// `IF[…]` before words or a statement, with THEN or without.
     If {
         condition: Code,
-        has_then: bool,
         then: Box<Self>,
     },
     /// The control stops here if it gets here.
@@ -79,6 +82,8 @@ pub enum Statement {
         /// The first comment of the block: the text of `#3000=` and `#3006=`.
         text: Option<Box<[u8]>>,
     },
+    /// `#1=1 #2=2`: assignments, one after the other.
+    Several(Vec<Self>),
     Goto(Spanned<Operand>),
     IfGoto {
         condition: Code,

@@ -163,8 +163,9 @@ impl Run {
     pub fn notes(&self) -> impl Iterator<Item = Diagnostic> + '_ {
         self.control.notes().map(|(note, block)| {
             let (code, message, help) = note.parts();
-            // K0 is meant; the others are slips.
-            let severity = if note == Note::NoRepeats { Severity::Note } else { Severity::Warning };
+            // K0 and lower case are meant; the others are slips.
+            let meant = matches!(note, Note::NoRepeats | Note::LowerCase);
+            let severity = if meant { Severity::Note } else { Severity::Warning };
             Diagnostic::new(severity, code, message).at(Place { block, calls: None }).help(help)
         })
     }

@@ -44,6 +44,8 @@ pub struct Block {
     pub skip: Option<Spanned<u8>>,
     /// `N10`.
     pub number: Option<Spanned<u32>>,
+    /// The first statement with a word cut short: `WH[…]DO1`, `GO 5`.
+    pub short: Option<Span>,
     pub items: Vec<Item>,
     /// Comments in the order they stand in.
     pub comments: Vec<Comment>,
@@ -232,12 +234,22 @@ pub enum Condition {
     Compare {
         left: Expr,
         relation: Relation,
+        written: Written,
         right: Expr,
         span: Span,
     },
     /// `[c1] AND [c2]`; [`BinaryOp::And`], [`BinaryOp::Or`] or [`BinaryOp::Xor`].
-    Logic(BinaryOp, Box<Condition>, Box<Condition>),
+    Logic(BinaryOp, Written, Box<Condition>, Box<Condition>),
     Bracket(Box<Condition>),
+}
+
+/// How an operator of a condition is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Written {
+    /// `EQ`, `AND`: what every control takes.
+    Letters,
+    /// `=`, `&`.
+    Sign,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

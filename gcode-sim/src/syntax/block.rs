@@ -14,7 +14,8 @@ use crate::source::Spanned;
 /// `%`, and an O word after M02, M30 or M99 (`M99O0810(TEXT)`), end the block; they and the rest are handed back.
 pub(super) fn block(line: Line, input: Input<'_>) -> (Block, Input<'_>) {
     let span = line.span(input, input);
-    let mut block = Block { span, skip: None, number: None, items: Vec::new(), comments: Vec::new() };
+    let mut block =
+        Block { span, skip: None, number: None, short: None, items: Vec::new(), comments: Vec::new() };
     let mut rest = spaces(input);
     while !rest.is_empty() && !ends_block(rest, &block) {
         match item(line, rest, &mut block) {
@@ -86,9 +87,13 @@ fn item<'a>(line: Line, at: Input<'a>, block: &mut Block) -> Read<'a, ()> {
         }
         [b'O' | b'o' | b':', ..] if beginning && begins_program(at) => return fail(at, Alarm::ProgramNumber),
         [b',' | b'A'..=b'Z' | b'a'..=b'z', ..] => match keyword(at) {
-            Some((rest, keyword)) => {
-                let (rest, found) = statement(line, rest, keyword)?;
-                (rest, Item::Statement(Box::new(line.spanned(found, at, rest))))
+            Some(begun) => {
+                let (rest, (found, short)) = statement(line, &begun)?;
+                let found = line.spanned(found, at, rest);
+                if short {
+                    block.short = block.short.or(Some(found.span));
+                }
+                (rest, Item::Statement(Box::new(found)))
             }
             None => {
                 let (rest, word) = word(line, at)?;

@@ -27,7 +27,7 @@ pub(super) fn blank(
         comments.push_back(Comment { span, text: text.to_vec(), mark });
     };
     let mut pairs: Option<Vec<usize>> = None;
-    let mut depth = 0u32;
+    let (mut brackets, mut names) = (0u32, 0u32);
     let mut at = 0;
     while let Some(byte) = line.get(at) {
         let rest = &line[at..];
@@ -53,13 +53,16 @@ pub(super) fn blank(
                 }
                 return;
             }
-            b'/' if depth == 0 && begins_remark(rest) => {
+            b'/' if brackets + names == 0 && begins_remark(rest) => {
                 keep(at, line.len(), &rest[2..], CommentMark::Slashes);
                 code.truncate(at);
                 return;
             }
-            b'<' | b'[' => depth += 1,
-            b'>' | b']' => depth = depth.saturating_sub(1),
+            b'[' => brackets += 1,
+            b']' => brackets = brackets.saturating_sub(1),
+            // In brackets they compare.
+            b'<' if brackets == 0 => names += 1,
+            b'>' if brackets == 0 => names = names.saturating_sub(1),
             _ => {}
         }
         at += 1;
@@ -133,6 +136,7 @@ mod tests {
         check("G0 // UP", "G0 ", &[" UP"]);
         check("#1=#2//2", "#1=#2//2", &[]);
         check("M98<//CNC_MEM/A>", "M98<//CNC_MEM/A>", &[]);
+        check("IF[#1<5]GOTO 5//UP", "IF[#1<5]GOTO 5", &["UP"]);
         check("(A;B//C%)", "(((((((((", &["A;B//C%"]);
     }
 }

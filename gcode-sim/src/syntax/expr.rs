@@ -6,7 +6,7 @@ use nom::Parser;
 use nom::branch::alt;
 use nom::combinator::value;
 
-use super::ast::{BinaryOp, Condition, Expr, ExprKind, Relation};
+use super::ast::{BinaryOp, Condition, Expr, ExprKind, Relation, Written};
 use super::function::{call, is_name, named};
 use super::number::{EXPRESSION_DIGITS, decimal};
 use super::token::{
@@ -72,38 +72,48 @@ fn number<'a>(rest: Input<'a>, from: Input<'a>, mixed: Mixed) -> Read<'a, Expr> 
     }
 }
 
-type Operator = for<'a> fn(Input<'a>) -> Option<(Input<'a>, BinaryOp)>;
+type Operator = for<'a> fn(Input<'a>) -> Option<(Input<'a>, BinaryOp, Written)>;
 type Part = for<'a> fn(Line, Input<'a>, u8) -> Read<'a, Mixed>;
 
-/// `+ - OR XOR`, left to right.
+/// `+ - OR XOR |`, left to right.
 fn sum(line: Line, input: Input<'_>, depth: u8) -> Read<'_, Mixed> {
     let operator: Operator = |input| match next(input)? {
-        (b'+', rest) => Some((rest, BinaryOp::Add)),
-        (b'-', rest) => Some((rest, BinaryOp::Sub)),
-        (b'O' | b'o', _) => word("OR")(input).ok().map(|(rest, ())| (rest, BinaryOp::Or)),
-        (b'X' | b'x', _) => word("XOR")(input).ok().map(|(rest, ())| (rest, BinaryOp::Xor)),
+        (b'+', rest) => Some((rest, BinaryOp::Add, Written::Sign)),
+        (b'-', rest) => Some((rest, BinaryOp::Sub, Written::Sign)),
+        (b'|', rest) => Some((rest, BinaryOp::Or, Written::Sign)),
+        (b'O' | b'o', _) => in_letters(input, "OR", BinaryOp::Or),
+        (b'X' | b'x', _) => in_letters(input, "XOR", BinaryOp::Xor),
         _ => None,
     };
     chain(line, input, depth, operator, term)
 }
 
-/// `* / AND MOD`, left to right.
+/// `* / AND MOD &`, left to right.
 fn term(line: Line, input: Input<'_>, depth: u8) -> Read<'_, Mixed> {
     let operator: Operator = |input| match next(input)? {
-        (b'*', rest) => Some((rest, BinaryOp::Mul)),
-        (b'/', rest) => Some((rest, BinaryOp::Div)),
-        (b'A' | b'a', _) => word("AND")(input).ok().map(|(rest, ())| (rest, BinaryOp::And)),
-        (b'M' | b'm', _) => word("MOD")(input).ok().map(|(rest, ())| (rest, BinaryOp::Mod)),
+        (b'*', rest) => Some((rest, BinaryOp::Mul, Written::Sign)),
+        (b'/', rest) => Some((rest, BinaryOp::Div, Written::Sign)),
+        (b'&', rest) => Some((rest, BinaryOp::And, Written::Sign)),
+        (b'A' | b'a', _) => in_letters(input, "AND", BinaryOp::And),
+        (b'M' | b'm', _) => in_letters(input, "MOD", BinaryOp::Mod),
         _ => None,
     };
     chain(line, input, depth, operator, signed)
+}
+
+fn in_letters<'a>(
+    input: Input<'a>,
+    text: &'static str,
+    op: BinaryOp,
+) -> Option<(Input<'a>, BinaryOp, Written)> {
+    word(text)(input).ok().map(|(rest, ())| (rest, op, Written::Letters))
 }
 
 fn chain<'a>(line: Line, input: Input<'a>, depth: u8, operator: Operator, part: Part) -> Read<'a, Mixed> {
     let start = spaces(input);
     let (mut rest, mut left) = part(line, input, depth)?;
     let mut count = 0;
-    while let Some((after, op)) = operator(rest) {
+    while let Some((after, op, written)) = operator(rest) {
         let at = spaces(rest);
         count += 1;
         if count > MOST_OPERATORS {
@@ -111,15 +121,18 @@ fn chain<'a>(line: Line, input: Input<'a>, depth: u8, operator: Operator, part: 
             return fail(at, Alarm::NotSimulated { what });
         }
         let (after, right) = wanted(part(line, after, depth), after)?;
+        let bits = matches!(op, BinaryOp::And | BinaryOp::Or | BinaryOp::Xor);
         left = match (left, right) {
+            // `&` and `|` join conditions only.
+            (Mixed::Number(_), Mixed::Number(_)) if bits && written == Written::Sign => {
+                return no_expression(at);
+            }
             (Mixed::Number(left), Mixed::Number(right)) => Mixed::Number(Expr {
                 kind: ExprKind::Binary(op, Box::new(left), Box::new(right)),
                 span: line.span(start, after),
             }),
-            (Mixed::Truth(left), Mixed::Truth(right))
-                if matches!(op, BinaryOp::And | BinaryOp::Or | BinaryOp::Xor) =>
-            {
-                Mixed::Truth(Condition::Logic(op, Box::new(left), Box::new(right)))
+            (Mixed::Truth(left), Mixed::Truth(right)) if bits => {
+                Mixed::Truth(Condition::Logic(op, written, Box::new(left), Box::new(right)))
             }
             _ => return no_expression(at),
         };
@@ -171,10 +184,10 @@ fn bracket(line: Line, input: Input<'_>, depth: u8) -> Read<'_, Mixed> {
     let start = &input[1..];
     let (rest, left) = wanted(sum(line, start, depth), start)?;
     let (rest, inside) = match (relation(rest), left) {
-        (Ok((after, relation)), Mixed::Number(left)) => {
+        (Ok((after, (relation, written))), Mixed::Number(left)) => {
             let (after, right) = wanted(expr(line, after, depth), after)?;
             let span = line.span(spaces(start), after);
-            (after, Mixed::Truth(Condition::Compare { left, relation, right, span }))
+            (after, Mixed::Truth(Condition::Compare { left, relation, written, right, span }))
         }
         (Ok(_), Mixed::Truth(_)) => return no_expression(spaces(rest)),
         (Err(nom::Err::Error(_)), left) => (rest, left),
@@ -190,19 +203,35 @@ fn bracket(line: Line, input: Input<'_>, depth: u8) -> Read<'_, Mixed> {
     Ok((rest, inside))
 }
 
-fn relation(input: Input<'_>) -> Read<'_, Relation> {
-    if let Some((b'=' | b'<' | b'>', _)) = next(input) {
-        return fail(spaces(input), Alarm::RelationSymbol);
+/// The signs of comparisons, the longer ones first.
+const SIGNS: [(&[u8], Relation); 6] = [
+    (b"<>", Relation::Ne),
+    (b">=", Relation::Ge),
+    (b"<=", Relation::Le),
+    (b"=", Relation::Eq),
+    (b">", Relation::Gt),
+    (b"<", Relation::Lt),
+];
+
+fn relation(input: Input<'_>) -> Read<'_, (Relation, Written)> {
+    let start = spaces(input);
+    if let Some((sign, relation)) = SIGNS.iter().find(|(sign, _)| start.starts_with(sign)) {
+        let rest = &start[sign.len()..];
+        return match next(rest) {
+            // `==` and `=>` are no control's.
+            Some((b'=' | b'<' | b'>', _)) => fail(start, Alarm::RelationSymbol),
+            _ => Ok((rest, (*relation, Written::Sign))),
+        };
     }
-    alt((
+    let letters = alt((
         value(Relation::Eq, word("EQ")),
         value(Relation::Ne, word("NE")),
         value(Relation::Gt, word("GT")),
         value(Relation::Ge, word("GE")),
         value(Relation::Lt, word("LT")),
         value(Relation::Le, word("LE")),
-    ))
-    .parse(input)
+    ));
+    letters.map(|relation| (relation, Written::Letters)).parse(input)
 }
 
 pub(super) fn deeper(input: Input<'_>, depth: u8) -> Result<u8, nom::Err<super::token::Fault>> {

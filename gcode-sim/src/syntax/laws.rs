@@ -115,15 +115,30 @@ fn sum(levels: u32) -> BoxedStrategy<Expr> {
 
 fn condition(levels: u32) -> BoxedStrategy<Condition> {
     use Relation::{Eq, Ge, Gt, Le, Lt, Ne};
-    let compare = (sum(levels), select(vec![Eq, Ne, Gt, Ge, Lt, Le]), sum(levels))
-        .prop_map(|(left, relation, right)| Condition::Compare { left, relation, right, span: NOWHERE });
+    let written = || select(vec![Written::Letters, Written::Sign]);
+    let compare = (sum(levels), select(vec![Eq, Ne, Gt, Ge, Lt, Le]), written(), sum(levels)).prop_map(
+        |(left, relation, written, right)| Condition::Compare {
+            left,
+            relation,
+            written,
+            right,
+            span: NOWHERE,
+        },
+    );
     if levels == 0 {
         return compare.boxed();
     }
     let bracket = |levels| condition(levels).prop_map(|c| Condition::Bracket(Box::new(c)));
-    let logic =
-        (select(vec![BinaryOp::And, BinaryOp::Or, BinaryOp::Xor]), bracket(levels - 1), bracket(levels - 1))
-            .prop_map(|(op, a, b)| Condition::Logic(op, Box::new(a), Box::new(b)));
+    use Written::{Letters, Sign};
+    let joined = [
+        (BinaryOp::And, Letters),
+        (BinaryOp::Or, Letters),
+        (BinaryOp::Xor, Letters),
+        (BinaryOp::And, Sign),
+        (BinaryOp::Or, Sign),
+    ];
+    let logic = (select(joined.to_vec()), bracket(levels - 1), bracket(levels - 1))
+        .prop_map(|((op, written), a, b)| Condition::Logic(op, written, Box::new(a), Box::new(b)));
     prop_oneof![3 => compare, 1 => logic, 1 => bracket(levels - 1)].boxed()
 }
 
@@ -219,7 +234,14 @@ fn block() -> impl Strategy<Value = Block> {
     let items = prop_oneof![3 => words, 3 => statement, 1 => Just(Vec::new())];
     let number = (0..=99_999_999u32).prop_map(|n| Spanned::new(n, NOWHERE));
     (option::weighted(0.1, skip()), option::weighted(0.3, number), items, comments())
-        .prop_map(|(skip, number, items, comments)| Block { span: NOWHERE, skip, number, items, comments })
+        .prop_map(|(skip, number, items, comments)| Block {
+            span: NOWHERE,
+            skip,
+            number,
+            short: None,
+            items,
+            comments,
+        })
         .prop_filter("something", |b| {
             b.skip.is_some() || b.number.is_some() || !b.items.is_empty() || !b.comments.is_empty()
         })
@@ -244,7 +266,7 @@ proptest! {
 
     #[test]
     fn what_was_read_prints_as_what_reads_the_same(
-        lines in vec("([A-Zxg#\\[\\]()/;,.=+*<>%:O0-9 -]|AND|EQ|GOTO|IF|THEN|DO|SIN|#1|X1\\.|M99|//|\\[#1|é){0,12}", 1..6)
+        lines in vec("([A-Zxg#\\[\\]()/;,.=+*<>%:&|O0-9 -]|AND|EQ|GOTO|GO|WH|EN|IF|THEN|DO|SIN|#1|X1\\.|M99|//|\\[#1|é){0,12}", 1..6)
     ) {
         for program in parse(SourceId(0), lines.join("\n").as_bytes()) {
             let text = print(&program);

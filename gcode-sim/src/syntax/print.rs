@@ -1,7 +1,7 @@
 //! Tree to text: one block a line, words a space apart, comments byte for byte. Reading the text gives the same tree.
 use super::ast::{
     BinaryOp, Block, CallForm, Comment, CommentMark, Condition, Decimal, Expr, ExprKind, Item, PrintKind,
-    PrintPart, Program, ProgramName, Relation, Statement, Word, WordValue,
+    PrintPart, Program, ProgramName, Relation, Statement, Word, WordValue, Written,
 };
 
 /// The program as text, its O word first and a line feed after each block.
@@ -54,7 +54,9 @@ pub fn print_block(block: &Block, out: &mut Vec<u8>) {
         }
         match item {
             Item::Word(word) => out.extend(print_word(word).bytes()),
-            Item::Statement(statement) => out.extend(print_statement(&statement.node).bytes()),
+            Item::Statement(statement) => {
+                out.extend(statement_text(&statement.node, block.short.is_some()).bytes())
+            }
             Item::Skip(switch) => out.extend(skip(switch.node).bytes()),
             Item::Unreadable(unreadable) => out.extend_from_slice(&unreadable.text),
         }
@@ -153,19 +155,30 @@ fn operator(op: BinaryOp) -> &'static str {
 /// A condition without the bracket that IF and WHILE put around it.
 pub fn condition(value: &Condition) -> String {
     match value {
-        Condition::Compare { left, relation, right, .. } => {
-            let relation = match relation {
-                Relation::Eq => "EQ",
-                Relation::Ne => "NE",
-                Relation::Gt => "GT",
-                Relation::Ge => "GE",
-                Relation::Lt => "LT",
-                Relation::Le => "LE",
+        Condition::Compare { left, relation, written, right, .. } => {
+            let relation = match (relation, written) {
+                (Relation::Eq, Written::Letters) => "EQ",
+                (Relation::Eq, Written::Sign) => "=",
+                (Relation::Ne, Written::Letters) => "NE",
+                (Relation::Ne, Written::Sign) => "<>",
+                (Relation::Gt, Written::Letters) => "GT",
+                (Relation::Gt, Written::Sign) => ">",
+                (Relation::Ge, Written::Letters) => "GE",
+                (Relation::Ge, Written::Sign) => ">=",
+                (Relation::Lt, Written::Letters) => "LT",
+                (Relation::Lt, Written::Sign) => "<",
+                (Relation::Le, Written::Letters) => "LE",
+                (Relation::Le, Written::Sign) => "<=",
             };
             format!("{} {relation} {}", expr(left), expr(right))
         }
-        Condition::Logic(op, left, right) => {
-            format!("{}{}{}", condition(left), operator(*op), condition(right))
+        Condition::Logic(op, written, left, right) => {
+            let sign = match (written, op) {
+                (Written::Sign, BinaryOp::And) => "&",
+                (Written::Sign, BinaryOp::Or) => "|",
+                _ => operator(*op),
+            };
+            format!("{}{sign}{}", condition(left), condition(right))
         }
         Condition::Bracket(inner) => format!("[{}]", condition(inner)),
     }
@@ -173,24 +186,36 @@ pub fn condition(value: &Condition) -> String {
 
 /// A statement as a control reads it.
 pub fn print_statement(statement: &Statement) -> String {
+    statement_text(statement, false)
+}
+
+/// A statement with its words in full, or cut to the two letters that some controls take.
+fn statement_text(statement: &Statement, short: bool) -> String {
+    let word = |text: &'static str| if short { &text[..2] } else { text };
     match statement {
         Statement::Assign { target, value } => format!("{}={}", expr(target), expr(value)),
-        Statement::Goto(to) => format!("GOTO {}", expr(to)),
-        Statement::IfGoto { condition: c, to } => format!("IF[{}]GOTO {}", condition(c), expr(to)),
+        Statement::Goto(to) => format!("{} {}", word("GOTO"), expr(to)),
+        Statement::IfGoto { condition: c, to } => {
+            format!("IF[{}]{} {}", condition(c), word("GOTO"), expr(to))
+        }
         Statement::IfThen { condition: c, then } => {
-            format!("IF[{}]THEN {}", condition(c), print_statement(then))
+            format!("IF[{}]{} {}", condition(c), word("THEN"), statement_text(then, short))
         }
         Statement::If { condition: c, has_then } => {
-            format!("IF[{}]{}", condition(c), if *has_then { "THEN" } else { "" })
+            format!("IF[{}]{}", condition(c), if *has_then { word("THEN") } else { "" })
         }
-        Statement::While { condition: c, number } => format!("WHILE[{}]DO{}", condition(c), number.node),
+        Statement::While { condition: c, number } => {
+            format!("{}[{}]DO{}", word("WHILE"), condition(c), number.node)
+        }
         Statement::Do(number) => format!("DO{}", number.node),
-        Statement::End(number) => format!("END{}", number.node),
-        Statement::SetNames { first, names } => format!("SETVN {}[{}]", expr(first), names.join(",")),
+        Statement::End(number) => format!("{}{}", word("END"), number.node),
+        Statement::SetNames { first, names } => {
+            format!("{} {}[{}]", word("SETVN"), expr(first), names.join(","))
+        }
         Statement::Print { kind, parts } => {
-            let word = match kind {
-                PrintKind::Decimal => "DPRNT",
-                PrintKind::Binary => "BPRNT",
+            let begin = match kind {
+                PrintKind::Decimal => word("DPRNT"),
+                PrintKind::Binary => word("BPRNT"),
             };
             let parts: Vec<_> = parts
                 .iter()
@@ -199,9 +224,9 @@ pub fn print_statement(statement: &Statement) -> String {
                     PrintPart::Value { variable, format } => format!("{}[{format}]", expr(variable)),
                 })
                 .collect();
-            format!("{word}[{}]", parts.concat())
+            format!("{begin}[{}]", parts.concat())
         }
-        Statement::OpenOutput => "POPEN".into(),
-        Statement::CloseOutput => "PCLOS".into(),
+        Statement::OpenOutput => word("POPEN").into(),
+        Statement::CloseOutput => word("PCLOS").into(),
     }
 }

@@ -40,9 +40,18 @@ const KEYWORDS: [(&str, Keyword); 11] = [
     ("PCLOS", Keyword::Close),
 ];
 
-/// The statement word that the input begins with; what is left stands after it. Two letters one after the other are
-/// never words, so a single look at the second one settles most blocks.
-pub(super) fn keyword(input: Input<'_>) -> Option<(Input<'_>, Keyword)> {
+/// The statement word that the input begins with.
+pub(super) struct Begun<'a> {
+    /// What is left stands after it.
+    pub rest: Input<'a>,
+    pub keyword: Keyword,
+    /// Not all of its letters are there.
+    pub short: bool,
+}
+
+/// The statement word that the input begins with. Two letters one after the other are never words, so a single look
+/// at the second one settles most blocks.
+pub(super) fn keyword(input: Input<'_>) -> Option<Begun<'_>> {
     let (_, after) = input.split_first()?;
     let second = after.iter().find(|b| !is_space(**b))?;
     if !second.is_ascii_alphabetic() {
@@ -50,25 +59,35 @@ pub(super) fn keyword(input: Input<'_>) -> Option<(Input<'_>, Keyword)> {
     }
     KEYWORDS.iter().find_map(|(text, keyword)| {
         let (rest, count) = letters(input, text);
-        (count >= 2).then_some((rest, *keyword))
+        (count >= 2).then_some(Begun { rest, keyword: *keyword, short: count < text.len() })
     })
 }
 
-/// The statement after its keyword.
-pub(super) fn statement<'a>(line: Line, rest: Input<'a>, keyword: Keyword) -> Read<'a, Statement> {
-    match keyword {
-        Keyword::If => if_statement(line, rest),
-        Keyword::While => while_statement(line, rest),
-        Keyword::Goto => goto(line, rest).map(|(rest, to)| (rest, Statement::Goto(to))),
-        Keyword::Do => loop_number(line, rest).map(|(rest, number)| (rest, Statement::Do(number))),
-        Keyword::End => loop_number(line, rest).map(|(rest, number)| (rest, Statement::End(number))),
-        Keyword::Then => fail(rest, Alarm::IfFormat),
-        Keyword::SetNames => set_names(line, rest),
-        Keyword::Decimal => print(line, rest, PrintKind::Decimal),
-        Keyword::Binary => print(line, rest, PrintKind::Binary),
-        Keyword::Open => Ok((rest, Statement::OpenOutput)),
-        Keyword::Close => Ok((rest, Statement::CloseOutput)),
-    }
+/// The statement after its keyword, and whether one of its words is cut short.
+pub(super) fn statement<'a>(line: Line, begun: &Begun<'a>) -> Read<'a, (Statement, bool)> {
+    let &Begun { rest, keyword, short } = begun;
+    let (rest, (statement, inside)) = match keyword {
+        Keyword::If => if_statement(line, rest)?,
+        Keyword::While => while_statement(line, rest)?,
+        Keyword::Goto => whole_words(goto(line, rest)?, Statement::Goto),
+        Keyword::Do => whole_words(loop_number(line, rest)?, Statement::Do),
+        Keyword::End => whole_words(loop_number(line, rest)?, Statement::End),
+        Keyword::Then => return fail(rest, Alarm::IfFormat),
+        Keyword::SetNames => whole_words(set_names(line, rest)?, |names| names),
+        Keyword::Decimal => whole_words(print(line, rest, PrintKind::Decimal)?, |print| print),
+        Keyword::Binary => whole_words(print(line, rest, PrintKind::Binary)?, |print| print),
+        Keyword::Open => (rest, (Statement::OpenOutput, false)),
+        Keyword::Close => (rest, (Statement::CloseOutput, false)),
+    };
+    Ok((rest, (statement, short || inside)))
+}
+
+/// A statement without further words in it.
+fn whole_words<'a, T>(
+    (rest, part): (Input<'a>, T),
+    of: impl FnOnce(T) -> Statement,
+) -> (Input<'a>, (Statement, bool)) {
+    (rest, (of(part), false))
 }
 
 /// `#n=value`; the input begins with `#` or with a name in brackets.
@@ -100,23 +119,23 @@ fn goto(line: Line, input: Input<'_>) -> Read<'_, Expr> {
     Ok((rest, to))
 }
 
-fn if_statement(line: Line, input: Input<'_>) -> Read<'_, Statement> {
+fn if_statement(line: Line, input: Input<'_>) -> Read<'_, (Statement, bool)> {
     let (rest, condition) = wanted_condition(line, input, Alarm::IfFormat)?;
     let at = spaces(rest);
     match keyword(at) {
-        Some((after, Keyword::Goto)) => {
-            let (rest, to) = goto(line, after)?;
-            Ok((rest, Statement::IfGoto { condition, to }))
+        Some(Begun { rest, keyword: Keyword::Goto, short }) => {
+            let (rest, to) = goto(line, rest)?;
+            Ok((rest, (Statement::IfGoto { condition, to }, short)))
         }
-        Some((after, Keyword::Then)) if begins_word(after) => {
-            Ok((after, Statement::If { condition, has_then: true }))
+        Some(Begun { rest, keyword: Keyword::Then, short }) if begins_word(rest) => {
+            Ok((rest, (Statement::If { condition, has_then: true }, short)))
         }
-        Some((after, Keyword::Then)) => {
-            let (rest, then) = must(|input| then(line, input), || Alarm::IfFormat)(after)?;
-            Ok((rest, Statement::IfThen { condition, then: Box::new(then) }))
+        Some(Begun { rest, keyword: Keyword::Then, short }) => {
+            let (rest, (then, inside)) = must(|input| then(line, input), || Alarm::IfFormat)(rest)?;
+            Ok((rest, (Statement::IfThen { condition, then: Box::new(then) }, short || inside)))
         }
         None if begins_word(at) || matches!(at.first(), Some(b'#')) => {
-            Ok((at, Statement::If { condition, has_then: false }))
+            Ok((at, (Statement::If { condition, has_then: false }, false)))
         }
         _ => fail(at, Alarm::IfFormat),
     }
@@ -129,24 +148,24 @@ fn begins_word(input: Input<'_>) -> bool {
 }
 
 /// One assignment, or a GOTO, which some controls take.
-fn then(line: Line, input: Input<'_>) -> Read<'_, Statement> {
+fn then(line: Line, input: Input<'_>) -> Read<'_, (Statement, bool)> {
     let at = spaces(input);
     match at.first() {
-        Some(b'#' | b'[') => assignment(line, at),
+        Some(b'#' | b'[') => assignment(line, at).map(|(rest, found)| (rest, (found, false))),
         _ => match keyword(at) {
-            Some((after, Keyword::Goto)) => statement(line, after, Keyword::Goto),
+            Some(begun) if begun.keyword == Keyword::Goto => statement(line, &begun),
             _ => other(at),
         },
     }
 }
 
-fn while_statement(line: Line, input: Input<'_>) -> Read<'_, Statement> {
+fn while_statement(line: Line, input: Input<'_>) -> Read<'_, (Statement, bool)> {
     let (rest, condition) = wanted_condition(line, input, Alarm::WhileFormat)?;
     let at = spaces(rest);
     match keyword(at) {
-        Some((after, Keyword::Do)) if matches!(next(after), Some((b'0'..=b'9', _))) => {
-            let (rest, number) = loop_number(line, after)?;
-            Ok((rest, Statement::While { condition, number }))
+        Some(Begun { rest, keyword: Keyword::Do, .. }) if matches!(next(rest), Some((b'0'..=b'9', _))) => {
+            let (rest, number) = loop_number(line, rest)?;
+            Ok((rest, (Statement::While { condition, number }, false)))
         }
         _ => fail(at, Alarm::WhileFormat),
     }

@@ -2,13 +2,15 @@
 use crate::alarm::Alarm;
 use crate::check::subject::{Finding, Subject, Unit};
 
-use super::unreadable::{alarms, finding};
+use super::unreadable::{alarms, finding, refused};
 
 pub(super) const NAME: &str = "relation-symbol";
 
-pub(super) fn find(_: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
-    let alarms = alarms(unit).filter(|(_, alarm)| matches!(alarm.node, Alarm::RelationSymbol));
-    alarms.map(|(block, alarm)| finding(unit, NAME, block, alarm)).collect()
+pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
+    let of_all = alarms(unit).map(|(block, alarm)| (block, alarm.clone()));
+    let all = of_all.chain(refused(subject, unit));
+    let signs = all.filter(|(_, alarm)| matches!(alarm.node, Alarm::RelationSymbol));
+    signs.map(|(block, alarm)| finding(unit, NAME, block, &alarm)).collect()
 }
 
 #[cfg(test)]

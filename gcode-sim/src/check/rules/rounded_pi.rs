@@ -63,7 +63,7 @@ fn in_statement(statement: &Statement, found: &mut Vec<(f64, Span)>) {
 fn in_condition(condition: &Condition, found: &mut Vec<(f64, Span)>) {
     match condition {
         Condition::Compare { left, right, .. } => [left, right].into_iter().for_each(|e| in_expr(e, found)),
-        Condition::Logic(_, one, other) => [one, other].into_iter().for_each(|c| in_condition(c, found)),
+        Condition::Logic(_, _, one, other) => [one, other].into_iter().for_each(|c| in_condition(c, found)),
         Condition::Bracket(inner) => in_condition(inner, found),
     }
 }

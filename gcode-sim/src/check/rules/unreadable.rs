@@ -10,15 +10,21 @@ pub(super) const NAME: &str = "unreadable";
 pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     let alarms = alarms(unit).filter(|(_, alarm)| !has_own_rule(&alarm.node));
     let mut found: Vec<_> = alarms.map(|(block, alarm)| finding(unit, NAME, block, alarm)).collect();
-    // IF before words, or without THEN, is a matter of the control.
-    for (block, op) in unit.program.ops.iter().enumerate().filter(|(block, _)| unit.reached[*block]) {
-        let OpKind::If { has_then, .. } = op.kind else { continue };
-        let settings = subject.settings;
-        if !(if has_then { settings.then_takes_words } else { settings.plain_if }) {
-            found.push(finding(unit, NAME, block, &Alarm::IfFormat.at(op.span)));
-        }
-    }
+    let refused = refused(subject, unit).filter(|(_, alarm)| !has_own_rule(&alarm.node));
+    found.extend(refused.map(|(block, alarm)| finding(unit, NAME, block, &alarm)));
     found
+}
+
+/// The blocks that something reaches and that are written in a way this control doesn't take.
+pub(super) fn refused<'a>(
+    subject: &'a Subject<'_>,
+    unit: &'a Unit<'_>,
+) -> impl Iterator<Item = (usize, Spanned<Alarm>)> + 'a {
+    let ops = unit.program.ops.iter().enumerate().filter(|(block, _)| unit.reached[*block]);
+    ops.filter_map(|(block, op)| {
+        let form = op.forms.iter().find(|form| !form.node.is_taken(subject.settings))?;
+        Some((block, form.node.alarm().at(form.span)))
+    })
 }
 
 /// The blocks that raise an alarm as they are read and that something reaches.
