@@ -47,7 +47,7 @@ proptest! {
     fn what_a_rewrite_keeps_is_no_change(blocks in prop::collection::vec(0..BLOCKS.len(), 0..24)) {
         let old = revision(&program(&blocks, 1));
         let new = revision(&rewritten(&program(&blocks, 14)));
-        let found = changes(&old, &new, 0.0001);
+        let found = changes(&old.record, &new.record, 0.0001);
         prop_assert!(found.is_empty(), "{found:?}");
     }
 
@@ -63,7 +63,7 @@ proptest! {
         let mut lines: Vec<&str> = old.lines().collect();
         let at = 2 + at.min(blocks.len());
         lines.insert(at, "G4 P123");
-        let found = changes(&revision(&old), &revision(&(lines.join("\n") + "\n")), 0.0001);
+        let found = changes(&revision(&old).record, &revision(&(lines.join("\n") + "\n")).record, 0.0001);
         let codes: Vec<_> = found.iter().map(|change| change.code).collect();
         prop_assert_eq!(codes, ["dwell"]);
     }

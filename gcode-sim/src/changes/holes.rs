@@ -4,9 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::{Point3, Vector3};
 
 use super::align::Link;
-use super::{Change, Revision, listed};
+use super::record::{Record, Where};
+use super::{Change, listed};
 use crate::holes::Found;
-use crate::motion::Position;
 use crate::part::hole::Hole;
 use crate::source::Span;
 use crate::units::Deg;
@@ -29,19 +29,16 @@ pub(super) struct Explained {
     pub tools: BTreeSet<(u32, u32)>,
 }
 
-pub(super) fn compare(old: &Revision, new: &Revision, links: &[Link], tolerance: f64) -> Compared {
-    let (found_old, found_new) = (&old.simulation.extracted.holes, &new.simulation.extracted.holes);
-    let wanted: Vec<Hole> = found_old.iter().map(|hole| hole.hole(nowhere)).collect();
+pub(super) fn compare(old: &Record, new: &Record, links: &[Link], tolerance: f64) -> Compared {
+    let wanted: Vec<Hole> = old.holes.iter().map(|hole| hole.hole(nowhere)).collect();
     let limits = Tolerances { position: 2.0 * tolerance, depth: tolerance, diameter: tolerance };
-    let comparison = Comparison::new(&wanted, found_new, limits, None);
-    let cuts = (Cuts::of(old), Cuts::of(new));
-    let mut partner: Vec<Option<usize>> = vec![None; found_old.len()];
+    let comparison = Comparison::new(&wanted, &new.holes, limits, None);
+    let mut partner: Vec<Option<usize>> = vec![None; old.holes.len()];
     for pair in &comparison.pairs {
         partner[pair.wanted] = Some(pair.found);
     }
-    pair_by_motion(&mut partner, &comparison, links, &cuts);
-    let mut told =
-        Told { old: found_old, new: found_new, tolerance, moved: Explained::default(), cuts: &cuts };
+    pair_by_motion(&mut partner, &comparison.extra, links, (old, new));
+    let mut told = Told { old, new, tolerance, moved: Explained::default() };
     let mut changes = told.pairs(&partner);
     changes.extend(told.order(&partner));
     changes.extend(told.lost_and_added(&partner));
@@ -52,46 +49,18 @@ fn nowhere(_: Span) -> (String, u32) {
     (String::new(), 0)
 }
 
-/// Which steps cut which hole.
-struct Cuts {
-    of_hole: Vec<Vec<usize>>,
-    of_step: BTreeMap<usize, usize>,
-}
-
-impl Cuts {
-    /// A pass remembers its block and where the axes stood at its end; that is its step.
-    fn of(revision: &Revision) -> Self {
-        let mut steps: BTreeMap<_, Vec<usize>> = BTreeMap::new();
-        for (index, step) in revision.steps.iter().enumerate().filter(|(_, step)| step.is_move()) {
-            steps.entry(key(step.place.block, &step.at)).or_default().push(index);
-        }
-        let (mut of_hole, mut of_step) = (Vec::new(), BTreeMap::new());
-        for (hole, found) in revision.simulation.extracted.holes.iter().enumerate() {
-            let passes = found.others.iter().map(|cut| key(cut.place.block, &cut.at));
-            let all = passes.chain([key(found.place.block, &found.at)]);
-            let mine: Vec<usize> = all.filter_map(|key| steps.get_mut(&key)?.pop()).collect();
-            of_step.extend(mine.iter().map(|step| (*step, hole)));
-            of_hole.push(mine);
-        }
-        Self { of_hole, of_step }
-    }
-}
-
-fn key(block: Span, at: &Position) -> (u32, u32, [u64; crate::motion::MAX_AXES]) {
-    (block.source.0, block.start, at.0.map(f64::to_bits))
-}
-
 /// A hole too far from its old place to be known by it is the same hole if the same feed makes it.
 fn pair_by_motion(
     partner: &mut [Option<usize>],
-    comparison: &Comparison<'_>,
+    extra: &[usize],
     links: &[Link],
-    cuts: &(Cuts, Cuts),
+    (old, new): (&Record, &Record),
 ) {
-    let mut left: BTreeSet<usize> = comparison.extra.iter().copied().collect();
+    let mut left: BTreeSet<usize> = extra.iter().copied().collect();
+    let (of_old, of_new) = (hole_of_step(old), hole_of_step(new));
     for link in links {
         let Link::Changed(i, j) = link else { continue };
-        if let (Some(hole), Some(other)) = (cuts.0.of_step.get(i), cuts.1.of_step.get(j))
+        if let (Some(hole), Some(other)) = (of_old.get(i), of_new.get(j))
             && partner[*hole].is_none()
             && left.remove(other)
         {
@@ -100,12 +69,16 @@ fn pair_by_motion(
     }
 }
 
+fn hole_of_step(record: &Record) -> BTreeMap<usize, usize> {
+    let holes = record.feeds.iter().enumerate();
+    holes.flat_map(|(hole, feeds)| feeds.iter().map(move |step| (*step, hole))).collect()
+}
+
 struct Told<'a> {
-    old: &'a [Found],
-    new: &'a [Found],
+    old: &'a Record,
+    new: &'a Record,
     tolerance: f64,
     moved: Explained,
-    cuts: &'a (Cuts, Cuts),
 }
 
 impl Told<'_> {
@@ -114,11 +87,11 @@ impl Told<'_> {
         let mut groups: Vec<(&'static str, String, Vec<usize>)> = Vec::new();
         for (hole, other) in partner.iter().enumerate() {
             let Some(other) = other else { continue };
-            let aspects = self.aspects(&self.old[hole], &self.new[*other]);
+            let aspects = self.aspects(&self.old.holes[hole], &self.new.holes[*other]);
             let Some((code, _)) = aspects.first() else { continue };
             if aspects.iter().any(|(code, _)| ["hole-moved", "hole-tilted", "hole-depth"].contains(code)) {
-                self.moved.shifted.0.extend(&self.cuts.0.of_hole[hole]);
-                self.moved.shifted.1.extend(&self.cuts.1.of_hole[*other]);
+                self.moved.shifted.0.extend(&self.old.feeds[hole]);
+                self.moved.shifted.1.extend(&self.new.feeds[*other]);
             }
             let text = aspects.iter().map(|(_, text)| text.as_str()).collect::<Vec<_>>().join(", ");
             match groups.iter_mut().find(|(_, known, _)| *known == text) {
@@ -129,9 +102,9 @@ impl Told<'_> {
         let change = |(code, text, holes): (&'static str, String, Vec<usize>)| {
             let first = holes[0];
             let message = format!("{}: {text}", named(&holes));
-            let change = Change::new(code, message).once_at(&self.old[first].place);
+            let change = Change::new(code, message).once_at(place(self.old, first));
             match partner[first] {
-                Some(other) => change.now_at(&self.new[other].place),
+                Some(other) => change.now_at(place(self.new, other)),
                 None => change,
             }
         };
@@ -176,8 +149,8 @@ impl Told<'_> {
         let late: Vec<_> = (0..paired.len()).filter(|k| !stays.contains(k)).map(|k| paired[k]).collect();
         let (first, other) = *late.first()?;
         for (old, new) in &late {
-            self.moved.elsewhen.0.extend(&self.cuts.0.of_hole[*old]);
-            self.moved.elsewhen.1.extend(&self.cuts.1.of_hole[*new]);
+            self.moved.elsewhen.0.extend(&self.old.feeds[*old]);
+            self.moved.elsewhen.1.extend(&self.new.feeds[*new]);
         }
         let holes: Vec<usize> = late.iter().map(|(old, _)| *old).collect();
         let before = paired.iter().filter(|(_, new)| *new < other).max_by_key(|(_, new)| *new);
@@ -190,25 +163,31 @@ impl Told<'_> {
             _ => format!("{}: made at other times, hole {} {after}", named(&holes), first + 1),
         };
         Some(
-            Change::new("hole-order", message).once_at(&self.old[first].place).now_at(&self.new[other].place),
+            Change::new("hole-order", message).once_at(place(self.old, first)).now_at(place(self.new, other)),
         )
     }
 
     fn lost_and_added(&mut self, partner: &[Option<usize>]) -> Vec<Change> {
         let mut changes = Vec::new();
-        for (hole, found) in self.old.iter().enumerate().filter(|(hole, _)| partner[*hole].is_none()) {
-            self.moved.elsewhen.0.extend(&self.cuts.0.of_hole[hole]);
+        for (hole, found) in self.old.holes.iter().enumerate().filter(|(hole, _)| partner[*hole].is_none()) {
+            self.moved.elsewhen.0.extend(&self.old.feeds[hole]);
             let message = format!("hole {}: lost, {}", hole + 1, described(found));
-            changes.push(Change::new("hole-lost", message).once_at(&found.place));
+            changes.push(Change::new("hole-lost", message).once_at(place(self.old, hole)));
         }
         let known: BTreeSet<usize> = partner.iter().flatten().copied().collect();
-        for (hole, found) in self.new.iter().enumerate().filter(|(hole, _)| !known.contains(hole)) {
-            self.moved.elsewhen.1.extend(&self.cuts.1.of_hole[hole]);
+        for (hole, found) in self.new.holes.iter().enumerate().filter(|(hole, _)| !known.contains(hole)) {
+            self.moved.elsewhen.1.extend(&self.new.feeds[hole]);
             let message = format!("a hole added: {}", described(found));
-            changes.push(Change::new("hole-added", message).now_at(&found.place));
+            changes.push(Change::new("hole-added", message).now_at(place(self.new, hole)));
         }
         changes
     }
+}
+
+/// The block that finishes a hole.
+fn place(record: &Record, hole: usize) -> Option<&Where> {
+    let step = record.feeds[hole].last()?;
+    record.places.get(record.steps[*step].place)
 }
 
 /// How far the new hole is from the old one where the old one begins and ends.

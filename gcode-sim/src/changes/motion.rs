@@ -1,33 +1,29 @@
 //! Moves, feeds, tools, spindle and stops that are different and that no changed hole explains.
 use std::collections::BTreeSet;
 
+use super::Change;
 use super::align::Link;
 use super::holes::Explained;
+use super::record::Record;
 use super::steps::{Category, Kind, Step, difference, is_same_arc};
-use super::{Change, Revision};
-use crate::motion::{Axes, Place, Position, Spindle, StopKind};
+use crate::motion::{Axes, Position, Spindle, StopKind};
 
 pub(super) fn compare(
-    old: &Revision,
-    new: &Revision,
+    old: &Record,
+    new: &Record,
     links: &[Link],
     explained: &Explained,
     tolerance: f64,
 ) -> Vec<Change> {
-    let mut motion = Motion {
-        old: &old.steps,
-        new: &new.steps,
-        axes: old.simulation.run.control.settings().axes.clone(),
-        tolerance,
-        groups: Vec::new(),
-    };
+    let mut motion =
+        Motion { old: &old.steps, new: &new.steps, axes: &old.axes, tolerance, groups: Vec::new() };
     for region in regions(links, &old.steps, &new.steps) {
         motion.region(&region, explained);
     }
     for link in links {
         motion.step(*link, explained);
     }
-    motion.groups.into_iter().map(Group::change).collect()
+    motion.groups.into_iter().map(|group| group.change(old, new)).collect()
 }
 
 /// Moves next to one another that are all different; other steps between them don't part them.
@@ -70,26 +66,26 @@ struct Group {
     /// What it is that is different: "move", "dwell".
     what: &'static str,
     count: usize,
-    old: Option<Place>,
-    new: Option<Place>,
+    old: Option<usize>,
+    new: Option<usize>,
 }
 
 impl Group {
-    fn change(self) -> Change {
+    fn change(self, old: &Record, new: &Record) -> Change {
         let times = match self.count {
             1 => String::new(),
             n => format!(" ({n} {}s)", self.what),
         };
-        let mut change = Change::new(self.code, format!("{}{times}", self.text));
-        (change.old, change.new) = (self.old, self.new);
-        change
+        Change::new(self.code, format!("{}{times}", self.text))
+            .once_at(self.old.and_then(|place| old.places.get(place)))
+            .now_at(self.new.and_then(|place| new.places.get(place)))
     }
 }
 
 struct Motion<'a> {
     old: &'a [Step],
     new: &'a [Step],
-    axes: Axes,
+    axes: &'a Axes,
     tolerance: f64,
     groups: Vec<Group>,
 }
@@ -107,7 +103,7 @@ impl<'a> Motion<'a> {
             group.count += 1;
             return;
         }
-        let place = |step: Option<&Step>| step.map(|step| step.place.clone());
+        let place = |step: Option<&Step>| step.map(|step| step.place);
         self.groups.push(Group { code, text, what, count: 1, old: place(old), new: place(new) });
     }
 

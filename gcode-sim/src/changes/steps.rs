@@ -1,7 +1,7 @@
 //! What a machine was told, step by step, in a form that two runs can be compared by.
 use crate::motion::{Arc2, Event, EventKind, MAX_AXES, Place, Position, Sink, Spindle, StopKind};
 
-use super::MOST_STEPS;
+use super::record::{MOST_STEPS, is_same_place};
 
 /// One thing the machine was told.
 #[derive(Clone, Debug)]
@@ -13,7 +13,8 @@ pub(super) struct Step {
     pub to: Position,
     /// Where the axes stand after it, in machine coordinates.
     pub at: Position,
-    pub place: Place,
+    /// The block it comes from, by its number in the record.
+    pub place: usize,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -144,6 +145,7 @@ fn near(a: &Position, b: &Position, tolerance: f64) -> bool {
 #[derive(Debug, Default)]
 pub(super) struct Recorder {
     pub steps: Vec<Step>,
+    pub places: Vec<Place>,
     /// There were more than [`MOST_STEPS`].
     pub too_many: bool,
     at: Position,
@@ -154,8 +156,12 @@ impl Recorder {
     fn push(&mut self, kind: Kind, from: Position, event: &Event<'_>) {
         self.too_many |= self.steps.len() >= MOST_STEPS;
         if !self.too_many {
+            let place = event.place();
+            if !self.places.last().is_some_and(|last| is_same_place(last, &place)) {
+                self.places.push(place);
+            }
             let (from, to) = (difference(&from, &self.length), difference(&self.at, &self.length));
-            self.steps.push(Step { kind, from, to, at: self.at, place: event.place() });
+            self.steps.push(Step { kind, from, to, at: self.at, place: self.places.len() - 1 });
         }
     }
 

@@ -12,8 +12,13 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
     let refused = |error: crate::session::SessionError| Refusal::new(error.to_string());
     let old = Revision::of(&old_request, &mut old_folders).map_err(refused)?;
     let new = Revision::of(&new_request, &mut new_folders).map_err(refused)?;
-    let found = changes(&old, &new, tolerance);
-    let report = ChangesReport::new((&old_request.name, &old), (&new_request.name, &new), &found, tolerance);
+    let found = changes(&old.record, &new.record, tolerance);
+    let report = ChangesReport::new(
+        (&old_request.name, &old.record),
+        (&new_request.name, &new.record),
+        &found,
+        tolerance,
+    );
     match arguments.format {
         TextFormat::Json => output::json(&report)?,
         TextFormat::Text => output::print(&report.text())?,

@@ -33,6 +33,7 @@ use std::collections::BTreeMap;
 
 pub use modal::Modal;
 pub use notes::Note;
+pub use print::printable;
 pub use state::{Codes, State};
 pub use vars::{Value, Vars};
 

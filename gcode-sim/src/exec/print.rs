@@ -115,6 +115,16 @@ fn binary(number: f64, decimals: u8, line: &mut Vec<u8>) -> Result<(), Alarm> {
     Ok(())
 }
 
+/// A printed line as a text: BPRNT's bytes are spelled out, so that none is lost.
+pub fn printable(line: &[u8]) -> String {
+    line.iter()
+        .map(|byte| match byte {
+            b' '..=b'~' => char::from(*byte).to_string(),
+            byte => format!("\\x{byte:02X}"),
+        })
+        .collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

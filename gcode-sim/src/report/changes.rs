@@ -3,10 +3,7 @@ use std::fmt::Write;
 
 use serde::Serialize;
 
-use crate::changes::{Change, Revision};
-use crate::exec::Outcome;
-use crate::motion::Place;
-use crate::session::Run;
+use crate::changes::{Change, Record, Totals, Where};
 
 /// The document of `diff --format json`.
 #[derive(Debug, Serialize)]
@@ -17,59 +14,34 @@ pub struct ChangesReport {
     pub same: bool,
     /// mm, and degrees for axes that turn.
     pub tolerance: f64,
-    pub changes: Vec<ChangeReport>,
-    pub old: Totals,
-    pub new: Totals,
-}
-
-#[derive(Debug, Serialize)]
-pub struct ChangeReport {
-    pub code: &'static str,
-    pub message: String,
-    pub old: Option<BlockReport>,
-    pub new: Option<BlockReport>,
-}
-
-/// A block, and the calls that led to it, innermost first.
-#[derive(Debug, Serialize)]
-pub struct BlockReport {
-    pub program: String,
-    pub line: u32,
-    pub block: String,
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub calls: Vec<BlockReport>,
+    pub changes: Vec<Change>,
+    pub old: Side,
+    pub new: Side,
 }
 
 /// One revision in numbers.
 #[derive(Debug, Serialize)]
-pub struct Totals {
+pub struct Side {
     pub name: String,
-    pub outcome: &'static str,
-    pub holes: usize,
-    pub moves: u64,
-    pub blocks: u64,
-    pub seconds: f64,
+    pub outcome: String,
+    #[serde(flatten)]
+    pub totals: Totals,
 }
 
 impl ChangesReport {
-    pub fn new(old: (&str, &Revision), new: (&str, &Revision), changes: &[Change], tolerance: f64) -> Self {
-        let run = |revision: &Revision, place: &Option<Place>| {
-            place.as_ref().map(|place| block(&revision.simulation.run, place))
+    pub fn new(old: (&str, &Record), new: (&str, &Record), changes: &[Change], tolerance: f64) -> Self {
+        let side = |(name, record): (&str, &Record)| Side {
+            name: name.to_owned(),
+            outcome: record.outcome().to_owned(),
+            totals: record.totals.clone(),
         };
-        let changes = changes.iter().map(|change| ChangeReport {
-            code: change.code,
-            message: change.message.clone(),
-            old: run(old.1, &change.old),
-            new: run(new.1, &change.new),
-        });
-        let changes: Vec<_> = changes.collect();
         Self {
             basis: "predicted by simulation, not measured",
             same: changes.is_empty(),
             tolerance,
-            changes,
-            old: totals(old),
-            new: totals(new),
+            changes: changes.to_vec(),
+            old: side(old),
+            new: side(new),
         }
     }
 
@@ -81,9 +53,9 @@ impl ChangesReport {
             let _ = writeln!(text, "{:<14} {}", change.code, change.message);
             for (word, block) in [("old", &change.old), ("new", &change.new)] {
                 let Some(block) = block else { continue };
-                let _ = writeln!(text, "    {word} {}", block.line());
+                let _ = writeln!(text, "    {word} {}", line(block));
                 for call in &block.calls {
-                    let _ = writeln!(text, "        called from {}", call.line());
+                    let _ = writeln!(text, "        called from {}", line(call));
                 }
             }
         }
@@ -95,11 +67,10 @@ impl ChangesReport {
             1 => writeln!(text, "1 change"),
             n => writeln!(text, "{n} changes"),
         };
-        for (word, totals) in [("old", &self.old), ("new", &self.new)] {
+        for (word, Side { name, totals, .. }) in [("old", &self.old), ("new", &self.new)] {
             let _ = writeln!(
                 text,
-                "{word}  {}: {}, {}, {}, {:.1} s",
-                totals.name,
+                "{word}  {name}: {}, {}, {}, {:.1} s",
                 counted(totals.holes as u64, "hole"),
                 counted(totals.moves, "move"),
                 counted(totals.blocks, "block"),
@@ -114,36 +85,7 @@ fn counted(count: u64, what: &str) -> String {
     if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
 }
 
-impl BlockReport {
-    /// `O8101:12  G1 X#11`.
-    fn line(&self) -> String {
-        format!("{}:{}  {}", self.program, self.line, self.block)
-    }
-}
-
-fn block(run: &Run, place: &Place) -> BlockReport {
-    let sources = run.control.memory().sources();
-    let report = |span| {
-        let (program, line) = run.locate(span);
-        BlockReport { program, line, block: sources.text(span).trim().to_owned(), calls: Vec::new() }
-    };
-    let chain = std::iter::successors(place.calls.as_deref(), |call| call.outer.as_deref());
-    let calls = chain.map(|call| report(call.from)).collect();
-    BlockReport { calls, ..report(place.block) }
-}
-
-fn totals((name, revision): (&str, &Revision)) -> Totals {
-    let run = &revision.simulation.run;
-    Totals {
-        name: name.to_owned(),
-        outcome: match run.outcome {
-            Outcome::End => "end",
-            Outcome::Alarm(_) => "alarm",
-            Outcome::Limit => "limit",
-        },
-        holes: revision.simulation.extracted.holes.len(),
-        moves: run.control.moves(),
-        blocks: run.control.blocks(),
-        seconds: run.control.seconds().0,
-    }
+/// `O8101:12  G1 X#11`.
+fn line(place: &Where) -> String {
+    format!("{}:{}  {}", place.program, place.line, place.block)
 }

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
-use crate::exec::{Outcome, Value};
+use crate::exec::{Outcome, Value, printable};
 use crate::motion::{Axes, Event, EventKind, Position, Sink, StopKind};
 use crate::session::Run;
 use crate::source::Span;
@@ -262,16 +262,6 @@ impl RunReport {
         }
         text
     }
-}
-
-/// A printed line as a text: BPRNT's bytes are spelled out, so that none is lost.
-fn printable(line: &[u8]) -> String {
-    line.iter()
-        .map(|byte| match byte {
-            b' '..=b'~' => char::from(*byte).to_string(),
-            byte => format!("\\x{byte:02X}"),
-        })
-        .collect()
 }
 
 fn stop_name(kind: StopKind) -> &'static str {

@@ -1,0 +1,212 @@
+//! What one revision does, written down: all that two of them are compared by, without the run it came from.
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use super::steps::{Recorder, Step};
+use crate::diag::{Diagnostic, Severity};
+use crate::exec::{Outcome, Value};
+use crate::holes::Found;
+use crate::motion::{Axes, MAX_AXES, Place, Position};
+use crate::program::Library;
+use crate::session::{self, Request, Run, SessionError, Simulation};
+use crate::source::Span;
+
+/// More steps than this aren't written down: a loop that never ends must not fill the memory.
+pub const MOST_STEPS: usize = 1_000_000;
+
+/// What one revision does.
+#[derive(Clone, Debug)]
+pub struct Record {
+    pub(super) axes: Axes,
+    pub(super) steps: Vec<Step>,
+    /// In the order in which they are begun.
+    pub(super) holes: Vec<Found>,
+    /// The steps that cut each hole, the finishing one last.
+    pub(super) feeds: Vec<Vec<usize>>,
+    /// The blocks that the steps come from: [`Step::place`] counts them.
+    pub(super) places: Vec<Where>,
+    pub(super) ending: Ending,
+    pub totals: Totals,
+}
+
+/// A block as people find it, and the calls that led to it, innermost first.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Where {
+    pub program: String,
+    pub line: u32,
+    pub block: String,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub calls: Vec<Self>,
+}
+
+/// One revision in numbers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Totals {
+    pub holes: usize,
+    pub moves: u64,
+    pub blocks: u64,
+    pub seconds: f64,
+}
+
+/// How a run ended and what it leaves behind.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Ending {
+    /// `end`, `alarm` or `limit`.
+    pub outcome: String,
+    /// In words that two revisions are compared by.
+    pub words: String,
+    /// Where it stopped, if it did.
+    pub stopped: Option<Where>,
+    /// The lines of DPRNT and BPRNT; bytes that are no text as `\xNN`.
+    pub output: Vec<String>,
+    /// M codes for the machine builder's logic, each with the first block that has it.
+    pub m_codes: BTreeMap<u32, Where>,
+    /// Variables that aren't vacant: commons, and system variables that outlive a run and aren't 0.
+    pub values: BTreeMap<u32, f64>,
+}
+
+/// A run with its record.
+#[derive(Debug)]
+pub struct Revision {
+    pub simulation: Simulation,
+    pub record: Record,
+}
+
+impl Revision {
+    /// Executes a program and writes down what it does.
+    pub fn of(request: &Request, library: &mut impl Library) -> Result<Self, SessionError> {
+        let mut recorder = Recorder::default();
+        let mut simulation = session::simulate_beside(request, library, None, &mut recorder)?;
+        if recorder.too_many {
+            let message = format!("more than {MOST_STEPS} moves: those behind them aren't compared");
+            simulation.extracted.findings.push(Diagnostic::new(Severity::Alarm, "limit", message));
+        }
+        let record = record(&simulation, recorder);
+        Ok(Self { simulation, record })
+    }
+
+    /// Why the run stopped before its end, or can't be compared to its end.
+    pub fn stopped(&self) -> impl Iterator<Item = &Diagnostic> {
+        self.simulation.extracted.findings.iter().filter(|finding| finding.severity == Severity::Alarm)
+    }
+}
+
+fn record(simulation: &Simulation, recorder: Recorder) -> Record {
+    let (run, holes) = (&simulation.run, simulation.extracted.holes.clone());
+    let feeds = feeds(&recorder, &holes);
+    let Recorder { mut steps, places, .. } = recorder;
+    let places = resolve(run, &places, &mut steps);
+    Record {
+        axes: run.control.settings().axes.clone(),
+        totals: Totals {
+            holes: holes.len(),
+            moves: run.control.moves(),
+            blocks: run.control.blocks(),
+            seconds: run.control.seconds().0,
+        },
+        ending: ending(run),
+        steps,
+        holes,
+        feeds,
+        places,
+    }
+}
+
+/// A pass remembers its block and where the axes stood at its end; that is its step.
+fn feeds(recorder: &Recorder, holes: &[Found]) -> Vec<Vec<usize>> {
+    let key = |block: Span, at: &Position| (block.source, block.start, at.0.map(f64::to_bits));
+    let mut steps: BTreeMap<(_, u32, [u64; MAX_AXES]), Vec<usize>> = BTreeMap::new();
+    for (index, step) in recorder.steps.iter().enumerate().filter(|(_, step)| step.is_move()) {
+        steps.entry(key(recorder.places[step.place].block, &step.at)).or_default().push(index);
+    }
+    let of = |found: &Found| {
+        let passes = found.others.iter().map(|cut| key(cut.place.block, &cut.at));
+        let all = passes.chain([key(found.place.block, &found.at)]);
+        all.filter_map(|key| steps.get_mut(&key)?.pop()).collect()
+    };
+    holes.iter().map(of).collect()
+}
+
+/// Every place once, as people find it.
+fn resolve(run: &Run, places: &[Place], steps: &mut [Step]) -> Vec<Where> {
+    let mut numbers: BTreeMap<Where, usize> = BTreeMap::new();
+    let resolved: Vec<usize> = places
+        .iter()
+        .map(|place| {
+            let next = numbers.len();
+            *numbers.entry(Where::of(run, place)).or_insert(next)
+        })
+        .collect();
+    steps.iter_mut().for_each(|step| step.place = resolved[step.place]);
+    let mut all: Vec<(Where, usize)> = numbers.into_iter().collect();
+    all.sort_by_key(|(_, number)| *number);
+    all.into_iter().map(|(place, _)| place).collect()
+}
+
+impl Record {
+    /// `end`, `alarm` or `limit`.
+    pub fn outcome(&self) -> &str {
+        &self.ending.outcome
+    }
+}
+
+impl Where {
+    pub fn of(run: &Run, place: &Place) -> Self {
+        let sources = run.control.memory().sources();
+        let at = |span| {
+            let (program, line) = run.locate(span);
+            Self { program, line, block: sources.text(span).trim().to_owned(), calls: Vec::new() }
+        };
+        let chain = std::iter::successors(place.calls.as_deref(), |call| call.outer.as_deref());
+        let calls = chain.map(|call| at(call.from)).collect();
+        Self { calls, ..at(place.block) }
+    }
+}
+
+fn ending(run: &Run) -> Ending {
+    let (outcome, words, stopped) = match &run.outcome {
+        Outcome::End => ("end", "the program ends".to_owned(), None),
+        Outcome::Alarm(stopped) => {
+            let row = stopped.alarm.row();
+            let place = Where::of(run, &stopped.place);
+            ("alarm", format!("alarm {} {}", row.code, row.message), Some(place))
+        }
+        Outcome::Limit => ("limit", "the program doesn't end within the limits".to_owned(), None),
+    };
+    let place = |block: Span| Where::of(run, &Place { block, calls: None });
+    Ending {
+        outcome: outcome.to_owned(),
+        words,
+        stopped,
+        output: run.control.output().iter().map(|line| crate::exec::printable(line)).collect(),
+        m_codes: run.control.passed_on().iter().map(|(code, block)| (*code, place(*block))).collect(),
+        values: values(run),
+    }
+}
+
+/// System variables that outlive a run: modes of groups 1 to 22, work offsets, tool offsets (operator's manual, system
+/// variables).
+const LEFT: [std::ops::RangeInclusive<u32>; 6] =
+    [4001..=4022, 5201..=5328, 10_001..=10_400, 11_001..=11_400, 12_001..=13_400, 14_001..=19_960];
+
+fn values(run: &Run) -> BTreeMap<u32, f64> {
+    let commons = run.control.variables().filter(|(number, _)| *number >= 100);
+    let read = |number| run.control.variable(number).ok().and_then(Value::given);
+    let system = LEFT.into_iter().flatten().filter_map(|number| Some((number, read(number)?)));
+    commons.chain(system.filter(|(_, value)| *value != 0.0)).collect()
+}
+
+/// Blocks that were told already: most steps come from the block and the call of the one before.
+pub(super) fn is_same_place(a: &Place, b: &Place) -> bool {
+    a.block == b.block
+        && match (&a.calls, &b.calls) {
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+            (None, None) => true,
+            _ => false,
+        }
+}
