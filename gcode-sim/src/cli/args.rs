@@ -140,6 +140,10 @@ pub(super) struct RunConditions {
     #[arg(long, value_name = "KEY=VALUE")]
     pub(super) control: Vec<String>,
 
+    /// A file of such settings (TOML): NAT = 1, 5115 = 0.5, ROA = "A"; flags go before it
+    #[arg(long, value_name = "CONTROL.toml")]
+    pub(super) control_file: Option<PathBuf>,
+
     /// An input signal, e.g. '#1005=1' (repeatable)
     #[arg(long, value_name = "#N=0|1")]
     pub(super) input: Vec<String>,
@@ -299,6 +303,10 @@ pub(super) struct CheckArguments {
     /// A setting of the control, e.g. DPI=1 (repeatable)
     #[arg(long, value_name = "KEY=VALUE")]
     pub(super) control: Vec<String>,
+
+    /// A file of such settings (TOML): NAT = 1, 5115 = 0.5, ROA = "A"; flags go before it
+    #[arg(long, value_name = "CONTROL.toml")]
+    pub(super) control_file: Option<PathBuf>,
 
     /// The machine: its axes and its control [default: the machine of the paper]
     #[arg(long, value_name = "MACHINE.toml")]

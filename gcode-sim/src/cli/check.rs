@@ -9,6 +9,7 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<Status, Refusal> {
         libraries: arguments.libraries.clone(),
         dialect: arguments.dialect.clone(),
         control: arguments.control.clone(),
+        control_file: arguments.control_file.clone(),
         machine: arguments.machine.clone(),
         code: arguments.code.clone(),
         ..RunConditions::default()

@@ -5,6 +5,7 @@ use super::args::ProgramArguments;
 use super::library::Folders;
 use super::{Refusal, input};
 use crate::exec::Limits;
+use crate::job::control_file;
 use crate::machine::Machine;
 use crate::part::wanted::Wanted;
 use crate::session::Request;
@@ -20,6 +21,10 @@ pub(super) fn request(program: &ProgramArguments) -> Result<(Request, Folders), 
     let piped = program == Path::new("-");
     let name = if piped { "standard input".to_owned() } else { program.display().to_string() };
     let mut request = Request::new(name, input::bytes(program)?, machine);
+    if let Some(path) = &arguments.control_file {
+        let refused = |error| Refusal::new(format!("{}, {error}", path.display()));
+        control_file::apply(&input::text(path)?, &mut request.settings).map_err(refused)?;
+    }
     let mut settings: Vec<(&str, String)> = Vec::new();
     // The family first: what stands behind --control changes it.
     settings.extend(arguments.dialect.iter().map(|name| ("--dialect", format!("DIALECT={name}"))));

@@ -1,6 +1,7 @@
 //! Job files: what to make, on which machine and control. Read by both programs; neither's formulas live here.
 //!
 //! Unknown keys, missing keys and values out of range are errors that name the key, the line and what is allowed.
+pub mod control_file;
 mod honeycomb;
 mod pin_holes;
 pub(crate) mod reader;
