@@ -121,9 +121,10 @@ fn record(simulation: &Simulation, recorder: Recorder) -> Record {
 fn feeds(recorder: &Recorder, holes: &[Found]) -> Vec<Vec<usize>> {
     let key = |block: Span, at: &Position| (block.source, block.start, at.0.map(f64::to_bits));
     let mut steps: BTreeMap<(_, u32, [u64; MAX_AXES]), Vec<usize>> = BTreeMap::new();
-    for (index, step) in recorder.steps.iter().enumerate().filter(|(_, step)| step.is_move()) {
+    for (index, step) in recorder.steps.iter().enumerate().rev().filter(|(_, step)| step.is_move()) {
         steps.entry(key(recorder.places[step.place].block, &step.at)).or_default().push(index);
     }
+    // The steps stand in reverse, so that the earliest of those that end alike is taken first.
     let of = |found: &Found| {
         let passes = found.others.iter().map(|cut| key(cut.place.block, &cut.at));
         let all = passes.chain([key(found.place.block, &found.at)]);
