@@ -1,11 +1,11 @@
-//! Draws the top view a `case.toml` describes and holds it against `expected.png`, one step per channel allowed.
+//! Draws the top view or the development a `case.toml` describes and holds it against `expected.png`, one step per channel allowed.
 //!
 //! `says.snap` beside it has the picture's words. With an `other.toml` the picture is the comparison of both. What
 //! was drawn instead, and where it differs, is left in `target/pictures/`.
 use gcode_sim::part::hole::Hole;
 use gcode_sim::picture::{
-    Difference, DrawnHole, PathPiece, Question, Sheet, Size, Standing, TopView, compare, lay_out, paint, png,
-    top_view,
+    Cylinder, Difference, DrawnHole, PathPiece, Question, Sheet, Side, Size, Standing, TopView, compare,
+    development, lay_out, paint, png, top_view,
 };
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ImageFormat, RgbImage};
@@ -24,6 +24,10 @@ struct Picture {
     crop: [u32; 4],
     name: String,
     outline: Option<f64>,
+    /// Of a part that is a cylinder, seen along the spindle, or unrolled.
+    cylinder: Option<CylinderCase>,
+    #[serde(default)]
+    unrolled: bool,
     tolerance: Option<f64>,
     #[serde(default)]
     hole: Vec<HoleCase>,
@@ -54,6 +58,13 @@ struct PathCase {
     rapid: bool,
 }
 
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CylinderCase {
+    radius: f64,
+    length: f64,
+}
+
 fn six() -> f64 {
     6.0
 }
@@ -77,14 +88,21 @@ fn draw(text: &str) -> (Picture, Sheet) {
     let view = TopView {
         name: picture.name.clone(),
         outline: picture.outline,
+        side: if picture.cylinder.is_some() { Side::Z } else { Side::Y },
+        cylinder: picture.cylinder.as_ref().map(|cylinder| Cylinder {
+            outer: cylinder.radius,
+            radius: cylinder.radius,
+            length: cylinder.length,
+        }),
         tolerance: picture.tolerance,
         rotary: "B".to_owned(),
         question: Question::Verdict,
         holes: picture.hole.iter().map(drawn).collect(),
         path: picture.path.iter().map(|p| PathPiece { points: p.points.clone(), rapid: p.rapid }).collect(),
-        lines: Vec::new(),
+        ..TopView::default()
     };
-    let sheet = lay_out(&top_view(&view), size).unwrap();
+    let scene = if picture.unrolled { development(&view).unwrap() } else { top_view(&view) };
+    let sheet = lay_out(&scene, size).unwrap();
     (picture, sheet)
 }
 

@@ -25,7 +25,7 @@ pub(super) fn check(job: &Job, package: &Package, reference: &Reference) -> Resu
         refusals: refusals(job, &simulation, &verdict),
         seconds: simulation.run.control.seconds().0,
         report: table(&verdict, Layout::default()),
-        picture: picture::top_view(&top),
+        picture: picture::main_view(&top),
         judgement: Judgement::Holes(verdict),
     })
 }

@@ -240,7 +240,7 @@ pub(super) struct VerifyArguments {
     #[arg(long)]
     pub(super) full: bool,
 
-    /// Also draw the top view to this file
+    /// Also draw the holes to this file: the top view, or a cylinder unrolled
     #[arg(long, value_name = "OUT.png")]
     pub(super) picture: Option<PathBuf>,
 
@@ -381,6 +381,8 @@ pub(super) enum ListFormat {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum View {
-    /// Along the axis of revolution
+    /// Along the axis of revolution, or along a spindle that stands
     Top,
+    /// A cylinder unrolled, with its seam; needs --reference with a job of a cylinder
+    Development,
 }

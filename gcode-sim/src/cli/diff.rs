@@ -2,6 +2,7 @@
 use super::args::{DiffArguments, TextFormat};
 use super::{Refusal, Status, options, output, render};
 use crate::changes::{Revision, changes};
+use crate::picture;
 use crate::report::changes::ChangesReport;
 use crate::report::{diagnostic, top};
 
@@ -26,7 +27,8 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
     if let Some(path) = &arguments.picture {
         let name = format!("{} against {}", render::name(&new_request), render::name(&old_request));
         let view = top::of_changes(&name, &old.simulation, &new.simulation, &new_request.machine, tolerance);
-        render::write(&view.map_err(Refusal::new)?, "1600x1200", path)?;
+        let scene = picture::top_view(&view.map_err(Refusal::new)?);
+        render::write(&scene, "1600x1200", path)?;
         if arguments.format == TextFormat::Text {
             output::print(&format!("picture: {}\n", path.display()))?;
         }

@@ -5,7 +5,7 @@ use super::args::{RenderArguments, View};
 use super::{Refusal, Status, options, output};
 use crate::part::reference::Reference;
 use crate::part::wanted::Wanted;
-use crate::picture::{self, Size, TopView};
+use crate::picture::{self, Scene, Size, TopView};
 use crate::report::top;
 use crate::session::{self, Request, Simulation};
 use crate::verify::{Tolerances, Verdict};
@@ -18,7 +18,6 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<Status, Refusal> {
 }
 
 fn holes(arguments: &RenderArguments, reference: Option<Reference>) -> Result<Status, Refusal> {
-    let View::Top = arguments.view;
     let (request, mut folders) = options::request(&arguments.program)?;
     let asked = options::tolerance("--tolerance", arguments.tolerance)?;
     let surface = reference.as_ref().and_then(|r| r.surface);
@@ -31,12 +30,19 @@ fn holes(arguments: &RenderArguments, reference: Option<Reference>) -> Result<St
         }
         None => top::of_holes(&name(&request), &simulation, &request.machine),
     };
-    write(&drawn, &arguments.size, &arguments.output)?;
+    let scene = match arguments.view {
+        View::Top => picture::top_view(&drawn),
+        View::Development => picture::development(&drawn).ok_or_else(|| {
+            let message = "--view development unrolls a cylinder: it needs --reference with a job of one";
+            Refusal::new(message)
+        })?,
+    };
+    write(&scene, &arguments.size, &arguments.output)?;
     output::print(&format!("picture: {}\n", arguments.output.display()))?;
     Ok(super::stopped(&simulation.run).unwrap_or(Status::Holds))
 }
 
-/// The top view of a verdict.
+/// What the views of a verdict are made of.
 pub(super) fn view(
     request: &Request,
     simulation: &Simulation,
@@ -46,11 +52,11 @@ pub(super) fn view(
     top::of_verdict(&name(request), simulation, reference, verdict, &request.machine)
 }
 
-/// Draws a view to a file of exactly the size asked for.
-pub(super) fn write(view: &TopView, size: &str, path: &Path) -> Result<(), Refusal> {
+/// Draws a scene to a file of exactly the size asked for.
+pub(super) fn write(scene: &Scene, size: &str, path: &Path) -> Result<(), Refusal> {
     let refused = |error: picture::PictureError| Refusal::new(error.to_string());
     let size: Size = size.parse().map_err(refused)?;
-    let png = picture::draw(&picture::top_view(view), size).map_err(refused)?;
+    let png = picture::draw(scene, size).map_err(refused)?;
     output::write(path, &png)
 }
 

@@ -4,6 +4,7 @@ use super::library::Folders;
 use super::{Refusal, Status, options, output, render};
 use crate::part::reference::Reference;
 use crate::part::wanted::Wanted;
+use crate::picture;
 use crate::report::verdict_table::{Layout, table};
 use crate::session::{self, Request};
 use crate::verify::{Answer, Tolerances};
@@ -40,7 +41,7 @@ fn holes(
     }
     if let Some(path) = &arguments.picture {
         let view = render::view(request, &simulation, reference, &verdict);
-        render::write(&view, "1600x1200", path)?;
+        render::write(&picture::main_view(&view), "1600x1200", path)?;
         if arguments.format == TextFormat::Text {
             output::print(&format!("picture: {}\n", path.display()))?;
         }

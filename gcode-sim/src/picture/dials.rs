@@ -58,7 +58,9 @@ impl Dials {
         let radius = shown.map_or(f64::INFINITY, |(_, radius)| radius);
         let has: Vec<bool> = wanted.iter().zip(&gaps).map(|(w, gap)| *w && 2.0 * radius <= *gap).collect();
         let many = LABEL_LIMIT < scene.marks.len();
-        let dots = scene.marks.iter().map(|mark| many && mark.standing.is_good()).collect();
+        // Where hundreds aren't good, none of them stands out any more, and what counts is where they lie.
+        let dense = LABEL_LIMIT < scene.marks.iter().filter(|mark| !mark.standing.is_good()).count();
+        let dots = scene.marks.iter().map(|mark| many && (dense || mark.standing.is_good())).collect();
         Self { shown, has, gaps, dots, detail }
     }
 
@@ -77,6 +79,11 @@ impl Dials {
     pub(super) fn badge(&self, index: usize, text: f64) -> f64 {
         let least = if self.dots[index] { 1.2 } else { 0.28 * text };
         (0.36 * self.gaps[index]).min(0.55 * text).max(least)
+    }
+
+    /// Whether the hole is one of so many that its sign may shrink to a dot in its very place.
+    pub(super) fn is_dot(&self, index: usize) -> bool {
+        self.dots[index]
     }
 
     /// Signs that lie on each other: a label beside them could belong to either.

@@ -157,6 +157,7 @@ fn draw_sign(
     let mut inks = Vec::new();
     let mut centre = place;
     if mark.standing == Standing::Extra
+        && !dials.is_dot(index)
         && let Some(other) = before.iter().find(|d| d.centre.distance(place) < 0.3 * text)
     {
         let step = other.clear + radius + 0.3 * text;

@@ -28,8 +28,10 @@ pub use raster::{paint, png};
 pub use scene::{Axis, LegendItem, Mark, Misfit, Pen, Point, Sample, Scene, Shape, Standing, Stroke, Title};
 pub use sheet::{Sheet, lay_out};
 pub use size::Size;
+pub use views::development::development;
 pub use views::question::Question;
-pub use views::top::{DrawnHole, PathPiece, TopView, top_view};
+pub use views::side::Side;
+pub use views::top::{Cylinder, DrawnHole, PathPiece, TopView, top_view};
 
 /// Why a picture can't be made or compared.
 #[derive(Debug, thiserror::Error)]
@@ -46,6 +48,11 @@ pub enum PictureError {
     Encode(String),
     #[error("{which} can't be read as a picture: {reason}")]
     Decode { which: String, reason: String },
+}
+
+/// The view that shows all holes at once: a cylinder unrolled, everything else from above.
+pub fn main_view(view: &TopView) -> Scene {
+    development(view).unwrap_or_else(|| top_view(view))
 }
 
 /// The scene as a PNG file of exactly this size.

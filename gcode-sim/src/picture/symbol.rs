@@ -10,8 +10,17 @@ pub(super) fn standing(standing: Standing, at: Px, radius: f64) -> Vec<Ink> {
     let color = palette::standing(standing);
     let stroke = (radius * 0.3).max(1.2);
     match standing {
-        // A dot has no room for a mark.
-        Standing::Good if radius < 2.5 => vec![Ink::Disc { centre: at, radius, color }],
+        // A dot has no room for a mark: a disc, a square, a ring, a triangle.
+        Standing::Good if radius < DOT => vec![Ink::Disc { centre: at, radius, color }],
+        Standing::Bad if radius < DOT => {
+            vec![area(at, radius, &[[-0.95, -0.95], [0.95, -0.95], [0.95, 0.95], [-0.95, 0.95]], color)]
+        }
+        Standing::Missing if radius < DOT => {
+            vec![Ink::Ring { centre: at, radius, width: 1.0, dash: Dash::Solid, color }]
+        }
+        Standing::Extra if radius < DOT => {
+            vec![area(at, radius, &[[0.0, -1.4], [1.4, 1.0], [-1.4, 1.0]], color)]
+        }
         Standing::Good => vec![
             Ink::Disc { centre: at, radius, color },
             path(at, radius, &[[-0.5, 0.02], [-0.14, 0.42], [0.52, -0.4]], stroke, palette::PAPER),
@@ -65,6 +74,16 @@ pub(super) fn standing(standing: Standing, at: Px, radius: f64) -> Vec<Ink> {
     }
 }
 
+/// Smaller signs are dots, pixels.
+const DOT: f64 = 2.5;
+
+fn area(at: Px, radius: f64, corners: &[[f64; 2]], color: Rgb) -> Ink {
+    Ink::Area {
+        points: corners.iter().map(|[x, y]| px(at.x + x * radius, at.y + y * radius)).collect(),
+        color,
+    }
+}
+
 /// A line with a head at its end.
 pub(super) fn arrow(from: Px, to: Px, width: f64, head: f64, color: Rgb) -> Vec<Ink> {
     let length = from.distance(to).max(1e-9);
@@ -109,6 +128,17 @@ mod tests {
             Ink::Text { text, .. } => format!("text {text}"),
         });
         kinds.collect()
+    }
+
+    #[test]
+    fn dots_differ_by_more_than_colour_too() {
+        let dots = [Standing::Good, Standing::Bad, Standing::Missing, Standing::Extra];
+        let kinds = dots.map(|of| {
+            format!("{:?}", standing(of, px(0.0, 0.0), 2.0)).split("color").next().map(str::to_owned)
+        });
+        for (i, a) in kinds.iter().enumerate() {
+            assert!(kinds[i + 1..].iter().all(|b| a != b), "{a:?}");
+        }
     }
 
     #[test]

@@ -2,13 +2,14 @@
 use std::collections::BTreeMap;
 
 use crate::holes::Found;
-use crate::machine::{Link, LinkMotion, Machine};
+use crate::machine::{HeadKind, Link, LinkMotion, Machine};
 use crate::motion::Axis;
+use crate::part::honeycomb::Pattern;
 use crate::part::reference::Reference;
 use crate::part::surface::Surface;
-use crate::picture::{DrawnHole, Question, Standing, TopView};
+use crate::picture::{Cylinder, DrawnHole, Question, Side, Standing, TopView};
 use crate::session::Simulation;
-use crate::verify::{Tolerances, Verdict};
+use crate::verify::{Neighbours, Tolerances, Verdict};
 
 /// The holes of a program nobody has judged.
 pub fn of_holes(name: &str, simulation: &Simulation, machine: &Machine) -> TopView {
@@ -23,7 +24,13 @@ pub fn of_holes(name: &str, simulation: &Simulation, machine: &Machine) -> TopVi
         turn: rotary.turn(found),
         remark: None,
     });
-    TopView { name: name.to_owned(), rotary: rotary.letter(), holes: drawn.collect(), ..TopView::default() }
+    TopView {
+        name: name.to_owned(),
+        side: side(machine),
+        rotary: rotary.letter(),
+        holes: drawn.collect(),
+        ..TopView::default()
+    }
 }
 
 /// The holes as they were judged: found and wanted, missing and too many.
@@ -71,7 +78,15 @@ pub fn of_verdict(
     });
     TopView {
         name: name.to_owned(),
+        side: side(machine),
         outline: reference.surface.and_then(outline),
+        cylinder: cylinder(reference),
+        lines: reference
+            .pattern
+            .iter()
+            .map(closing)
+            .chain(verdict.neighbours.iter().flat_map(apart))
+            .collect(),
         tolerance: Some(verdict.tolerance),
         rotary: rotary.letter(),
         holes: judged.chain(missing).chain(extra).collect(),
@@ -112,6 +127,35 @@ fn outline(surface: Surface) -> Option<f64> {
         Surface::Ellipsoid { a, .. } => Some(a),
         Surface::Cylinder { .. } => None,
     }
+}
+
+/// A spindle that stands along z looks at the part from there.
+fn side(machine: &Machine) -> Side {
+    match machine.head.kind {
+        HeadKind::Fixed(out) if out.z > 0.99 => Side::Z,
+        _ => Side::Y,
+    }
+}
+
+fn cylinder(reference: &Reference) -> Option<Cylinder> {
+    match (reference.surface, reference.pattern) {
+        (Some(Surface::Cylinder { radius }), Some(pattern)) => {
+            Some(Cylinder { outer: radius, radius: pattern.diameter / 2.0, length: pattern.length })
+        }
+        _ => None,
+    }
+}
+
+/// `91 + 91 rows close with a pitch of 9.9659 mm (arc)`.
+fn closing(pattern: &Pattern) -> String {
+    let (half, metric) = (pattern.rows / 2, pattern.metric.name());
+    format!("{half} + {half} rows close with pitch {:.4} ({metric})", pattern.pitch)
+}
+
+/// The nearest and the farthest neighbours.
+fn apart(neighbours: &Neighbours) -> Option<String> {
+    let (min, max) = (neighbours.min.as_ref()?, neighbours.max.as_ref()?);
+    Some(format!("neighbours {:.4} to {:.4} mm apart", min.distance, max.distance))
 }
 
 /// A picture shows no blocks.

@@ -1,14 +1,10 @@
-//! The top view: the part seen along its axis of revolution y, from +y.
-//!
-//! x points to the right and z down, so that the picture is right-handed (y comes towards the reader), and azimuths
-//! (x = r·cos α, z = r·sin α) grow clockwise.
-use nalgebra::{UnitQuaternion, Vector3};
+//! The top view: the part seen along its axis of revolution y, or a cylinder about x seen along the spindle.
+use nalgebra::Vector3;
 
 use super::super::measure::plain;
-use super::super::scene::{
-    Axis, LegendItem, Mark, Misfit, Pen, Point, Sample, Scene, Shape, Standing, Stroke, Title,
-};
+use super::super::scene::{LegendItem, Mark, Pen, Sample, Scene, Shape, Standing, Stroke, Title};
 use super::question::Question;
+use super::side::Side;
 use crate::part::hole::Hole;
 
 /// What a top view is made of. Everything but the holes may be unknown.
@@ -16,8 +12,12 @@ use crate::part::hole::Hole;
 pub struct TopView {
     /// Of the part or the programme.
     pub name: String,
+    /// From where it is looked at.
+    pub side: Side,
     /// Radius of the part's outline seen along y, mm.
     pub outline: Option<f64>,
+    /// Of a part that is a cylinder about x.
+    pub cylinder: Option<Cylinder>,
     /// Diameter of the position tolerance zone, mm.
     pub tolerance: Option<f64>,
     /// The letter of the axis that `DrawnHole::turn` is about.
@@ -28,6 +28,17 @@ pub struct TopView {
     pub path: Vec<PathPiece>,
     /// Further lines of the title block.
     pub lines: Vec<String>,
+}
+
+/// A cylinder about x, mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cylinder {
+    /// Of its surface.
+    pub outer: f64,
+    /// On which distances count: it is unrolled there.
+    pub radius: f64,
+    /// Holes stand at 0 ≤ x ≤ length.
+    pub length: f64,
 }
 
 /// One hole: as wanted, as made, and what was said about it.
@@ -57,9 +68,10 @@ const MOST_CIRCLES: usize = 12;
 
 /// The scene of a top view.
 pub fn top_view(view: &TopView) -> Scene {
-    let marks: Vec<Mark> = view.holes.iter().filter_map(|hole| mark(hole, view)).collect();
-    let mut strokes: Vec<Stroke> = view.path.iter().map(path).collect();
-    let circles = circles(&view.holes);
+    let (near, far): (Vec<_>, Vec<_>) = view.holes.iter().partition(|hole| faces_reader(hole, view));
+    let marks: Vec<Mark> = near.into_iter().filter_map(|hole| mark(hole, view)).collect();
+    let mut strokes: Vec<Stroke> = view.path.iter().map(|piece| path(piece, view.side)).collect();
+    let circles = if view.side == Side::Y { circles(&view.holes) } else { Vec::new() };
     let has_circles = !circles.is_empty();
     strokes.extend(circles);
     strokes.extend(view.outline.map(|radius| Stroke {
@@ -67,38 +79,40 @@ pub fn top_view(view: &TopView) -> Scene {
         pen: Pen::Outline,
         caption: None,
     }));
+    if let Some(Cylinder { outer, length, .. }) = view.cylinder {
+        strokes.extend([outer, -outer].map(|y| Stroke {
+            shape: Shape::Line(vec![[0.0, y], [length, y]]),
+            pen: Pen::Outline,
+            caption: None,
+        }));
+    }
+    let hidden = (!far.is_empty()).then(|| format!("{} holes on the far side not drawn", far.len()));
     let title = Title {
         name: view.name.clone(),
-        view: "Top view, seen from +y".to_owned(),
+        view: format!("Top view, seen from {}", view.side.name()),
         position: view.tolerance.filter(|_| view.question == Question::Verdict),
         verdict: headline(view),
-        lines: worst(view).into_iter().chain(view.lines.iter().cloned()).collect(),
+        lines: worst(view).into_iter().chain(view.lines.iter().cloned()).chain(hidden).collect(),
         caution: "Predicted by simulation, not measured".to_owned(),
     };
     let legend = legend(view, &marks, has_circles);
-    Scene { title, axes: axes(), strokes, marks, zone: view.tolerance, legend }
+    Scene { title, axes: view.side.axes(), strokes, marks, zone: view.tolerance, legend }
 }
 
-/// The part's (x, y, z) on the sheet: right and up.
-fn seen([x, _, z]: [f64; 3]) -> Point {
-    // 0 − z and not −z: no negative zeros in what is compared and printed.
-    [x, 0.0 - z]
+/// Of a cylinder only the holes on this side are seen.
+fn faces_reader(hole: &DrawnHole, view: &TopView) -> bool {
+    let shown = hole.nominal.as_ref().or(hole.found.as_ref());
+    let away = |hole: &Hole| Vector3::from(hole.axis).dot(&view.side.towards()) < -1e-6;
+    view.cylinder.is_none() || !shown.is_some_and(away)
 }
 
-fn axes() -> Vec<Axis> {
-    vec![
-        Axis { name: "x".to_owned(), direction: seen([1.0, 0.0, 0.0]) },
-        Axis { name: "z".to_owned(), direction: seen([0.0, 0.0, 1.0]) },
-    ]
-}
-
-fn path(piece: &PathPiece) -> Stroke {
+fn path(piece: &PathPiece, side: Side) -> Stroke {
     let pen = if piece.rapid { Pen::Rapid } else { Pen::Feed };
-    Stroke { shape: Shape::Line(piece.points.iter().map(|p| seen(*p)).collect()), pen, caption: None }
+    Stroke { shape: Shape::Line(piece.points.iter().map(|p| side.seen(*p)).collect()), pen, caption: None }
 }
 
-fn mark(hole: &DrawnHole, view: &TopView) -> Option<Mark> {
-    let shown = hole.nominal.as_ref().or(hole.found.as_ref())?;
+/// A hole's number, and what is to be said of it.
+pub(super) fn label(hole: &DrawnHole, view: &TopView) -> Vec<String> {
     let mut label = vec![hole.id.clone()];
     let turn = hole.turn.map(|turn| format!("{} {}°", view.rotary, signed(turn, 3)));
     let phi = hole.phi.map(|phi| format!("Φ{phi:.3}"));
@@ -112,38 +126,21 @@ fn mark(hole: &DrawnHole, view: &TopView) -> Option<Mark> {
         label.extend([words, phi, turn].into_iter().flatten());
     }
     label.retain(|line| !line.is_empty());
+    label
+}
+
+fn mark(hole: &DrawnHole, view: &TopView) -> Option<Mark> {
+    let shown = hole.nominal.as_ref().or(hole.found.as_ref())?;
     let both = hole.nominal.as_ref().zip(hole.found.as_ref());
     Some(Mark {
-        at: seen(shown.entry),
+        at: view.side.seen(shown.entry),
         radius: shown.diameter.unwrap_or(0.0) / 2.0,
         standing: hole.standing,
-        label,
-        direction: Some(seen(shown.axis)),
-        misfit: both.and_then(|(nominal, found)| misfit(nominal, found)),
-        found: both.map(|(_, found)| seen(found.entry)),
+        label: label(hole, view),
+        direction: Some(view.side.seen(shown.axis)),
+        misfit: both.and_then(|(nominal, found)| view.side.misfit(nominal, found)),
+        found: both.map(|(_, found)| view.side.seen(found.entry)),
     })
-}
-
-/// Where the actual axis crosses the plane `depth` below the nominal entry, perpendicular to the nominal axis.
-fn crossing(nominal: &Hole, found: &Hole, depth: f64) -> Option<Vector3<f64>> {
-    let (axis, along) = (Vector3::from(nominal.axis), Vector3::from(found.axis));
-    let plane = Vector3::from(nominal.entry) - axis * depth;
-    let from = Vector3::from(found.entry);
-    let slope = along.dot(&axis);
-    (0.01 < slope.abs()).then(|| from + along * ((plane - from).dot(&axis) / slope))
-}
-
-/// Actual − nominal across the nominal axis, which is turned the shortest way to point at the reader: so a
-/// deviation keeps its length, and the zone is a circle for steep holes too.
-fn misfit(nominal: &Hole, found: &Hole) -> Option<Misfit> {
-    let axis = Vector3::from(nominal.axis);
-    let turn = UnitQuaternion::rotation_between(&axis, &Vector3::y())
-        .unwrap_or_else(|| UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI));
-    let end = |depth: f64| {
-        let exact = Vector3::from(nominal.entry) - axis * depth;
-        Some(seen((turn * (crossing(nominal, found, depth)? - exact)).into()))
-    };
-    Some(Misfit { entry: end(0.0)?, bottom: end(nominal.depth)? })
 }
 
 /// The circles on which holes lie, each with its radius; holes less than 0.05 mm apart share one.
@@ -177,13 +174,13 @@ fn count(holes: &[DrawnHole], standing: Standing) -> usize {
     holes.iter().filter(|h| h.standing == standing).count()
 }
 
-fn headline(view: &TopView) -> Option<(Standing, String)> {
+pub(super) fn headline(view: &TopView) -> Option<(Standing, String)> {
     let of = |standing| count(&view.holes, standing);
     let counts = [Standing::Good, Standing::Bad, Standing::Missing, Standing::Extra].map(of);
     view.question.headline(counts)
 }
 
-fn worst(view: &TopView) -> Option<String> {
+pub(super) fn worst(view: &TopView) -> Option<String> {
     let known = view.holes.iter().filter_map(|h| Some((h.phi?, &h.id)));
     let (phi, id) = known.fold(None, |worst: Option<(f64, &String)>, next| match worst {
         Some(worst) if next.0 <= worst.0 => Some(worst),
@@ -192,14 +189,20 @@ fn worst(view: &TopView) -> Option<String> {
     Some(format!("{}: Φ{phi:.4} (hole\u{a0}{id})", view.question.worst()))
 }
 
+/// The signs that are drawn, for the legend.
+pub(super) fn standings(view: &TopView) -> Vec<LegendItem> {
+    let all = [Standing::Good, Standing::Bad, Standing::Missing, Standing::Extra, Standing::Unjudged];
+    let drawn = all.into_iter().filter(|standing| 0 < count(&view.holes, *standing));
+    let item = |standing: Standing| LegendItem {
+        sample: Sample::Standing(standing),
+        text: view.question.legend(standing).to_owned(),
+    };
+    drawn.map(item).collect()
+}
+
 fn legend(view: &TopView, marks: &[Mark], has_circles: bool) -> Vec<LegendItem> {
-    let mut items = Vec::new();
+    let mut items = standings(view);
     let mut add = |sample: Sample, text: &str| items.push(LegendItem { sample, text: text.to_owned() });
-    for standing in [Standing::Good, Standing::Bad, Standing::Missing, Standing::Extra, Standing::Unjudged] {
-        if 0 < count(&view.holes, standing) {
-            add(Sample::Standing(standing), view.question.legend(standing));
-        }
-    }
     if marks.iter().any(|m| m.misfit.is_some())
         && let Some(zone) = view.tolerance
     {
@@ -212,7 +215,7 @@ fn legend(view: &TopView, marks: &[Mark], has_circles: bool) -> Vec<LegendItem> 
     if marks.iter().any(|m| m.found.is_some()) {
         add(Sample::Astray, "to where the hole is instead");
     }
-    if view.outline.is_some() {
+    if view.outline.is_some() || view.cylinder.is_some() {
         add(Sample::Pen(Pen::Outline), "part outline");
     }
     if has_circles {
@@ -262,7 +265,8 @@ mod tests {
     #[test]
     fn an_axial_hole_shows_its_misfit_as_it_is() {
         let up = [0.0, 1.0, 0.0];
-        let misfit = misfit(&hole([420.0, 675.0, 0.0], up), &hole([420.03, 677.0, 0.04], up)).unwrap();
+        let misfit =
+            Side::Y.misfit(&hole([420.0, 675.0, 0.0], up), &hole([420.03, 677.0, 0.04], up)).unwrap();
         for end in [misfit.entry, misfit.bottom] {
             assert!((end[0] - 0.03).abs() < 1e-9 && (end[1] + 0.04).abs() < 1e-9, "{misfit:?}");
         }
@@ -274,7 +278,7 @@ mod tests {
         let axis = [0.75f64.sqrt(), 0.5, 0.0];
         let down_the_meridian = [0.5 * 0.05, -(0.75f64.sqrt()) * 0.05, 0.0];
         let found = hole([1000.0 + down_the_meridian[0], 300.0 + down_the_meridian[1], 0.0], axis);
-        let misfit = misfit(&hole([1000.0, 300.0, 0.0], axis), &found).unwrap();
+        let misfit = Side::Y.misfit(&hole([1000.0, 300.0, 0.0], axis), &found).unwrap();
         assert!((misfit.entry[0] - 0.05).abs() < 1e-9 && misfit.entry[1].abs() < 1e-9, "{misfit:?}");
     }
 
@@ -283,7 +287,7 @@ mod tests {
     fn a_tilted_hole_is_off_at_its_bottom() {
         let tilt = crate::units::Deg(0.3);
         let found = hole([420.0, 675.0, 0.0], [tilt.sin(), tilt.cos(), 0.0]);
-        let misfit = misfit(&hole([420.0, 675.0, 0.0], [0.0, 1.0, 0.0]), &found).unwrap();
+        let misfit = Side::Y.misfit(&hole([420.0, 675.0, 0.0], [0.0, 1.0, 0.0]), &found).unwrap();
         assert!(libm::hypot(misfit.entry[0], misfit.entry[1]) < 1e-9);
         assert!((misfit.bottom[0] + 15.0 * tilt.tan()).abs() < 1e-9, "{misfit:?}");
     }
