@@ -124,6 +124,12 @@ pub enum Alarm {
     ProgramNotFound {
         number: u32,
     },
+    /// M198 of a file that isn't there.
+    DeviceFileNotFound {
+        number: u32,
+    },
+    /// M198 in a program that M198 called.
+    DeviceCallInDeviceCall,
     TooManyCalls {
         limit: usize,
     },

@@ -74,6 +74,8 @@ impl Alarm {
             Self::PluralM { first, second } => (Ps(335), format!("M{second:02} behind M{first:02} in one block: only the last M code counts"), Some("write the other code in the block before")),
             Self::SkipTorque => (Ps(369), "G31: Q, the torque limit, is 1 to 99".into(), None),
             Self::SkipSignals { letter } => (Ps(370), format!("{letter}, the set of skip signals, is 1 to 4"), None),
+            Self::DeviceFileNotFound { number } => (Ps(1079), format!("file {number} of M198 is not here"), Some("give the folder that holds it with --lib")),
+            Self::DeviceCallInDeviceCall => (Ps(1080), "M198 in a program that M198 called".into(), Some("call it with M98 from there")),
             Self::TwoSubprogramCalls => (Ps(1091), "two subprogram calls in one block".into(), None),
             Self::TwoMacroCalls => (Ps(1092), "two macro calls in one block".into(), None),
             Self::WordsWithReturn { letter } => (Ps(1093), format!("{letter} beside M99 while a modal macro call is on"), Some("write it in the block before")),

@@ -40,13 +40,9 @@ pub(crate) struct Argument {
     pub(crate) number: bool,
 }
 
-/// The program numbers that a program calls, G and M codes that call macros included.
-pub(super) fn numbers(program: &Program, settings: &Settings) -> Vec<u32> {
-    let called = sites(program, settings).into_iter().filter_map(|site| match site.target {
-        CalledAs::Number(number) => Some(number),
-        CalledAs::Name(_) | CalledAs::Computed | CalledAs::Nothing => None,
-    });
-    called.collect()
+/// The programs that a program calls, by codes that call too.
+pub(super) fn targets(program: &Program, settings: &Settings) -> Vec<CalledAs> {
+    sites(program, settings).into_iter().map(|site| site.target).collect()
 }
 
 /// Every call of a program.
@@ -62,7 +58,7 @@ pub(super) fn sites(program: &Program, settings: &Settings) -> Vec<CallSite> {
 
 fn site(block: OpIndex, words: &Words, settings: &Settings) -> Option<CallSite> {
     let Some(call) = &words.call else { return by_code(block, words, settings) };
-    let subprogram = call.kind == Calling::Subprogram;
+    let subprogram = matches!(call.kind, Calling::Subprogram | Calling::File | Calling::Local);
     if matches!(call.kind, Calling::Return | Calling::Cancel) {
         return None;
     }
@@ -71,7 +67,7 @@ fn site(block: OpIndex, words: &Words, settings: &Settings) -> Option<CallSite> 
         CallTarget::Name(name) => CalledAs::Name(name.clone()),
         CallTarget::Number(word) => match literal::count(word) {
             // M98 P with more than four digits: repeats in front of a four-digit program number.
-            Some(number) if subprogram && call.repeats.is_none() && number > 9999 => {
+            Some(number) if call.kind == Calling::Subprogram && call.repeats.is_none() && number > 9999 => {
                 CalledAs::Number(number % 10_000)
             }
             Some(number) => CalledAs::Number(number),

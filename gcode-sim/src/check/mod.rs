@@ -20,6 +20,7 @@ use crate::control::Settings;
 use crate::diag::{Diagnostic, Severity};
 use crate::program::{Library, Memory, Program, ProgramId};
 use crate::source::Span;
+use calls::CalledAs;
 use subject::Subject;
 
 /// What was found, and the texts it was found in.
@@ -54,12 +55,13 @@ fn gather(memory: &mut Memory, settings: &Settings, library: &mut impl Library) 
     let mut known: BTreeSet<_> = found.iter().copied().collect();
     let mut next = 0;
     while let Some(id) = found.get(next) {
-        for number in calls::numbers(memory.get(*id), settings) {
-            if let Some(called) = memory.fetch(number, library)
-                && known.insert(called)
-            {
-                found.push(called);
-            }
+        for target in calls::targets(memory.get(*id), settings) {
+            let called = match target {
+                CalledAs::Number(number) => memory.fetch(number, library),
+                CalledAs::Name(name) => memory.fetch_name(&name, library),
+                CalledAs::Computed | CalledAs::Nothing => None,
+            };
+            found.extend(called.filter(|called| known.insert(*called)));
         }
         next += 1;
     }

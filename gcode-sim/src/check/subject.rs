@@ -80,7 +80,9 @@ impl<'a> Subject<'a> {
             for site in 0..self.units[caller].calls.len() {
                 let call = &self.units[caller].calls[site];
                 let block = call.block;
-                let Some(called) = self.called(call) else {
+                // M98 Q alone starts in the same program.
+                let own = call.target == calls::CalledAs::Nothing && call.start.is_some();
+                let Some(called) = self.called(call).or(own.then_some(caller)) else {
                     self.units[caller].flow.may_return_anywhere(block);
                     continue;
                 };
@@ -94,7 +96,9 @@ impl<'a> Subject<'a> {
                     returns.jumps.iter().filter(|jump| jump.returns).map(|jump| jump.number).collect();
                 let to: Vec<_> =
                     numbers.iter().filter_map(|n| self.units[caller].program.find_number(*n, 0)).collect();
-                self.units[called].callers.push((caller, site));
+                if !own {
+                    self.units[called].callers.push((caller, site));
+                }
                 self.units[caller].flow.may_return(block, to);
                 if anywhere {
                     self.units[caller].flow.may_return_anywhere(block);

@@ -1,4 +1,4 @@
-//! Finds called programs in folders: `O8101.nc` by its name, any other file by the O-numbers it holds.
+//! Finds called programs in folders: `O8101.nc` and `PROBE.nc` by their names, any other file by the programs it holds.
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,14 @@ use crate::syntax::{self, Piece, ast::ProgramName};
 pub struct Folders {
     folders: Vec<PathBuf>,
     /// What the files hold whose names don't tell; read at the first call that no name answers.
-    contents: Option<BTreeMap<u32, PathBuf>>,
+    contents: Option<Contents>,
+}
+
+/// The files by what they hold.
+#[derive(Default)]
+struct Contents {
+    numbers: BTreeMap<u32, PathBuf>,
+    names: BTreeMap<String, PathBuf>,
 }
 
 impl Folders {
@@ -33,18 +40,25 @@ impl Folders {
         self.folders.iter().find_map(|folder| files(folder).into_iter().find(|path| wanted(path)))
     }
 
-    fn by_content(&mut self, number: u32) -> Option<PathBuf> {
-        let contents = self.contents.get_or_insert_with(|| {
-            let mut found = BTreeMap::new();
+    fn contents(&mut self) -> &Contents {
+        self.contents.get_or_insert_with(|| {
+            let mut found = Contents::default();
             for path in self.folders.iter().flat_map(|folder| files(folder)) {
                 let Ok(bytes) = input::bytes(&path) else { continue };
-                for number in numbers_in(&bytes) {
-                    found.entry(number).or_insert_with(|| path.clone());
+                for program in programs_in(&bytes) {
+                    match program {
+                        ProgramName::Number(number) => {
+                            found.numbers.entry(number).or_insert_with(|| path.clone());
+                        }
+                        ProgramName::Name(name) => {
+                            found.names.entry(name).or_insert_with(|| path.clone());
+                        }
+                        ProgramName::Unnamed => {}
+                    }
                 }
             }
             found
-        });
-        contents.get(&number).cloned()
+        })
     }
 }
 
@@ -52,22 +66,35 @@ impl Library for Folders {
     fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)> {
         // A file's name may promise a number that isn't in it: then the contents decide.
         let named = self.by_name(number).and_then(|path| Some((input::bytes(&path).ok()?, path)));
-        let holds = |bytes: &[u8]| numbers_in(bytes).any(|n| n == number);
+        let holds = |bytes: &[u8]| programs_in(bytes).any(|name| name == ProgramName::Number(number));
         let (bytes, path) = match named.filter(|(bytes, _)| holds(bytes)) {
             Some(found) => found,
             None => {
-                let path = self.by_content(number)?;
+                let path = self.contents().numbers.get(&number).cloned()?;
                 (input::bytes(&path).ok()?, path)
             }
         };
         Some((path.display().to_string(), bytes))
     }
+
+    fn named(&mut self, name: &str) -> Option<(String, Vec<u8>)> {
+        let path = match self.contents().names.get(name).cloned() {
+            Some(path) => path,
+            // A file of this name that says neither name nor number itself.
+            None => self.folders.iter().find_map(|folder| {
+                let called = |path: &PathBuf| path.file_stem().is_some_and(|s| s.eq_ignore_ascii_case(name));
+                files(folder).into_iter().find(called)
+            })?,
+        };
+        let bytes = input::bytes(&path).ok()?;
+        Some((path.display().to_string(), bytes))
+    }
 }
 
-/// The O-numbers of the programs in a file.
-fn numbers_in(bytes: &[u8]) -> impl Iterator<Item = u32> + '_ {
+/// The programs in a file that have a number or a name.
+fn programs_in(bytes: &[u8]) -> impl Iterator<Item = ProgramName> + '_ {
     syntax::Pieces::new(SourceId::default(), bytes).filter_map(|piece| match piece {
-        Piece::Program { name: ProgramName::Number(number), .. } => Some(number),
+        Piece::Program { name, .. } => Some(name),
         _ => None,
     })
 }

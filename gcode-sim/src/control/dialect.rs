@@ -17,19 +17,22 @@ pub const DIALECTS: &[DialectRow] = &[
         ("MACRO-LEVELS", "5"), ("CALL-LEVELS", "15"), ("MORE-COMMONS", "98000-98499"), ("OFFSET-VARIABLES", "fanuc"),
         ("ALARM-BASE", "3000"), ("ALARM-MOST", "200"), ("PRINT-EXPANDS", "0"), ("PRINT-DIGITS", "8"), ("PLAIN-IF", "0"), ("THEN-WORDS", "0"),
         ("THEN-GOTO", "0"), ("G67-ALARM", "1"),
+        ("M97-CALLS", "0"),
     ] },
     DialectRow { dialect: Dialect::Fanuc0iF, name: "fanuc-0i-f", sets: &[
         ("MACRO-LEVELS", "5"), ("CALL-LEVELS", "15"), ("MORE-COMMONS", "98000-98499"), ("OFFSET-VARIABLES", "fanuc"),
         ("ALARM-BASE", "3000"), ("ALARM-MOST", "200"), ("PRINT-EXPANDS", "0"), ("PRINT-DIGITS", "8"), ("PLAIN-IF", "0"), ("THEN-WORDS", "0"),
         ("THEN-GOTO", "0"), ("G67-ALARM", "1"),
+        ("M97-CALLS", "0"),
     ] },
     // Nine macro levels in all; commons #10000 to #10999; offsets as #2001 and #2201 length and its wear, #2401 and
     // #2601 diameter and its wear; #3000=n shows 1000 + n; DPRNT prints all digits, seven at most are asked for; IF
-    // without THEN (operator's manual, macros).
+    // without THEN; M97 P calls a part of its own program (operator's manual, macros).
     DialectRow { dialect: Dialect::HaasNgc, name: "haas-ngc", sets: &[
         ("MACRO-LEVELS", "9"), ("CALL-LEVELS", "9"), ("MORE-COMMONS", "10000-10999"), ("OFFSET-VARIABLES", "haas"),
         ("ALARM-BASE", "1000"), ("ALARM-MOST", "999"), ("PRINT-EXPANDS", "1"), ("PRINT-DIGITS", "7"), ("PLAIN-IF", "1"), ("THEN-WORDS", "1"),
         ("THEN-GOTO", "1"), ("G67-ALARM", "0"),
+        ("M97-CALLS", "1"),
     ] },
 ];
 

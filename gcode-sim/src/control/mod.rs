@@ -231,6 +231,10 @@ pub struct Settings {
     pub rapid_rotary: f64,
     /// 3410: how far an arc's end may be off its radius, mm.
     pub arc_tolerance: f64,
+    /// 5440: the way that G60 leaves to its end, in the direction it comes from.
+    pub overrun: Position,
+    /// M97 P calls the subprogram that begins at a sequence number of its own program.
+    pub local_calls: bool,
     /// 5114: the retract of G73, mm.
     pub g73_retract: f64,
     /// 5115: the clearance of G83 above the last depth, mm.
@@ -287,6 +291,8 @@ impl Default for Settings {
             rapid: MmPerMin(24_000.0),
             rapid_rotary: 3_600.0,
             arc_tolerance: 0.02,
+            overrun: Position::default(),
+            local_calls: false,
             g73_retract: 1.0,
             g83_clearance: 0.5,
             references: [Position::default(); 3],

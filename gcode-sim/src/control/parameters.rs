@@ -80,6 +80,7 @@ const ROWS: &[Row] = &[
     length(5114, Access::Key("5114", |s| s.g73_retract)),
     length(5115, Access::Key("5115", |s| s.g83_clearance)),
     bit(5400, 7, Access::Key("SCR", |s| f64::from(s.coarse_scaling))),
+    length(5440, Access::Axes(|s, axis| s.overrun[axis], Some(|s, axis, v| { s.overrun[axis] = v; Some(()) }))),
     bit(6000, 3, Access::Key("V15", |s| f64::from(s.series_15_offsets))),
     bit(6001, 1, Access::Key("PRT", |s| f64::from(s.print_without_blanks))),
     bit(6001, 5, Access::Key("TCS", |s| f64::from(s.code_calls.by_t))),

@@ -91,6 +91,8 @@ pub const ROWS: &[Row] = &[
     number!("RAPID", "1420: rapid rate of sliding axes, mm/min", "more than 0", |s, v| s.rapid = MmPerMin(positive(v)?)),
     number!("RAPID-ROTARY", "1420: rapid rate of turning axes, degrees/min", "more than 0", |s, v| s.rapid_rotary = positive(v)?),
     number!("3410", "how far an arc's end may be off its radius", LENGTH, |s, v| s.arc_tolerance = length(v)?),
+    number!("5440", "the last way of G60, with the sign of its direction", "axes and lengths, as in X0.5,Z-0.2", |s, v| s.overrun = point(s, v)?),
+    switch!("M97-CALLS", "M97 P calls the subprogram at N of its own program", local_calls),
     number!("5114", "retract of G73", LENGTH, |s, v| s.g73_retract = length(v)?),
     number!("5115", "clearance of G83", LENGTH, |s, v| s.g83_clearance = length(v)?),
     number!("OFFSETS", "pairs of tool offsets", "1 to 999", |s, v| s.tool_offsets = whole(v, 1, 999)?),

@@ -269,7 +269,12 @@ impl Core {
                     plan.state.coolant = false;
                     plan.after.push((EventKind::Coolant { on: false }, 0.0));
                 }
-                MEffect::Call | MEffect::NotSimulated => {
+                MEffect::InterruptOn => {
+                    given.accept(b"P");
+                    plan.note = Some(Note::InterruptNeverComes);
+                }
+                MEffect::InterruptOff => {}
+                MEffect::Call => {
                     return Err(Alarm::NotSimulated { what: format!("M{code:02} here") }.at(span));
                 }
             }
@@ -337,6 +342,7 @@ impl Core {
         let goal = self.goal(given, &mut plan.state)?;
         match motion {
             Motion::Rapid => self.rapid(plan, goal.machine),
+            Motion::Thread => self.thread(plan, goal.machine, given, span)?,
             Motion::Linear => at(self.feed(plan, goal.machine, given), span)?,
             Motion::Clockwise | Motion::Counterclockwise => self.arc(plan, given, &goal, span)?,
         }

@@ -36,7 +36,16 @@ impl Core {
             Calling::EveryBlock => CallKind::EveryBlock,
             Calling::Macro => CallKind::Macro,
             Calling::AfterMoves => CallKind::Modal,
-            Calling::Subprogram => CallKind::Subprogram,
+            Calling::Local if !self.settings.local_calls => {
+                let what =
+                    "M97 with P (a part of its own program that some controls call: M97-CALLS=1)".into();
+                return Err(Alarm::NotSimulated { what }.at(call.span));
+            }
+            Calling::Subprogram | Calling::File | Calling::Local => CallKind::Subprogram,
+        };
+        let start = match &call.start {
+            Some(word) => self.coded_count(program, word)?,
+            None => None,
         };
         let unsure = &self.settings.unsure;
         let missing = match kind {
@@ -48,22 +57,20 @@ impl Core {
             None => None,
         };
         let target = match &call.target {
+            // M98 Q, M98 H and M97 P start in the same program.
+            CallTarget::None if start.is_some() => Target::Found(self.frame().program, 0),
             CallTarget::None => return Err(missing),
             CallTarget::Name(name) => Target::Name(name.clone()),
             CallTarget::Number(word) => {
                 let number = self.coded_count(program, word)?.ok_or(missing)?;
                 // M98 P with more than four digits: repeats in front of a four-digit program number.
-                if kind == CallKind::Subprogram && repeats.is_none() && number > 9999 {
+                if call.kind == Calling::Subprogram && repeats.is_none() && number > 9999 {
                     repeats = Some(number / 10_000);
                     Target::Number(number % 10_000)
                 } else {
                     Target::Number(number)
                 }
             }
-        };
-        let start = match &call.start {
-            Some(word) => self.coded_count(program, word)?,
-            None => None,
         };
         let every = kind == CallKind::EveryBlock;
         let locals = self.arguments(program, &call.arguments, every)?;
@@ -78,6 +85,7 @@ impl Core {
             locals,
             calls_now,
             by_code: ByCodes::default(),
+            external: call.kind == Calling::File,
             span: call.span,
         }));
         Ok(())
@@ -87,13 +95,19 @@ impl Core {
 impl Control {
     /// Finds the program of a call and checks the nesting, before anything of the block has happened.
     pub(super) fn resolve(&mut self, call: &mut CallPlan, library: &mut impl Library) -> Result<(), Alarm> {
+        if call.external && self.core.frame().external {
+            return Err(Alarm::DeviceCallInDeviceCall);
+        }
         let program = match &call.target {
             Target::Number(number) => {
                 let found = self.memory.fetch(*number, library);
-                found.ok_or(Alarm::ProgramNotFound { number: *number })?
+                found.ok_or(match call.external {
+                    true => Alarm::DeviceFileNotFound { number: *number },
+                    false => Alarm::ProgramNotFound { number: *number },
+                })?
             }
             Target::Name(name) => {
-                let found = self.memory.find_name(name);
+                let found = self.memory.fetch_name(name, library);
                 found.ok_or_else(|| Alarm::FileNotFound { name: name.clone() })?
             }
             Target::Found(program, _) => *program,
@@ -144,6 +158,7 @@ impl Core {
         self.push(Frame {
             arguments,
             modal,
+            external: call.external || self.frame().external,
             ..self.called(program, start, kind, call.repeats, call.by_code, block)
         });
     }

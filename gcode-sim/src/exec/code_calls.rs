@@ -89,6 +89,7 @@ impl Core {
             locals: self.arguments(program, arguments, every)?,
             calls_now: !every || own,
             by_code: by_code(code.letter),
+            external: false,
             span: code.span,
         })
     }
@@ -155,6 +156,7 @@ impl Core {
             locals: VACANT,
             calls_now: true,
             by_code: by_code(word.letter),
+            external: false,
             span: word.span,
         }));
         Ok(())

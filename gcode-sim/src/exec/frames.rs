@@ -27,6 +27,8 @@ pub(super) struct Frame {
     /// How many of the modal calls its moves can trigger.
     pub(super) modal: usize,
     pub(super) by_code: ByCodes,
+    /// Called by M198, itself or one of its callers.
+    pub(super) external: bool,
 }
 
 /// The kinds of codes that a program was called by, itself or one of its callers: inside it they are ordinary ones.
@@ -74,16 +76,30 @@ impl Frame {
             loops: [None; 3],
             modal: usize::MAX,
             by_code: ByCodes::default(),
+            external: false,
         }
     }
 
     /// Whether two frames lead to the same blocks from here on.
     pub(super) fn goes_on_like(&self, other: &Self) -> bool {
-        let Self { program, next, kind, start, repeats, arguments, calls: _, loops, modal, by_code } = self;
+        let Self {
+            program,
+            next,
+            kind,
+            start,
+            repeats,
+            arguments,
+            calls: _,
+            loops,
+            modal,
+            by_code,
+            external,
+        } = self;
         (*program, *next, *kind, *start, *repeats)
             == (other.program, other.next, other.kind, other.start, other.repeats)
             && *arguments == other.arguments
-            && (*loops, *modal, *by_code) == (other.loops, other.modal, other.by_code)
+            && (*loops, *modal) == (other.loops, other.modal)
+            && (*by_code, *external) == (other.by_code, other.external)
     }
 
     /// Goes to an operation and leaves the loops that it is not in.

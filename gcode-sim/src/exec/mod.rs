@@ -21,6 +21,7 @@ mod print;
 mod state;
 mod statements;
 mod system_vars;
+mod thread;
 mod transform;
 mod transform_codes;
 mod travel;
@@ -200,7 +201,7 @@ impl Control {
         self.core.frames.clear();
         self.core.frames.push(Frame::main(program));
         if let Some(program) = self.memory.programs().get(program.0 as usize) {
-            self.core.state.codes.o = program.number().unwrap_or(0);
+            self.core.state.codes.o = program.shown_number();
             self.core.block = program.span;
         }
     }
@@ -302,7 +303,7 @@ impl Control {
             }
             OpKind::Words(words) => {
                 if core.call_by_block(program, words, op.number, op.span)? {
-                    core.state.codes.o = memory.get(core.frame().program).number().unwrap_or(0);
+                    core.state.codes.o = memory.get(core.frame().program).shown_number();
                     return Ok(None);
                 }
                 core.prepare(program, words, given, plan, op.span)?;
@@ -340,12 +341,12 @@ impl Control {
             Flow::Call(call) => {
                 self.core.enter(&call, span);
                 let program = self.core.frame().program;
-                self.core.state.codes.o = self.memory.get(program).number().unwrap_or(0);
+                self.core.state.codes.o = self.memory.get(program).shown_number();
             }
             Flow::Return(to) => {
                 let outcome = self.go_back(to, span)?;
                 let program = self.core.frame().program;
-                self.core.state.codes.o = self.memory.get(program).number().unwrap_or(0);
+                self.core.state.codes.o = self.memory.get(program).shown_number();
                 if outcome.is_none() {
                     self.endless = self.watch.jumped(&mut self.core);
                     return Ok(self.endless.map(|_| Outcome::Limit));

@@ -11,6 +11,8 @@ pub enum Note {
     MCodeLost { code: u32 },
     /// P or Q in cycle mode, in a block that names no axis and no R: it drills nothing and stores nothing.
     CycleDataLost,
+    /// M96 lets a signal call a macro, and no signal comes in a run.
+    InterruptNeverComes,
     /// A drilling block with K0 stores its data and drills nothing, which is what K0 is for; whether its X and Y are
     /// gone to differs between controls.
     NoRepeats,
@@ -37,6 +39,11 @@ impl Note {
             Self::CycleDataLost => {
                 let message = "P or Q is not stored: the block drills nothing".to_owned();
                 ("cycle-data-lost", message, "write P and Q in the block of a hole")
+            }
+            Self::InterruptNeverComes => {
+                let message =
+                    "the macro of M96 is never called: the signal UINT doesn't come in a run".to_owned();
+                ("no-interrupt", message, "call the macro with G65 to see what it does")
             }
             Self::NoRepeats => {
                 let message = "K0 stores the cycle without going to the block's X and Y".to_owned();

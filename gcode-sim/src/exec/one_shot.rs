@@ -85,6 +85,8 @@ impl Core {
                 self.recompute(&mut plan.state);
                 Ok(())
             }
+            OneShot::OneSide if cycle => Err(not_simulated(600, "in a drilling cycle").at(span)),
+            OneShot::OneSide => self.one_side(given, plan),
             OneShot::MachineSystem => self.machine_system(given, plan),
         }
     }
@@ -180,6 +182,22 @@ impl Core {
             }
         }
         plan.moved = true;
+        Ok(())
+    }
+
+    /// G60: by rapid to a point before the end by 5440, whose sign is the side, and on to the end.
+    fn one_side(&self, given: &Given, plan: &mut Plan) -> Checked<()> {
+        let goal = self.goal(given, &mut plan.state)?;
+        let mut before = goal.machine;
+        for (axis, letter) in self.settings.axes.iter() {
+            if given.has(letter as u8) {
+                before[axis] = self.clean(before[axis] - self.settings.overrun[axis]);
+            }
+        }
+        self.rapid(plan, before);
+        self.rapid(plan, goal.machine);
+        plan.state.programmed = goal.programmed;
+        plan.moved = self.names_axis(given);
         Ok(())
     }
 

@@ -82,6 +82,8 @@ pub(super) struct CallPlan {
     pub(super) calls_now: bool,
     /// The kind of code that calls, where it is no G65, G66 or M98.
     pub(super) by_code: ByCodes,
+    /// M198.
+    pub(super) external: bool,
     pub(super) span: Span,
 }
 

@@ -67,6 +67,7 @@ pub enum OneShot {
     MachineSystem,
     SetSystem,
     PresetSystem,
+    OneSide,
 }
 
 /// A row of the table.
@@ -126,7 +127,7 @@ pub const CODES: &[Row] = &[
     row(301, Effect::NotSimulated, "floating reference position"),
     row(310, Effect::OneShot(OneShot::Skip), "feed until the skip signal"),
     row(318, Effect::NotSimulated, "skip by the electronic gear box"),
-    row(330, Effect::NotSimulated, "threading"),
+    row(330, Effect::Motion(Motion::Thread), "threading"),
     row(370, Effect::NotSimulated, "tool length measurement"),
     row(390, Effect::NotSimulated, "corner arc"),
     row(400, Effect::Cutter(CutterSide::Off), "cutter compensation off"),
@@ -174,7 +175,7 @@ pub const CODES: &[Row] = &[
     row(570, Effect::Work(4), "work coordinate system 4"),
     row(580, Effect::Work(5), "work coordinate system 5"),
     row(590, Effect::Work(6), "work coordinate system 6"),
-    row(600, Effect::NotSimulated, "positioning from one side"),
+    row(600, Effect::OneShot(OneShot::OneSide), "positioning from one side"),
     row(610, Effect::Cutting(CuttingMode::ExactStop), "exact stop"),
     row(620, Effect::Cutting(CuttingMode::CornerOverride), "corner override"),
     row(630, Effect::Cutting(CuttingMode::Tapping), "tapping mode"),

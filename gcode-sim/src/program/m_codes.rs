@@ -14,9 +14,11 @@ pub enum MEffect {
     CoolantOff,
     /// Overrides, orientation, rigid tapping: no effect on the path.
     NoEffect,
-    /// M98, M99: taken out of the words when they were lowered.
+    /// M96 and M97: a signal that never comes in a run would call a macro.
+    InterruptOn,
+    InterruptOff,
+    /// M98, M99, M198: taken out of the words when they were lowered.
     Call,
-    NotSimulated,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -48,11 +50,11 @@ pub const M_CODES: &[MRow] = &[
     row(30, MEffect::End, "program end, rewind"),
     row(48, MEffect::NoEffect, "overrides on"),
     row(49, MEffect::NoEffect, "overrides off"),
-    row(96, MEffect::NotSimulated, "macro interrupt"),
-    row(97, MEffect::NotSimulated, "macro interrupt off"),
+    row(96, MEffect::InterruptOn, "macro interrupt"),
+    row(97, MEffect::InterruptOff, "macro interrupt off"),
     row(98, MEffect::Call, "subprogram call"),
     row(99, MEffect::Call, "return"),
-    row(198, MEffect::NotSimulated, "call of an external file"),
+    row(198, MEffect::Call, "call of an external file"),
 ];
 
 /// Whether the program would run on without this code.

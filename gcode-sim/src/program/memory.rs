@@ -14,6 +14,11 @@ pub struct ProgramId(pub(crate) u32);
 pub trait Library {
     /// The file that holds program O`number`: its name and its bytes.
     fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)>;
+
+    /// The file that holds the program `<name>`.
+    fn named(&mut self, _: &str) -> Option<(String, Vec<u8>)> {
+        None
+    }
 }
 
 /// Nothing but what is in memory.
@@ -29,6 +34,10 @@ impl Library for NoLibrary {
 impl<L: Library + ?Sized> Library for &mut L {
     fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)> {
         (**self).program(number)
+    }
+
+    fn named(&mut self, name: &str) -> Option<(String, Vec<u8>)> {
+        (**self).named(name)
     }
 }
 
@@ -118,6 +127,26 @@ impl Memory {
             self.numbers.insert(number, ProgramId(first as u32));
         }
         self.find(number)
+    }
+
+    /// The program called `<name>`, asked of the library where it isn't in memory yet.
+    pub fn fetch_name(&mut self, name: &str, library: &mut impl Library) -> Option<ProgramId> {
+        if let Some(id) = self.find_name(name) {
+            return Some(id);
+        }
+        let name = match ProgramName::of(name.to_owned()) {
+            ProgramName::Number(number) => return self.fetch(number, library),
+            ProgramName::Name(name) => name,
+            ProgramName::Unnamed => return None,
+        };
+        let (file, bytes) = library.named(&name)?;
+        let first = self.programs.len();
+        self.load(file, bytes);
+        if self.find_name(&name).is_none() && self.programs.get(first)?.name == ProgramName::Unnamed {
+            // A file named after its program that leaves the name out.
+            self.names.insert(name.clone(), ProgramId(first as u32));
+        }
+        self.find_name(&name)
     }
 
     /// The program that a place belongs to.

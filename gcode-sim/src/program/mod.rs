@@ -135,6 +135,17 @@ impl Program {
         self.number
     }
 
+    /// The number as #4115 shows it: a program without O has that of its first N; a name has none, 0.
+    pub fn shown_number(&self) -> u32 {
+        match self.name {
+            ProgramName::Number(number) => number,
+            ProgramName::Name(_) => 0,
+            ProgramName::Unnamed => {
+                self.ops.iter().filter_map(|op| op.number).find(|number| *number > 0).unwrap_or(0)
+            }
+        }
+    }
+
     /// The name as a control shows it: `O8101`, `<BRACKET-OP1>`; `MAIN` where there is none.
     pub fn label(&self) -> String {
         match &self.name {

@@ -20,7 +20,7 @@ macro_rules! group {
 }
 
 group!(/// Group 01.
-    Motion { #[default] Rapid = 0, Linear = 10, Clockwise = 20, Counterclockwise = 30, });
+    Motion { #[default] Rapid = 0, Linear = 10, Clockwise = 20, Counterclockwise = 30, Thread = 330, });
 group!(/// Group 02: the plane of arcs and drilling.
     Plane { #[default] Xy = 170, Zx = 180, Yz = 190, });
 group!(/// Group 03.

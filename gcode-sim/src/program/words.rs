@@ -51,6 +51,10 @@ pub enum Calling {
     Cancel,
     /// M98.
     Subprogram,
+    /// M198: a file of the device.
+    File,
+    /// M97 P: a part of the same program.
+    Local,
     /// M99.
     Return,
 }
@@ -70,7 +74,7 @@ pub struct CallOp {
     pub target: CallTarget,
     /// L.
     pub repeats: Option<Coded>,
-    /// Q of M98: the sequence number to start at.
+    /// Q of M98, H where M98 has neither P nor Q, P of M97: the sequence number to start at.
     pub start: Option<Coded>,
     pub arguments: Vec<Coded>,
     pub span: Span,
@@ -191,7 +195,7 @@ fn macro_call(
     Ok(Words { list: Box::default(), call: Some(Box::new(call)), short: None, punched: None })
 }
 
-/// M98 and M99 with their P, L and Q; the other words act first.
+/// M97 P, M98, M99 and M198 with their P, L and Q; the other words act first.
 fn subprogram(list: Vec<Coded>, words: &[Word]) -> Result<Words, Spanned<Alarm>> {
     let code = |word: &Word| match word.value {
         WordValue::Literal(Decimal { negative: false, digits, places: None })
@@ -201,19 +205,27 @@ fn subprogram(list: Vec<Coded>, words: &[Word]) -> Result<Words, Spanned<Alarm>>
         }
         _ => None,
     };
-    let mut calls = words.iter().filter(|w| matches!(code(w), Some(98 | 99)));
-    let Some(call) = calls.next() else {
+    let has = |letter: u8| words.iter().any(|word| word.address.letter == letter);
+    let kind = |word: &Word| match code(word)? {
+        // Without P it ends a macro interrupt.
+        97 if has(b'P') => Some(Calling::Local),
+        98 => Some(Calling::Subprogram),
+        99 => Some(Calling::Return),
+        198 => Some(Calling::File),
+        _ => None,
+    };
+    let mut calls = words.iter().filter_map(|word| Some((word, kind(word)?)));
+    let Some((call, calling)) = calls.next() else {
         if let Some(word) = words.iter().find(|w| matches!(w.value, WordValue::Name(_))) {
             return Err(Alarm::NotAWord { text: "a name without M98 or G65".into() }.at(word.span));
         }
         return Ok(Words { list: list.into(), call: None, short: None, punched: None });
     };
-    if let Some(second) = calls.next() {
+    if let Some((second, _)) = calls.next() {
         return Err(Alarm::TwoSubprogramCalls.at(second.span));
     }
-    let kind = if code(call) == Some(98) { Calling::Subprogram } else { Calling::Return };
     let mut op = CallOp {
-        kind,
+        kind: calling,
         target: CallTarget::None,
         repeats: None,
         start: None,
@@ -223,14 +235,17 @@ fn subprogram(list: Vec<Coded>, words: &[Word]) -> Result<Words, Spanned<Alarm>>
     let mut left = Vec::with_capacity(list.len());
     for (coded, word) in list.into_iter().zip(words) {
         match (coded.letter, &word.value) {
-            (b'M', _) if matches!(code(word), Some(98 | 99)) => {}
+            (b'M', _) if kind(word).is_some() => {}
             (b'P', WordValue::Name(name)) => op.target = CallTarget::Name(name.clone()),
             (_, WordValue::Name(_)) => {
                 return Err(Alarm::NotAWord { text: "a name without P".into() }.at(coded.span));
             }
+            (b'P', _) if calling == Calling::Local => op.start = Some(coded),
             (b'P', _) => op.target = CallTarget::Number(coded),
-            (b'L', _) if kind == Calling::Subprogram => op.repeats = Some(coded),
-            (b'Q', _) if kind == Calling::Subprogram => op.start = Some(coded),
+            (b'L', _) if calling != Calling::Return => op.repeats = Some(coded),
+            (b'Q', _) if calling == Calling::Subprogram => op.start = Some(coded),
+            // M98 H alone: some controls call the subprogram at this N of the same program.
+            (b'H', _) if calling == Calling::Subprogram && !has(b'P') && !has(b'Q') => op.start = Some(coded),
             _ => left.push(coded),
         }
     }

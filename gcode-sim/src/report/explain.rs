@@ -71,6 +71,8 @@ pub const PAGES: &[Page] = pages![
     "PS0335"
     "PS0369"
     "PS0370"
+    "PS1079"
+    "PS1080"
     "PS1091"
     "PS1092"
     "PS1093"

@@ -27,7 +27,7 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
                 .help("give the folder that holds it with --lib"),
             CalledAs::Name(_) => unit
                 .error(NAME, call.block, format!("PS0310: program {label} is not here"))
-                .help("put it into the same file"),
+                .help("give the folder that holds it with --lib, or put it into the same file"),
         };
         found.push(finding.on(call.span));
     }

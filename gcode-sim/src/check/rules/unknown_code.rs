@@ -6,7 +6,7 @@ use crate::alarm::Alarm;
 use crate::check::literal;
 use crate::check::subject::{Finding, Subject, Unit};
 use crate::program::codes::{Effect, spelled};
-use crate::program::m_codes::{self, MEffect};
+use crate::program::m_codes;
 use crate::program::{Coded, Input, OpKind};
 
 use super::unreadable::{alarms, finding};
@@ -54,9 +54,6 @@ fn about(subject: &Subject<'_>, word: &Coded) -> Option<(String, String, bool)> 
             let name = format!("M{code:02}");
             match m_codes::find(code) {
                 _ if calls => None,
-                Some(MEffect::NotSimulated) => {
-                    Some((name.clone(), format!("{name} is not executed by a run here"), false))
-                }
                 Some(_) => None,
                 None => {
                     let message = format!("what {name} does only the machine's builder knows");
