@@ -185,9 +185,39 @@ pub enum StopKind {
     Message,
 }
 
+/// A straight cut that a skip signal may end: G31, before it moves.
+#[derive(Clone, Copy, Debug)]
+pub struct SkipFeed<'a> {
+    pub from: &'a Position,
+    pub to: &'a Position,
+    pub rate: MmPerMin,
+    /// For the whole way.
+    pub seconds: Seconds,
+}
+
+/// Whether the skip signal comes; places are parts of the way, 0 to 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Signal {
+    /// The motion goes to its end.
+    Missed,
+    At {
+        /// Where the control notes the position.
+        noted: f64,
+        /// Where the axes stand still: there, or farther on.
+        stopped: f64,
+    },
+    /// The probe is pushed farther than it gives, in mm.
+    Broken { stopped: f64, pushed: f64, give: f64 },
+}
+
 /// Who is told what the machine does. The control calls it once per event, in order.
 pub trait Sink {
     fn event(&mut self, event: &Event<'_>);
+
+    /// Where the skip signal comes on a way that is about to be gone. `None`: here nothing gives such a signal.
+    fn signal(&mut self, _: &SkipFeed<'_>) -> Option<Signal> {
+        None
+    }
 }
 
 /// Nobody listens: only the control's end state is asked for.
@@ -195,16 +225,24 @@ impl Sink for () {
     fn event(&mut self, _: &Event<'_>) {}
 }
 
-/// Two listeners side by side.
+/// Two listeners side by side; the first that can answer does.
 impl<A: Sink, B: Sink> Sink for (A, B) {
     fn event(&mut self, event: &Event<'_>) {
         self.0.event(event);
         self.1.event(event);
+    }
+
+    fn signal(&mut self, feed: &SkipFeed<'_>) -> Option<Signal> {
+        self.0.signal(feed).or_else(|| self.1.signal(feed))
     }
 }
 
 impl<S: Sink + ?Sized> Sink for &mut S {
     fn event(&mut self, event: &Event<'_>) {
         (**self).event(event);
+    }
+
+    fn signal(&mut self, feed: &SkipFeed<'_>) -> Option<Signal> {
+        (**self).signal(feed)
     }
 }

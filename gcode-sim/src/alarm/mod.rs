@@ -79,6 +79,13 @@ pub enum Alarm {
         value: f64,
     },
     SkipInCompensation,
+    /// G31 without a signal, where the control is set to mind.
+    SkipMissed,
+    /// How far a probe is pushed, and how far it gives, in mm.
+    StylusBroken {
+        pushed: f64,
+        give: f64,
+    },
     /// G31 P or G04 Q other than 1 to 4.
     SkipSignals {
         letter: char,

@@ -105,6 +105,8 @@ impl Alarm {
             Self::RepeatedAddress { letter } => (Ps(5074), format!("address {letter} stands twice in the block"), None),
             Self::Raised { number, text, plain: true } => (Mc(*number), text.clone(), None),
             Self::Raised { number, text, plain: false } => (Mc(3000u16.saturating_add(*number)), text.clone(), None),
+            Self::SkipMissed => (Sim(2), "G31 has come to its end without a skip signal".into(), Some("probe farther, or look where the part stands")),
+            Self::StylusBroken { pushed, give } => (Sim(3), format!("the stylus is pushed {pushed:.3} mm and gives {give:.3} mm"), Some("probe with a lower feed, and back off before the next touch")),
             Self::NotSimulated { what } => (Sim(1), format!("{what} is not simulated"), Some("a control may have it; this simulator does not execute it and will not guess")),
         }
     }

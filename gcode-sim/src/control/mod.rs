@@ -221,6 +221,8 @@ pub struct Settings {
     pub inputs: u32,
     /// The skip signal comes after this part of a G31 path; without it, never.
     pub skip_signal: Option<f64>,
+    /// A G31 that ends without its signal alarms.
+    pub missed_skip_alarms: bool,
     /// The main program's M99 of this number ends the run.
     pub cycles: Option<u32>,
     /// Codes and addresses that call programs.
@@ -286,6 +288,7 @@ impl Default for Settings {
             optional_stop: true,
             inputs: 0,
             skip_signal: None,
+            missed_skip_alarms: false,
             cycles: None,
             code_calls: CodeCalls::default(),
             rapid: MmPerMin(24_000.0),

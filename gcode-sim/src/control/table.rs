@@ -87,6 +87,7 @@ pub const ROWS: &[Row] = &[
     number!("BDT", "block skip switches that are on", "switches 1 to 9, as in 1+2", |s, v| skip_switches(s, v)?),
     switch!("OPTIONAL-STOP", "M01 stops", optional_stop),
     number!("SKIP", "the skip signal comes after this part of a G31 path", "0 to 1", |s, v| s.skip_signal = Some(between(v, 0.0, 1.0)?)),
+    switch!("SKIP-ALARM", "a G31 that ends without its signal alarms", missed_skip_alarms),
     number!("CYCLES", "the main program's M99 of this number ends the run", COUNT, |s, v| s.cycles = Some(v.parse().ok()?)),
     number!("RAPID", "1420: rapid rate of sliding axes, mm/min", "more than 0", |s, v| s.rapid = MmPerMin(positive(v)?)),
     number!("RAPID-ROTARY", "1420: rapid rate of turning axes, degrees/min", "more than 0", |s, v| s.rapid_rotary = positive(v)?),

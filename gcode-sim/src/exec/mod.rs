@@ -18,6 +18,7 @@ mod one_shot;
 mod parameters;
 mod plan;
 mod print;
+mod probing;
 mod state;
 mod statements;
 mod system_vars;
@@ -332,7 +333,11 @@ impl Control {
             let at = call.span;
             self.resolve(call, library).map_err(|alarm| alarm.at(at))?;
         }
+        let broken_off = self.core.ask_for_signal(&mut self.plan, sink);
         self.core.commit(&mut self.plan, sink);
+        if let Some(alarm) = broken_off {
+            return Err(alarm);
+        }
         match flow {
             Flow::Next if self.plan.moved && !self.core.modal_calls.is_empty() => {
                 self.core.call_after_move(span).map_err(|alarm| alarm.at(span))?;

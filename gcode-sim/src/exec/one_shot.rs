@@ -9,9 +9,9 @@ use super::state::State;
 use super::vars::{Kind, Value};
 use super::words::Given;
 use crate::alarm::Alarm;
-use crate::motion::{EventKind, MAX_AXES, Position};
+use crate::motion::{EventKind, Position};
 use crate::program::codes::OneShot;
-use crate::program::modes::{CutterSide, Distance, Length, WorkSystem};
+use crate::program::modes::{Distance, Length, WorkSystem};
 use crate::source::Span;
 use crate::units::Seconds;
 
@@ -225,47 +225,13 @@ impl Core {
     }
 
     /// G31 P and G04 Q name a set of skip signals.
-    fn skip_signals(&self, given: &Given, letter: u8) -> Checked<()> {
+    pub(super) fn skip_signals(&self, given: &Given, letter: u8) -> Checked<()> {
         match given.count(letter)? {
             Some(set) if !(1..=4).contains(&set) => {
                 Err(Alarm::SkipSignals { letter: char::from(letter) }.at(given.span(letter)))
             }
             _ => Ok(()),
         }
-    }
-
-    /// G31: a straight cut that ends where the skip signal comes.
-    fn skip(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<()> {
-        if plan.state.modal.cutter != CutterSide::Off {
-            return Err(Alarm::SkipInCompensation.at(span));
-        }
-        self.skip_signals(given, b'P')?;
-        if given.count(b'Q')?.is_some_and(|torque| !(1..=99).contains(&torque)) {
-            return Err(Alarm::SkipTorque.at(given.span(b'Q')));
-        }
-        if given.has_any(b"PQ") {
-            return Err(not_simulated(310, "multi-step and torque limit skip").at(span));
-        }
-        let goal = self.goal(given, &mut plan.state)?;
-        let from = plan.state.machine;
-        let mut to = goal.machine;
-        if let Some(part) = self.settings.skip_signal {
-            for axis in 0..MAX_AXES {
-                to[axis] = self.clean(from[axis] + part * (goal.machine[axis] - from[axis]));
-            }
-        }
-        let (rate, seconds) = at(self.feed_seconds(&plan.state, &from, &to, given.has(b'F')), span)?;
-        let touched = self.settings.skip_signal.is_some();
-        plan.events.push((EventKind::Skip { to, rate, touched }, seconds));
-        plan.state.machine = to;
-        plan.state.skip = to;
-        if touched && !self.settings.unsure.skip_keeps_end {
-            self.recompute(&mut plan.state);
-        } else {
-            plan.state.programmed = goal.programmed;
-        }
-        plan.moved = true;
-        Ok(())
     }
 
     /// G10: L2 and L20 work offsets, L10 to L13 tool offsets, L50 and L52 parameters, L85

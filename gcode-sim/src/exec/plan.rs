@@ -6,9 +6,10 @@ use super::offsets::Register;
 use super::state::State;
 use super::vars::{Locals, Value};
 use crate::control::ParameterPlace;
-use crate::motion::{EventKind, StopKind};
+use crate::motion::{EventKind, Position, StopKind};
 use crate::program::{OpIndex, ProgramId};
 use crate::source::Span;
+use crate::units::MmPerMin;
 
 /// Everything one block of words changes. Kept between blocks, so that none of them allocates.
 #[derive(Debug, Default)]
@@ -16,6 +17,8 @@ pub(super) struct Plan {
     pub(super) state: State,
     /// What the machine is told, with the seconds it takes.
     pub(super) events: Vec<(EventKind, f64)>,
+    /// G31: its motion is planned to the end and may stop before.
+    pub(super) probing: Option<Probing>,
     /// Told after the motion: spindle and coolant off.
     pub(super) after: Vec<(EventKind, f64)>,
     /// A drilling cycle is expanded while it is told: its length has no bound.
@@ -55,6 +58,18 @@ pub(super) enum Write {
         number: u32,
         value: Value,
     },
+}
+
+/// A G31 that is planned.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Probing {
+    /// Its place among the plan's events.
+    pub(super) event: usize,
+    pub(super) from: Position,
+    pub(super) to: Position,
+    pub(super) rate: MmPerMin,
+    pub(super) seconds: f64,
+    pub(super) span: Span,
 }
 
 /// Where the program goes after the block.
@@ -109,6 +124,7 @@ impl Plan {
     pub(super) fn begin(&mut self, state: &State) {
         self.state = *state;
         self.events.clear();
+        self.probing = None;
         self.after.clear();
         self.writes.clear();
         self.drill = None;

@@ -4,6 +4,7 @@ mod group;
 mod judge;
 mod line;
 pub mod near;
+mod probing;
 #[cfg(test)]
 pub(crate) mod script;
 #[cfg(test)]
@@ -19,7 +20,7 @@ use self::findings::Findings;
 use crate::diag::{Diagnostic, Severity};
 use crate::machine::path::Travel;
 use crate::machine::{Frame, Machine, Pose, Setup};
-use crate::motion::{Arc2, Event, EventKind, Place, Position, Sink, Spindle, StopKind};
+use crate::motion::{Arc2, Event, EventKind, Place, Position, Signal, Sink, SkipFeed, Spindle, StopKind};
 use crate::part::hole::{Hole, HoleList, Origin, Unit};
 use crate::part::surface::Surface;
 use crate::source::Span;
@@ -57,6 +58,8 @@ pub struct Extractor<'m> {
     /// The first of the passes that were too many.
     too_many: Option<Place>,
     findings: Findings,
+    /// How many times a probe was sent to the part.
+    touches: u64,
 }
 
 /// How a motion was asked for.
@@ -88,6 +91,7 @@ impl<'m> Extractor<'m> {
             most: PASSES,
             too_many: None,
             findings: Findings::default(),
+            touches: 0,
         }
     }
 
@@ -229,6 +233,10 @@ impl<'m> Extractor<'m> {
 }
 
 impl Sink for Extractor<'_> {
+    fn signal(&mut self, feed: &SkipFeed<'_>) -> Option<Signal> {
+        self.probe(feed)
+    }
+
     fn event(&mut self, event: &Event<'_>) {
         match &event.kind {
             EventKind::Rapid { to } => self.motion(event, Pace::Rapid, to, None),

@@ -9,6 +9,7 @@ pub mod path;
 mod probe;
 pub mod random;
 pub mod sources;
+mod touch;
 
 use nalgebra::{IsometryMatrix3, Point3, Translation3, Unit, Vector3};
 

@@ -2,7 +2,8 @@
 //! doesn't.
 use nalgebra::Point3;
 
-use super::{HeadKind, Machine, Pose, Setup};
+use super::error::Wave;
+use super::{HeadKind, LinkMotion, Machine, Pose, Setup};
 use crate::motion::{Arc2, Position};
 use crate::units::Deg;
 
@@ -65,18 +66,40 @@ impl Machine {
 
     /// A path p(t) strays from its chord by at most |p''|·Δt²/8. With the table and the head turning by γ in all,
     /// the slides going b, and levers no longer than ρ, |p''| is at most γ²·ρ + 2·γ·b; an arc of sweep s and
-    /// radius R adds s²·R.
-    fn steps(&self, travel: &Travel<'_>, setup: &Setup, tolerance: f64) -> u32 {
+    /// radius R adds s²·R, and the error of an axis its own bend.
+    pub(super) fn steps(&self, travel: &Travel<'_>, setup: &Setup, tolerance: f64) -> u32 {
         let turn = self.turn(travel).to_rad();
         let sweep = travel.arc.map_or(0.0, |arc| arc.sweep.to_rad());
-        if turn == 0.0 && sweep == 0.0 {
+        let waves = self.waves(travel, setup);
+        if turn == 0.0 && sweep == 0.0 && waves == 0.0 {
             return 1;
         }
         let chord = self.slide(travel);
         let go = if sweep == 0.0 { chord } else { chord + sweep.abs() * travel.radius() };
         let lever = self.lever(travel.from, setup).max(self.lever(travel.to, setup)) + go;
-        let bend = turn * turn * lever + 2.0 * turn * go + sweep * sweep * travel.radius();
+        let bend = turn * turn * lever + 2.0 * turn * go + sweep * sweep * travel.radius() + waves;
         (bend / (8.0 * tolerance)).sqrt().ceil().clamp(1.0, 100_000.0) as u32
+    }
+
+    /// How much the errors of the axes bend the way: a wave of swing A over n waves has |p''| of A·(2·π·n)² at most.
+    fn waves(&self, travel: &Travel<'_>, setup: &Setup) -> f64 {
+        let lever = self.lever(travel.from, setup).max(self.lever(travel.to, setup)) + self.slide(travel);
+        let bend = |error: &Wave, by: f64, lever: f64| {
+            let turn = Deg(360.0 * by / error.length).to_rad();
+            error.swing.abs() * turn * turn * lever
+        };
+        let mut sum = 0.0;
+        for link in self.table.0.iter().chain(&self.slides.0) {
+            let lever = match link.motion {
+                LinkMotion::Turn { .. } => Deg(lever).to_rad(),
+                LinkMotion::Slide { .. } => 1.0,
+            };
+            sum += bend(&link.error, travel.to[link.axis] - travel.from[link.axis], lever);
+        }
+        if let HeadKind::Axis { axis, .. } = self.head.kind {
+            sum += bend(&self.head.error, travel.to[axis] - travel.from[axis], Deg(lever).to_rad());
+        }
+        sum
     }
 
     /// How far the slides go, on both sides, from end to end.

@@ -108,7 +108,7 @@ fn grow(from: f64, mut step: f64, reached: impl Fn(f64) -> bool) -> f64 {
 }
 
 /// Where `above` changes from false at `low` to true at `high`, to the last bit.
-fn bisect(mut low: f64, mut high: f64, above: impl Fn(f64) -> bool) -> f64 {
+pub(crate) fn bisect(mut low: f64, mut high: f64, above: impl Fn(f64) -> bool) -> f64 {
     loop {
         let middle = low + (high - low) / 2.0;
         if middle <= low || middle >= high {

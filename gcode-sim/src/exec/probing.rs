@@ -1,0 +1,79 @@
+//! G31 and the machine's answer to it: where the skip signal comes, and where the axes stand then.
+use super::Core;
+use super::block::not_simulated;
+use super::eval::{Checked, at};
+use super::plan::{Plan, Probing};
+use super::words::Given;
+use crate::alarm::Alarm;
+use crate::motion::{EventKind, MAX_AXES, Position, Signal, Sink, SkipFeed};
+use crate::program::modes::CutterSide;
+use crate::source::{Span, Spanned};
+use crate::units::Seconds;
+
+impl Core {
+    /// G31: a straight cut that ends where the skip signal comes. It is planned to its end; whether the signal comes
+    /// is asked when everything is known to be in order.
+    pub(super) fn skip(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<()> {
+        if plan.state.modal.cutter != CutterSide::Off {
+            return Err(Alarm::SkipInCompensation.at(span));
+        }
+        self.skip_signals(given, b'P')?;
+        if given.count(b'Q')?.is_some_and(|torque| !(1..=99).contains(&torque)) {
+            return Err(Alarm::SkipTorque.at(given.span(b'Q')));
+        }
+        if given.has_any(b"PQ") {
+            return Err(not_simulated(310, "multi-step and torque limit skip").at(span));
+        }
+        let goal = self.goal(given, &mut plan.state)?;
+        let (from, to) = (plan.state.machine, goal.machine);
+        let (rate, seconds) = at(self.feed_seconds(&plan.state, &from, &to, given.has(b'F')), span)?;
+        plan.probing = Some(Probing { event: plan.events.len(), from, to, rate, seconds, span });
+        plan.events.push((EventKind::Skip { to, rate, touched: false }, seconds));
+        plan.state.machine = to;
+        plan.state.skip = to;
+        plan.state.programmed = goal.programmed;
+        plan.moved = true;
+        Ok(())
+    }
+
+    /// Asks where the signal comes and ends the planned motion there. The alarm, if any, is raised after the motion.
+    pub(super) fn ask_for_signal<S: Sink>(&self, plan: &mut Plan, sink: &mut S) -> Option<Spanned<Alarm>> {
+        let probing = plan.probing.take()?;
+        let Probing { from, to, rate, seconds, span, .. } = probing;
+        let signal = match self.settings.skip_signal {
+            Some(part) => Signal::At { noted: part, stopped: part },
+            None => match sink.signal(&SkipFeed { from: &from, to: &to, rate, seconds: Seconds(seconds) }) {
+                Some(signal) => {
+                    // The next touch may come elsewhere, so a loop round this block may end.
+                    self.clock_read.set(true);
+                    signal
+                }
+                None => Signal::Missed,
+            },
+        };
+        let (noted, stopped, alarm) = match signal {
+            Signal::At { noted, stopped } => (noted, stopped, None),
+            Signal::Missed => {
+                return self.settings.missed_skip_alarms.then(|| Alarm::SkipMissed.at(span));
+            }
+            Signal::Broken { stopped, pushed, give } => {
+                (stopped, stopped, Some(Alarm::StylusBroken { pushed, give }.at(span)))
+            }
+        };
+        let after = |part: f64| {
+            let mut place = Position::default();
+            for axis in 0..MAX_AXES {
+                place[axis] = self.clean(from[axis] + part * (to[axis] - from[axis]));
+            }
+            place
+        };
+        let end = after(stopped);
+        plan.events[probing.event] = (EventKind::Skip { to: end, rate, touched: true }, stopped * seconds);
+        plan.state.skip = after(noted);
+        plan.state.machine = end;
+        if !self.settings.unsure.skip_keeps_end {
+            self.recompute(&mut plan.state);
+        }
+        alarm
+    }
+}
