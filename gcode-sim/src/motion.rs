@@ -237,6 +237,19 @@ impl<A: Sink, B: Sink> Sink for (A, B) {
     }
 }
 
+/// A listener that may be there.
+impl<S: Sink> Sink for Option<S> {
+    fn event(&mut self, event: &Event<'_>) {
+        if let Some(sink) = self {
+            sink.event(event);
+        }
+    }
+
+    fn signal(&mut self, feed: &SkipFeed<'_>) -> Option<Signal> {
+        self.as_mut().and_then(|sink| sink.signal(feed))
+    }
+}
+
 impl<S: Sink + ?Sized> Sink for &mut S {
     fn event(&mut self, event: &Event<'_>) {
         (**self).event(event);

@@ -33,7 +33,8 @@ pub(super) enum Command {
 Examples:
   gcode-sim run O8100.nc
   gcode-sim run O1234.nc --lib macros --set '#500=12.5' --format json
-  gcode-sim run O1234.nc --control NAT=1 --control DPI=1 --show '#5041'")]
+  gcode-sim run O1234.nc --control NAT=1 --control DPI=1 --show '#5041'
+  gcode-sim run O1234.nc --machine machine.toml --part job.toml --show '#5061'")]
     Run(RunArguments),
 
     /// List the holes a program makes, in the part's frame
@@ -159,6 +160,10 @@ pub(super) struct RunConditions {
     /// G31 stops after this part of its path, 0 to 1
     #[arg(long, value_name = "PART", allow_negative_numbers = true)]
     pub(super) skip: Option<f64>,
+
+    /// The part that is there to be probed: G31 stops where the ball of the machine's or the job's [probe] touches it
+    #[arg(long, value_name = "JOB.toml")]
+    pub(super) part: Option<PathBuf>,
 
     /// End the run at the main program's N-th M99
     #[arg(long, value_name = "N")]

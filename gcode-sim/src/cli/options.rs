@@ -6,7 +6,8 @@ use super::library::Folders;
 use super::{Refusal, input};
 use crate::exec::Limits;
 use crate::job::control_file;
-use crate::machine::Machine;
+use crate::machine::{Machine, Probe};
+use crate::part::probed::Probed;
 use crate::part::wanted::Wanted;
 use crate::session::Request;
 
@@ -44,7 +45,38 @@ pub(super) fn request(program: &ProgramArguments) -> Result<(Request, Folders), 
         request.variables.push(assignment(text)?);
     }
     request.limits = Limits { blocks: arguments.max_blocks };
+    if let Some(path) = &arguments.part {
+        probed(&mut request, path)?;
+    }
     Ok((request, folders))
+}
+
+/// Puts a part on the machine that can be probed.
+fn probed(request: &mut Request, path: &Path) -> Result<(), Refusal> {
+    let refused = |why: &dyn std::fmt::Display| Refusal::new(format!("{}, {why}", path.display()));
+    if request.settings.skip_signal.is_some() {
+        return Err(Refusal::new(
+            "--part: SKIP says already where the skip signal comes: leave one of them out",
+        ));
+    }
+    let part = Probed::parse(&input::text(path)?).map_err(|error| refused(&error))?;
+    match (&request.machine.probe, part.radius) {
+        (None, Some(radius)) => request.machine.probe = Some(Probe::new(radius)),
+        (None, None) => {
+            let message =
+                "--part: how large is the stylus ball? Give [probe] with its radius in the machine file";
+            return Err(Refusal::new(message));
+        }
+        (Some(probe), Some(radius)) if probe.radius != radius => {
+            return Err(refused(&format!(
+                "key 'probe.radius' is {radius}, and the machine file says {}: make them agree",
+                probe.radius
+            )));
+        }
+        (Some(_), _) => {}
+    }
+    request.part = Some(part.surface);
+    Ok(())
 }
 
 fn machine(path: &Path) -> Result<Machine, Refusal> {

@@ -1,6 +1,7 @@
 //! `gcode-sim run`: executes a program and shows the end state.
 use super::args::{RunArguments, TextFormat};
 use super::{Refusal, Status, options, output};
+use crate::holes::Extractor;
 use crate::report::run::{MOST_MOVES, Moves, RunReport};
 use crate::session;
 
@@ -8,10 +9,9 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Status, Refusal> {
     let (request, mut folders) = options::request(&arguments.program)?;
     let wanted = arguments.show.iter().map(|text| options::variable(text)).collect::<Result<Vec<_>, _>>()?;
     let mut moves = arguments.moves.then(Moves::default);
-    let done = match &mut moves {
-        Some(moves) => session::run(&request, &mut folders, moves),
-        None => session::run(&request, &mut folders, &mut ()),
-    };
+    // Follows the tool only where there is a part that it could touch.
+    let mut probe = request.part.map(|part| Extractor::new(&request.machine).with_surface(Some(part)));
+    let done = session::run(&request, &mut folders, &mut (&mut moves, &mut probe));
     let run = done.map_err(|error| Refusal::new(error.to_string()))?;
     let mut system = Vec::new();
     for number in wanted {

@@ -1,6 +1,7 @@
 //! Job files: what to make, on which machine and control. Read by both programs; neither's formulas live here.
 //!
 //! Unknown keys, missing keys and values out of range are errors that name the key, the line and what is allowed.
+mod alignment;
 pub mod control_file;
 mod honeycomb;
 mod pin_holes;
@@ -11,6 +12,7 @@ mod wording;
 use serde::Deserialize;
 use toml::Spanned;
 
+pub use alignment::{Alignment, Chord, Runout, SineTable};
 pub use honeycomb::{Clamp, CombMachine, Cylinder, Drill, Honeycomb, Metric, Spacing};
 pub use pin_holes::{
     AxisDirection, Head, HeadKind, HoleWanted, MacroSettings, PinHoles, PinMachine, Surface, Tool,

@@ -6,6 +6,7 @@ pub mod distance;
 pub mod hole;
 pub mod honeycomb;
 mod pin_holes;
+pub mod probed;
 mod read;
 pub mod reference;
 pub mod surface;

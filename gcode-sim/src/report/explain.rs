@@ -103,6 +103,8 @@ pub const PAGES: &[Page] = pages![
     "PS5010"
     "PS5074"
     "SIM0001"
+    "SIM0002"
+    "SIM0003"
     "axis-carries-nothing"
     "feed-no-hole"
     "feed-not-along-tool"

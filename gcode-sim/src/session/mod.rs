@@ -28,6 +28,8 @@ pub struct Request {
     pub limits: Limits,
     /// Variables set before the start.
     pub variables: Vec<(u32, f64)>,
+    /// The part's surface, where it is there to be probed.
+    pub part: Option<Surface>,
 }
 
 impl Request {
@@ -43,6 +45,7 @@ impl Request {
             machine,
             limits: Limits::default(),
             variables: Vec::new(),
+            part: None,
         }
     }
 }
@@ -114,7 +117,8 @@ pub struct Simulation {
     pub extracted: Extracted,
 }
 
-/// Runs a program and follows the tool; with the surface known, motion inside the part is seen as well.
+/// Runs a program and follows the tool; with the surface known, motion inside the part is seen as well, and a machine
+/// that has a probe can touch it.
 pub fn simulate(
     request: &Request,
     library: &mut impl Library,
@@ -130,7 +134,7 @@ pub fn simulate_beside<S: Sink>(
     surface: Option<Surface>,
     listener: &mut S,
 ) -> Result<Simulation, SessionError> {
-    let mut extractor = Extractor::new(&request.machine).with_surface(surface);
+    let mut extractor = Extractor::new(&request.machine).with_surface(surface.or(request.part));
     let run = run(request, library, &mut (&mut extractor, listener))?;
     let mut extracted = extractor.finish();
     extracted.findings.extend(run.notes());

@@ -26,7 +26,7 @@ struct File {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct FileMachine {
+pub(in crate::job) struct FileMachine {
     rotary: FileRotary,
     head: Option<FileHead>,
     clearance: Option<Spanned<f64>>,
@@ -43,7 +43,7 @@ struct FileHead {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct FileSurface {
+pub(in crate::job) struct FileSurface {
     kind: Spanned<String>,
     a: Spanned<f64>,
     b: Spanned<f64>,
@@ -70,11 +70,7 @@ struct FileMacro {
 /// Reads the text of a job of this family.
 pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<PinHoles, JobError> {
     let file: File = toml::from_str(reader.text).map_err(|e| reader.syntax(&e))?;
-    reader.choice("surface.kind", &file.surface.kind, &[("ellipsoid", ())])?;
-    let surface = Surface {
-        a: length(reader, "surface.a", &file.surface.a)?,
-        b: length(reader, "surface.b", &file.surface.b)?,
-    };
+    let surface = file.surface.check(reader)?;
     let (tools, tools_of_holes) = file.tools(reader)?;
     let mut holes = Vec::new();
     for (hole, tools) in file.hole.iter().zip(tools_of_holes) {
@@ -128,8 +124,15 @@ impl File {
     }
 }
 
+impl FileSurface {
+    pub(in crate::job) fn check(&self, reader: &Reader<'_>) -> Result<Surface, JobError> {
+        reader.choice("surface.kind", &self.kind, &[("ellipsoid", ())])?;
+        Ok(Surface { a: length(reader, "surface.a", &self.a)?, b: length(reader, "surface.b", &self.b)? })
+    }
+}
+
 impl FileMachine {
-    fn check(&self, reader: &Reader<'_>) -> Result<PinMachine, JobError> {
+    pub(in crate::job) fn check(&self, reader: &Reader<'_>) -> Result<PinMachine, JobError> {
         let rotary = self.rotary.check(reader)?;
         let head = match &self.head {
             Some(head) => head.check(reader, rotary.letter)?,

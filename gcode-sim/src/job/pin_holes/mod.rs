@@ -2,7 +2,7 @@
 mod file;
 mod tools;
 
-pub(super) use file::parse;
+pub(super) use file::{FileMachine, FileSurface, parse};
 
 use super::{JobControl, Rotary};
 

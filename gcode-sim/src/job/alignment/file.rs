@@ -1,0 +1,192 @@
+//! Reads the job file of the family `alignment`: every key checked, its line named.
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::{Alignment, Chord, Runout, SineTable};
+use crate::job::pin_holes::{FileMachine, FileSurface};
+use crate::job::sections::{FileControl, length, within};
+use crate::job::{JobError, Reader, Surface};
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    #[serde(rename = "family")]
+    _family: String,
+    control: FileControl,
+    machine: FileMachine,
+    surface: FileSurface,
+    probe: FileProbe,
+    sine_table: FileSineTable,
+    chord: FileChord,
+    runout: FileRunout,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FileProbe {
+    radius: Spanned<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FileSineTable {
+    length: Spanned<f64>,
+    phi: Spanned<f64>,
+    gauge_blocks: String,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FileChord {
+    e_radius: Spanned<f64>,
+    f_radius: Spanned<f64>,
+    circle: Spanned<f64>,
+    candidates: Spanned<i64>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FileRunout {
+    heights: Spanned<Vec<f64>>,
+    angles: Spanned<(f64, f64, f64)>,
+}
+
+/// Reads the text of a job of this family.
+pub(super) fn parse(text: &str) -> Result<Alignment, JobError> {
+    let reader = &Reader { text };
+    let file: File = toml::from_str(text).map_err(|e| reader.syntax(&e))?;
+    let surface = file.surface.check(reader)?;
+    Ok(Alignment {
+        control: file.control.check(reader)?,
+        machine: file.machine.check(reader)?,
+        probe_radius: reader.number(
+            "probe.radius",
+            &file.probe.radius,
+            "0.01 to 1000 mm",
+            within(0.01, 1000.0),
+        )?,
+        sine_table: SineTable {
+            length: length(reader, "sine_table.length", &file.sine_table.length)?,
+            // A sine bar loses its accuracy towards the upright.
+            phi: reader.number(
+                "sine_table.phi",
+                &file.sine_table.phi,
+                "0 to 45 degrees",
+                within(0.0, 45.0),
+            )?,
+            gauge_blocks: file.sine_table.gauge_blocks,
+        },
+        chord: file.chord.check(reader, surface)?,
+        runout: file.runout.check(reader, surface)?,
+        surface,
+    })
+}
+
+impl FileChord {
+    fn check(&self, reader: &Reader<'_>, surface: Surface) -> Result<Chord, JobError> {
+        let allowed = format!("0 to the equatorial radius a = {} mm", surface.a);
+        let radius = |key: &str, value| reader.number(key, value, &allowed, within(0.0, surface.a));
+        let candidates = *self.candidates.as_ref();
+        Ok(Chord {
+            e_radius: radius("chord.e_radius", &self.e_radius)?,
+            f_radius: radius("chord.f_radius", &self.f_radius)?,
+            circle: length(reader, "chord.circle", &self.circle)?,
+            // Three common variables a point, thirty for each end of the chord.
+            candidates: u32::try_from(candidates).ok().filter(|n| (1..=10).contains(n)).ok_or_else(|| {
+                reader.error(&self.candidates, format!("key 'chord.candidates' is {candidates}: 1 to 10"))
+            })?,
+        })
+    }
+}
+
+impl FileRunout {
+    fn check(&self, reader: &Reader<'_>, surface: Surface) -> Result<Runout, JobError> {
+        let b = surface.b;
+        let heights = match self.heights.as_ref().as_slice() {
+            [low, high] if low.abs() < b && high.abs() < b && low != high => [*low, *high],
+            _ => {
+                let message =
+                    format!("key 'runout.heights' is two different y, each less than b = {b} mm from 0");
+                return Err(reader.error(&self.heights, message));
+            }
+        };
+        let (from, to, readings) = *self.angles.as_ref();
+        let fits = from.abs() <= 360.0 && to.abs() <= 360.0 && from < to;
+        if !(fits && (3.0..=1000.0).contains(&readings) && readings.fract() == 0.0) {
+            let message = "key 'runout.angles' is from, to and the number of readings: degrees, -360 to 360, and 3 to 1000";
+            return Err(reader.error(&self.angles, message));
+        }
+        Ok(Runout { heights, from, to, readings: readings as u32 })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const JOB: &str = r#"family = "alignment"
+[control]
+dialect = "fanuc-31i"
+increment = "IS-B"
+[machine]
+rotary = { letter = "B", sign = 1 }
+[surface]
+kind = "ellipsoid"
+a = 1158.8
+b = 724.3
+[probe]
+radius = 3.0
+[sine_table]
+length = 200.0
+phi = 38.5
+gauge_blocks = "metric-87"
+[chord]
+e_radius = 812.4
+f_radius = 318.0
+circle = 1.0
+candidates = 10
+[runout]
+heights = [150.0, 420.0]
+angles = [-25.0, 25.0, 11]
+"#;
+
+    #[test]
+    fn everything_a_job_says_is_read() {
+        let job = parse(JOB).unwrap();
+        assert_eq!((job.probe_radius, job.surface.b, job.sine_table.phi), (3.0, 724.3, 38.5));
+        assert_eq!((job.chord.e_radius, job.chord.candidates), (812.4, 10));
+        assert_eq!((job.runout.heights, job.runout.readings), ([150.0, 420.0], 11));
+        assert_eq!((job.runout.from, job.runout.to), (-25.0, 25.0));
+    }
+
+    #[test]
+    fn what_cannot_be_used_is_named_with_its_line() {
+        for (from, to, message) in [
+            ("[probe]\nradius = 3.0\n", "", "key 'probe' is missing"),
+            ("radius = 3.0", "radius = 0", "line 12: key 'probe.radius' is 0: 0.01 to 1000 mm"),
+            ("radius = 3.0", "diameter = 6", "line 12: key 'probe.diameter' is not known; allowed: radius"),
+            ("phi = 38.5", "phi = 46", "line 15: key 'sine_table.phi' is 46: 0 to 45 degrees"),
+            ("candidates = 10", "candidates = 11", "line 21: key 'chord.candidates' is 11: 1 to 10"),
+            (
+                "e_radius = 812.4",
+                "e_radius = 1200.0",
+                "line 18: key 'chord.e_radius' is 1200: 0 to the equatorial radius a = 1158.8 mm",
+            ),
+            (
+                "[150.0, 420.0]",
+                "[150.0]",
+                "line 23: key 'runout.heights' is two different y, each less than b = 724.3 mm from 0",
+            ),
+            (
+                "25.0, 11]",
+                "25.0, 2]",
+                "line 24: key 'runout.angles' is from, to and the number of readings: degrees, -360 to 360, and 3 to 1000",
+            ),
+        ] {
+            let text = JOB.replacen(from, to, 1);
+            assert_ne!(text, JOB, "{from}");
+            let told = parse(&text).unwrap_err().to_string();
+            assert!(told.ends_with(message), "{told}\n{message}");
+        }
+    }
+}

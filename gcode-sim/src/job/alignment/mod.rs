@@ -1,0 +1,61 @@
+//! The job file of the family `alignment`: what is known of the part that is to be set up, and what it is measured with.
+mod file;
+
+use super::{JobControl, JobError, PinMachine, Surface};
+
+/// A part to be aligned; lengths in mm, angles in degrees.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Alignment {
+    pub control: JobControl,
+    pub machine: PinMachine,
+    pub surface: Surface,
+    /// Radius of the stylus ball.
+    pub probe_radius: f64,
+    pub sine_table: SineTable,
+    pub chord: Chord,
+    pub runout: Runout,
+}
+
+impl Alignment {
+    /// Reads a job file's text.
+    pub fn parse(text: &str) -> Result<Self, JobError> {
+        file::parse(text)
+    }
+
+    /// Whether a job file's text is of this family.
+    pub fn is_meant(text: &str) -> bool {
+        let table = text.parse::<toml::Table>().unwrap_or_default();
+        table.get("family").and_then(toml::Value::as_str) == Some("alignment")
+    }
+}
+
+/// The table that sets the angle between the part's bottom face and its axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SineTable {
+    /// Between the rollers.
+    pub length: f64,
+    pub phi: f64,
+    /// The name of a set of gauge blocks.
+    pub gauge_blocks: String,
+}
+
+/// The chord between two points E and F of the surface in the plane z = 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Chord {
+    /// Their x.
+    pub e_radius: f64,
+    pub f_radius: f64,
+    /// Radius of the circle on which the candidates lie round each.
+    pub circle: f64,
+    pub candidates: u32,
+}
+
+/// An indicator held against the part while the table turns.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Runout {
+    /// The two y of the indicator.
+    pub heights: [f64; 2],
+    pub from: f64,
+    pub to: f64,
+    pub readings: u32,
+}
