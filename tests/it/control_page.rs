@@ -1,6 +1,7 @@
 //! The examples in docs/control.md are run: what stands there is what happens.
 use std::path::Path;
 
+use gcode_sim::report::explain::PAGES;
 use gcode_tests::expect;
 
 /// A line's program and the end it must come to: `` `program` → `end` ``.
@@ -12,6 +13,36 @@ fn examples(page: &str) -> Vec<(String, String)> {
             (program.to_owned(), after.split('`').next().unwrap().to_owned())
         })
         .collect()
+}
+
+/// `PS0050 to PS0058` and single codes of the first column of the table of alarms that are never raised.
+fn never_raised(page: &str) -> Vec<String> {
+    let table = page.split("that are never raised here").nth(1).unwrap().split("\n## ").next().unwrap();
+    let first = table.lines().filter_map(|line| line.strip_prefix("| PS")?.split(" | ").next());
+    let mut codes = Vec::new();
+    for words in first.map(|cell| format!("PS{cell}").replace(',', "")) {
+        let words: Vec<&str> = words.split(' ').collect();
+        let number = |word: &str| word.strip_prefix("PS")?.parse::<u16>().ok();
+        for (place, word) in words.iter().enumerate() {
+            let Some(from) = number(word) else { continue };
+            let to = match words.get(place + 1) {
+                Some(&"to") => number(words[place + 2]).unwrap(),
+                _ => from,
+            };
+            codes.extend((from..=to).map(|number| format!("PS{number:04}")));
+        }
+    }
+    codes
+}
+
+#[test]
+fn what_is_never_raised_has_no_row_among_the_alarms() {
+    let page =
+        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/control.md")).unwrap();
+    let never = never_raised(&page);
+    assert!(never.len() > 60, "the codes were found");
+    let raised = PAGES.iter().filter(|page| never.iter().any(|code| code == page.code));
+    assert_eq!(raised.map(|page| page.code).collect::<Vec<_>>(), [""; 0]);
 }
 
 #[test]

@@ -31,25 +31,31 @@ fn alarms() -> BTreeSet<String> {
 fn findings() -> BTreeSet<String> {
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("../gcode-sim/src");
     let mut codes = BTreeSet::new();
-    for folder in ["holes", "verify/checks"] {
-        for entry in std::fs::read_dir(source.join(folder)).unwrap() {
-            let text = std::fs::read_to_string(entry.unwrap().path()).unwrap();
+    for path in ["holes", "verify/checks", "exec/notes.rs"].map(|path| source.join(path)) {
+        let files = match path.is_dir() {
+            true => std::fs::read_dir(path).unwrap().map(|entry| entry.unwrap().path()).collect(),
+            false => vec![path],
+        };
+        for file in files {
+            let text = std::fs::read_to_string(file).unwrap();
             let text = text.split("#[cfg(test)]").next().unwrap();
             let quoted = text.split('"').skip(1).step_by(2);
             let is_code = |text: &&str| {
                 text.contains('-')
-                    && text
-                        .split('-')
-                        .all(|part| !part.is_empty() && part.bytes().all(|b| b.is_ascii_lowercase()))
+                    && text.split('-').all(|part| {
+                        !part.is_empty() && part.bytes().all(|b| b.is_ascii_lowercase() || b.is_ascii_digit())
+                    })
             };
             codes.extend(quoted.filter(is_code).map(str::to_owned));
         }
     }
+    // A run that was ended.
+    codes.insert("limit".to_owned());
     codes
 }
 
 fn is_finding(page: &Page) -> bool {
-    page.code.contains('-')
+    page.code == "limit" || page.code.contains('-')
 }
 
 #[test]

@@ -250,6 +250,13 @@ pub enum Alarm {
         value: f64,
     },
     EndOfRecord,
+    /// A move beyond a stroke limit.
+    Overtravel {
+        letter: char,
+        plus: bool,
+        value: f64,
+        limit: f64,
+    },
     /// `#3000=n(TEXT)`: the program stops itself.
     Raised {
         number: u16,

@@ -9,9 +9,11 @@ impl Alarm {
 
     #[rustfmt::skip]
     fn parts(&self) -> (Code, String, Option<&'static str>) {
-        use Code::{Mc, Ps, Sim};
+        use Code::{Mc, Ot, Ps, Sim};
         match self {
             Self::TooManyDigits => (Ps(3), "too many digits".into(), Some("write at most 9 digits; 12 in a macro expression")),
+            Self::Overtravel { letter, plus: true, value, limit } => (Ot(500), format!("{letter} would go to {value} of the machine, beyond its limit {limit} on the plus side"), Some("check the work offset, the tool length and the target")),
+            Self::Overtravel { letter, plus: false, value, limit } => (Ot(501), format!("{letter} would go to {value} of the machine, beyond its limit {limit} on the minus side"), Some("check the work offset, the tool length and the target")),
             Self::NotAWord { text } => (Ps(4), format!("'{text}' is not a word the control knows"), Some("a word is a letter followed by a number, #variable or [expression]")),
             Self::LowerCase => (Ps(4), "letters in lower case".into(), Some("write capitals; comments may have both")),
             Self::ShortWord => (Ps(4), "a word of a statement is cut short".into(), Some("write WHILE, GOTO, END, THEN in full")),

@@ -84,6 +84,13 @@ impl OffsetVariables {
     }
 }
 
+/// Stroke limits in machine coordinates; an axis without one has no end there.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Stroke {
+    pub most: [Option<f64>; MAX_AXES],
+    pub least: [Option<f64>; MAX_AXES],
+}
+
 /// What is done where the sources are silent or contradict one another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Unsure {
@@ -243,6 +250,8 @@ pub struct Settings {
     pub g83_clearance: f64,
     /// 1241 to 1243: the second, third and fourth reference position, in machine coordinates.
     pub references: [Position; 3],
+    /// 1320 and 1321: stroke limits; without any, axes have no ends.
+    pub stroke: Option<Stroke>,
     /// Pairs of tool offsets.
     pub tool_offsets: usize,
     /// Macro calls inside one another.
@@ -299,6 +308,7 @@ impl Default for Settings {
             g73_retract: 1.0,
             g83_clearance: 0.5,
             references: [Position::default(); 3],
+            stroke: None,
             tool_offsets: 400,
             macro_levels: 5,
             call_levels: 15,

@@ -1,6 +1,6 @@
 //! The settings by their names: the parameter a manual names, its key on the command line, how it is read.
 use super::{ArgumentScale, Dialect, Increment, OffsetVariables, Settings};
-use crate::motion::Position;
+use crate::motion::{Axes, MAX_AXES, Position};
 use crate::units::MmPerMin;
 
 /// Why a setting can't be taken.
@@ -71,6 +71,8 @@ pub const ROWS: &[Row] = &[
     number!("1241", "the second reference position", POINT, |s, v| s.references[0] = point(s, v)?),
     number!("1242", "the third reference position", POINT, |s, v| s.references[1] = point(s, v)?),
     number!("1243", "the fourth reference position", POINT, |s, v| s.references[2] = point(s, v)?),
+    number!("1320", "stroke limits on the plus side: OT0500 beyond them", POINT, |s, v| s.stroke.get_or_insert_default().most = limits(&s.axes, v)?),
+    number!("1321", "stroke limits on the minus side: OT0501 beyond them", POINT, |s, v| s.stroke.get_or_insert_default().least = limits(&s.axes, v)?),
     number!("MCA", "6008#1: #3000=n shows MC n", SWITCH, |s, v| (s.macro_alarm_base, s.macro_alarm_most) = if switch(v)? { (0, 4095) } else { (3000, 200) }),
     number!("ALARM-BASE", "what #3000=n adds to n", "0 to 9000", |s, v| s.macro_alarm_base = whole(v, 0, 9000)? as u16),
     number!("ALARM-MOST", "the largest n that the manual names for #3000=n", "1 to 4095", |s, v| s.macro_alarm_most = whole(v, 1, 4095)? as u16),
@@ -198,6 +200,16 @@ fn point(settings: &Settings, value: &str) -> Option<Position> {
         point[settings.axes.find(letter)?] = between(word.get(1..)?, -1e6, 1e6)?;
     }
     Some(point)
+}
+
+/// `X400,Z0`: the named axes.
+fn limits(axes: &Axes, value: &str) -> Option<[Option<f64>; MAX_AXES]> {
+    let mut limits = [None; MAX_AXES];
+    for word in value.split(',').map(str::trim) {
+        let letter = word.bytes().next()?.to_ascii_uppercase();
+        limits[axes.find(letter)?] = Some(between(word.get(1..)?, -1e6, 1e6)?);
+    }
+    Some(limits)
 }
 
 /// `98000-98499`; `0` is none.

@@ -75,7 +75,8 @@ impl Core {
         if let Some(calling) = calling {
             self.plan_calling_word(program, words, &calling, plan)?;
         }
-        self.check_unread(given, plan)
+        self.check_unread(given, plan)?;
+        self.check_stroke(plan, span)
     }
 
     /// What nothing has read may still mean something to a control: it isn't passed over in silence. M codes may take

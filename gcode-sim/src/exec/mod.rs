@@ -21,6 +21,7 @@ mod print;
 mod probing;
 mod state;
 mod statements;
+mod stroke;
 mod system_vars;
 mod thread;
 mod transform;

@@ -1,4 +1,5 @@
-//! What `explain` says: one page for every alarm and every finding on holes, written in `docs/explain/` and carried in the program.
+//! What `explain` says: one page for every alarm and every finding of a run, written in `docs/explain/` and carried in
+//! the program; the rules of `check` have their sections in `docs/checks.md`.
 use std::fmt::Write;
 
 /// One page: what a code means, what causes it, a program that raises it and what to write instead.
@@ -20,6 +21,8 @@ macro_rules! pages {
 #[rustfmt::skip]
 pub const PAGES: &[Page] = pages![
     "MC3000"
+    "OT0500"
+    "OT0501"
     "PS0003"
     "PS0004"
     "PS0005"
@@ -106,9 +109,11 @@ pub const PAGES: &[Page] = pages![
     "SIM0002"
     "SIM0003"
     "axis-carries-nothing"
+    "cycle-data-lost"
     "feed-no-hole"
     "feed-not-along-tool"
     "feed-without-retract"
+    "g53-ignored"
     "head-message-unclear"
     "head-not-manual"
     "head-not-set"
@@ -122,6 +127,9 @@ pub const PAGES: &[Page] = pages![
     "hole-tools"
     "hole-twice"
     "leaves-hole-sideways"
+    "limit"
+    "m-code-lost"
+    "no-repeats"
     "rapid-beyond-cut"
     "rapid-into-part"
     "rotary-sign"
@@ -133,10 +141,17 @@ pub const PAGES: &[Page] = pages![
     "tool-unknown"
 ];
 
-/// The page of a code in any of its spellings: `PS0112`, `ps112`, `112`, `MC3021`, `hole-position`.
-pub fn find(code: &str) -> Option<&'static Page> {
+/// The rules of `check`, each a section of their page.
+pub fn rules() -> impl Iterator<Item = Page> {
+    let sections = include_str!("../../../docs/checks.md").split("\n## ").skip(1);
+    sections.map(|text| Page { code: text.lines().next().unwrap_or_default(), text })
+}
+
+/// The page of a code in any of its spellings: `PS0112`, `ps112`, `112`, `MC3021`, `hole-position`, `doubled-n`.
+pub fn find(code: &str) -> Option<Page> {
     let code = code.trim();
-    if let Some(page) = PAGES.iter().find(|page| page.code.eq_ignore_ascii_case(code)) {
+    let mut all = PAGES.iter().copied().chain(rules());
+    if let Some(page) = all.find(|page| page.code.eq_ignore_ascii_case(code)) {
         return Some(page);
     }
     let code = code.to_ascii_uppercase();
@@ -145,7 +160,7 @@ pub fn find(code: &str) -> Option<&'static Page> {
     let number: u32 = digits.parse().ok()?;
     let named = |family: &str, number: u32| {
         let code = format!("{family}{number:04}");
-        PAGES.iter().find(|page| page.code == code)
+        PAGES.iter().copied().find(|page| page.code == code)
     };
     let raised = || named("MC", 3000);
     match family {
@@ -160,7 +175,13 @@ impl Page {
     /// What the code means in a few words.
     pub fn title(&self) -> &'static str {
         let first = self.text.lines().next().unwrap_or_default();
-        first.split_once(": ").map_or(first, |(_, title)| title)
+        match first.split_once(": ") {
+            Some((_, title)) => title,
+            // A rule's section begins with its first sentence.
+            None => {
+                self.text.lines().nth(2).and_then(|line| line.split(['.', ':', ',']).next()).unwrap_or(first)
+            }
+        }
     }
 
     /// What is fenced as `nc` (the program that raises the alarm, then the one that doesn't), `csv` or `toml`.
@@ -191,7 +212,7 @@ impl Page {
 
 /// All codes with what they mean, one line each.
 pub fn list() -> String {
-    PAGES.iter().fold(String::new(), |mut text, page| {
+    PAGES.iter().copied().chain(rules()).fold(String::new(), |mut text, page| {
         let _ = writeln!(text, "{:<20} {}", page.code, page.title());
         text
     })

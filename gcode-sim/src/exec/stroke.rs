@@ -1,0 +1,81 @@
+//! Stored stroke check 1: no move of a block may lead an axis beyond its limits (parameters 1320 and 1321).
+use super::Core;
+use super::eval::{Checked, at};
+use super::plan::Plan;
+use crate::alarm::Alarm;
+use crate::motion::{Arc2, EventKind, Position};
+use crate::source::Span;
+use crate::units::Deg;
+
+impl Core {
+    /// Looks at every move of a block before it happens. A real control stops on the way; here nothing has moved.
+    pub(super) fn check_stroke(&self, plan: &Plan, span: Span) -> Checked<()> {
+        if self.settings.stroke.is_none() {
+            return Ok(());
+        }
+        for (kind, _) in &plan.events {
+            at(self.within_stroke(kind), span)?;
+        }
+        let mut beyond = Ok(());
+        if let Some(drill) = &plan.drill {
+            self.drill(drill, &mut |kind, _| {
+                if beyond.is_ok() {
+                    beyond = self.within_stroke(&kind);
+                }
+            });
+        }
+        at(beyond, span)
+    }
+
+    fn within_stroke(&self, kind: &EventKind) -> Result<(), Alarm> {
+        match kind {
+            EventKind::Rapid { to } | EventKind::Feed { to, .. } | EventKind::Skip { to, .. } => {
+                self.point_within(to)
+            }
+            EventKind::Arc { to, arc, .. } => {
+                self.point_within(to)?;
+                extremes(arc, to).iter().flatten().try_for_each(|point| self.point_within(point))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn point_within(&self, point: &Position) -> Result<(), Alarm> {
+        let Some(stroke) = &self.settings.stroke else { return Ok(()) };
+        for (axis, letter) in self.settings.axes.iter() {
+            // An axis that rolls over has no end.
+            if self.settings.roll_over[axis] {
+                continue;
+            }
+            let value = point[axis];
+            if let Some(limit) = stroke.most[axis].filter(|limit| value > *limit) {
+                return Err(Alarm::Overtravel { letter, plus: true, value, limit });
+            }
+            if let Some(limit) = stroke.least[axis].filter(|limit| value < *limit) {
+                return Err(Alarm::Overtravel { letter, plus: false, value, limit });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Where an arc has its largest and smallest coordinates, of the four places of its circle those it passes; the other
+/// axes as at its end.
+fn extremes(arc: &Arc2, to: &Position) -> [Option<Position>; 4] {
+    let (x, y) = (to[arc.plane.0] - arc.centre.0, to[arc.plane.1] - arc.centre.1);
+    let radius = libm::hypot(x, y);
+    let end = Deg::atan2(y, x).0;
+    [(0.0, (1.0, 0.0)), (90.0, (0.0, 1.0)), (180.0, (-1.0, 0.0)), (270.0, (0.0, -1.0))].map(
+        |(angle, (cosine, sine))| {
+            // Back from the end by less than the sweep.
+            let back = (end - angle).rem_euclid(360.0);
+            let passed = if arc.sweep.0 > 0.0 { back } else { (360.0 - back).rem_euclid(360.0) };
+            (passed < arc.sweep.0.abs()).then(|| {
+                let mut point = *to;
+                point[arc.plane.0] = arc.centre.0 + radius * cosine;
+                point[arc.plane.1] = arc.centre.1 + radius * sine;
+                point
+            })
+        },
+    )
+}
