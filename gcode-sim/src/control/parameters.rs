@@ -59,6 +59,9 @@ const fn number(number: u16, access: Access) -> Row {
     Row { number, bit: None, length: false, access }
 }
 
+/// What a stroke limit reads that isn't there, mm.
+const NO_END: f64 = 99_999.999;
+
 /// What the parameters are here, by number and bit. Those of calls by codes are in [`super::CodeCalls`].
 #[rustfmt::skip]
 const ROWS: &[Row] = &[
@@ -70,6 +73,8 @@ const ROWS: &[Row] = &[
     length(1241, Access::Axes(|s, axis| s.references[0][axis], Some(|s, axis, v| { s.references[0][axis] = v; Some(()) }))),
     length(1242, Access::Axes(|s, axis| s.references[1][axis], Some(|s, axis, v| { s.references[1][axis] = v; Some(()) }))),
     length(1243, Access::Axes(|s, axis| s.references[2][axis], Some(|s, axis, v| { s.references[2][axis] = v; Some(()) }))),
+    length(1320, Access::Axes(|s, axis| s.stroke.and_then(|l| l.most[axis]).unwrap_or(NO_END), Some(|s, axis, v| { s.stroke.get_or_insert_default().most[axis] = Some(v); Some(()) }))),
+    length(1321, Access::Axes(|s, axis| s.stroke.and_then(|l| l.least[axis]).unwrap_or(-NO_END), Some(|s, axis, v| { s.stroke.get_or_insert_default().least[axis] = Some(v); Some(()) }))),
     bit(1401, 1, Access::Fixed(|_| 1.0)),
     number(1420, Access::Axes(|s, axis| if s.axes.is_rotary(axis) { s.rapid_rotary } else { s.rapid.0 }, None)),
     bit(3401, 0, Access::Key("DPI", |s| f64::from(s.calculator_input))),
@@ -97,8 +102,8 @@ const ROWS: &[Row] = &[
 const WITHOUT_EFFECT: [(u16, u16); 3] = [
     // Input and output devices.
     (0, 139),
-    // Stored stroke limits, which are not checked here.
-    (1320, 1327),
+    // Stored stroke limits 2 and 3, which are not checked here.
+    (1322, 1327),
     // Display, editing, protection of programs.
     (3100, 3299),
 ];

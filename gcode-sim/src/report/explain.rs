@@ -130,6 +130,7 @@ pub const PAGES: &[Page] = pages![
     "limit"
     "m-code-lost"
     "no-repeats"
+    "parameter-without-effect"
     "rapid-beyond-cut"
     "rapid-into-part"
     "rotary-sign"
