@@ -140,6 +140,11 @@ impl Flow {
         self.ways[block].anywhere = true;
     }
 
+    /// The blocks with a sequence number.
+    pub(crate) fn numbered(&self) -> &[OpIndex] {
+        &self.numbered
+    }
+
     /// The blocks that can follow `block`; one past the last is the end of the program.
     pub(crate) fn after(&self, block: OpIndex) -> Vec<OpIndex> {
         let Some(ways) = self.ways.get(block) else { return Vec::new() };
@@ -151,19 +156,6 @@ impl Flow {
             to.extend(&self.numbered);
         }
         to
-    }
-
-    /// The blocks that can come before each block.
-    pub(crate) fn before(&self) -> Vec<Vec<OpIndex>> {
-        let mut before = vec![Vec::new(); self.ways.len()];
-        for block in 0..self.ways.len() {
-            for to in self.after(block) {
-                if let Some(list) = before.get_mut(to) {
-                    list.push(block);
-                }
-            }
-        }
-        before
     }
 
     /// Whether anything reaches each block from one of `starts`.

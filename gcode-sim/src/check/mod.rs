@@ -5,8 +5,10 @@
 //! rules, a file each in [`rules`], look at that and say what they find. A comment `(CHECK-OFF NAME)` on a block, or
 //! at the head of a program for all of it, silences a rule there (`silence`).
 mod calls;
+mod circles;
 mod flow;
 mod literal;
+mod parameters;
 pub mod rules;
 mod silence;
 mod subject;

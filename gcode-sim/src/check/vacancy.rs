@@ -262,6 +262,13 @@ fn compare(left: Value, relation: Relation, right: Value) -> Option<bool> {
     })
 }
 
+/// Whether a condition is only true where something has set the local, as `#9 NE #0` is.
+pub(crate) fn guards(condition: &Condition, local: u32) -> bool {
+    let mut state = Locals([UNSET | ANYTHING; 34]);
+    refine(condition, true, &mut state);
+    state.of(local) & UNSET == 0
+}
+
 /// What a condition tells where it is known to be `answer`.
 fn refine(condition: &Condition, answer: bool, state: &mut Locals) {
     match condition {

@@ -2,9 +2,8 @@
 //! what it has read already.
 use std::collections::BTreeMap;
 
-use crate::check::literal;
+use crate::check::parameters;
 use crate::check::subject::{Finding, Subject, Unit};
-use crate::program::{Coded, Input, OpKind, Words};
 use crate::source::Span;
 
 pub(super) const NAME: &str = "doubled-n";
@@ -12,16 +11,8 @@ pub(super) const NAME: &str = "doubled-n";
 pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     let mut first: BTreeMap<u32, (Span, bool)> = BTreeMap::new();
     let mut found = Vec::new();
-    let mut parameters = false;
-    for (block, op) in unit.program.ops.iter().enumerate() {
-        // Behind G10 L52 N is a parameter's number.
-        let before = parameters;
-        if let OpKind::Words(words) = &op.kind {
-            parameters = if parameters { !has_g(words, 110) } else { enters_parameters(words) };
-        }
-        if before && parameters {
-            continue;
-        }
+    let parameters = parameters::inside(unit.program);
+    for (block, op) in unit.program.ops.iter().enumerate().filter(|(block, _)| !parameters[*block]) {
         let Some(number) = op.number.filter(|number| *number > 0) else { continue };
         match first.get_mut(&number) {
             None => {
@@ -43,16 +34,6 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
         }
     }
     found
-}
-
-fn has_g(words: &Words, code: u32) -> bool {
-    words.list.iter().any(|word| matches!(word.value, Input::G(c, _) if c == code))
-}
-
-fn enters_parameters(words: &Words) -> bool {
-    let is_l = |word: &&Coded| word.letter == b'L';
-    has_g(words, 100)
-        && words.list.iter().find(is_l).and_then(literal::count).is_some_and(|l| l == 50 || l == 52)
 }
 
 #[cfg(test)]

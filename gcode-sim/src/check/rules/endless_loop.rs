@@ -1,5 +1,8 @@
 //! A loop that never ends: nothing in it changes what its exits ask, or it has no exit.
-use crate::check::flow::raises;
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::check::circles::circles;
+use crate::check::flow::{Jump, raises};
 use crate::check::literal;
 use crate::check::subject::{Finding, Subject, Unit};
 use crate::check::vacancy::{Locals, truth};
@@ -18,26 +21,44 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     for (block, op) in unit.program.ops.iter().enumerate().filter(|(block, _)| unit.reached[*block]) {
         use crate::program::Statement::{Do, While};
         let OpKind::Statement(While { end, .. } | Do { end, .. }) = op.kind else { continue };
-        let inside: Vec<bool> =
-            (0..told.len()).map(|b| (block..=end).contains(&b) && unit.reached[b]).collect();
-        if never_entered(unit, block) || escapes(subject, unit, &inside) {
+        let inside: Vec<OpIndex> = (block..=end).filter(|b| unit.reached[*b]).collect();
+        if never_entered(unit, block)
+            || escapes(subject, unit, &inside, |to| (block..=end).contains(&to) && unit.reached[to])
+        {
             continue;
         }
         found.push(loop_finding(unit, block));
         told[block..=end].fill(true);
     }
-    let before = unit.flow.before();
-    for jump in unit.flow.jumps.iter().filter(|jump| unit.reached[jump.block] && !jump.returns) {
-        let Some(to) = jump.to.filter(|to| *to <= jump.block && !told[jump.block]) else { continue };
-        let inside = circle(unit, &before, to, jump.block);
-        if !inside[to] || escapes(subject, unit, &inside) {
+    found.extend(jumps(subject, unit, &told));
+    found
+}
+
+/// Circles that a GOTO closes, each looked at once.
+fn jumps(subject: &Subject<'_>, unit: &Unit<'_>, told: &[bool]) -> Vec<Finding> {
+    let mut found = Vec::new();
+    let back = |jump: &Jump| {
+        let to = jump.to.filter(|to| *to <= jump.block)?;
+        (unit.reached[jump.block] && !jump.returns && !told[jump.block]).then_some(to)
+    };
+    if !unit.flow.jumps.iter().any(|jump| back(jump).is_some()) {
+        return found;
+    }
+    let circle = circles(&unit.flow);
+    let mut members: BTreeMap<usize, Vec<OpIndex>> = BTreeMap::new();
+    for (block, circle) in circle.iter().enumerate() {
+        members.entry(*circle).or_default().push(block);
+    }
+    for jump in &unit.flow.jumps {
+        let Some(to) = back(jump).filter(|to| circle[*to] == circle[jump.block]) else { continue };
+        let around = circle[to];
+        let Some(inside) = members.remove(&around) else { continue };
+        if escapes(subject, unit, &inside, |to| circle.get(to) == Some(&around)) {
             continue;
         }
         let message = format!("GOTO {} goes round for ever: nothing in between leads out", jump.number);
-        let back = unit.op(to).span;
-        let finding = unit.warning(NAME, jump.block, message).label(back, "it goes back to here");
+        let finding = unit.warning(NAME, jump.block, message).label(unit.op(to).span, "it goes back to here");
         found.push(finding.help("change what the exit asks, or count the passes"));
-        told.iter_mut().zip(inside).for_each(|(told, inside)| *told |= inside);
     }
     found
 }
@@ -81,17 +102,20 @@ fn never_entered(unit: &Unit<'_>, block: OpIndex) -> bool {
 }
 
 /// Whether anything in a set of blocks can lead out of it.
-fn escapes(subject: &Subject<'_>, unit: &Unit<'_>, inside: &[bool]) -> bool {
-    let blocks = (0..inside.len()).filter(|block| inside[*block]);
-    let mut all = blocks.clone();
-    all.any(|block| {
+fn escapes(
+    subject: &Subject<'_>,
+    unit: &Unit<'_>,
+    inside: &[OpIndex],
+    contains: impl Fn(OpIndex) -> bool,
+) -> bool {
+    let mut written = None;
+    inside.iter().copied().any(|block| {
         let op = unit.op(block);
         let ways = &unit.flow.ways[block];
         if ways.leaves || ways.anywhere || raises(&op.kind) || waits(&op.kind) || is_alarm(&op.kind) {
             return true;
         }
-        let out = |to: &OpIndex| !inside.get(*to).copied().unwrap_or(false);
-        if !unit.flow.after(block).iter().any(out) {
+        if unit.flow.after(block).into_iter().all(&contains) {
             return false;
         }
         match condition(unit, block) {
@@ -99,7 +123,9 @@ fn escapes(subject: &Subject<'_>, unit: &Unit<'_>, inside: &[bool]) -> bool {
                 let leaves_when =
                     !matches!(variables::statement(&unit.blocks, block), Some(Statement::While { .. }));
                 truth(condition, &Locals::ANYTHING) == Some(leaves_when)
-                    || changes(subject, unit, &variables::of_condition(condition), blocks.clone())
+                    || written
+                        .get_or_insert_with(|| Written::by(subject, unit, inside))
+                        .changes(&variables::of_condition(condition))
             }
             None => true,
         }
@@ -123,57 +149,60 @@ fn waits(kind: &OpKind) -> bool {
     }
 }
 
-/// Whether something a condition asks can change while these blocks are gone through.
-fn changes(
-    subject: &Subject<'_>,
-    unit: &Unit<'_>,
-    uses: &Uses,
-    mut blocks: impl Iterator<Item = OpIndex>,
-) -> bool {
-    let numbers: Vec<u32> = uses.reads.iter().map(|read| read.number).collect();
-    if uses.reads_any || numbers.iter().any(|number| *number >= FIRST_SYSTEM) {
-        return true;
-    }
-    blocks.any(|block| writes(unit, block, &numbers) || calls_write(subject, unit, block, &numbers))
+/// The variables that some blocks may write, with those of the programs they call.
+#[derive(Default)]
+struct Written {
+    numbers: BTreeSet<u32>,
+    /// All from this number on.
+    from: Option<u32>,
 }
 
-/// Whether a block assigns one of these variables, or may: its target's number is computed.
-fn writes(unit: &Unit<'_>, block: OpIndex, numbers: &[u32]) -> bool {
-    let target = unit.blocks.get(block).and_then(variables::assignment);
-    target.is_some_and(|(target, _)| literal::variable(target).is_none_or(|number| numbers.contains(&number)))
-}
-
-/// Whether a call in a block may change one of these: a macro the common ones, a subprogram any.
-fn calls_write(subject: &Subject<'_>, unit: &Unit<'_>, block: OpIndex, numbers: &[u32]) -> bool {
-    // A modal call acts in any block that moves.
-    let modal = unit.calls.iter().filter(|call| call.modal);
-    unit.call_in(block).into_iter().chain(modal).any(|call| {
-        let reach = |number: &&u32| !call.own_locals || **number >= 100;
-        let reached: Vec<u32> = numbers.iter().filter(reach).copied().collect();
-        if reached.is_empty() {
-            return false;
-        }
-        match subject.called(call) {
-            None => true,
-            Some(called) => {
-                let called = &subject.units[called];
-                !called.calls.is_empty() || (0..called.blocks.len()).any(|b| writes(called, b, &reached))
+impl Written {
+    fn by(subject: &Subject<'_>, unit: &Unit<'_>, blocks: &[OpIndex]) -> Self {
+        let mut written = Self::default();
+        let mut called = BTreeSet::new();
+        // A modal call acts in any block that moves.
+        let modal = unit.calls.iter().filter(|call| call.modal);
+        for call in blocks.iter().filter_map(|block| unit.call_in(*block)).chain(modal) {
+            // A macro has locals of its own; a subprogram has its caller's.
+            let reach = if call.own_locals { 100 } else { 0 };
+            match subject.called(call).map(|place| (place, &subject.units[place])) {
+                Some((place, program)) if program.calls.is_empty() => {
+                    if called.insert((place, reach)) {
+                        written.add(program, 0..program.blocks.len(), reach);
+                    }
+                }
+                _ => written.all_from(reach),
             }
         }
-    })
-}
+        written.add(unit, blocks.iter().copied(), 0);
+        written
+    }
 
-/// The blocks on the ways from `to` back to `from`.
-fn circle(unit: &Unit<'_>, before: &[Vec<OpIndex>], to: OpIndex, from: OpIndex) -> Vec<bool> {
-    let forward = unit.flow.reached([to]);
-    let mut backward = vec![false; forward.len()];
-    let mut open = vec![from];
-    while let Some(block) = open.pop() {
-        if !std::mem::replace(&mut backward[block], true) {
-            open.extend(&before[block]);
+    fn add(&mut self, unit: &Unit<'_>, blocks: impl Iterator<Item = OpIndex>, reach: u32) {
+        for (target, _) in blocks.filter_map(|block| unit.blocks.get(block).and_then(variables::assignment)) {
+            match literal::variable(target) {
+                Some(number) if number >= reach => _ = self.numbers.insert(number),
+                Some(_) => {}
+                // Its number is computed: it may be any.
+                None => self.all_from(reach),
+            }
         }
     }
-    forward.into_iter().zip(backward).map(|(forward, backward)| forward && backward).collect()
+
+    fn all_from(&mut self, number: u32) {
+        self.from = Some(self.from.map_or(number, |from| from.min(number)));
+    }
+
+    /// Whether one of these is what a condition asks, or something that changes by itself.
+    fn changes(&self, uses: &Uses) -> bool {
+        uses.reads_any
+            || uses.reads.iter().map(|read| read.number).any(|number| {
+                number >= FIRST_SYSTEM
+                    || self.numbers.contains(&number)
+                    || self.from.is_some_and(|from| number >= from)
+            })
+    }
 }
 
 #[cfg(test)]
@@ -221,5 +250,24 @@ mod tests {
         assert_eq!(lines(NAME, "O1\n#1=0\nN1 G0 X1.\nIF[#1 EQ 5]GOTO 9\nGOTO 1\nN9 M30\n"), [5]);
         assert_eq!(lines(NAME, "O1\n#1=0\nN1 G0 X1.\n#1=#1+1\nIF[#1 EQ 5]GOTO 9\nGOTO 1\nN9 M30\n"), NOWHERE);
         assert_eq!(lines(NAME, "O1\nN1 G0 X1.\nX2.\nM99\n"), NOWHERE, "M99 is how a main program goes round");
+    }
+
+    #[test]
+    fn circles_inside_and_beside_one_another() {
+        let twice = "O1\n#1=0\nN1 X1.\nIF[#2 EQ 5]GOTO 1\nX2.\nGOTO 1\nM30\n";
+        assert_eq!(lines(NAME, twice), [4], "one circle, told at its first GOTO");
+        let beside = "O1\nN1 IF[#500 EQ 1]GOTO 2\n#500=#500+1\nGOTO 1\nN2 X1.\nGOTO 2\nM30\n";
+        assert_eq!(lines(NAME, beside), [6]);
+        let crossed = "O1\n#1=0\nN1 X1.\nN2 #1=#1+1\nIF[#1 LT 5]GOTO 1\nIF[#1 LT 9]GOTO 2\nM30\n";
+        assert_eq!(lines(NAME, crossed), NOWHERE);
+    }
+
+    #[test]
+    fn thousands_of_jumps_take_no_time() {
+        let mut text = String::from("O1\n#1=0\nN1 #1=#1+0\n");
+        for place in 2..2_000 {
+            text.push_str(&format!("N{place} X{place}.\nIF[#1 EQ {place}]GOTO {}\n", place - 1));
+        }
+        assert_eq!(lines(NAME, &format!("{text}M30\n")), NOWHERE);
     }
 }

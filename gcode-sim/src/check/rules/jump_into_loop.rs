@@ -6,12 +6,11 @@ pub(super) const NAME: &str = "jump-into-loop";
 
 pub(super) fn find(_: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     let mut found = Vec::new();
+    let around = around(unit);
     for jump in unit.flow.jumps.iter().filter(|jump| unit.reached[jump.block] && !jump.returns) {
         let Some(to) = jump.to else { continue };
-        let entered = loops(unit).find(|(first, last)| {
-            (first + 1..=*last).contains(&to) && !(*first..=*last).contains(&jump.block)
-        });
-        if let Some((first, _)) = entered {
+        let entered = around[to].iter().find(|(first, last)| !(*first..=*last).contains(&jump.block));
+        if let Some((first, _)) = entered.copied() {
             let message = format!("PS1124: N{} stands in a loop that this jump doesn't begin", jump.number);
             let finding =
                 unit.error(NAME, jump.block, message).label(unit.op(first).span, "the loop begins here");
@@ -21,12 +20,15 @@ pub(super) fn find(_: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     found
 }
 
-/// The first and the last block of each loop that has both.
-fn loops(unit: &Unit<'_>) -> impl Iterator<Item = (OpIndex, OpIndex)> {
-    unit.program.ops.iter().enumerate().filter_map(|(first, op)| match op.kind {
-        OpKind::Statement(Statement::While { end, .. } | Statement::Do { end, .. }) => Some((first, end)),
-        _ => None,
-    })
+/// For each block the first and the last block of the loops it stands in, the outer ones first; at most three.
+fn around(unit: &Unit<'_>) -> Vec<Vec<(OpIndex, OpIndex)>> {
+    let mut around = vec![Vec::new(); unit.program.ops.len()];
+    for (first, op) in unit.program.ops.iter().enumerate() {
+        if let OpKind::Statement(Statement::While { end, .. } | Statement::Do { end, .. }) = op.kind {
+            around[first + 1..=end].iter_mut().for_each(|loops: &mut Vec<_>| loops.push((first, end)));
+        }
+    }
+    around
 }
 
 #[cfg(test)]

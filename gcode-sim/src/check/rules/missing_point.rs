@@ -3,6 +3,7 @@
 //! Programs that count in increments throughout (`X45000`) are left alone: they have no points, and numbers of 1 mm
 //! and more.
 use crate::check::literal::without_point;
+use crate::check::parameters;
 use crate::check::subject::{Finding, Subject, Unit};
 use crate::control::Settings;
 use crate::program::{Coded, Input, OpKind, Words};
@@ -10,8 +11,6 @@ use crate::syntax::ast::Decimal;
 
 pub(super) const NAME: &str = "missing-point";
 
-/// Codes (× 10) whose words are counts or factors and no lengths: G05.1, G10, G51, G68.2.
-const OTHER_WORDS: [u32; 4] = [51, 100, 510, 682];
 /// Cycles whose Q is a length: G73, G76, G83, G87. Older controls take no point there.
 const WITH_Q: [u32; 4] = [730, 760, 830, 870];
 /// A peck or a dwell of this many increments may be meant: many programs write `G4 X500`.
@@ -23,9 +22,10 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
         return Vec::new();
     }
     let inch = unit.program.ops.iter().any(|op| words(&op.kind).is_some_and(|words| has(words, &[200])));
+    let parameters = parameters::inside(unit.program);
     let mut found = Vec::new();
     for (block, op) in unit.program.ops.iter().enumerate().filter(|(block, _)| unit.reached[*block]) {
-        let Some(words) = words(&op.kind) else { continue };
+        let Some(words) = words(&op.kind).filter(|_| !parameters[block]) else { continue };
         for word in measures(words, settings) {
             let Some(number) = without_point(word) else { continue };
             let counted = (word.letter == b'Q' && words.call.is_none()) || has(words, &[40]);
@@ -53,23 +53,32 @@ fn has(words: &Words, codes: &[u32]) -> bool {
 
 /// The words of a block that are lengths, angles or seconds.
 fn measures<'a>(words: &'a Words, settings: &'a Settings) -> impl Iterator<Item = &'a Coded> {
-    let other = has(words, &OTHER_WORDS);
-    let dwell = has(words, &[40]);
-    let cycle = has(words, &WITH_Q);
-    let plain = words.list.iter().filter(move |word| match word.letter {
-        _ if other => false,
-        b'X' | b'U' if dwell => true,
-        _ if dwell => false,
-        b'Q' => cycle,
-        b'I' | b'J' | b'K' | b'R' => true,
-        b'C' if word.comma => true,
-        letter => settings.axes.find(letter).is_some(),
-    });
+    let plain = words.list.iter().filter(move |word| is_measure(words, word, settings));
     // The letters of a macro call that a control scales: all but D E F H M S T.
     let arguments = words.call.iter().flat_map(|call| &call.arguments);
     let scaled = arguments.filter(|word| b"ABCIJKQRUVWXYZ".contains(&word.letter));
     // K of a drilling cycle counts repetitions, and arcs have it with I or J or alone: a small K is left alone.
     plain.filter(move |word| word.letter != b'K' || !drills(words)).chain(scaled)
+}
+
+fn is_measure(words: &Words, word: &Coded, settings: &Settings) -> bool {
+    let axis = settings.axes.find(word.letter).is_some();
+    match word.letter {
+        // Look-ahead.
+        _ if has(words, &[51]) => false,
+        letter if has(words, &[40]) => matches!(letter, b'X' | b'U'),
+        letter if has(words, &[100]) => match parameters::data(words) {
+            Some(2 | 20) => axis,
+            Some(1 | 10..=13) => letter == b'R',
+            _ => false,
+        },
+        // I J K and P are factors.
+        _ if has(words, &[510]) => axis,
+        b'Q' => has(words, &WITH_Q),
+        b'I' | b'J' | b'K' | b'R' => true,
+        b'C' if word.comma => true,
+        _ => axis,
+    }
 }
 
 fn drills(words: &Words) -> bool {
@@ -99,7 +108,12 @@ fn spelled(letter: u8, number: Decimal) -> String {
 
 /// `0.003 mm`.
 fn meaning(letter: u8, number: Decimal, words: &Words, settings: &Settings, inch: bool) -> String {
-    let turns = matches!(letter, b'A' | b'B' | b'C');
+    let turns = match letter {
+        b'A' | b'B' | b'C' => true,
+        b'R' => has(words, &[680]),
+        b'I' | b'J' | b'K' => has(words, &[682]),
+        _ => false,
+    };
     let dwell = has(words, &[40]);
     let finer = if inch && !turns && !dwell { 10.0 } else { 1.0 };
     let per_unit = settings.increment.per_unit() * finer;
@@ -128,6 +142,16 @@ mod tests {
     }
 
     #[test]
+    fn offsets_and_angles_of_codes_are_measures_too() {
+        let text =
+            "O1\nG0 X1.\nG10 L2 P1 X-100 Y0\nG10 L10 P1 R50\nG68 X0 Y0 R45\nG69\nG51 X10 Y0 P2000\nM30\n";
+        let found = messages(NAME, text);
+        assert_eq!(found, ["X-100 is -0.1 mm", "R50 is 0.05 mm", "R45 is 0.045 degrees", "X10 is 0.01 mm"]);
+        let tilted = messages(NAME, "O1\nG68.2 X0 Y0 Z0 I0 J90 K0\nG0 Z5.\nM30\n");
+        assert_eq!(tilted, ["J90 is 0.09 degrees"]);
+    }
+
+    #[test]
     fn counts_zeros_and_increments_are_no_lengths() {
         for text in [
             "O1\nG0 X0 Y0.5\nG43 H1 Z100.\nM98 P2 L3\nG4 P500\nM30\nO2\nM99\n",
@@ -135,6 +159,8 @@ mod tests {
             "O1\nG83 X1. Y1. Z-20. R2. Q500 K3 F100\nM30\n",
             "O1\n#1=3\nG4 X500\nG0 X#1 Y[5]\nG10 L2 P1 X1.\nG51 X0 Y0 I2000 J2000\nM30\n",
             "O1\nG65 P2 A5. D3 H2 T1 S5\nM30\nO2\nM99\n",
+            "O1\nG0 X1.\nG10 L52\nN6004 Q0 R1\nN1241 P1 R5.\nG11\nM30\n",
+            "O1\nG0 X1.\nG10 L3\nP1 L10\nG11\nM30\n",
         ] {
             assert_eq!(lines(NAME, text), NOWHERE, "{text}");
         }

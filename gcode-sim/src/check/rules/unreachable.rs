@@ -1,7 +1,7 @@
 //! Blocks that nothing reaches: behind M30, M99, GOTO or a #3000 without a number that something jumps to.
 use crate::check::flow::raises;
 use crate::check::subject::{Finding, Subject, Unit};
-use crate::program::{OpIndex, OpKind};
+use crate::program::{OpIndex, OpKind, Statement};
 
 pub(super) const NAME: &str = "unreachable";
 
@@ -39,6 +39,8 @@ fn harmless(unit: &Unit<'_>, block: OpIndex) -> bool {
     match kind {
         OpKind::Empty => true,
         OpKind::Words(words) => unit.flow.ways[block].leaves && words.list.len() <= 1,
+        // A loop that is always left on the way needs its END all the same.
+        OpKind::Statement(Statement::End { start, .. }) => unit.reached[*start],
         _ => raises(kind),
     }
 }
@@ -60,6 +62,8 @@ mod tests {
     fn an_end_behind_an_alarm_is_no_fault() {
         assert_eq!(lines(NAME, "O1\n#1=#500\nIF[#1 EQ 0]GOTO 9\nM30\nN9 #3000=1(NO)\nM30\n"), NOWHERE);
         assert_eq!(lines(NAME, "O1\n#3000=1(NO)\nG0 X1.\nM30\n"), [3]);
+        let left = "O1\nN3 WHILE[#500 LT 3]DO1\n#500=#500+1\nGOTO 3\nEND1\nM30\n";
+        assert_eq!(lines(NAME, left), NOWHERE, "a loop needs its END");
     }
 
     #[test]

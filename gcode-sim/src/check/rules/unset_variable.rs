@@ -2,10 +2,11 @@
 use std::collections::BTreeMap;
 
 use crate::check::subject::{Finding, Role, Subject, Unit};
-use crate::check::vacancy::{Locals, States, states, unset_at_first};
-use crate::check::variables::{self, Use};
+use crate::check::vacancy::{Locals, States, guards, states, unset_at_first};
+use crate::check::variables::{self, Read, Use};
 use crate::program::{OpIndex, argument_letter};
 use crate::source::Span;
+use crate::syntax::ast::Statement;
 
 use super::missing_argument;
 
@@ -58,15 +59,38 @@ pub(super) fn reads<'a>(
     reached.flat_map(move |(block, written)| {
         let itself = variables::assignment(written)
             .filter(|(target, value)| target.kind == value.kind || same_variable(target, value));
-        let reads = variables::of_block(written).reads.into_iter();
-        let plain = reads.filter(move |read| {
+        let reads = variables::of_block(written).reads;
+        let minded = minded(unit, block, &reads);
+        let plain = reads.into_iter().filter(move |read| {
             // `#1=#1` says nothing.
-            (1..=33).contains(&read.number) && read.usage != Use::Tested && itself.is_none()
+            (1..=33).contains(&read.number)
+                && read.usage != Use::Tested
+                && itself.is_none()
+                && !minded.contains(&read.number)
         });
         plain
             .filter(move |read| unset_at_first(unit, states, block, read.number))
             .map(move |read| ((block, read.number), (read.span, read.usage)))
     })
+}
+
+/// The locals whose vacancy a condition minds: what is behind it reads them only where they are set, and what stands
+/// beside the test in it means no harm.
+fn minded(unit: &Unit<'_>, block: OpIndex, reads: &[Read]) -> Vec<u32> {
+    use Statement::{IfGoto, IfThen, While};
+    let Some(IfThen { condition, .. } | IfGoto { condition, .. } | While { condition, .. }) =
+        variables::statement(&unit.blocks, block)
+    else {
+        return Vec::new();
+    };
+    let tested = reads.iter().filter(|read| read.usage == Use::Tested).map(|read| read.number);
+    // Behind IF[#9 EQ #0]THEN a #9 is a slip all the same.
+    tested.filter(|number| !computes(reads, *number) || guards(condition, *number)).collect()
+}
+
+/// Whether a local is used for more than comparing.
+fn computes(reads: &[Read], number: u32) -> bool {
+    reads.iter().any(|read| read.number == number && !matches!(read.usage, Use::Tested | Use::Compared))
 }
 
 fn same_variable(left: &crate::syntax::ast::Expr, right: &crate::syntax::ast::Expr) -> bool {
@@ -82,6 +106,8 @@ mod tests {
     #[test]
     fn what_was_never_set_is_told() {
         assert_eq!(lines(NAME, "O1\n#1=2.\nG0 X#1 Y#2\n#3=#4*2\n#5=#6\nM30\n"), [3, 4, 5]);
+        assert_eq!(lines(NAME, "O1\nIF[#9 EQ #0]THEN #10=#9*2\nM30\n"), [2]);
+        assert_eq!(lines(NAME, "O1\nIF[#8 NE #0]THEN #10=#500\nIF[#9 LT 2]THEN #11=1\nM30\n"), [3]);
         let found = messages(NAME, "O1\nG0 Y#2\nM30\n");
         assert_eq!(found, ["#2 is read and nothing has set it: its word is ignored"]);
     }
@@ -97,6 +123,8 @@ mod tests {
             "O1\n#3=#500\nX#3\n#4=#100\n#4=#4\nM30\n",
             "O2\nX#24\n#27=#26*2\nM99\n",
             "O1\nIF[#500 EQ 1]GOTO 5\n#1=2.\nN5 X#1\nM30\n",
+            "O1\nIF[#9 NE #0]THEN #10=#9*2\nIF[[#9 NE #0] AND [#9 LT 5]]GOTO 5\nN5 M30\n",
+            "O1\nIF[[#9 EQ #0] OR [#9 LT 5]]GOTO 5\nN5 M30\n",
         ] {
             assert_eq!(lines(NAME, text), NOWHERE, "{text}");
         }
