@@ -5,6 +5,12 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 use serde::{Deserialize, Serialize};
 
+/// `value` × `scale` as the nearest whole number, halves away from 0. What binary numbers miss of a half counts as one:
+/// 0.5005 × 1000 is 500.49999999999994 to a double, and 501 to everybody who reads it.
+pub fn nearest(value: f64, scale: f64) -> f64 {
+    (value * scale * (1.0 + 4.0 * f64::EPSILON)).round()
+}
+
 macro_rules! unit {
     ($(#[$doc:meta])* $name:ident, $suffix:literal) => {
         $(#[$doc])*

@@ -1,6 +1,7 @@
 //! Laws and whole-program tests that are not cases: house rules, round trips, published numbers, the README.
 #![expect(clippy::unwrap_used, clippy::disallowed_methods, reason = "tests read files and may panic")]
 
+mod arithmetic;
 mod changes;
 mod check;
 mod control;
@@ -9,7 +10,9 @@ mod corpus;
 mod docs;
 mod emitted;
 mod explain;
+mod limits;
 mod misplaced;
 mod pin_holes;
+mod real_files;
 mod round_trip;
 mod tidy;

@@ -5,7 +5,7 @@ mod parameters;
 mod table;
 
 use crate::motion::{Axes, MAX_AXES, Position};
-use crate::units::MmPerMin;
+use crate::units::{MmPerMin, nearest};
 
 pub use code_calls::{AddressCall, Called, CodeCallKind, CodeCalls, FAMILIES, RANGES};
 pub use dialect::{DIALECTS, DialectRow};
@@ -39,7 +39,7 @@ impl Increment {
 
     /// The multiple of the increment nearest to `value`, half away from zero.
     pub fn round(self, value: f64) -> f64 {
-        (value * self.per_unit()).round() / self.per_unit()
+        nearest(value, self.per_unit()) / self.per_unit()
     }
 
     /// The increment itself in mm or degrees.

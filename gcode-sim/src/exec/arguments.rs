@@ -2,6 +2,7 @@
 use super::Core;
 use super::eval::Checked;
 use super::vars::{Locals, VACANT, Value};
+use crate::alarm::Alarm;
 use crate::program::{ArgumentLocals, Coded, Program};
 
 impl Core {
@@ -11,6 +12,9 @@ impl Core {
         let mut locals = VACANT;
         let mut letters = ArgumentLocals::new(self.settings.plain_ijk, every);
         for word in words {
+            if word.comma {
+                return Err(Alarm::ImproperAddress { letter: char::from(word.letter) }.at(word.span));
+            }
             let local = letters.next(word.letter).map_err(|alarm| alarm.at(word.span))?;
             let Some(local) = local else { continue };
             if let Some(raw) = self.raw_argument(program, word)? {

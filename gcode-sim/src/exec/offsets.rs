@@ -5,6 +5,7 @@ use super::travel::shorter_way;
 use crate::alarm::Alarm;
 use crate::motion::{Axis, MAX_AXES, Position};
 use crate::program::modes::{Length, Unit, WorkSystem};
+use crate::units::nearest;
 
 /// Additional work coordinate systems G54.1 P1…P300.
 const ADDITIONAL: usize = 300;
@@ -139,7 +140,7 @@ impl Core {
         match state.modal.unit {
             Unit::Inch if !turns => {
                 let tenths = increment.per_unit() * 10.0;
-                self.clean((value * tenths).round() / tenths * 25.4)
+                self.clean(nearest(value, tenths) / tenths * 25.4)
             }
             Unit::Inch | Unit::Metric => increment.round(value),
         }

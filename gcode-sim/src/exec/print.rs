@@ -6,6 +6,7 @@ use crate::control::Settings;
 use crate::program::{PrintPart, Program};
 use crate::source::Span;
 use crate::syntax::ast::PrintKind;
+use crate::units::nearest;
 
 /// What a run may print before it is stopped: a loop that prints must not fill the memory.
 const MOST_BYTES: usize = 64 << 20;
@@ -76,7 +77,7 @@ fn decimal(
         return Err(Alarm::PrintFormat);
     }
     let scale = 10_f64.powi(i32::from(decimals));
-    let scaled = (number.abs() * scale).round();
+    let scaled = nearest(number.abs(), scale);
     if scaled > 1e15 {
         return Err(Alarm::IntegerOverflow);
     }
@@ -107,7 +108,7 @@ fn decimal(
 
 /// `#n[d]`: the value × 10^d as two words, the highest byte first.
 fn binary(number: f64, decimals: u8, line: &mut Vec<u8>) -> Result<(), Alarm> {
-    let scaled = (number * 10_f64.powi(i32::from(decimals))).round();
+    let scaled = nearest(number, 10_f64.powi(i32::from(decimals)));
     if !(-2_147_483_648.0..=2_147_483_647.0).contains(&scaled) {
         return Err(Alarm::IntegerOverflow);
     }

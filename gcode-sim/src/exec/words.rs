@@ -14,6 +14,7 @@ use crate::program::modes::{FeedMode, Unit};
 use crate::program::{Coded, Input, Program, Words};
 use crate::source::Span;
 use crate::syntax::ast::Decimal;
+use crate::units::nearest;
 
 /// The value of a word before anything is made of it.
 #[derive(Clone, Copy, Debug)]
@@ -233,7 +234,7 @@ impl Core {
         match letter {
             b'A'..=b'C' | b'I'..=b'K' | b'Q' | b'R' | b'U'..=b'Z' => {
                 let scale = POWERS[self.decimals(letter, self.state.modal.unit)];
-                (value * scale).round() / scale
+                nearest(value, scale) / scale
             }
             b'F' | b'E' => value,
             _ => value.round(),
@@ -259,7 +260,7 @@ impl Core {
     /// Whole increments: literals are cut off (or rounded, by setting), computed values rounded half away from 0.
     fn increments(&self, raw: Raw, decimals: usize) -> Result<f64, Alarm> {
         let number = match raw {
-            Raw::Computed(value) => (value * POWERS[decimals]).round(),
+            Raw::Computed(value) => nearest(value, POWERS[decimals]),
             Raw::Literal(Decimal { digits, places, negative }) => {
                 let places = match places {
                     // Without a point the digits count increments, or whole units in calculator notation.

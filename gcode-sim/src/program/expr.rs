@@ -256,11 +256,9 @@ impl Lowering {
             if name.index.is_some() {
                 return Err(Alarm::Suffix { name: text() }.at(span));
             }
-            let place = self.names.iter().position(|n| *n == name.text).unwrap_or_else(|| {
-                self.names.push(text());
-                self.names.len() - 1
-            });
-            self.emit(Operation::NameNumber(place as u32), span);
+            let next = self.names.len() as u32;
+            let place = *self.names.entry(text()).or_insert(next);
+            self.emit(Operation::NameNumber(place), span);
             return Ok(1);
         }
         if OTHER_MEMORIES.contains(&name.text.as_str()) {

@@ -1,4 +1,6 @@
 //! Lowers a tree to operations, block by block; what can't run becomes the alarm it raises when it is reached.
+use std::collections::BTreeMap;
+
 use super::expr::{Context, Instruction};
 use super::{Form, Op, OpKind, PrintPart, Program, Statement, flow};
 use crate::alarm::Alarm;
@@ -6,12 +8,15 @@ use crate::source::{SourceId, Span, Spanned};
 use crate::syntax::ast::ProgramName;
 use crate::syntax::{self, Parts, ast};
 
+/// Skips inside one block: as many as there are switches.
+const MOST_SKIPS: usize = 9;
+
 /// What grows while a program is lowered.
 #[derive(Default)]
 pub(super) struct Lowering {
     pub(super) instructions: Vec<Instruction>,
-    /// Variables called by names that SETVN gives.
-    pub(super) names: Vec<String>,
+    /// Variables called by names that SETVN gives, each with its place.
+    pub(super) names: BTreeMap<String, u32>,
     /// What the block at hand has that not every control takes.
     forms: Vec<Spanned<Form>>,
 }
@@ -32,6 +37,8 @@ fn finish(Parts { name, span, context, blocks: mut ops, closed }: Parts<Lowering
         ProgramName::Name(_) => None,
         ProgramName::Unnamed => ops.iter().filter_map(|op| op.number).find(|number| *number > 0),
     };
+    let mut names = vec![String::new(); context.names.len()];
+    context.names.into_iter().for_each(|(name, place)| names[place as usize] = name);
     let end = ops.last().map_or(span.end, |op| op.span.end.max(span.end));
     Program {
         name,
@@ -40,7 +47,7 @@ fn finish(Parts { name, span, context, blocks: mut ops, closed }: Parts<Lowering
         numbers: flow::numbers(&ops),
         ops,
         instructions: context.instructions,
-        names: context.names,
+        names,
         closed,
     }
 }
@@ -107,6 +114,10 @@ impl Lowering {
             (Some(_), true) if !skips.is_empty() => Err(Alarm::MixedStatements.at(block.span)),
             (Some(found), true) => self.statement(&found.node, found.span, block).map(OpKind::Statement),
             (None, true) => Ok(OpKind::Empty),
+            (None, false) if skips.len() > MOST_SKIPS => {
+                let what = format!("a block with more than {MOST_SKIPS} skips inside");
+                Err(Alarm::NotSimulated { what }.at(block.span))
+            }
             (None, false) => {
                 let first = skips.first().map_or(words.len(), |(_, at)| *at);
                 let tails: Vec<_> = skips

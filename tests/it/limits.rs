@@ -1,0 +1,156 @@
+//! Sizes that no program has: each is read and comes to an end or to an alarm, and soon.
+use gcode_sim::exec::Outcome;
+use gcode_tests::{expect, fuzz};
+use proptest::prelude::*;
+
+/// The code that a program stops with, or `end`.
+fn stops_with(program: &str) -> String {
+    match expect::run(program.as_bytes()).outcome {
+        Outcome::End => "end".into(),
+        Outcome::Limit => "limit".into(),
+        Outcome::Alarm(stopped) => stopped.alarm.code().to_string(),
+    }
+}
+
+fn block(text: &str) -> String {
+    stops_with(&format!("O1\n{text}\nM30\n"))
+}
+
+const MANY: usize = 100_000;
+
+#[test]
+fn nesting_without_end_is_an_alarm() {
+    let brackets = format!("{}1{}", "[".repeat(MANY), "]".repeat(MANY));
+    assert_eq!(block(&format!("#1={brackets}")), "PS0118");
+    assert_eq!(block(&format!("G0 X{brackets}")), "PS0118");
+    assert_eq!(block(&format!("IF[{brackets} EQ 1]GOTO 5")), "PS0118");
+    assert_eq!(block(&format!("#1={}1", "#[".repeat(MANY))), "PS0118");
+    assert_eq!(block(&format!("#1={}1", "SIN[".repeat(MANY))), "PS0118");
+    for beginning in
+        ["#1=", "G0 X", "#", "GOTO", "IF[", "DPRNT[", "SETVN", "M98 P", "G65 P1 A", "/", "N", "O"]
+    {
+        for piece in [
+            "-",
+            "+",
+            "#",
+            "[",
+            "]",
+            "IF[1 EQ 1]",
+            "IF[1 EQ 1]THEN",
+            "THEN",
+            "WHILE[",
+            "DO",
+            "SIN",
+            "/",
+            "=",
+            "*",
+        ] {
+            let code = block(&format!("{beginning}{}1", piece.repeat(2_000)));
+            assert_ne!(code, "limit", "{beginning} {piece}");
+        }
+    }
+}
+
+#[test]
+fn chains_without_end_are_read_at_once() {
+    assert_eq!(block(&format!("#1=1{}", "+1".repeat(MANY))), "SIM0001");
+    assert_eq!(block(&format!("#1=1{}", " 1".repeat(MANY))), "PS0003");
+    assert_eq!(block(&format!("G0 X0{}.5", "0".repeat(MANY))), "end");
+    assert_eq!(block(&"#1=1 ".repeat(MANY)), "PS0125");
+    assert_eq!(block(&format!("G0 X1.{}", "/2 Y1.".repeat(MANY))), "SIM0001");
+    assert_eq!(block(&"G0".repeat(MANY)), "PS0125");
+    assert_eq!(block(&format!("POPEN\nDPRNT[{}]", "#1[44]".repeat(10_000))), "end");
+    assert_eq!(block(&format!("SETVN500[{}A]", "A,".repeat(MANY))), "PS0115");
+}
+
+#[test]
+fn ten_thousand_words_stand_in_a_block() {
+    let words: String = (1..=10_000).map(|i| format!("X{i} Y-{i}.")).collect();
+    let ran = expect::run(format!("O1\nG0 {words}\nM30\n").as_bytes());
+    let wrong = ran.differences("end=normal; path=R(10,-10000,0)");
+    assert!(wrong.is_empty(), "{wrong:?}");
+    let arguments: String = (1..=10_000).map(|i| format!("A{i}. Z-{i}.")).collect();
+    let ran = expect::run(format!("O1\nG65 P2 {arguments}\nM30\nO2\n#100=#1+#26*2\nM99\n").as_bytes());
+    let wrong = ran.differences("end=normal; #100=-10000");
+    assert!(wrong.is_empty(), "{wrong:?}");
+}
+
+#[test]
+fn a_line_of_a_megabyte_is_a_line() {
+    const MEGABYTE: usize = 1 << 20;
+    let text = format!(
+        "O1({})\nG0{}X1.\n#100=7{};\n(UNCLOSED{}\nY{}2.\nM30\n",
+        "A".repeat(MEGABYTE),
+        " ".repeat(MEGABYTE),
+        "\t".repeat(MEGABYTE),
+        "(".repeat(MEGABYTE),
+        "0".repeat(MEGABYTE),
+    );
+    let wrong = expect::run(text.as_bytes()).differences("end=normal; #100=7; path=R(1,0,0) R(1,2,0)");
+    assert!(wrong.is_empty(), "{wrong:?}");
+}
+
+#[test]
+fn a_hundred_thousand_sequence_numbers_are_found() {
+    let mut text = "O1\nN200000 #1=#1+1\nIF[#1 GT 20000]GOTO 99999\nGOTO[#1*4+7]\n".to_owned();
+    for number in 1..MANY {
+        text.push_str(&format!("N{number} GOTO 200000\n"));
+    }
+    let text = text.replace("N99999 GOTO 200000", "N99999 M30");
+    assert_eq!(stops_with(&text), "end");
+}
+
+#[test]
+fn calls_inside_one_another_are_counted() {
+    assert_eq!(stops_with("O1\nG65 P1\n"), "PS0122");
+    assert_eq!(stops_with("O1\nM98 P1\n"), "PS0077");
+    assert_eq!(stops_with("O1\nG66 P2\nX1.\nM30\nO2\nG66 P2\nX2.\nM98 P2\nM99\n"), "PS0077");
+    let many: String = (2..5_000).map(|n| format!("O{n}\nM99\n")).collect();
+    let calls: String = (2..5_000).map(|n| format!("M98 P{n}\n")).collect();
+    assert_eq!(stops_with(&format!("O1\n{calls}M30\n{many}")), "end");
+}
+
+/// All programs of the control's cases, with what real files have at their edges.
+fn cases() -> Vec<Vec<u8>> {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("suite/control");
+    let mut texts: Vec<_> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| std::fs::read_to_string(entry.unwrap().path().join("cases.txt")).unwrap())
+        .collect();
+    texts.sort();
+    let bodies = texts.iter().flat_map(|text| text.split("== ").skip(1));
+    bodies.map(|body| body.split_once('\n').unwrap().1.as_bytes().to_vec()).collect()
+}
+
+/// One change to a program: where, as a part of its length, and what.
+type Edit = (f64, u8, u8);
+
+fn edited(mut program: Vec<u8>, edits: &[Edit]) -> Vec<u8> {
+    for (place, kind, byte) in edits {
+        let at = (place * program.len() as f64) as usize;
+        let to = (at + usize::from(*byte % 16)).min(program.len());
+        match kind {
+            0 => program.insert(at, *byte),
+            1 => drop(program.drain(at..to)),
+            2 => program.splice(at..at, program[at..to].to_vec()).for_each(drop),
+            3 => program[at..to].reverse(),
+            _ if at < program.len() => program[at] = b"[]#.-/=()%\n;0GMX"[usize::from(*byte % 16)],
+            _ => {}
+        }
+    }
+    program
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(1500) })]
+
+    #[test]
+    fn cases_with_a_few_bytes_changed_are_read_and_run(
+        program in prop::sample::select(cases()),
+        edits in prop::collection::vec((0.0..1.0, 0..5u8, any::<u8>()), 1..6),
+    ) {
+        let program = edited(program, &edits);
+        fuzz::reader(&program);
+        fuzz::run(&program);
+    }
+}
