@@ -43,6 +43,7 @@ fn what_stands_round_a_tape_changes_nothing() {
         format!("PLATE 7, REV B\n{tape}"),
         body.clone(),
         format!("%\n{body}"),
+        format!("{tape}\n\u{1a}\n%\nO0002\nM99\n%\u{1a}"),
         format!("{body}\n%"),
         format!("%{body}\n%"),
         LINES.join("\n").to_lowercase(),

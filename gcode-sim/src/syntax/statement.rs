@@ -76,10 +76,16 @@ pub(super) fn statement<'a>(line: Line, begun: &Begun<'a>) -> Read<'a, (Statemen
         Keyword::SetNames => whole_words(set_names(line, rest)?, |names| names),
         Keyword::Decimal => whole_words(print(line, rest, PrintKind::Decimal)?, |print| print),
         Keyword::Binary => whole_words(print(line, rest, PrintKind::Binary)?, |print| print),
+        // `PC LOS`: letters behind a cut word could be its own.
+        Keyword::Open | Keyword::Close if short && begins_with_letter(rest) => return other(rest),
         Keyword::Open => (rest, (Statement::OpenOutput, false)),
         Keyword::Close => (rest, (Statement::CloseOutput, false)),
     };
     Ok((rest, (statement, short || inside)))
+}
+
+fn begins_with_letter(input: Input<'_>) -> bool {
+    next(input).is_some_and(|(byte, _)| byte.is_ascii_alphabetic())
 }
 
 /// A statement without further words in it.

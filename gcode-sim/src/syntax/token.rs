@@ -80,9 +80,10 @@ impl Line {
     }
 }
 
-/// A space; also the feed and the rub-out of paper tape, which controls read over.
+/// A space; also the feed and the rub-out of paper tape, which controls read over, and the sign that senders end a
+/// file with, which stands inside one where files were put together.
 pub(super) fn is_space(byte: u8) -> bool {
-    matches!(byte, b' ' | b'\t' | 0 | 0x7f)
+    matches!(byte, b' ' | b'\t' | 0 | 0x1a | 0x7f)
 }
 
 /// What is left after spaces and comments.
