@@ -1,5 +1,5 @@
 //! Laws of `diff`: a program and itself are the same, whatever its numbers, comments and spaces.
-use gcode_sim::changes::{Revision, changes};
+use gcode_sim::changes::{Record, Revision, changes};
 use gcode_sim::machine::Machine;
 use gcode_sim::program::NoLibrary;
 use gcode_sim::session::Request;
@@ -7,7 +7,7 @@ use proptest::prelude::*;
 
 fn revision(text: &str) -> Revision {
     let request = Request::new("O1.nc", text.as_bytes().to_vec(), Machine::default());
-    Revision::of(&request, &mut NoLibrary).unwrap()
+    Revision::of(&request, &mut NoLibrary, None).unwrap()
 }
 
 /// A block and what it may look like after a rewrite: `{}` stands for the number of a local.
@@ -49,6 +49,17 @@ proptest! {
         let new = revision(&rewritten(&program(&blocks, 14)));
         let found = changes(&old.record, &new.record, 0.0001);
         prop_assert!(found.is_empty(), "{found:?}");
+    }
+
+    /// What is accepted is written to a file and read again: nothing is lost on the way.
+    #[test]
+    fn a_record_read_again_is_the_same(blocks in prop::collection::vec(0..BLOCKS.len(), 0..24)) {
+        let record = revision(&program(&blocks, 1)).record;
+        let text = record.to_json().unwrap();
+        let again = Record::from_json(&text).unwrap();
+        let found = changes(&record, &again, 0.0);
+        prop_assert!(found.is_empty(), "{found:?}");
+        prop_assert_eq!(again.to_json().unwrap(), text);
     }
 
     /// One move more, in a place where nothing else depends on it, is one entry and leaves the others alone.

@@ -8,10 +8,12 @@ mod left;
 mod motion;
 mod record;
 mod steps;
+mod store;
 
 use serde::Serialize;
 
 pub use record::{MOST_STEPS, Record, Revision, Totals, Where};
+pub use store::StoreError;
 
 use self::align::align;
 

@@ -9,6 +9,7 @@ use crate::diag::{Diagnostic, Severity};
 use crate::exec::{Outcome, Value};
 use crate::holes::Found;
 use crate::motion::{Axes, MAX_AXES, Place, Position};
+use crate::part::surface::Surface;
 use crate::program::Library;
 use crate::session::{self, Request, Run, SessionError, Simulation};
 use crate::source::Span;
@@ -79,9 +80,14 @@ pub struct Revision {
 
 impl Revision {
     /// Executes a program and writes down what it does.
-    pub fn of(request: &Request, library: &mut impl Library) -> Result<Self, SessionError> {
+    /// With the part's surface known, motion inside it is seen as well.
+    pub fn of(
+        request: &Request,
+        library: &mut impl Library,
+        surface: Option<Surface>,
+    ) -> Result<Self, SessionError> {
         let mut recorder = Recorder::default();
-        let mut simulation = session::simulate_beside(request, library, None, &mut recorder)?;
+        let mut simulation = session::simulate_beside(request, library, surface, &mut recorder)?;
         if recorder.too_many {
             let message = format!("more than {MOST_STEPS} moves: those behind them aren't compared");
             simulation.extracted.findings.push(Diagnostic::new(Severity::Alarm, "limit", message));

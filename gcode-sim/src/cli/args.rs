@@ -88,6 +88,17 @@ Called programs come from each revision's own folder first, then from --lib.
 Exit code 0: nothing changes; 1: something does; 3: a revision stops with an alarm or a limit.")]
     Diff(DiffArguments),
 
+    /// Run a folder of programs and hold each against what was accepted of it
+    #[command(after_help = "\
+Examples:
+  gcode-sim test programs
+  gcode-sim test programs --lib macros --shard 2/4 --format json
+  gcode-sim test programs --only flange --accept
+
+A case is a folder with a program (main.nc, or the only .nc in it) and, where they are wanted, lib/, machine.toml,
+control.toml, a reference (reference.json, reference.csv or job.toml), and accepted.json, which --accept writes.")]
+    Test(TestArguments),
+
     /// List the settings of the control that --control takes
     Settings,
 
@@ -346,6 +357,37 @@ pub(super) struct DiffArguments {
     /// Also draw the new holes over the old ones to this file
     #[arg(long, value_name = "OUT.png")]
     pub(super) picture: Option<PathBuf>,
+
+    /// How the result is written
+    #[arg(long, value_enum, default_value_t = TextFormat::Text)]
+    pub(super) format: TextFormat,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct TestArguments {
+    /// Folders with cases, at any depth
+    #[arg(value_name = "DIR", required = true)]
+    pub(super) folders: Vec<PathBuf>,
+
+    /// A folder that holds called programs, after each case's own folders (repeatable)
+    #[arg(long = "lib", value_name = "DIR")]
+    pub(super) libraries: Vec<PathBuf>,
+
+    /// Only cases with this in their names (repeatable)
+    #[arg(long, value_name = "NAME")]
+    pub(super) only: Vec<String>,
+
+    /// Only the K-th of N parts of the cases
+    #[arg(long, value_name = "K/N")]
+    pub(super) shard: Option<String>,
+
+    /// Accept what came of the cases: write their accepted.json
+    #[arg(long)]
+    pub(super) accept: bool,
+
+    /// What differs by no more than this is the same, mm or degrees
+    #[arg(long, value_name = "MM", default_value_t = 0.0001, allow_negative_numbers = true)]
+    pub(super) tolerance: f64,
 
     /// How the result is written
     #[arg(long, value_enum, default_value_t = TextFormat::Text)]

@@ -11,8 +11,8 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
     let (old_request, mut old_folders) = options::request(&arguments.run.of(&arguments.old))?;
     let (new_request, mut new_folders) = options::request(&arguments.run.of(&arguments.new))?;
     let refused = |error: crate::session::SessionError| Refusal::new(error.to_string());
-    let old = Revision::of(&old_request, &mut old_folders).map_err(refused)?;
-    let new = Revision::of(&new_request, &mut new_folders).map_err(refused)?;
+    let old = Revision::of(&old_request, &mut old_folders, None).map_err(refused)?;
+    let new = Revision::of(&new_request, &mut new_folders, None).map_err(refused)?;
     let found = changes(&old.record, &new.record, tolerance);
     let report = ChangesReport::new(
         (&old_request.name, &old.record),

@@ -1,6 +1,6 @@
 //! Reads what the user names: programs, jobs, references, machine files; one clear sentence where it can't.
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::Refusal;
 
@@ -27,6 +27,17 @@ pub fn bytes(path: &Path) -> Result<Vec<u8>, Refusal> {
         return Err(Refusal::new(format!("{} is larger than 1 GiB", path.display())));
     }
     std::fs::read(path).map_err(unreadable)
+}
+
+/// What is in a folder, by name.
+pub fn folder(path: &Path) -> Result<Vec<PathBuf>, Refusal> {
+    let unreadable =
+        |error: std::io::Error| Refusal::new(format!("{} can't be read: {error}", path.display()));
+    let entries = std::fs::read_dir(path).map_err(unreadable)?;
+    let mut paths =
+        entries.map(|entry| Ok(entry?.path())).collect::<Result<Vec<_>, _>>().map_err(unreadable)?;
+    paths.sort();
+    Ok(paths)
 }
 
 /// A file's text, which must be UTF-8 (jobs, machine files, references; programs are bytes).

@@ -50,14 +50,7 @@ impl ChangesReport {
         const SHOWN: usize = 20;
         let mut text = String::new();
         for change in self.changes.iter().take(SHOWN) {
-            let _ = writeln!(text, "{:<14} {}", change.code, change.message);
-            for (word, block) in [("old", &change.old), ("new", &change.new)] {
-                let Some(block) = block else { continue };
-                let _ = writeln!(text, "    {word} {}", line(block));
-                for call in &block.calls {
-                    let _ = writeln!(text, "        called from {}", line(call));
-                }
-            }
+            entry(&mut text, change, "");
         }
         if SHOWN < self.changes.len() {
             let _ = writeln!(text, "… and {} more: --format json has them all", self.changes.len() - SHOWN);
@@ -81,8 +74,21 @@ impl ChangesReport {
     }
 }
 
-fn counted(count: u64, what: &str) -> String {
+/// `1 hole`, `5 holes`.
+pub(super) fn counted(count: u64, what: &str) -> String {
     if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
+}
+
+/// One change with its blocks and the calls that led to them.
+pub(super) fn entry(text: &mut String, change: &Change, indent: &str) {
+    let _ = writeln!(text, "{indent}{:<14} {}", change.code, change.message);
+    for (word, place) in [("old", &change.old), ("new", &change.new)] {
+        let Some(place) = place else { continue };
+        let _ = writeln!(text, "{indent}    {word} {}", line(place));
+        for call in &place.calls {
+            let _ = writeln!(text, "{indent}        called from {}", line(call));
+        }
+    }
 }
 
 /// `O8101:12  G1 X#11`.

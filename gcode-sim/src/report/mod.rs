@@ -5,5 +5,6 @@ pub mod diagnostic;
 pub mod explain;
 pub mod holes;
 pub mod run;
+pub mod tested;
 pub mod top;
 pub mod verdict_table;

@@ -1,0 +1,278 @@
+//! A record as a file: JSON with one step, one block and one hole a line, so that a change of it can be read.
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use nalgebra::{Point3, Unit, Vector3};
+use serde::{Deserialize, Serialize};
+
+use super::record::{Ending, Record, Totals, Where};
+use super::steps::{Kind, Step, difference};
+use crate::holes::Found;
+use crate::motion::{Arc2, Axes, Place, Position, Spindle, StopKind};
+use crate::units::Deg;
+
+/// What a file of this kind begins with; another number is another form of it.
+const VERSION: u32 = 1;
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    version: u32,
+    axes: String,
+    totals: Totals,
+    ending: Ending,
+    places: Vec<Where>,
+    steps: Vec<Line>,
+    holes: Vec<Hole>,
+}
+
+/// A step: what is done, where the axes that it moves stand then (mm and degrees), and the number of its block.
+#[derive(Serialize, Deserialize)]
+#[serde(tag = "do", rename_all = "lowercase", deny_unknown_fields)]
+enum Line {
+    Rapid { to: BTreeMap<char, f64>, place: usize },
+    Feed { to: BTreeMap<char, f64>, f: f64, place: usize },
+    Arc { to: BTreeMap<char, f64>, plane: [char; 2], centre: [f64; 2], sweep: f64, f: f64, place: usize },
+    Probe { to: BTreeMap<char, f64>, f: f64, place: usize },
+    Dwell { seconds: f64, place: usize },
+    Tool { number: u32, place: usize },
+    Length { offset: BTreeMap<char, f64>, place: usize },
+    Spindle { turning: Turning, speed: f64, place: usize },
+    Coolant { on: bool, place: usize },
+    Stop { kind: Waiting, text: String, place: usize },
+}
+
+#[derive(Clone, Copy, Serialize, Deserialize)]
+enum Turning {
+    #[serde(rename = "off")]
+    Off,
+    #[serde(rename = "M03")]
+    Clockwise,
+    #[serde(rename = "M04")]
+    Counterclockwise,
+}
+
+#[derive(Clone, Copy, Serialize, Deserialize)]
+enum Waiting {
+    M00,
+    M01,
+    #[serde(rename = "#3006")]
+    Message,
+}
+
+/// A hole in the part's frame, and the steps that cut it.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Hole {
+    entry: [f64; 3],
+    axis: [f64; 3],
+    depth: f64,
+    diameter: Option<f64>,
+    tool: Option<u32>,
+    steps: Vec<usize>,
+}
+
+/// Why a file of accepted results can't be used.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct StoreError(String);
+
+impl Record {
+    /// The record as a text.
+    pub fn to_json(&self) -> Result<String, StoreError> {
+        let mut at = Position::default();
+        let steps: Vec<Line> = self
+            .steps
+            .iter()
+            .map(|step| {
+                let line = self.line(step, &at);
+                at = step.at;
+                line
+            })
+            .collect();
+        let holes = self.holes.iter().zip(&self.feeds).map(|(hole, steps)| Hole {
+            entry: hole.entry.coords.into(),
+            axis: hole.axis.into_inner().into(),
+            depth: hole.depth,
+            diameter: hole.diameter,
+            tool: hole.tool,
+            steps: steps.clone(),
+        });
+        let axes: String = self.axes.iter().map(|(_, letter)| letter).collect();
+        let mut text = String::from("{\n");
+        let _ = writeln!(text, "\"version\": {VERSION},\n\"axes\": \"{axes}\",");
+        let _ = writeln!(text, "\"totals\": {},\n\"ending\": {},", json(&self.totals)?, json(&self.ending)?);
+        let _ = writeln!(text, "\"places\": {},", lines(&self.places)?);
+        let _ = writeln!(text, "\"steps\": {},", lines(&steps)?);
+        let _ = writeln!(text, "\"holes\": {}", lines(&holes.collect::<Vec<_>>())?);
+        text.push_str("}\n");
+        Ok(text)
+    }
+
+    /// Reads what [`Record::to_json`] has written.
+    ///
+    /// # Errors
+    /// What isn't such a text, with the line where it isn't.
+    pub fn from_json(text: &str) -> Result<Self, StoreError> {
+        let file: File = serde_json::from_str(text).map_err(|error| StoreError(error.to_string()))?;
+        if file.version != VERSION {
+            return Err(StoreError(format!("version {} is not known here, only {VERSION}", file.version)));
+        }
+        let axes = Axes::new(&file.axes).ok_or_else(|| StoreError(format!("no axes '{}'", file.axes)))?;
+        let mut reader = Steps { axes: &axes, at: Position::default(), length: Position::default() };
+        let steps = file.steps.into_iter().map(|line| reader.step(line)).collect::<Result<Vec<_>, _>>()?;
+        if let Some(step) = steps.iter().find(|step| file.places.len() <= step.place) {
+            return Err(StoreError(format!("a step names block {}, which isn't there", step.place)));
+        }
+        let mut feeds = Vec::with_capacity(file.holes.len());
+        let mut holes = Vec::with_capacity(file.holes.len());
+        for hole in file.holes {
+            if hole.steps.iter().any(|step| steps.len() <= *step) {
+                return Err(StoreError("a hole names a step that isn't there".to_owned()));
+            }
+            holes.push(hole.found(holes.len())?);
+            feeds.push(hole.steps);
+        }
+        let (places, ending, totals) = (file.places, file.ending, file.totals);
+        Ok(Self { axes, steps, holes, feeds, places, ending, totals })
+    }
+
+    fn line(&self, step: &Step, before: &Position) -> Line {
+        let place = step.place;
+        let to = moved(&self.axes, before, &step.at);
+        match &step.kind {
+            Kind::Rapid => Line::Rapid { to, place },
+            Kind::Feed(f) => Line::Feed { to, f: *f, place },
+            Kind::Arc(arc, f) => Line::Arc {
+                to,
+                plane: [self.axes.letter(arc.plane.0), self.axes.letter(arc.plane.1)],
+                centre: [arc.centre.0, arc.centre.1],
+                sweep: arc.sweep.0,
+                f: *f,
+                place,
+            },
+            Kind::Probe(f) => Line::Probe { to, f: *f, place },
+            Kind::Dwell(seconds) => Line::Dwell { seconds: *seconds, place },
+            Kind::Tool(number) => Line::Tool { number: *number, place },
+            Kind::Length(offset) => {
+                Line::Length { offset: moved(&self.axes, &Position::default(), offset), place }
+            }
+            Kind::Spindle(turning, speed) => {
+                let turning = match turning {
+                    Spindle::Off => Turning::Off,
+                    Spindle::Clockwise => Turning::Clockwise,
+                    Spindle::Counterclockwise => Turning::Counterclockwise,
+                };
+                Line::Spindle { turning, speed: *speed, place }
+            }
+            Kind::Coolant(on) => Line::Coolant { on: *on, place },
+            Kind::Stop(kind, text) => {
+                let kind = match kind {
+                    StopKind::M00 => Waiting::M00,
+                    StopKind::M01 => Waiting::M01,
+                    StopKind::Message => Waiting::Message,
+                };
+                Line::Stop { kind, text: text.clone(), place }
+            }
+        }
+    }
+}
+
+/// The axes that stand elsewhere than before.
+fn moved(axes: &Axes, before: &Position, at: &Position) -> BTreeMap<char, f64> {
+    let moved = axes.iter().filter(|(axis, _)| before[*axis] != at[*axis]);
+    moved.map(|(axis, letter)| (letter, at[axis])).collect()
+}
+
+fn json(value: &impl Serialize) -> Result<String, StoreError> {
+    serde_json::to_string(value).map_err(|error| StoreError(error.to_string()))
+}
+
+/// A list with one element a line.
+fn lines(values: &[impl Serialize]) -> Result<String, StoreError> {
+    let all = values.iter().map(json).collect::<Result<Vec<_>, _>>()?;
+    Ok(if all.is_empty() { "[]".to_owned() } else { format!("[\n{}\n]", all.join(",\n")) })
+}
+
+/// Follows the axes through the steps of a file.
+struct Steps<'a> {
+    axes: &'a Axes,
+    at: Position,
+    length: Position,
+}
+
+impl Steps<'_> {
+    fn step(&mut self, line: Line) -> Result<Step, StoreError> {
+        let before = self.at;
+        let (kind, place) = match line {
+            Line::Rapid { to, place } => (self.go(&to, Kind::Rapid)?, place),
+            Line::Feed { to, f, place } => (self.go(&to, Kind::Feed(f))?, place),
+            Line::Probe { to, f, place } => (self.go(&to, Kind::Probe(f))?, place),
+            Line::Arc { to, plane: [first, second], centre, sweep, f, place } => {
+                let plane = (self.axis(first)?, self.axis(second)?);
+                let arc = Arc2 { plane, centre: (centre[0], centre[1]), sweep: Deg(sweep) };
+                (self.go(&to, Kind::Arc(arc, f))?, place)
+            }
+            Line::Dwell { seconds, place } => (Kind::Dwell(seconds), place),
+            Line::Tool { number, place } => (Kind::Tool(number), place),
+            Line::Length { offset, place } => {
+                self.length = self.put(&offset, Position::default())?;
+                (Kind::Length(self.length), place)
+            }
+            Line::Spindle { turning, speed, place } => {
+                let turning = match turning {
+                    Turning::Off => Spindle::Off,
+                    Turning::Clockwise => Spindle::Clockwise,
+                    Turning::Counterclockwise => Spindle::Counterclockwise,
+                };
+                (Kind::Spindle(turning, speed), place)
+            }
+            Line::Coolant { on, place } => (Kind::Coolant(on), place),
+            Line::Stop { kind, text, place } => {
+                let kind = match kind {
+                    Waiting::M00 => StopKind::M00,
+                    Waiting::M01 => StopKind::M01,
+                    Waiting::Message => StopKind::Message,
+                };
+                (Kind::Stop(kind, text), place)
+            }
+        };
+        let (from, to) = (difference(&before, &self.length), difference(&self.at, &self.length));
+        Ok(Step { kind, from, to, at: self.at, place })
+    }
+
+    fn go(&mut self, to: &BTreeMap<char, f64>, kind: Kind) -> Result<Kind, StoreError> {
+        self.at = self.put(to, self.at)?;
+        Ok(kind)
+    }
+
+    fn put(&self, values: &BTreeMap<char, f64>, mut position: Position) -> Result<Position, StoreError> {
+        for (letter, value) in values {
+            position[self.axis(*letter)?] = *value;
+        }
+        Ok(position)
+    }
+
+    fn axis(&self, letter: char) -> Result<usize, StoreError> {
+        let found = u8::try_from(letter).ok().and_then(|letter| self.axes.find(letter));
+        found.ok_or_else(|| StoreError(format!("a step names axis {letter}, which isn't there")))
+    }
+}
+
+impl Hole {
+    fn found(&self, number: usize) -> Result<Found, StoreError> {
+        let axis = Unit::try_new(Vector3::from(self.axis), 1e-9);
+        Ok(Found {
+            entry: Point3::from(self.entry),
+            axis: axis.ok_or_else(|| StoreError("a hole's axis has no direction".to_owned()))?,
+            depth: self.depth,
+            diameter: self.diameter,
+            tool: self.tool,
+            place: Place::default(),
+            at: Position::default(),
+            off_tool: Deg::ZERO,
+            others: Vec::new(),
+            first: number,
+        })
+    }
+}
