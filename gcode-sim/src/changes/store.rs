@@ -261,10 +261,14 @@ impl Steps<'_> {
 
 impl Hole {
     fn found(&self, number: usize) -> Result<Found, StoreError> {
-        let axis = Unit::try_new(Vector3::from(self.axis), 1e-9);
+        let axis = Vector3::from(self.axis);
+        if (axis.norm() - 1.0).abs() > 1e-9 {
+            return Err(StoreError("a hole's axis is no unit vector".to_owned()));
+        }
         Ok(Found {
             entry: Point3::from(self.entry),
-            axis: axis.ok_or_else(|| StoreError("a hole's axis has no direction".to_owned()))?,
+            // Made of length 1 once more it would not be the number that was written.
+            axis: Unit::new_unchecked(axis),
             depth: self.depth,
             diameter: self.diameter,
             tool: self.tool,
