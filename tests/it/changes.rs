@@ -57,7 +57,7 @@ proptest! {
         let record = revision(&program(&blocks, 1)).record;
         let text = record.to_json().unwrap();
         let again = Record::from_json(&text).unwrap();
-        let found = changes(&record, &again, 0.0);
+        let found = changes(&record, &again, 1e-9);
         prop_assert!(found.is_empty(), "{found:?}");
         prop_assert_eq!(again.to_json().unwrap(), text);
     }
