@@ -1,4 +1,4 @@
-//! The examples in docs/control.md are run: what stands there is what happens.
+//! The examples in docs/control.md and docs/dialects.md are run: what stands there is what happens.
 use std::path::Path;
 
 use gcode_sim::report::explain::PAGES;
@@ -45,12 +45,12 @@ fn what_is_never_raised_has_no_row_among_the_alarms() {
     assert_eq!(raised.map(|page| page.code).collect::<Vec<_>>(), [""; 0]);
 }
 
-#[test]
-fn the_page_on_the_control_shows_what_happens() {
-    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/control.md");
+/// Runs the examples of a page, each behind `head`, and holds them against what the page says.
+fn holds(name: &str, head: &str, at_least: usize) {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs").join(name);
     let page = std::fs::read_to_string(page).unwrap();
     let shown = examples(&page);
-    assert!(shown.len() > 80, "the examples were found");
+    assert!(shown.len() > at_least, "the examples were found");
     let mut wrong = String::new();
     for (program, end) in &shown {
         let mut text = program.replace("; ", "\n");
@@ -60,9 +60,19 @@ fn the_page_on_the_control_shows_what_happens() {
         if !program.contains("M30") {
             text.push_str("\nM30");
         }
-        for difference in expect::run(format!("{text}\n").as_bytes()).differences(end) {
+        for difference in expect::run(format!("{head}{text}\n").as_bytes()).differences(end) {
             wrong.push_str(&format!("{program}\n    {difference}\n"));
         }
     }
-    assert!(wrong.is_empty(), "docs/control.md says something else than happens:\n{wrong}");
+    assert!(wrong.is_empty(), "docs/{name} says something else than happens:\n{wrong}");
+}
+
+#[test]
+fn the_page_on_the_control_shows_what_happens() {
+    holds("control.md", "", 80);
+}
+
+#[test]
+fn the_page_on_families_shows_what_happens() {
+    holds("dialects.md", "(@DIALECT=haas-ngc)\n", 20);
 }

@@ -51,6 +51,15 @@ pub enum Alarm {
     NoDataAfterAddress {
         letter: char,
     },
+    /// A code without a word that it needs.
+    MissingWord {
+        code: &'static str,
+        letter: char,
+    },
+    /// A pattern of holes without a drilling cycle.
+    NoCycle {
+        code: &'static str,
+    },
     IllegalMinus {
         letter: char,
     },

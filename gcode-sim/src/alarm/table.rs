@@ -19,6 +19,8 @@ impl Alarm {
             Self::ShortWord => (Ps(4), "a word of a statement is cut short".into(), Some("write WHILE, GOTO, END, THEN in full")),
             Self::TwoBlocksInOneLine => (Ps(4), "behind ';' stands what could be a block or a remark".into(), Some("write the block on a line of its own, the remark in round brackets")),
             Self::NoDataAfterAddress { letter } => (Ps(5), format!("address {letter} has no number"), Some("write its value, or leave the letter out")),
+            Self::MissingWord { code, letter } => (Ps(5), format!("{code} needs {letter}"), Some("write it in the same block")),
+            Self::NoCycle { code } => (Ps(10), format!("{code} without a drilling cycle"), Some("command G81 or another cycle before it, with L0 if the centre has no hole")),
             Self::IllegalMinus { letter } => (Ps(6), format!("address {letter} takes no minus sign"), None),
             Self::IllegalPoint { letter: Some(letter) } => (Ps(7), format!("address {letter} takes no decimal point"), Some("write the number without a point")),
             Self::IllegalPoint { letter: None } => (Ps(7), "a number has two decimal points".into(), Some("leave one of them out")),

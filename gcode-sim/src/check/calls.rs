@@ -67,7 +67,12 @@ fn site(block: OpIndex, words: &Words, settings: &Settings) -> Option<CallSite> 
         CallTarget::Name(name) => CalledAs::Name(name.clone()),
         CallTarget::Number(word) => match literal::count(word) {
             // M98 P with more than four digits: repeats in front of a four-digit program number.
-            Some(number) if call.kind == Calling::Subprogram && call.repeats.is_none() && number > 9999 => {
+            Some(number)
+                if call.kind == Calling::Subprogram
+                    && settings.repeats_in_p
+                    && call.repeats.is_none()
+                    && number > 9999 =>
+            {
                 CalledAs::Number(number % 10_000)
             }
             Some(number) => CalledAs::Number(number),

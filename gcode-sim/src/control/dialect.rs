@@ -11,28 +11,40 @@ pub struct DialectRow {
 }
 
 /// Settings not named here are those of every control of the class.
+///
+/// What a 31i and a 0i-F have: operator's manuals B-64484EN and B-64604EN. What a Haas has: Mill Operator's Manual
+/// 96-8210 (its predecessor 96-8000 where that says nothing).
 #[rustfmt::skip]
 pub const DIALECTS: &[DialectRow] = &[
     DialectRow { dialect: Dialect::Fanuc31i, name: "fanuc-31i", sets: &[
-        ("MACRO-LEVELS", "5"), ("CALL-LEVELS", "15"), ("MORE-COMMONS", "98000-98499"), ("OFFSET-VARIABLES", "fanuc"),
-        ("ALARM-BASE", "3000"), ("ALARM-MOST", "200"), ("PRINT-EXPANDS", "0"), ("PRINT-DIGITS", "8"), ("PLAIN-IF", "0"), ("THEN-WORDS", "0"),
-        ("THEN-GOTO", "0"), ("G67-ALARM", "1"),
-        ("M97-CALLS", "0"),
+        ("CODES", "fanuc-31i"), ("MACRO-LEVELS", "5"), ("CALL-LEVELS", "15"), ("OFFSETS", "400"), ("WORK-SYSTEMS", "300"),
+        ("MORE-COMMONS", "98000-98499"), ("ALIASED-COMMONS", "0"), ("VARIABLE-BITS", "0"), ("OFFSET-VARIABLES", "fanuc"),
+        ("ALARM-BASE", "3000"), ("ALARM-MOST", "200"), ("PRINT-EXPANDS", "0"), ("PRINT-DIGITS", "8"),
+        ("PLAIN-IF", "0"), ("THEN-WORDS", "0"), ("THEN-GOTO", "0"), ("G67-ALARM", "1"),
+        ("NEW-WORDS", "1"), ("MORE-FUNCTIONS", "1"), ("G10-PARAMETERS", "1"), ("REPEATS-IN-P", "1"), ("M97-CALLS", "0"),
+        ("CYCLE-REPEATS", "K"), ("K0-MOVES", "0"), ("HOME-ALL", "0"), ("DWELL-SECONDS", "0"), ("FEED-INCREMENTS", "0"), ("PECK-IJK", "0"),
+        ("TAP-DWELL-R", "1"),
     ] },
+    // Four axes move at once, so nothing for five; 48 additional work coordinate systems, 300 by option.
     DialectRow { dialect: Dialect::Fanuc0iF, name: "fanuc-0i-f", sets: &[
-        ("MACRO-LEVELS", "5"), ("CALL-LEVELS", "15"), ("MORE-COMMONS", "98000-98499"), ("OFFSET-VARIABLES", "fanuc"),
-        ("ALARM-BASE", "3000"), ("ALARM-MOST", "200"), ("PRINT-EXPANDS", "0"), ("PRINT-DIGITS", "8"), ("PLAIN-IF", "0"), ("THEN-WORDS", "0"),
-        ("THEN-GOTO", "0"), ("G67-ALARM", "1"),
-        ("M97-CALLS", "0"),
+        ("CODES", "fanuc-0i-f"), ("MACRO-LEVELS", "5"), ("CALL-LEVELS", "15"), ("OFFSETS", "400"), ("WORK-SYSTEMS", "48"),
+        ("MORE-COMMONS", "98000-98499"), ("ALIASED-COMMONS", "0"), ("VARIABLE-BITS", "0"), ("OFFSET-VARIABLES", "fanuc"),
+        ("ALARM-BASE", "3000"), ("ALARM-MOST", "200"), ("PRINT-EXPANDS", "0"), ("PRINT-DIGITS", "8"),
+        ("PLAIN-IF", "0"), ("THEN-WORDS", "0"), ("THEN-GOTO", "0"), ("G67-ALARM", "1"),
+        ("NEW-WORDS", "1"), ("MORE-FUNCTIONS", "1"), ("G10-PARAMETERS", "1"), ("REPEATS-IN-P", "1"), ("M97-CALLS", "0"),
+        ("CYCLE-REPEATS", "K"), ("K0-MOVES", "0"), ("HOME-ALL", "0"), ("DWELL-SECONDS", "0"), ("FEED-INCREMENTS", "0"), ("PECK-IJK", "0"),
+        ("TAP-DWELL-R", "1"),
     ] },
-    // Nine macro levels in all; commons #10000 to #10999; offsets as #2001 and #2201 length and its wear, #2401 and
-    // #2601 diameter and its wear; #3000=n shows 1000 + n; DPRNT prints all digits, seven at most are asked for; IF
-    // without THEN; M97 P calls a part of its own program (operator's manual, macros).
+    // Nine macro levels in all; offsets as #2001 and #2201 length and its wear, #2401 and #2601 diameter and its wear;
+    // #3000=n shows 1000 + n; DPRNT prints all digits, seven at most are asked for; IF without THEN.
     DialectRow { dialect: Dialect::HaasNgc, name: "haas-ngc", sets: &[
-        ("MACRO-LEVELS", "9"), ("CALL-LEVELS", "9"), ("MORE-COMMONS", "10000-10999"), ("OFFSET-VARIABLES", "haas"),
-        ("ALARM-BASE", "1000"), ("ALARM-MOST", "999"), ("PRINT-EXPANDS", "1"), ("PRINT-DIGITS", "7"), ("PLAIN-IF", "1"), ("THEN-WORDS", "1"),
-        ("THEN-GOTO", "1"), ("G67-ALARM", "0"),
-        ("M97-CALLS", "1"),
+        ("CODES", "haas-ngc"), ("MACRO-LEVELS", "9"), ("CALL-LEVELS", "9"), ("OFFSETS", "200"), ("WORK-SYSTEMS", "99"),
+        ("MORE-COMMONS", "10000-10999"), ("ALIASED-COMMONS", "1"), ("VARIABLE-BITS", "1"), ("OFFSET-VARIABLES", "haas"),
+        ("ALARM-BASE", "1000"), ("ALARM-MOST", "999"), ("PRINT-EXPANDS", "1"), ("PRINT-DIGITS", "7"),
+        ("PLAIN-IF", "1"), ("THEN-WORDS", "1"), ("THEN-GOTO", "1"), ("G67-ALARM", "1"),
+        ("NEW-WORDS", "0"), ("MORE-FUNCTIONS", "0"), ("G10-PARAMETERS", "0"), ("REPEATS-IN-P", "0"), ("M97-CALLS", "1"),
+        ("CYCLE-REPEATS", "L"), ("K0-MOVES", "1"), ("HOME-ALL", "1"), ("DWELL-SECONDS", "1"), ("FEED-INCREMENTS", "1"), ("PECK-IJK", "1"),
+        ("TAP-DWELL-R", "0"),
     ] },
 ];
 

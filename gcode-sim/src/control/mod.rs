@@ -3,6 +3,7 @@ mod code_calls;
 mod dialect;
 mod parameters;
 mod table;
+mod unsure;
 
 use crate::motion::{Axes, MAX_AXES, Position};
 use crate::units::{MmPerMin, nearest};
@@ -11,6 +12,7 @@ pub use code_calls::{AddressCall, Called, CodeCallKind, CodeCalls, FAMILIES, RAN
 pub use dialect::{DIALECTS, DialectRow};
 pub use parameters::{ParameterError, ParameterPlace, is_without_effect};
 pub use table::{ROWS, Row, SettingError};
+pub use unsure::{ArgumentScale, Unsure};
 
 /// The least input increment (parameter 1013).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -62,6 +64,26 @@ impl Dialect {
         [("fanuc-31i", Self::Fanuc31i), ("fanuc-0i-f", Self::Fanuc0iF), ("haas-ngc", Self::HaasNgc)];
 }
 
+/// Whose G and M codes a control has.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CodeSet {
+    #[default]
+    Fanuc31i,
+    Fanuc0iF,
+    Haas,
+}
+
+impl CodeSet {
+    pub const ALL: [(&'static str, Self); 3] =
+        [("fanuc-31i", Self::Fanuc31i), ("fanuc-0i-f", Self::Fanuc0iF), ("haas-ngc", Self::Haas)];
+
+    /// Groups for the rows of code tables.
+    pub(crate) const EVERY: &'static [Self] = &[Self::Fanuc31i, Self::Fanuc0iF, Self::Haas];
+    pub(crate) const FANUC: &'static [Self] = &[Self::Fanuc31i, Self::Fanuc0iF];
+    pub(crate) const FIVE_AXES: &'static [Self] = &[Self::Fanuc31i];
+    pub(crate) const HAAS: &'static [Self] = &[Self::Haas];
+}
+
 /// Which variables the tool offsets have.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum OffsetVariables {
@@ -91,90 +113,11 @@ pub struct Stroke {
     pub least: [Option<f64>; MAX_AXES],
 }
 
-/// What is done where the sources are silent or contradict one another.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Unsure {
-    /// `-#1` with #1 vacant stays vacant in an expression instead of becoming 0.
-    pub minus_keeps_vacancy: bool,
-    /// `[#1]` with #1 vacant stays vacant instead of becoming 0.
-    pub brackets_keep_vacancy: bool,
-    /// A literal finer than the increment is rounded instead of cut off.
-    pub round_literals: bool,
-    /// GOTO takes the first of several equal N of the program instead of the next one downwards.
-    pub first_stored_number: bool,
-    /// `IF[…]THEN GOTO n` is taken.
-    pub then_takes_goto: bool,
-    /// G65 … L sets the arguments anew for every pass.
-    pub repeats_reset_locals: bool,
-    /// G66.1 with arguments of its own calls the macro at once.
-    pub every_block_calls_itself: bool,
-    /// A modal macro call finds its locals as its last call left them.
-    pub modal_keeps_locals: bool,
-    /// `GOTO-n` searches upwards instead of raising PS1128.
-    pub minus_searches_up: bool,
-    /// A GOTO without its target raises PS0078 instead of PS0128.
-    pub missing_target_is_78: bool,
-    /// AND, OR and XOR of a negative number raise PS0119 instead of working on two's complements.
-    pub negative_bits_alarm: bool,
-    /// #5001… under mirror, scaling and rotation are the coordinates after them instead of those programmed.
-    pub shows_transformed: bool,
-    /// POW, MOD and ATAN with a comma are known.
-    pub new_functions: bool,
-    /// `ATAN[0]/[0]` raises PS0119 instead of answering 0.
-    pub atan_of_nothing_alarms: bool,
-    /// `TAN[90]` raises PS0119 instead of answering a large number.
-    pub tan_90_alarms: bool,
-    /// G53 in G91 moves by the increment instead of not moving.
-    pub g53_moves_in_g91: bool,
-    /// A drilling block with K0 moves to its XY.
-    pub k0_positions: bool,
-    /// After a skipped G31 #5001… are the commanded end instead of the place of the signal.
-    pub skip_keeps_end: bool,
-    /// `G43 H` without an axis word moves the axis by the offset at once.
-    pub length_moves_at_once: bool,
-    /// G84 and G74 dwell P at the R level too.
-    pub tap_dwells_at_r: bool,
-    /// G67 without G66 raises PS1100.
-    pub g67_alarms: bool,
-    /// An arc whose R can't reach its end raises PS0020 instead of a half circle.
-    pub small_radius_alarms: bool,
-    /// Several assignments may stand in a block.
-    pub several_assignments: bool,
-    /// Conditions may be written with `=`, `<>`, `>`, `>=`, `<`, `<=`, `&` and `|`.
-    pub signs: bool,
-    /// Words of statements may be cut to two letters.
-    pub short_words: bool,
-    /// Lower case is read as capitals instead of raising PS0004.
-    pub lower_case: bool,
-    /// `#3000=n` shows a number that is too large instead of raising PS0119.
-    pub large_alarm_numbers: bool,
-    /// M98 without P raises PS0311 instead of PS0076.
-    pub missing_p_is_311: bool,
-    /// What E and F without a point are as arguments.
-    pub argument_e: ArgumentScale,
-    pub argument_f: ArgumentScale,
-}
-
-/// What a number without a point is when it is an argument of a macro call.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ArgumentScale {
-    /// As it stands.
-    Whole,
-    /// As the word F counts in the feed mode in force.
-    Feed,
-    /// So many least increments of a length.
-    Increments,
-}
-
-impl ArgumentScale {
-    pub const ALL: [(&'static str, Self); 3] =
-        [("whole", Self::Whole), ("feed", Self::Feed), ("increments", Self::Increments)];
-}
-
 /// Everything a run depends on besides the programs. `Default` is a 30i / 0i-F class mill, metric, IS-B.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     pub dialect: Dialect,
+    pub codes: CodeSet,
     pub increment: Increment,
     pub axes: Axes,
     /// ROA 1008#0: the axes whose work coordinate runs from 0 to 360 and that turn the shorter way.
@@ -252,6 +195,32 @@ pub struct Settings {
     pub references: [Position; 3],
     /// 1320 and 1321: stroke limits; without any, axes have no ends.
     pub stroke: Option<Stroke>,
+    /// Additional work coordinate systems: G54.1 P1…, G154 P1….
+    pub work_systems: usize,
+    /// `#10100` is `#100`, `#10500` to `#10999` are `#500` to `#999`.
+    pub aliased_commons: bool,
+    /// `#n.m` is bit m of #n.
+    pub bits_of_variables: bool,
+    /// Programs and variables have names; PRM, AX and AXNUM are known.
+    pub new_words: bool,
+    /// FUP, LN, EXP, BIN, BCD, POW, ADP and ATAN with a comma are known.
+    pub more_functions: bool,
+    /// G10 takes parameters, variables and tool life.
+    pub parameter_input: bool,
+    /// Five digits and more behind `M98 P` are repeats and a program.
+    pub repeats_in_p: bool,
+    /// The letter that repeats a drilling block, K or L.
+    pub cycle_repeats: u8,
+    /// G28 without an axis sends all of them home.
+    pub home_all: bool,
+    /// P of a dwell with a point is seconds.
+    pub dwell_in_seconds: bool,
+    /// F without a point counts increments.
+    pub feed_in_increments: bool,
+    /// G73 and G83 take I, J and K for pecks that become smaller.
+    pub shrinking_pecks: bool,
+    /// How far above R G83 retracts, mm.
+    pub g83_above_r: f64,
     /// Pairs of tool offsets.
     pub tool_offsets: usize,
     /// Macro calls inside one another.
@@ -269,6 +238,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             dialect: Dialect::default(),
+            codes: CodeSet::default(),
             increment: Increment::default(),
             axes: Axes::default(),
             roll_over: [false; MAX_AXES],
@@ -309,49 +279,25 @@ impl Default for Settings {
             g83_clearance: 0.5,
             references: [Position::default(); 3],
             stroke: None,
+            work_systems: 300,
+            aliased_commons: false,
+            bits_of_variables: false,
+            new_words: true,
+            more_functions: true,
+            parameter_input: true,
+            repeats_in_p: true,
+            cycle_repeats: b'K',
+            home_all: false,
+            dwell_in_seconds: false,
+            feed_in_increments: false,
+            shrinking_pecks: false,
+            g83_above_r: 0.0,
             tool_offsets: 400,
             macro_levels: 5,
             call_levels: 15,
             date: 20_260_101,
             time: 120_000,
             unsure: Unsure::default(),
-        }
-    }
-}
-
-impl Default for Unsure {
-    fn default() -> Self {
-        Self {
-            minus_keeps_vacancy: false,
-            brackets_keep_vacancy: true,
-            round_literals: false,
-            first_stored_number: false,
-            then_takes_goto: false,
-            repeats_reset_locals: false,
-            every_block_calls_itself: true,
-            modal_keeps_locals: true,
-            minus_searches_up: false,
-            missing_target_is_78: false,
-            negative_bits_alarm: false,
-            shows_transformed: false,
-            new_functions: true,
-            atan_of_nothing_alarms: false,
-            tan_90_alarms: false,
-            g53_moves_in_g91: false,
-            k0_positions: false,
-            skip_keeps_end: false,
-            length_moves_at_once: true,
-            tap_dwells_at_r: true,
-            g67_alarms: true,
-            small_radius_alarms: true,
-            several_assignments: false,
-            signs: false,
-            short_words: true,
-            lower_case: true,
-            large_alarm_numbers: true,
-            missing_p_is_311: false,
-            argument_e: ArgumentScale::Whole,
-            argument_f: ArgumentScale::Feed,
         }
     }
 }

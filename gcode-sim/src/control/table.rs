@@ -1,5 +1,5 @@
 //! The settings by their names: the parameter a manual names, its key on the command line, how it is read.
-use super::{ArgumentScale, Dialect, Increment, OffsetVariables, Settings};
+use super::{ArgumentScale, CodeSet, Dialect, Increment, OffsetVariables, Settings};
 use crate::motion::{Axes, MAX_AXES, Position};
 use crate::units::MmPerMin;
 
@@ -52,8 +52,9 @@ macro_rules! number {
 #[rustfmt::skip]
 pub const ROWS: &[Row] = &[
     number!("DIALECT", "the family of controls", "fanuc-31i, fanuc-0i-f or haas-ngc", |s, v| s.become_dialect(choice(v, &Dialect::ALL)?)),
+    number!("CODES", "whose G and M codes there are", "fanuc-31i, fanuc-0i-f or haas-ngc", |s, v| s.codes = choice(v, &CodeSet::ALL)?),
     number!("INCREMENT", "1013: the least input increment", "IS-A, IS-B or IS-C", |s, v| s.increment = choice(v, &Increment::ALL)?),
-    switch!("DPI", "3401#0: numbers without a point are mm, degrees, seconds", calculator_input),
+    switch!("DPI", "3401#0, setting 162 of a Haas: numbers without a point are mm, degrees, seconds", calculator_input),
     switch!("NAT", "6004#0: ASIN -90 to 90, ATAN -180 to 180", signed_angles),
     switch!("MFZ", "6004#1: SIN, COS, TAN below 1e-8 become 0", zero_residues),
     switch!("IJK", "6008#7: I J K in G65 are always specification I", plain_ijk),
@@ -96,8 +97,21 @@ pub const ROWS: &[Row] = &[
     number!("3410", "how far an arc's end may be off its radius", LENGTH, |s, v| s.arc_tolerance = length(v)?),
     number!("5440", "the last way of G60, with the sign of its direction", "axes and lengths, as in X0.5,Z-0.2", |s, v| s.overrun = point(s, v)?),
     switch!("M97-CALLS", "M97 P calls the subprogram at N of its own program", local_calls),
-    number!("5114", "retract of G73", LENGTH, |s, v| s.g73_retract = length(v)?),
+    number!("5114", "retract of G73; setting 22 of a Haas", LENGTH, |s, v| s.g73_retract = length(v)?),
     number!("5115", "clearance of G83", LENGTH, |s, v| s.g83_clearance = length(v)?),
+    number!("SETTING-52", "setting 52 of a Haas: how far above R G83 retracts", LENGTH, |s, v| s.g83_above_r = length(v)?),
+    switch!("FEED-INCREMENTS", "setting 77 of a Haas: F without a point counts 0.001 mm/min", feed_in_increments),
+    number!("WORK-SYSTEMS", "additional work coordinate systems, G54.1 P or G154 P", "1 to 300", |s, v| s.work_systems = whole(v, 1, 300)?),
+    switch!("ALIASED-COMMONS", "#10100.. and #10500.. are #100.. and #500..", aliased_commons),
+    switch!("VARIABLE-BITS", "#n.m is bit m of #n", bits_of_variables),
+    switch!("NEW-WORDS", "<NAME>, SETVN, [#NAME], [#_NAME], PRM, AX, AXNUM are known", new_words),
+    switch!("MORE-FUNCTIONS", "FUP, LN, EXP, BIN, BCD, POW, ADP, ATAN[a,b] are known", more_functions),
+    switch!("G10-PARAMETERS", "G10 takes L3, L14, L50, L52 and L85", parameter_input),
+    switch!("REPEATS-IN-P", "M98 P of more than four digits is repeats and program", repeats_in_p),
+    number!("CYCLE-REPEATS", "the letter that repeats a drilling block", "K or L", |s, v| s.cycle_repeats = letter(v, b"KL")?),
+    switch!("HOME-ALL", "G28 without an axis sends all axes home", home_all),
+    switch!("DWELL-SECONDS", "P of a dwell with a point is seconds; G04 takes no X and U", dwell_in_seconds),
+    switch!("PECK-IJK", "G73 and G83 take I, J, K for pecks that become smaller", shrinking_pecks),
     number!("OFFSETS", "pairs of tool offsets", "1 to 999", |s, v| s.tool_offsets = whole(v, 1, 999)?),
     number!("MACRO-LEVELS", "macro calls inside one another", "1 to 15", |s, v| s.macro_levels = whole(v, 1, 15)?),
     number!("CALL-LEVELS", "calls inside one another", "1 to 30", |s, v| s.call_levels = whole(v, 1, 30)?),
@@ -190,6 +204,11 @@ fn positive(value: &str) -> Option<f64> {
 
 fn whole(value: &str, least: usize, most: usize) -> Option<usize> {
     value.parse().ok().filter(|v| (least..=most).contains(v))
+}
+
+/// One of a few letters.
+fn letter(value: &str, of: &[u8]) -> Option<u8> {
+    of.iter().copied().find(|letter| value.as_bytes() == [*letter])
 }
 
 /// `X10,Z-5`; axes not named are at 0.

@@ -12,6 +12,7 @@
 use super::Core;
 use super::eval::{Checked, at};
 use super::notes::Note;
+use super::patterns::takes_l;
 use super::plan::{Flow, Plan};
 use super::words::Given;
 use crate::alarm::Alarm;
@@ -115,6 +116,10 @@ impl Core {
                     given.accept(b"IPQR");
                     None
                 }
+                Effect::Smoothness => {
+                    given.accept(b"EP");
+                    None
+                }
                 Effect::OneShot(one) => Some(Act::OneShot(one)),
                 Effect::AdditionalWork => Some(Act::AdditionalWork),
                 Effect::Scaling(Scaling::On) => Some(Act::Scale),
@@ -194,8 +199,9 @@ impl Core {
             }
             plan.state.codes.h = h;
         }
+        let smooth = given.g_codes().any(|row| row.effect == Effect::Smoothness);
         for letter in [b'E', b'N', b'O'] {
-            if given.has(letter) {
+            if given.has(letter) && !(smooth && letter == b'E') {
                 return Err(Alarm::ImproperAddress { letter: char::from(letter) }.at(given.span(letter)));
             }
         }
@@ -216,7 +222,8 @@ impl Core {
         if given.has(b'T') && given.g_codes().any(|row| keeps_tool(row.effect)) {
             return Err(Alarm::TNotAllowed.at(given.span(b'T')));
         }
-        let repeats = given.g_codes().any(|row| row.effect == Effect::OneShot(OneShot::DataInput));
+        let repeats = given.g_codes().any(takes_l)
+            || self.settings.cycle_repeats == b'L' && plan.state.modal.cycle.is_some();
         if given.has(b'L') && !repeats {
             return Err(Alarm::ImproperAddress { letter: 'L' }.at(given.span(b'L')));
         }
@@ -243,7 +250,7 @@ impl Core {
         for (code, span) in given.m[..given.m_count].iter().flatten().copied() {
             plan.state.codes.m = code;
             let speed = Rpm(plan.state.codes.s);
-            let Some(effect) = m_codes::find(code) else {
+            let Some(effect) = m_codes::find(code, self.settings.codes) else {
                 plan.passed_on = Some(code);
                 continue;
             };
@@ -275,7 +282,7 @@ impl Core {
                     plan.note = Some(Note::InterruptNeverComes);
                 }
                 MEffect::InterruptOff => {}
-                MEffect::Call => {
+                MEffect::Call | MEffect::NotSimulated => {
                     return Err(Alarm::NotSimulated { what: format!("M{code:02} here") }.at(span));
                 }
             }
@@ -311,7 +318,7 @@ impl Core {
     pub(super) fn motion(&self, given: &Given, plan: &mut Plan, lengthened: bool, span: Span) -> Checked<()> {
         if let Some(cycle) = plan.state.modal.cycle {
             if self.drills(given) {
-                return self.prepare_drill(plan, given, cycle, span);
+                return self.prepare_drill(plan, given, cycle, None, span);
             }
             // P and Q are stored by blocks that drill only.
             if given.has_any(b"PQ") {

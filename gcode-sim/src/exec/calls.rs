@@ -6,6 +6,7 @@ use super::plan::{CallKind, CallPlan, Flow, Plan, Target};
 use super::words::count;
 use super::{Control, Core};
 use crate::alarm::Alarm;
+use crate::program::m_codes;
 use crate::program::{CallOp, CallTarget, Calling, Coded, Library, Program};
 use crate::source::Span;
 
@@ -41,6 +42,9 @@ impl Core {
                     "M97 with P (a part of its own program that some controls call: M97-CALLS=1)".into();
                 return Err(Alarm::NotSimulated { what }.at(call.span));
             }
+            Calling::File if m_codes::find(198, self.settings.codes).is_none() => {
+                return Err(Alarm::NotSimulated { what: "M198 on this control".into() }.at(call.span));
+            }
             Calling::Subprogram | Calling::File | Calling::Local => CallKind::Subprogram,
         };
         let start = match &call.start {
@@ -64,7 +68,11 @@ impl Core {
             CallTarget::Number(word) => {
                 let number = self.coded_count(program, word)?.ok_or(missing)?;
                 // M98 P with more than four digits: repeats in front of a four-digit program number.
-                if call.kind == Calling::Subprogram && repeats.is_none() && number > 9999 {
+                if call.kind == Calling::Subprogram
+                    && self.settings.repeats_in_p
+                    && repeats.is_none()
+                    && number > 9999
+                {
                     repeats = Some(number / 10_000);
                     Target::Number(number % 10_000)
                 } else {

@@ -2,18 +2,17 @@
 use super::Core;
 use super::eval::{Checked, at};
 use super::notes::Note;
+use super::patterns::Pattern;
+use super::pecks::{PECKS, pecks};
 use super::plan::Plan;
-use super::state::{Drilling, Level, PolarPoint, State};
+use super::state::{Level, PolarPoint, State};
 use super::words::Given;
 use crate::alarm::Alarm;
 use crate::motion::{Axis, EventKind, Position, Spindle, StopKind};
 use crate::program::cycles::{Cycle, Step};
 use crate::program::modes::{Distance, Plane, Polar, ReturnTo};
 use crate::source::Span;
-use crate::units::{MmPerMin, Rpm, Seconds};
-
-/// A block with more pecks than this alarms: nobody drills so, and a run must end.
-const PECKS: f64 = 1e6;
+use crate::units::{Deg, MmPerMin, Rpm, Seconds};
 
 /// A drilling block, checked: telling it can't fail.
 #[derive(Clone, Debug)]
@@ -25,6 +24,7 @@ pub(super) struct Drill {
     hole: Position,
     step: Position,
     circle: Option<Circle>,
+    pattern: Option<Pattern>,
     repeats: u32,
     axis: Axis,
     shift: (Axis, f64),
@@ -82,6 +82,7 @@ impl Core {
         plan: &mut Plan,
         given: &Given,
         cycle: &'static Cycle,
+        pattern: Option<Pattern>,
         span: Span,
     ) -> Checked<()> {
         let axis = at(self.drilling_axis(given, &plan.state), span)?;
@@ -90,9 +91,13 @@ impl Core {
             let what = "a drilling cycle whose axis is tilted, scaled or mirrored".into();
             return Err(Alarm::NotSimulated { what }.at(span));
         }
-        let repeats = given.count(b'K')?.unwrap_or(1);
+        let letter = self.settings.cycle_repeats;
+        let repeats = match pattern {
+            Some(pattern) => pattern.count,
+            None => given.count(letter)?.unwrap_or(1),
+        };
         if repeats > 9999 {
-            return Err(Alarm::TooManyDigits.at(given.span(b'K')));
+            return Err(Alarm::TooManyDigits.at(given.span(letter)));
         }
         let incremental = plan.state.modal.distance == Distance::Incremental;
         let from = plan.state;
@@ -100,8 +105,14 @@ impl Core {
         let mut goal = self.goal(given, &mut plan.state)?.programmed;
         goal[axis] = from.programmed[axis];
         self.drilling_words(plan, given, axis, incremental)?;
-        if cycle.needs_q && plan.state.drilling.q.is_none_or(|q| q == 0.0) {
-            return Err(Alarm::NoPeckDepth.at(span));
+        if cycle.needs_q {
+            if self.settings.shrinking_pecks && pattern.is_none() {
+                self.shrinking_pecks(plan, given, span)?;
+            }
+            let data = &plan.state.drilling;
+            if data.pecks.is_none() && data.q.is_none_or(|q| q == 0.0) {
+                return Err(Alarm::NoPeckDepth.at(span));
+            }
         }
         let (rate, _) = at(self.time_along(&plan.state, 1.0, 1.0, 0.0, given.has(b'F')), span)?;
         plan.moved = true;
@@ -135,6 +146,7 @@ impl Core {
             hole: goal,
             step,
             circle,
+            pattern,
             repeats: repeats.max(1),
             axis,
             shift: (if first == axis { self.other_axis(axis) } else { first }, shift),
@@ -203,8 +215,8 @@ impl Core {
             // Its sign is ignored.
             data.q = Some(value.abs());
         }
-        if let Some(milliseconds) = given.count(b'P')? {
-            data.p = f64::from(milliseconds) / 1000.0;
+        if let Some(seconds) = self.pause(given)? {
+            data.p = seconds;
         }
         plan.state.drilling = data;
         Ok(())
@@ -251,20 +263,20 @@ impl Core {
         match step {
             Step::FeedToBottom => way.feed(level(z)),
             Step::PeckFull => {
-                self.peck((r, z), drill, |last, next, done| {
+                self.peck((r, z), &state.drilling, |last, next, done| {
                     if last != r {
                         let clearance = self.settings.g83_clearance.min((r - last).abs());
                         way.rapid(level(last + clearance.copysign(r - z)));
                     }
                     way.feed(level(next));
                     if !done {
-                        way.rapid(level(r));
+                        way.rapid(level(r + self.settings.g83_above_r.copysign(r - z)));
                     }
                 });
             }
             Step::PeckShort => {
                 let retract = self.settings.g73_retract.copysign(r - z);
-                self.peck((r, z), drill, |_, next, done| {
+                self.peck((r, z), &state.drilling, |_, next, done| {
                     way.feed(level(next));
                     if !done {
                         way.rapid(level(next + retract));
@@ -304,34 +316,17 @@ impl Core {
             }
         }
     }
-
-    /// From R by Q until Z; the last peck is what is left.
-    fn peck(&self, (r, z): (f64, f64), drill: &Drill, mut each: impl FnMut(f64, f64, bool)) {
-        let q = drill.from.drilling.q.unwrap_or(0.0).copysign(z - r);
-        let pecks = pecks(r, z, &drill.from.drilling);
-        let mut last = r;
-        let mut count = 1.0;
-        while count <= pecks {
-            let done = count == pecks;
-            let next = if done { z } else { self.clean(r + count * q) };
-            each(last, next, done);
-            last = next;
-            count += 1.0;
-        }
-    }
-}
-
-/// How many pecks of Q a hole from R to Z takes.
-fn pecks(r: f64, z: f64, data: &Drilling) -> f64 {
-    match data.q {
-        Some(q) if q != 0.0 => ((z - r).abs() / q.abs() - 1e-9).ceil().max(1.0),
-        _ => 1.0,
-    }
 }
 
 impl Drill {
     /// From a hole to the one that K repeats as number `turn`; 0 is the block's own.
     fn advance(&self, core: &Core, turn: u32, hole: &mut Position) {
+        if let Some(Pattern { radius, start, turn: angle, .. }) = self.pattern {
+            let angle = Deg(start + f64::from(turn) * angle);
+            hole[0] = core.clean(self.hole[0] + radius * angle.cos());
+            hole[1] = core.clean(self.hole[1] + radius * angle.sin());
+            return;
+        }
         if turn == 0 {
             return;
         }

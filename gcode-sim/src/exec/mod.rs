@@ -16,7 +16,10 @@ mod notes;
 mod offsets;
 mod one_shot;
 mod parameters;
+mod patterns;
+mod pecks;
 mod plan;
+mod pockets;
 mod print;
 mod probing;
 mod state;
@@ -155,8 +158,8 @@ pub(crate) struct Core {
 impl Control {
     /// A control switched on, about to run the first program of `memory`.
     pub fn new(memory: Memory, settings: Settings) -> Self {
-        let offsets = Offsets::new(settings.tool_offsets);
-        let vars = Vars::new(settings.more_commons);
+        let offsets = Offsets::new(settings.tool_offsets, settings.work_systems);
+        let vars = Vars::new(settings.more_commons, settings.aliased_commons);
         let core = Core {
             settings,
             state: State::default(),

@@ -51,10 +51,12 @@ impl Modal {
             Effect::Rotation(rotation) => self.rotation = rotation,
             Effect::Polar(polar) => self.polar = polar,
             Effect::Mirror(mirror) => self.mirror = mirror,
+            Effect::NumberedWork(number) => self.work = WorkSystem::Additional(number),
             Effect::AdditionalWork
             | Effect::OneShot(_)
             | Effect::NoEffect
             | Effect::LookAhead
+            | Effect::Smoothness
             | Effect::Call
             | Effect::NotSimulated => {}
         }

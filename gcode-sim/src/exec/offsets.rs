@@ -7,9 +7,6 @@ use crate::motion::{Axis, MAX_AXES, Position};
 use crate::program::modes::{Length, Unit, WorkSystem};
 use crate::units::nearest;
 
-/// Additional work coordinate systems G54.1 P1…P300.
-const ADDITIONAL: usize = 300;
-
 /// Tool offset memory C: H and D, geometry and wear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Register {
@@ -33,12 +30,12 @@ pub(super) struct Offsets {
 }
 
 impl Offsets {
-    pub(super) fn new(tools: usize) -> Self {
+    pub(super) fn new(tools: usize, systems: usize) -> Self {
         let empty = vec![0.0; tools + 1];
         Self {
             external: Position::default(),
             standard: [Position::default(); 6],
-            additional: vec![Position::default(); ADDITIONAL],
+            additional: vec![Position::default(); systems],
             h_geometry: empty.clone(),
             h_wear: empty.clone(),
             d_geometry: empty.clone(),

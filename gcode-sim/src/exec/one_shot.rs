@@ -51,6 +51,10 @@ impl Core {
                 Err(Alarm::ReferenceReturnInCycle.at(span))
             }
             OneShot::CheckReference => self.check_reference(given, plan, span),
+            OneShot::Reference if self.settings.home_all && !self.names_axis(given) => {
+                self.home_all(plan);
+                Ok(())
+            }
             OneShot::Reference => self.reference(given, plan, Position::default()),
             OneShot::SecondReference => {
                 let p = given.count(b'P')?.unwrap_or(2);
@@ -87,6 +91,8 @@ impl Core {
             }
             OneShot::OneSide if cycle => Err(not_simulated(600, "in a drilling cycle").at(span)),
             OneShot::OneSide => self.one_side(given, plan),
+            OneShot::CirclePocket(turn) => self.circle_pocket(turn, given, plan, span),
+            OneShot::BoltHoles(holes) => self.bolt_holes(holes, given, plan, span),
             OneShot::MachineSystem => self.machine_system(given, plan),
         }
     }
@@ -111,8 +117,10 @@ impl Core {
         if given.has(b'Q') {
             return Err(not_simulated(40, "dwell until a skip signal").at(given.span(b'Q')));
         }
-        let seconds = if let Some(milliseconds) = given.count(b'P')? {
-            f64::from(milliseconds) / 1000.0
+        let seconds = if let Some(seconds) = self.pause(given)? {
+            seconds
+        } else if self.settings.dwell_in_seconds {
+            0.0
         } else {
             let x = self.seconds(given, b'X')?;
             let u = if x.is_none() { self.seconds(given, b'U')? } else { None };
@@ -149,6 +157,22 @@ impl Core {
         self.recompute(&mut plan.state);
         plan.moved = true;
         Ok(())
+    }
+
+    /// G28 of a Haas without an axis: all of them straight home, and no length offset any more.
+    fn home_all(&self, plan: &mut Plan) {
+        let mut home = plan.state.machine;
+        for (axis, _) in self.settings.axes.iter() {
+            home[axis] = self.turned_to(axis, home[axis], 0.0);
+        }
+        self.rapid(plan, home);
+        if plan.state.length != Position::default() {
+            plan.tell(EventKind::ToolLength { offset: Position::default() });
+        }
+        plan.state.length = Position::default();
+        plan.state.modal.length = Length::Off;
+        self.recompute(&mut plan.state);
+        plan.moved = true;
     }
 
     /// G29: over the intermediate point of the last G28 to the given point.
@@ -242,6 +266,9 @@ impl Core {
         let p = given.count(b'P')?;
         let l = given.count(b'L')?.ok_or_else(|| format("L is missing"))?;
         match l {
+            3 | 14 | 50 | 52 | 85 if !self.settings.parameter_input => {
+                Err(format(&format!("L{l} is not known")))
+            }
             2 | 20 => {
                 let p = p.ok_or_else(|| format("P is missing"))? as usize;
                 let system = match l {

@@ -74,6 +74,16 @@ pub struct Drilling {
     pub z: Level,
     pub p: f64,
     pub q: Option<f64>,
+    /// I, J and K of a Haas.
+    pub pecks: Option<Pecks>,
+}
+
+/// Pecks that become shorter, mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pecks {
+    pub first: f64,
+    pub less: f64,
+    pub least: f64,
 }
 
 /// A level as commanded: G91 counts R from the initial level and Z from R.

@@ -5,6 +5,8 @@ use super::vars::Value;
 use crate::alarm::Alarm;
 use crate::control::OffsetVariables;
 use crate::motion::Axis;
+use crate::program::codes;
+use crate::program::modes::WorkSystem;
 
 type Read = fn(&Core, u32) -> Result<f64, Alarm>;
 type Write = fn(&mut Core, u32, f64) -> Result<(), Alarm>;
@@ -81,32 +83,52 @@ const NOT_SIMULATED: &[(u32, u32, &str)] = &[
     (100_001, 100_200, "positions of more than 20 axes"),
 ];
 
-/// What the variables of tool offsets are on a Haas; its diameters are radii here.
+/// What a Haas has elsewhere: its tool offsets, whose diameters are radii here, and the offset of G52.
 #[rustfmt::skip]
-const HAAS_OFFSETS: &[Row] = &[
+const HAAS: &[Row] = &[
     row(2001, 2200, Some(|c, n| c.tool_offset(Register::HGeometry, n)), Some(|c, n, v| c.set_tool_offset(Register::HGeometry, n, v))),
     row(2201, 2400, Some(|c, n| c.tool_offset(Register::HWear, n)), Some(|c, n, v| c.set_tool_offset(Register::HWear, n, v))),
     row(2401, 2600, Some(|c, n| Ok(2.0 * c.tool_offset(Register::DGeometry, n)?)), Some(|c, n, v| c.set_tool_offset(Register::DGeometry, n, v / 2.0))),
     row(2601, 2800, Some(|c, n| Ok(2.0 * c.tool_offset(Register::DWear, n)?)), Some(|c, n, v| c.set_tool_offset(Register::DWear, n, v / 2.0))),
+    row(5201, 5220, Some(|c, n| c.position(n, |c, axis| c.state.local[axis])), Some(|c, n, v| c.set_local(n, v))),
 ];
 
+/// What a Haas has and this one has not, where a Fanuc has something else or nothing.
+const HAAS_NOT_SIMULATED: &[(u32, u32, &str)] = &[
+    (1032, 1099, "inputs and loads of a Haas"),
+    (1132, 1299, "outputs and loads of a Haas"),
+    (1601, 2000, "flutes and vibrations of tools"),
+    (3020, 3299, "timers and switches of a Haas"),
+    (3300, 3600, "tools of a Haas"),
+    (5401, 6999, "tool life, settings and parameters of a Haas"),
+    (7401, 7960, "pallets of a Haas"),
+    (8500, 8599, "tool management"),
+    (11_000, 13_999, "inputs and outputs of a Haas"),
+    (20_000, 39_999, "settings and parameters of a Haas"),
+    (50_001, 59_999, "tools of a Haas"),
+];
+
+fn not_simulated(number: u32, of: &[(u32, u32, &str)]) -> Option<Alarm> {
+    let (.., what) = of.iter().find(|(from, to, _)| (*from..=*to).contains(&number))?;
+    Some(Alarm::NotSimulated { what: format!("#{number} ({what})") })
+}
+
 fn find(number: u32, offsets: OffsetVariables) -> Result<&'static Row, Alarm> {
+    let unknown = Alarm::NoSuchVariable { number: i64::from(number) };
     if offsets == OffsetVariables::Haas {
-        if let Some(row) = HAAS_OFFSETS.iter().find(|row| (row.from..=row.to).contains(&number)) {
+        if let Some(row) = HAAS.iter().find(|row| (row.from..=row.to).contains(&number)) {
             return Ok(row);
         }
-        if (2001..=2806).contains(&number) || (10_001..=13_999).contains(&number) {
-            return Err(Alarm::NoSuchVariable { number: i64::from(number) });
+        if let Some(alarm) = not_simulated(number, HAAS_NOT_SIMULATED) {
+            return Err(alarm);
+        }
+        if matches!(number, 2500..=2899 | 3100..=3199 | 10_001..=10_999) {
+            return Err(unknown);
         }
     }
     let place = ROWS.partition_point(|row| row.to < number);
-    ROWS.get(place).filter(|row| row.from <= number).ok_or_else(|| {
-        let known = NOT_SIMULATED.iter().find(|(from, to, _)| (*from..=*to).contains(&number));
-        match known {
-            Some((.., what)) => Alarm::NotSimulated { what: format!("#{number} ({what})") },
-            None => Alarm::NoSuchVariable { number: i64::from(number) },
-        }
-    })
+    let found = ROWS.get(place).filter(|row| row.from <= number);
+    found.ok_or_else(|| not_simulated(number, NOT_SIMULATED).unwrap_or(unknown))
 }
 
 /// A control may have up to 128 signals each way; here are the first 32.
@@ -193,9 +215,14 @@ impl Core {
             119 => codes.s,
             120 => f64::from(codes.t),
             130 => match self.state.modal.work {
-                crate::program::modes::WorkSystem::Additional(p) => f64::from(p),
-                crate::program::modes::WorkSystem::Standard(_) => 0.0,
+                WorkSystem::Additional(p) => f64::from(p),
+                WorkSystem::Standard(_) => 0.0,
             },
+            14 if codes::find(541).on(self.settings.codes).is_none()
+                && matches!(self.state.modal.work, WorkSystem::Additional(_)) =>
+            {
+                return Err(Alarm::NotSimulated { what: "#4014 in G154 and G110 to G129".into() });
+            }
             group => {
                 let unknown = Alarm::NoSuchVariable { number: i64::from(4000 + group) };
                 f64::from(self.state.modal.code(group).ok_or(unknown)?) / 10.0
@@ -225,11 +252,31 @@ impl Core {
         self.rolled(axis, self.clean(machine - self.zero(&self.state, axis)))
     }
 
+    /// The control has so many work coordinate systems; 6 are G54 to G59.
+    fn known_system(&self, system: usize) -> Result<(), Alarm> {
+        if system > 6 + self.offsets.additional.len() {
+            return Err(Alarm::OffsetNumber { number: system as i64 - 6 });
+        }
+        Ok(())
+    }
+
+    /// The offset of G52.
+    fn set_local(&mut self, axis: u32, value: f64) -> Result<(), Alarm> {
+        let axis = axis as usize;
+        if axis < self.settings.axes.len() {
+            self.state.local[axis] = self.offset_in_range(self.stored(&self.state, Some(axis), value))?;
+            self.offsets_changed();
+        }
+        Ok(())
+    }
+
     fn work_offset(&self, system: usize, axis: u32) -> Result<f64, Alarm> {
+        self.known_system(system)?;
         self.position(axis, |core, axis| core.offsets.work(system)[axis])
     }
 
     fn set_work_offset(&mut self, system: usize, axis: u32, value: f64) -> Result<(), Alarm> {
+        self.known_system(system)?;
         let axis = axis as usize;
         if axis >= self.settings.axes.len() {
             return Ok(());

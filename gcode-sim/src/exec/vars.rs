@@ -82,13 +82,15 @@ pub struct Vars {
     commons: Vec<Value>,
     /// The numbers of further commons, which follow the others in `commons`.
     more: (u32, u32),
+    /// `#10100` is `#100`.
+    aliased: bool,
     /// A digest of all values in force, kept up with every write.
     digest: u64,
 }
 
 impl Vars {
-    /// `more` are the numbers of commons beyond #999.
-    pub(super) fn new(more: Option<(u32, u32)>) -> Self {
+    /// `more` are the numbers of commons beyond #999; with `aliased` #10100 is #100, and so on.
+    pub(super) fn new(more: Option<(u32, u32)>, aliased: bool) -> Self {
         let count = more.map_or(0, |(from, to)| (to - from + 1) as usize);
         let more = more.unwrap_or((1, 0));
         Self {
@@ -96,6 +98,7 @@ impl Vars {
             level: 0,
             commons: vec![Value::Vacant; COMMONS + count],
             more,
+            aliased,
             digest: 0,
         }
     }
@@ -108,6 +111,7 @@ impl Vars {
             0 => Kind::Vacant,
             1..=33 => Kind::Local(number as usize),
             100..=199 | 500..=999 => Kind::Common(number as usize),
+            10_100..=10_199 | 10_500..=10_999 if self.aliased => Kind::Common(number as usize - 10_000),
             _ if (self.more.0..=self.more.1).contains(&number) => {
                 Kind::Common(COMMONS + (number - self.more.0) as usize)
             }
@@ -198,7 +202,7 @@ mod tests {
 
     #[test]
     fn a_call_hides_the_callers_locals_and_a_return_brings_them_back() {
-        let mut vars = Vars::new(None);
+        let mut vars = Vars::new(None, false);
         vars.set_local(1, Value::Number(7.0));
         vars.enter(&VACANT);
         assert!(vars.locals()[1].is_vacant());
@@ -211,7 +215,7 @@ mod tests {
 
     #[test]
     fn the_digest_comes_back_with_the_values() {
-        let mut vars = Vars::new(None);
+        let mut vars = Vars::new(None, false);
         vars.set_common(500, Value::Number(1.0));
         vars.set_local(3, Value::Number(0.0));
         let before = vars.digest();

@@ -7,7 +7,7 @@ use super::code_calls::CallingWord;
 use super::eval::{Checked, at, integer};
 use super::state::State;
 use crate::alarm::Alarm;
-use crate::control::ArgumentScale;
+use crate::control::{ArgumentScale, CodeSet};
 use crate::program::codes::{self, Row};
 use crate::program::m_codes;
 use crate::program::modes::{FeedMode, Unit};
@@ -163,7 +163,7 @@ impl Core {
             };
             match letter {
                 b'G' => {
-                    let row = at(g_row(&word.value, raw), word.span)?;
+                    let row = at(g_row(&word.value, raw, self.settings.codes), word.span)?;
                     if given.g_count == G_CODES {
                         let what = "too many G codes in one block".into();
                         return Err(Alarm::MacroFormat { what }.at(word.span));
@@ -298,7 +298,7 @@ impl Core {
         let Some((raw, span)) = given.get(b'F') else { return Ok(None) };
         let value = match raw {
             Raw::Literal(number) if number.places.is_some() => number.value(),
-            Raw::Literal(number) => number.value() / POWERS[feed_decimals(state)],
+            Raw::Literal(number) => number.value() / POWERS[self.feed_decimals(state)],
             Raw::Computed(value) => value,
         };
         if value < 0.0 {
@@ -332,19 +332,40 @@ impl Core {
         };
         match scale {
             ArgumentScale::Whole => 0,
-            ArgumentScale::Feed => feed_decimals(&self.state),
+            ArgumentScale::Feed => self.feed_decimals(&self.state),
             ArgumentScale::Increments if self.settings.calculator_input => 0,
             ArgumentScale::Increments => self.decimals(letter, self.state.modal.unit),
         }
     }
 }
 
-/// How many decimals F has where it is written without a point.
-fn feed_decimals(state: &State) -> usize {
-    match (state.modal.feed_mode, state.modal.unit) {
-        (FeedMode::PerRevolution, Unit::Inch) => 4,
-        (FeedMode::PerRevolution, Unit::Metric) => 2,
-        (FeedMode::PerMinute | FeedMode::InverseTime, _) => 0,
+impl Core {
+    /// How many decimals F has where it is written without a point.
+    fn feed_decimals(&self, state: &State) -> usize {
+        match (state.modal.feed_mode, state.modal.unit) {
+            (_, unit) if self.settings.feed_in_increments => self.decimals(b'X', unit),
+            (FeedMode::PerRevolution, Unit::Inch) => 4,
+            (FeedMode::PerRevolution, Unit::Metric) => 2,
+            (FeedMode::PerMinute | FeedMode::InverseTime, _) => 0,
+        }
+    }
+
+    /// P of a dwell in seconds: milliseconds, or on some controls seconds where it has a point.
+    pub(super) fn pause(&self, given: &Given) -> Checked<Option<f64>> {
+        let Some((raw, span)) = given.get(b'P') else { return Ok(None) };
+        match raw {
+            Raw::Literal(number) if self.settings.dwell_in_seconds && number.places.is_some() => {
+                if number.negative {
+                    Err(Alarm::IllegalMinus { letter: 'P' }.at(span))
+                } else {
+                    Ok(Some(number.value()))
+                }
+            }
+            Raw::Computed(_) if self.settings.dwell_in_seconds => {
+                Err(Alarm::NotSimulated { what: "a computed P of a dwell".into() }.at(span))
+            }
+            _ => Ok(given.count(b'P')?.map(|milliseconds| f64::from(milliseconds) / 1000.0)),
+        }
     }
 }
 
@@ -353,21 +374,20 @@ fn turns(letter: u8) -> bool {
     matches!(letter, b'A' | b'B' | b'C')
 }
 
-fn g_row(input: &Input, raw: Raw) -> Result<&'static Row, Alarm> {
-    let code = match (input, raw) {
-        (Input::G(_, Some(row)), _) => return Ok(row),
-        (Input::G(code, None), _) => *code,
+fn g_row(input: &Input, raw: Raw, set: CodeSet) -> Result<&'static Row, Alarm> {
+    let (code, found) = match (input, raw) {
+        (Input::G(code, found), _) => (*code, *found),
         (_, Raw::Computed(value)) => {
             // A computed code keeps one decimal.
             let tenths = (value * 10.0).round();
-            if !(0.0..=99_999.0).contains(&tenths) {
+            if !(0.0..=9999.0).contains(&tenths) {
                 return Err(Alarm::ImproperGCode { code: value.to_string() });
             }
-            tenths as u32
+            (tenths as u32, codes::find(tenths as u32))
         }
         (_, Raw::Literal(number)) => return Err(Alarm::ImproperGCode { code: number.value().to_string() }),
     };
-    codes::find(code).ok_or_else(|| Alarm::ImproperGCode { code: codes::spelled(code) })
+    found.on(set).ok_or_else(|| Alarm::ImproperGCode { code: codes::spelled(code) })
 }
 
 impl Core {

@@ -89,7 +89,7 @@ impl Lowering {
         match &expr.kind {
             ExprKind::Literal(number) => return Ok(Operand::Number(number.value())),
             ExprKind::Variable(index) => {
-                if let Some(number) = literal_index(index) {
+                if let Some(number) = self.literal_index(index) {
                     return Ok(Operand::Variable { number, span: expr.span });
                 }
             }
@@ -137,7 +137,7 @@ impl Lowering {
                 1
             }
             ExprKind::Variable(index) => {
-                if let Some(number) = literal_index(index) {
+                if let Some(number) = self.literal_index(index) {
                     self.emit(Operation::Load(number), span);
                     1
                 } else {
@@ -165,6 +165,7 @@ impl Lowering {
             }
             ExprKind::Call(function, form) => self.call(*function, form, span, context, brackets + 1)?,
             ExprKind::Parameter { number, bit, axis } => {
+                self.note(Form::NewWord("PRM"), span);
                 let mut depth = self.expr(number, Context::Macro, brackets + 1)?;
                 for (place, part) in bit.iter().chain(axis).enumerate() {
                     depth = depth.max(self.expr(part, Context::Macro, brackets + 1)? + place + 1);
@@ -173,6 +174,7 @@ impl Lowering {
                 depth
             }
             ExprKind::AxisNumber(letter) => {
+                self.note(Form::NewWord("AXNUM"), span);
                 self.emit(Operation::AxisNumber(*letter), span);
                 1
             }
@@ -214,6 +216,9 @@ impl Lowering {
         if let Some(name) = new {
             self.note(Form::NewFunction(name), span);
         }
+        if let Some(name) = new.or(rare(function)) {
+            self.note(Form::MoreFunction(name), span);
+        }
         match (function, form, context) {
             (Function::Atan, CallForm::Slash(a, b) | CallForm::Comma(a, b), _) => {
                 two(self, a, b, Operation::Atan2)
@@ -252,6 +257,7 @@ impl Lowering {
     /// The number of a named variable.
     fn named(&mut self, name: &Name, span: Span, brackets: usize) -> Lowered<usize> {
         let text = || name.text.clone();
+        self.note(Form::NewWord("[#NAME]"), span);
         if !name.text.starts_with('_') {
             if name.index.is_some() {
                 return Err(Alarm::Suffix { name: text() }.at(span));
@@ -272,6 +278,18 @@ impl Lowering {
         };
         self.emit(Operation::SystemNumber(row), span);
         Ok(depth)
+    }
+
+    /// `#5`: a variable whose number is written out. `#5.4` is #5, as any number used as an integer, unless the control
+    /// means a bit by it.
+    fn literal_index(&mut self, index: &Expr) -> Option<u32> {
+        let ExprKind::Literal(number) = index.kind else { return None };
+        let value = number.value();
+        if value.fract() != 0.0 {
+            self.note(Form::Fraction, index.span);
+        }
+        let value = value.round();
+        (0.0..=999_999_999.0).contains(&value).then_some(value as u32)
     }
 
     fn test(&mut self, condition: &Condition) -> Lowered<usize> {
@@ -300,9 +318,15 @@ impl Lowering {
     }
 }
 
-/// `#5`: a variable whose number is written out. `#5.4` is #5, as any number used as an integer.
-fn literal_index(index: &Expr) -> Option<u32> {
-    let ExprKind::Literal(number) = index.kind else { return None };
-    let value = number.value().round();
-    (0.0..=999_999_999.0).contains(&value).then_some(value as u32)
+/// Functions that controls with few of them lack.
+fn rare(function: Function) -> Option<&'static str> {
+    Some(match function {
+        Function::Fup => "FUP",
+        Function::Ln => "LN",
+        Function::Exp => "EXP",
+        Function::Bin => "BIN",
+        Function::Bcd => "BCD",
+        Function::Adp => "ADP",
+        _ => return None,
+    })
 }

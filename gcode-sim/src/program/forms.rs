@@ -3,6 +3,8 @@
 use crate::alarm::Alarm;
 use crate::control::Settings;
 
+use super::codes;
+
 /// One way of writing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
@@ -22,6 +24,14 @@ pub enum Form {
     ThenGoto,
     /// POW, MOD, ATAN with a comma: by its name.
     NewFunction(&'static str),
+    /// FUP, LN and others that controls with few functions lack.
+    MoreFunction(&'static str),
+    /// `<NAME>`, SETVN, `[#NAME]`, PRM and the like.
+    NewWord(&'static str),
+    /// A G code × 10 that lowering takes for a call.
+    Code(u32),
+    /// `#30057.21`: a bit of a variable, or the variable of the nearest number.
+    Fraction,
 }
 
 impl Form {
@@ -37,6 +47,10 @@ impl Form {
             Self::ThenWords => settings.then_takes_words,
             Self::ThenGoto => unsure.then_takes_goto,
             Self::NewFunction(_) => unsure.new_functions,
+            Self::MoreFunction(_) => settings.more_functions,
+            Self::NewWord(_) => settings.new_words,
+            Self::Code(code) => codes::find(code).on(settings.codes).is_some(),
+            Self::Fraction => !settings.bits_of_variables,
         }
     }
 
@@ -48,7 +62,10 @@ impl Form {
             Self::Signs => Alarm::RelationSymbol,
             Self::SeveralAssignments => Alarm::MacroFormat { what: "two assignments in one block".into() },
             Self::PlainIf | Self::ThenWords | Self::ThenGoto => Alarm::IfFormat,
-            Self::NewFunction(name) => Alarm::Expression { text: name.into() },
+            Self::NewFunction(name) | Self::MoreFunction(name) => Alarm::Expression { text: name.into() },
+            Self::NewWord(word) => Alarm::NotAWord { text: word.into() },
+            Self::Code(code) => Alarm::ImproperGCode { code: codes::spelled(code) },
+            Self::Fraction => Alarm::NotSimulated { what: "a bit of a variable, #n.m".into() },
         }
     }
 }

@@ -181,6 +181,7 @@ impl Lowering {
             ast::Statement::Do(number) => Statement::Do { number: loop_number(number)?, end: 0 },
             ast::Statement::End(number) => Statement::End { number: loop_number(number)?, start: 0 },
             ast::Statement::SetNames { first, names } => {
+                self.note(Form::NewWord("SETVN"), span);
                 let first = self.operand(first, Context::Macro)?;
                 Statement::SetNames { first, names: names.clone() }
             }

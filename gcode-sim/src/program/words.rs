@@ -1,5 +1,6 @@
 //! Blocks of words: codes looked up, calls taken out, the rest left for the run to evaluate.
-use super::codes::{self, Row};
+use super::Form;
+use super::codes::{self, Found};
 use super::expr::Context;
 use super::lower::Lowering;
 use super::{OpKind, Operand};
@@ -35,8 +36,8 @@ pub enum Input {
     /// Its meaning depends on the increment and on units: decided when it runs.
     Literal(Decimal),
     Operand(Operand),
-    /// A G code × 10 written as a number, with its row.
-    G(u32, Option<&'static Row>),
+    /// A G code × 10 written as a number, with its rows.
+    G(u32, Found),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -101,11 +102,13 @@ impl Lowering {
         let call = [(650, Calling::Macro), (660, Calling::AfterMoves), (661, Calling::EveryBlock)];
         for (code, kind) in call {
             if let Some(at) = list.iter().position(|w| is(w, code)) {
+                self.note(Form::Code(code), list[at].span);
                 return macro_call(list, at, kind, words);
             }
         }
         if let Some(at) = list.iter().position(|w| is(w, 670)) {
             let span = list.remove(at).span;
+            self.note(Form::Code(670), span);
             let call = CallOp {
                 kind: Calling::Cancel,
                 target: CallTarget::None,
@@ -133,7 +136,10 @@ impl Lowering {
             WordValue::Expr(expr) if letter == AX => Input::Operand(self.word_value(expr, b'X')?),
             WordValue::Expr(expr) => Input::Operand(self.word_value(expr, letter)?),
             // Taken up by the call in the same block.
-            WordValue::Name(_) => Input::Literal(Decimal { negative: false, digits: 0, places: None }),
+            WordValue::Name(_) => {
+                self.note(Form::NewWord("<NAME>"), word.span);
+                Input::Literal(Decimal { negative: false, digits: 0, places: None })
+            }
         };
         let axis = match &word.axis {
             Some(axis) => Some(self.operand(axis, Context::Macro)?),

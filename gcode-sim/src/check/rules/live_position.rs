@@ -72,13 +72,13 @@ fn of_words(settings: &Settings, words: &Words) -> Option<bool> {
     let mut axis = false;
     for word in &words.list {
         match (word.letter, word.value) {
-            (b'G', Input::G(_, Some(row))) => match row.effect {
+            (b'G', Input::G(_, found)) => match found.on(settings.codes).map(|row| row.effect) {
                 // G53 waits; G31 ends where its signal comes; G04 and G10 wait on some controls.
-                Effect::OneShot(
+                Some(Effect::OneShot(
                     OneShot::MachineSystem | OneShot::Skip | OneShot::Dwell | OneShot::DataInput,
-                ) => return Some(false),
+                )) => return Some(false),
                 // Only sets coordinates.
-                Effect::OneShot(OneShot::LocalSystem | OneShot::SetSystem | OneShot::PresetSystem) => {
+                Some(Effect::OneShot(OneShot::LocalSystem | OneShot::SetSystem | OneShot::PresetSystem)) => {
                     return None;
                 }
                 _ => {}

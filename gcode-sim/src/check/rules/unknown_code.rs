@@ -6,16 +6,18 @@ use crate::alarm::Alarm;
 use crate::check::literal;
 use crate::check::subject::{Finding, Subject, Unit};
 use crate::program::codes::{Effect, spelled};
-use crate::program::m_codes;
+use crate::program::m_codes::{self, MEffect};
 use crate::program::{Coded, Input, OpKind};
 
-use super::unreadable::{alarms, finding};
+use super::unreadable::{alarms, finding, refused};
 
 pub(super) const NAME: &str = "unknown-code";
 
 pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
-    let improper = alarms(unit).filter(|(_, alarm)| matches!(alarm.node, Alarm::ImproperGCode { .. }));
-    let mut found: Vec<_> = improper.map(|(block, alarm)| finding(unit, NAME, block, alarm)).collect();
+    let written = alarms(unit).map(|(block, alarm)| (block, alarm.clone()));
+    let all = written.chain(refused(subject, unit));
+    let improper = all.filter(|(_, alarm)| matches!(alarm.node, Alarm::ImproperGCode { .. }));
+    let mut found: Vec<_> = improper.map(|(block, alarm)| finding(unit, NAME, block, &alarm)).collect();
     let mut told = BTreeSet::new();
     for (block, op) in unit.program.ops.iter().enumerate().filter(|(block, _)| unit.reached[*block]) {
         let OpKind::Words(words) = &op.kind else { continue };
@@ -35,7 +37,8 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
 /// What is wrong with a code, and whether the control would surely alarm.
 fn about(subject: &Subject<'_>, word: &Coded) -> Option<(String, String, bool)> {
     match (word.letter, word.value) {
-        (b'G', Input::G(code, row)) => {
+        (b'G', Input::G(code, found)) => {
+            let row = found.on(subject.settings.codes);
             let name = format!("G{}", spelled(code));
             let calls = subject.settings.code_calls.find(b'G', code).is_some();
             match row.map(|row| row.effect) {
@@ -52,8 +55,11 @@ fn about(subject: &Subject<'_>, word: &Coded) -> Option<(String, String, bool)> 
             let code = literal::count(word)?;
             let calls = subject.settings.code_calls.find(b'M', code.saturating_mul(10)).is_some();
             let name = format!("M{code:02}");
-            match m_codes::find(code) {
+            match m_codes::find(code, subject.settings.codes) {
                 _ if calls => None,
+                Some(MEffect::NotSimulated) => {
+                    Some((name.clone(), format!("{name} is not executed by a run here"), false))
+                }
                 Some(_) => None,
                 None => {
                     let message = format!("what {name} does only the machine's builder knows");
