@@ -104,7 +104,7 @@ fn a_hundred_thousand_sequence_numbers_are_found() {
 fn calls_inside_one_another_are_counted() {
     assert_eq!(stops_with("O1\nG65 P1\n"), "PS0122");
     assert_eq!(stops_with("O1\nM98 P1\n"), "PS0077");
-    assert_eq!(stops_with("O1\nG66 P2\nX1.\nM30\nO2\nG66 P2\nX2.\nM98 P2\nM99\n"), "PS0077");
+    assert_eq!(stops_with("O1\nG66 P2\nX1.\nM30\nO2\nX2.\nM98 P2\nM99\n"), "PS0077");
     let many: String = (2..5_000).map(|n| format!("O{n}\nM99\n")).collect();
     let calls: String = (2..5_000).map(|n| format!("M98 P{n}\n")).collect();
     assert_eq!(stops_with(&format!("O1\n{calls}M30\n{many}")), "end");

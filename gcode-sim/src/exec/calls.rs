@@ -34,6 +34,11 @@ impl Core {
                 }
                 return Ok(());
             }
+            // Its moves trigger the calls before its own, and a new one would stand behind those it can't.
+            Calling::EveryBlock | Calling::AfterMoves if self.frame().modal < self.modal_calls.len() => {
+                let what = "a modal call inside a macro that a modal call runs".into();
+                return Err(Alarm::NotSimulated { what }.at(call.span));
+            }
             Calling::EveryBlock => CallKind::EveryBlock,
             Calling::Macro => CallKind::Macro,
             Calling::AfterMoves => CallKind::Modal,
