@@ -33,6 +33,8 @@ pub mod holes;
 
 pub mod verify;
 
+pub mod budget;
+
 pub mod picture;
 
 pub mod session;

@@ -99,6 +99,14 @@ A case is a folder with a program (main.nc, or the only .nc in it) and, where th
 control.toml, a reference (reference.json, reference.csv or job.toml), and accepted.json, which --accept writes.")]
     Test(TestArguments),
 
+    /// Tell how far the holes of many parts would be off, on machines and set-ups with errors
+    #[command(after_help = "\
+Examples:
+  gcode-sim budget job.toml --errors errors.toml --samples 200000 --seed 1
+  gcode-sim budget job.toml --errors errors.toml --format json
+  gcode-sim budget job.toml --errors errors.toml --picture shares.png")]
+    Budget(BudgetArguments),
+
     /// List the settings of the control that --control takes
     Settings,
 
@@ -289,6 +297,45 @@ pub(super) struct RenderArguments {
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "1600x1200")]
     pub(super) size: String,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct BudgetArguments {
+    /// The job file: the holes, and the machine they are drilled on
+    #[arg(value_name = "JOB.toml")]
+    pub(super) job: PathBuf,
+
+    /// What set-up and machine are off by
+    #[arg(long, value_name = "ERRORS.toml")]
+    pub(super) errors: PathBuf,
+
+    /// How many parts are drawn
+    #[arg(long, value_name = "N", default_value_t = 100_000)]
+    pub(super) samples: usize,
+
+    /// Another seed draws other parts
+    #[arg(long, value_name = "S", default_value_t = 0)]
+    pub(super) seed: u64,
+
+    /// The machine, without errors [default: the one that goes with the job]
+    #[arg(long, value_name = "MACHINE.toml")]
+    pub(super) machine: Option<PathBuf>,
+
+    /// Diameter of the tolerance zone, mm [default: the job's]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    pub(super) tolerance: Option<f64>,
+
+    /// On how many threads; the answer doesn't depend on it [default: as many as there are processors]
+    #[arg(long, value_name = "N")]
+    pub(super) threads: Option<std::num::NonZeroUsize>,
+
+    /// Also draw each source's share to this file
+    #[arg(long, value_name = "OUT.png")]
+    pub(super) picture: Option<PathBuf>,
+
+    /// How the result is written
+    #[arg(long, value_enum, default_value_t = TextFormat::Text)]
+    pub(super) format: TextFormat,
 }
 
 #[derive(Debug, Args)]

@@ -1,5 +1,6 @@
 //! The only place that prints and opens files: arguments in, exit status out.
 mod args;
+mod budget;
 mod check;
 mod compare;
 mod diff;
@@ -10,6 +11,7 @@ pub mod input;
 pub mod library;
 mod options;
 pub mod output;
+mod progress;
 mod reference;
 mod render;
 mod run;
@@ -77,6 +79,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Status {
         Command::Check(arguments) => check::run(&arguments),
         Command::Diff(arguments) => diff::run(&arguments),
         Command::Test(arguments) => test::run(&arguments),
+        Command::Budget(arguments) => budget::run(&arguments),
         Command::Settings => settings::run(),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),

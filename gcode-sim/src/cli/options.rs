@@ -79,7 +79,8 @@ fn probed(request: &mut Request, path: &Path) -> Result<(), Refusal> {
     Ok(())
 }
 
-fn machine(path: &Path) -> Result<Machine, Refusal> {
+/// A machine file.
+pub(super) fn machine(path: &Path) -> Result<Machine, Refusal> {
     Machine::parse(&input::text(path)?).map_err(|error| Refusal::new(format!("{}, {error}", path.display())))
 }
 

@@ -70,6 +70,14 @@ impl Job {
         }
     }
 
+    /// How far above the surface rapid becomes feed, mm.
+    pub fn clearance(&self) -> f64 {
+        match self {
+            Self::PinHoles(job) => job.machine.clearance,
+            Self::Honeycomb(job) => job.machine.clearance,
+        }
+    }
+
     pub fn control(&self) -> JobControl {
         match self {
             Self::PinHoles(job) => job.control,

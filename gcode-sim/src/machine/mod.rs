@@ -5,6 +5,7 @@ pub mod error;
 mod file;
 mod head;
 mod inverse;
+mod of_job;
 pub mod path;
 mod probe;
 pub mod random;

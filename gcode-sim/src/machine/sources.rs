@@ -59,6 +59,11 @@ impl Quantity {
         }
     }
 
+    /// Set up once for a part, or built into the machine; the others are off anew at each hole.
+    pub fn is_set_up(self) -> bool {
+        !matches!(self, Self::Linear(_) | Self::Index | Self::Head)
+    }
+
     /// The place of its random numbers in the tree of a seed.
     fn place(self) -> u64 {
         match self {
@@ -107,6 +112,22 @@ impl Machine {
             self.table.0.iter().filter(|link| matches!(link.motion, LinkMotion::Turn { .. })).map(|l| l.axis);
         let first = turns.next()?;
         turns.next().is_none().then_some(first)
+    }
+
+    /// Makes it as exact as `nominal`, a machine of the same arrangement, without asking for memory.
+    pub fn reset(&mut self, nominal: &Self) {
+        self.part = nominal.part;
+        self.head.error = nominal.head.error;
+        self.table.0.clone_from_slice(&nominal.table.0);
+        self.slides.0.clone_from_slice(&nominal.slides.0);
+    }
+
+    /// Whether it does what it is told, to a part that stands where it should.
+    pub fn is_exact(&self) -> bool {
+        let exact = |error: &Wave| error.level == 0.0 && error.swing == 0.0;
+        let part = self.part.shift == Vector3::zeros() && self.part.tilt == [Deg::ZERO; 3];
+        part && exact(&self.head.error)
+            && self.table.0.iter().chain(&self.slides.0).all(|link| exact(&link.error))
     }
 
     /// Puts one more error into the machine; `direction` is that of a run-out, about the rotary axis.

@@ -3,6 +3,7 @@
 //! `views` turn holes and paths into a [`Scene`], which knows mm and roles but no pixels and no NC words.
 //! [`lay_out`] turns any scene into a [`Sheet`]: everything has its pixel place, no label covers another. [`paint`]
 //! only paints. A new view is a new file in `views/`; a new file format is a new painter of sheets.
+mod bars;
 mod compare;
 mod dials;
 mod font;
@@ -22,6 +23,7 @@ mod size;
 mod symbol;
 mod views;
 
+pub use bars::{Bar, Bars};
 pub use compare::{Difference, compare};
 pub use ink::{Align, Dash, Ink, Px, Rect, Rgb};
 pub use raster::{paint, png};

@@ -1,4 +1,5 @@
 //! Data to words: what the terminal, JSON and CSV say of runs, holes and verdicts.
+pub mod budget;
 pub mod changes;
 pub mod check;
 pub mod diagnostic;

@@ -1,0 +1,71 @@
+//! `gcode-sim budget`: the spread of every hole's position under errors of set-up and machine.
+use std::num::NonZeroUsize;
+use std::sync::atomic::AtomicUsize;
+
+use super::args::{BudgetArguments, TextFormat};
+use super::{Refusal, Status, input, options, output, progress};
+use crate::budget::{MOST_SAMPLES, Question, budget};
+use crate::job::Job;
+use crate::machine::{Machine, error_file};
+use crate::part::wanted::Wanted;
+use crate::picture::Size;
+use crate::report::budget::BudgetReport;
+use crate::verify::Tolerances;
+
+pub(super) fn run(arguments: &BudgetArguments) -> Result<Status, Refusal> {
+    let named = |path: &std::path::Path, error: &dyn std::fmt::Display| {
+        Refusal::new(format!("{}, {error}", path.display()))
+    };
+    let asked = options::tolerance("--tolerance", arguments.tolerance)?;
+    if !(1..=MOST_SAMPLES).contains(&arguments.samples) {
+        return Err(Refusal::new(format!("--samples {}: 1 to {MOST_SAMPLES}", arguments.samples)));
+    }
+    let job = Job::parse(&input::text(&arguments.job)?).map_err(|e| named(&arguments.job, &e))?;
+    let reference = Wanted::of_job(&job).map_err(|e| named(&arguments.job, &e))?.into_holes();
+    let Some(reference) = reference else {
+        return Err(named(&arguments.job, &"a budget is of holes, and this family's part gets none"));
+    };
+    let machine = match &arguments.machine {
+        Some(path) => options::machine(path)?,
+        None => Machine::of_job(&job)
+            .ok_or_else(|| named(&arguments.job, &"no machine goes with it: give one with --machine"))?,
+    };
+    if !machine.is_exact() {
+        let message =
+            "--machine: it has errors or a misplaced part; a budget takes those from --errors alone";
+        return Err(Refusal::new(message));
+    }
+    let sources = error_file(&input::text(&arguments.errors)?, &machine)
+        .map_err(|error| named(&arguments.errors, &error))?;
+    let one = NonZeroUsize::MIN;
+    let question = Question {
+        machine: &machine,
+        holes: &reference.holes,
+        clearance: job.clearance(),
+        sources: &sources,
+        samples: arguments.samples,
+        seed: arguments.seed,
+        threads: arguments.threads.unwrap_or_else(|| std::thread::available_parallelism().unwrap_or(one)),
+        tolerance: Tolerances::of(&reference, asked).position,
+    };
+    let counted = AtomicUsize::new(0);
+    let all = arguments.samples.saturating_mul(reference.holes.len());
+    let found = progress::watched(all, &counted, || budget(&question, &counted))
+        .map_err(|error| named(&arguments.job, &error))?;
+    let report = BudgetReport::new(&question, &found);
+    match arguments.format {
+        TextFormat::Json => output::json(&report)?,
+        TextFormat::Text => output::print(&report.text())?,
+    }
+    if let Some(path) = &arguments.picture {
+        let size: Size = "1200x500"
+            .parse()
+            .map_err(|error: crate::picture::PictureError| Refusal::new(error.to_string()))?;
+        let png = report.bars().draw(size).map_err(|error| Refusal::new(error.to_string()))?;
+        output::write(path, &png)?;
+        if arguments.format == TextFormat::Text {
+            output::print(&format!("picture: {}\n", path.display()))?;
+        }
+    }
+    Ok(Status::Holds)
+}

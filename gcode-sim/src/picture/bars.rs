@@ -1,0 +1,137 @@
+//! Bars below one another, each with its name and its number.
+use super::font::Font;
+use super::ink::{Align, Ink, Rect, px};
+use super::palette;
+use super::scene::Standing;
+use super::sheet::Sheet;
+use super::size::Size;
+use super::{PictureError, paint, png};
+
+/// A picture of bars.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bars {
+    pub title: String,
+    /// Lines below the title.
+    pub notes: Vec<String>,
+    /// Those that find no room are left out from the end, and counted.
+    pub bars: Vec<Bar>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bar {
+    pub name: String,
+    /// 0 to 1.
+    pub length: f64,
+    pub text: String,
+}
+
+impl Bars {
+    /// As a PNG file of exactly this size.
+    ///
+    /// # Errors
+    /// What the encoder has to say.
+    pub fn draw(&self, size: Size) -> Result<Vec<u8>, PictureError> {
+        png(&paint(&self.lay_out(size)))
+    }
+
+    /// The names stand on the left, the bars begin behind the longest, and a bar of length 1 leaves room for its text.
+    pub fn lay_out(&self, size: Size) -> Sheet {
+        let font = Font::embedded();
+        let text = size.text();
+        let page = Rect::new(0.0, 0.0, f64::from(size.width()), f64::from(size.height())).grown(-2.0 * text);
+        let mut inks = Vec::new();
+        let mut labels = Vec::new();
+        let mut write = |left: f64, base: f64, size: f64, words: &str, width: f64, soft: bool| {
+            let words = font.fitted(words, size, width);
+            let place = Rect::new(left, base - size, font.width(&words, size), 1.2 * size);
+            labels.push((place, vec![words.clone()]));
+            let color = if soft { palette::SOFT_TEXT } else { palette::TEXT };
+            Ink::Text { at: px(left, base), align: Align::Left, size, text: words, color }
+        };
+        let mut y = page.top + 1.4 * text;
+        inks.push(write(page.left, y, 1.4 * text, &self.title, page.width(), false));
+        for note in &self.notes {
+            y += 1.6 * text;
+            inks.push(write(page.left, y, text, note, page.width(), true));
+        }
+        y += 1.5 * text;
+        let begin = y - 0.3 * text;
+        let longest = |words: &dyn Fn(&Bar) -> String| {
+            self.bars.iter().map(|bar| font.width(&words(bar), text)).fold(0.0, f64::max)
+        };
+        let names = longest(&|bar| bar.name.clone()).min(0.3 * page.width());
+        let numbers = longest(&|bar| bar.text.clone()).min(0.3 * page.width());
+        let left = page.left + names + text;
+        let full = (page.right - numbers - text - left).max(0.0);
+        let room = ((page.bottom - y) / (2.0 * text)) as usize;
+        let shown = if self.bars.len() <= room { self.bars.len() } else { room.saturating_sub(1) };
+        for bar in &self.bars[..shown] {
+            let length = full * bar.length.clamp(0.0, 1.0);
+            let (top, bottom) = (y, y + 1.3 * text);
+            let corners =
+                [px(left, top), px(left + length, top), px(left + length, bottom), px(left, bottom)];
+            inks.push(Ink::Area { points: corners.to_vec(), color: palette::standing(Standing::Good) });
+            let base = y + 1.05 * text;
+            inks.push(write(page.left, base, text, &bar.name, names, false));
+            inks.push(write(left + length + 0.5 * text, base, text, &bar.text, numbers, false));
+            y += 2.0 * text;
+        }
+        let mut notes = Vec::new();
+        if shown < self.bars.len() {
+            let note = format!("{} smaller ones not shown", self.bars.len() - shown);
+            inks.push(write(page.left, y + 1.05 * text, text, &note, page.width(), true));
+            notes.push(note);
+        }
+        inks.push(Ink::line(px(left, begin), px(left, y), 1.0, palette::RULE));
+        Sheet { size, inks, labels, notes, magnification: None }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bars(count: usize) -> Bars {
+        let bar = |n: usize| Bar {
+            name: format!("rotary.centre.{n}"),
+            length: 1.0 / (n + 1) as f64,
+            text: format!("{:.1} %, 0.0123 mm", 100.0 / (n + 1) as f64),
+        };
+        Bars {
+            title: "Shares".to_owned(),
+            notes: vec!["a note".to_owned()],
+            bars: (0..count).map(bar).collect(),
+        }
+    }
+
+    #[test]
+    fn no_text_covers_another_and_all_are_on_the_sheet() {
+        for (width, height) in [(1200, 800), (640, 480), (2000, 500)] {
+            let size = Size::new(width, height).unwrap();
+            for count in [0, 1, 12, 60] {
+                let sheet = bars(count).lay_out(size);
+                let page = Rect::new(0.0, 0.0, f64::from(width), f64::from(height));
+                for (index, (place, words)) in sheet.labels.iter().enumerate() {
+                    assert!(page.contains(place), "{words:?} at {place:?}");
+                    let free = sheet.labels[..index].iter().all(|(other, _)| !place.overlaps(other));
+                    assert!(free, "{words:?} covers another, {width}x{height}, {count}");
+                }
+                assert_eq!(sheet.notes.is_empty(), sheet.labels.len() == 2 + 2 * count);
+            }
+        }
+    }
+
+    #[test]
+    fn a_bar_half_as_long_is_half_as_long() {
+        let sheet = bars(2).lay_out(Size::new(1200, 800).unwrap());
+        let lengths: Vec<f64> = sheet
+            .inks
+            .iter()
+            .filter_map(|ink| match ink {
+                Ink::Area { points, .. } => Some(points[1].x - points[0].x),
+                _ => None,
+            })
+            .collect();
+        assert!((lengths[0] - 2.0 * lengths[1]).abs() < 1e-9 && lengths[0] > 300.0, "{lengths:?}");
+    }
+}

@@ -1,0 +1,161 @@
+//! An error budget as JSON, as a table, and as bars.
+use std::fmt::Write;
+
+use serde::Serialize;
+
+use crate::budget::{Budget, Question, Share, Statistics};
+use crate::machine::error::Spread;
+use crate::picture::{Bar, Bars};
+
+/// Diameters and lengths in mm.
+#[derive(Debug, Serialize)]
+pub struct BudgetReport {
+    basis: &'static str,
+    samples: usize,
+    seed: u64,
+    tolerance: f64,
+    holes: Vec<HoleRow>,
+    /// The worst hole of each part.
+    parts: Row,
+    sources: Vec<SourceRow>,
+}
+
+#[derive(Debug, Serialize)]
+struct Row {
+    mean: f64,
+    p50: f64,
+    p95: f64,
+    p997: f64,
+    max: f64,
+    within: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct HoleRow {
+    id: String,
+    #[serde(flatten)]
+    row: Row,
+    /// Without errors.
+    nominal: f64,
+    sources: Vec<SourceRow>,
+}
+
+#[derive(Debug, Serialize)]
+struct SourceRow {
+    source: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    spread: Option<String>,
+    moves: f64,
+    share: f64,
+}
+
+impl From<Statistics> for Row {
+    fn from(of: Statistics) -> Self {
+        Self { mean: of.mean, p50: of.p50, p95: of.p95, p997: of.p997, max: of.max, within: of.within }
+    }
+}
+
+impl From<&Share> for SourceRow {
+    fn from(of: &Share) -> Self {
+        Self { source: of.source.clone(), spread: None, moves: of.moves, share: of.share }
+    }
+}
+
+impl BudgetReport {
+    pub fn new(question: &Question<'_>, found: &Budget) -> Self {
+        let holes = found.holes.iter().map(|hole| HoleRow {
+            id: hole.id.clone(),
+            row: hole.statistics.into(),
+            nominal: hole.nominal,
+            sources: hole.shares.iter().map(SourceRow::from).collect(),
+        });
+        let spread = |name: &str| {
+            let source =
+                question.sources.iter().find(|source| source.quantity.name(question.machine) == name)?;
+            Some(match source.spread {
+                Spread::Fixed(value) => format!("fixed {value}"),
+                Spread::Normal(value) => format!("normal {value}"),
+                Spread::Uniform(value) => format!("uniform {value}"),
+            })
+        };
+        let sources =
+            found.shares.iter().map(|share| SourceRow { spread: spread(&share.source), ..share.into() });
+        Self {
+            basis: "predicted by simulation, not measured",
+            samples: question.samples,
+            seed: question.seed,
+            tolerance: question.tolerance,
+            holes: holes.collect(),
+            parts: found.parts.into(),
+            sources: sources.collect(),
+        }
+    }
+
+    /// For a terminal.
+    pub fn text(&self) -> String {
+        let mut text = format!(
+            "Position of {} in {} samples: {}\nmm; within: the share inside Φ{}; exact: without any error\n\n",
+            if self.holes.len() == 1 { "1 hole".to_owned() } else { format!("{} holes", self.holes.len()) },
+            self.samples,
+            self.basis,
+            self.tolerance
+        );
+        let wide = self.holes.iter().map(|hole| hole.id.chars().count()).max().unwrap_or(0).clamp(5, 12);
+        let _ = writeln!(
+            text,
+            "{:<wide$} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}",
+            "hole", "mean", "50 %", "95 %", "99.7 %", "largest", "within", "exact"
+        );
+        let line = |name: &str, row: &Row| {
+            format!(
+                "{name:<wide$} {:>8.4} {:>8.4} {:>8.4} {:>8.4} {:>8.4} {:>6.1} %",
+                row.mean,
+                row.p50,
+                row.p95,
+                row.p997,
+                row.max,
+                row.within * 100.0
+            )
+        };
+        for hole in &self.holes {
+            let _ = writeln!(text, "{} {:>8.4}", line(&hole.id, &hole.row), hole.nominal);
+        }
+        let _ = writeln!(text, "{}\n", line("worst", &self.parts));
+        let wide = self.sources.iter().map(|row| row.source.len()).max().unwrap_or(0).max(6);
+        let _ = writeln!(text, "{:<wide$} {:>9} {:>8}  as given", "source", "moves", "share");
+        for row in &self.sources {
+            let _ = writeln!(
+                text,
+                "{:<wide$} {:>9.5} {:>6.1} %  {}",
+                row.source,
+                row.moves,
+                row.share * 100.0,
+                row.spread.as_deref().unwrap_or("")
+            );
+        }
+        text
+    }
+
+    /// The sources' shares, for a picture.
+    pub fn bars(&self) -> Bars {
+        let bar = |row: &SourceRow| Bar {
+            name: row.source.clone(),
+            length: row.share,
+            text: format!("{:.1} %, {:.4} mm", row.share * 100.0, row.moves),
+        };
+        Bars {
+            title: "What moves the holes: share of the mean square".to_owned(),
+            notes: vec![
+                format!(
+                    "Worst hole of a part: Φ{:.3} at 95 %, Φ{:.3} at 99.7 %; {:.1} % of the parts within Φ{}",
+                    self.parts.p95,
+                    self.parts.p997,
+                    self.parts.within * 100.0,
+                    self.tolerance
+                ),
+                format!("{} samples, seed {}; {}", self.samples, self.seed, self.basis),
+            ],
+            bars: self.sources.iter().map(bar).collect(),
+        }
+    }
+}

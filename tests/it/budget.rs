@@ -1,0 +1,76 @@
+//! The error budget against the other ways to the same numbers: `verify` on the emitted program, and the machine file.
+use std::num::NonZeroUsize;
+use std::path::Path;
+use std::sync::atomic::AtomicUsize;
+
+use gcode_gen::check::check;
+use gcode_gen::families;
+use gcode_sim::budget::{Budget, Question, budget};
+use gcode_sim::job::Job;
+use gcode_sim::machine::{Machine, error_file};
+use gcode_sim::part::wanted::Wanted;
+
+fn example(name: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples").join(name);
+    std::fs::read_to_string(path).unwrap()
+}
+
+fn found(job: &Job, errors: &str, samples: usize) -> Budget {
+    let machine = Machine::of_job(job).unwrap();
+    let reference = Wanted::of_job(job).unwrap().into_holes().unwrap();
+    let question = Question {
+        machine: &machine,
+        holes: &reference.holes,
+        clearance: job.clearance(),
+        sources: &error_file(errors, &machine).unwrap(),
+        samples,
+        seed: 1,
+        threads: NonZeroUsize::new(2).unwrap(),
+        tolerance: 0.1,
+    };
+    budget(&question, &AtomicUsize::new(0)).unwrap()
+}
+
+/// A machine without errors drills what `verify` finds of the emitted program: rounding is in both.
+#[test]
+fn without_errors_the_budget_is_what_verify_says() {
+    for name in ["melon-mould/job.toml", "prolate/job.toml", "head-by-axis/job.toml"] {
+        let job = Job::parse(&example(name)).unwrap();
+        let package = families::emit(&job);
+        assert_eq!(Machine::of_job(&job).unwrap(), Machine::parse(&package.machine).unwrap(), "{name}");
+        let verdict = check(&job, &package).unwrap().judgement.into_holes().unwrap();
+        for (hole, judged) in found(&job, "", 1).holes.iter().zip(&verdict.holes) {
+            assert_eq!(hole.id, judged.id);
+            assert!((hole.nominal - judged.phi).abs() < 1e-3, "{name}: {hole:?} and {}", judged.phi);
+            assert_eq!(hole.nominal, hole.statistics.max);
+        }
+    }
+}
+
+/// A fixed error in the budget is the same one in a machine file.
+#[test]
+fn a_fixed_error_is_off_as_far_as_on_a_machine_with_that_error() {
+    let job = Job::parse(&example("melon-mould/job.toml")).unwrap();
+    let errors =
+        "[linear]\nx = { fixed = 0.02 }\n[rotary]\nindex = { fixed = 0.003 }\ncentre.z = { fixed = -0.03 }\n";
+    let mut package = families::emit(&job);
+    let sections = errors.replace('[', "[errors.");
+    package.machine = format!("{}\n{sections}", package.machine);
+    let verdict = check(&job, &package).unwrap().judgement.into_holes().unwrap();
+    for (hole, judged) in found(&job, errors, 1).holes.iter().zip(&verdict.holes) {
+        assert!(hole.statistics.max > 0.03);
+        assert!((hole.statistics.max - judged.phi).abs() < 1e-3, "{hole:?} and {}", judged.phi);
+    }
+}
+
+/// Both example files are read, and the second set-up is the better one at every hole.
+#[test]
+fn after_alignment_every_hole_is_better_than_before() {
+    let job = Job::parse(&example("melon-mould/job.toml")).unwrap();
+    let [before, after] =
+        ["before", "after"].map(|name| found(&job, &example(&format!("error-budget/{name}.toml")), 2000));
+    for (before, after) in before.holes.iter().zip(&after.holes) {
+        assert!(4.0 * after.statistics.mean < before.statistics.mean);
+    }
+    assert!(0.9 < after.parts.within && before.parts.within < 0.2);
+}
