@@ -19,6 +19,8 @@ pub mod program;
 
 pub mod diag;
 
+pub mod contour;
+
 pub mod exec;
 
 pub mod check;
