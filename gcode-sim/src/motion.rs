@@ -75,7 +75,7 @@ impl std::ops::IndexMut<Axis> for Position {
 }
 
 /// One call on the way to a block: the block that called, and the call it was itself made from.
-#[derive(Debug)]
+#[derive(Debug, PartialEq)]
 pub struct Call {
     /// The calling block (`G65 P8101 …`).
     pub from: Span,
@@ -86,7 +86,7 @@ pub struct Call {
 pub type Calls = Option<Arc<Call>>;
 
 /// Where an event comes from: the block, and the calls that led to it.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Place {
     pub block: Span,
     pub calls: Calls,

@@ -87,6 +87,9 @@ pub enum Alarm {
     OffsetValue {
         value: f64,
     },
+    /// G41, G42: inside a corner the two paths of the tool's centre don't meet.
+    NoIntersection,
+    ArcAtStartOrEnd,
     SkipInCompensation,
     /// G31 without a signal, where the control is set to mind.
     SkipMissed,
@@ -107,6 +110,19 @@ pub enum Alarm {
     CodeInScaling {
         code: String,
     },
+    PlaneInCompensation,
+    /// `,R` or `,C` where cutter compensation starts, ends or changes sides.
+    CornerInStartUp,
+    Interference,
+    /// G45 to G48.
+    ToolOffsetInCompensation,
+    /// Behind `,R` or `,C`.
+    NoMoveAfterCorner,
+    NoCutAfterCorner,
+    /// Two corner words, or another letter behind a comma.
+    CornerWords,
+    /// A move is shorter than what `,R` or `,C` takes of it.
+    CornerTooLarge,
     NotAtReference {
         letter: char,
     },

@@ -161,6 +161,14 @@ pub struct Settings {
     pub print_needs_open: bool,
     /// How many digits DPRNT's format may ask for.
     pub print_digits: usize,
+    /// ODI 5004#2: the offsets of D are diameters.
+    pub offsets_are_diameters: bool,
+    /// EVR 5001#4: a changed offset of D counts from the next block on, not from the next D.
+    pub new_radius_at_once: bool,
+    /// SUP 5003#0: cutter compensation starts and ends by type B.
+    pub start_up_b: bool,
+    /// 19625: blocks read in cutter compensation; two of them have to move.
+    pub blocks_read: usize,
     /// SCR 5400#7: G51 counts its factors in 0.001 instead of 0.00001.
     pub coarse_scaling: bool,
     /// Block-skip switches that are on, by number 1 to 9.
@@ -262,6 +270,10 @@ impl Default for Settings {
             print_expands: false,
             print_needs_open: false,
             print_digits: 8,
+            offsets_are_diameters: false,
+            new_radius_at_once: false,
+            start_up_b: false,
+            blocks_read: 3,
             coarse_scaling: true,
             skip_switches: [false; 9],
             optional_stop: true,

@@ -81,6 +81,9 @@ const ROWS: &[Row] = &[
     bit(3403, 6, Access::Key("AD2", |s| f64::from(s.no_repeated_address))),
     bit(3404, 7, Access::Key("M3B", |s| f64::from(s.three_m_codes))),
     length(3410, Access::Key("3410", |s| s.arc_tolerance)),
+    bit(5001, 4, Access::Key("EVR", |s| f64::from(s.new_radius_at_once))),
+    bit(5003, 0, Access::Key("SUP", |s| f64::from(s.start_up_b))),
+    bit(5004, 2, Access::Key("ODI", |s| f64::from(s.offsets_are_diameters))),
     bit(5101, 0, Access::Key("FXY", |s| f64::from(s.drills_by_plane))),
     length(5114, Access::Key("5114", |s| s.g73_retract)),
     length(5115, Access::Key("5115", |s| s.g83_clearance)),
@@ -96,6 +99,7 @@ const ROWS: &[Row] = &[
     bit(6008, 1, Access::Key("MCA", |s| f64::from(s.macro_alarm_base == 0))),
     bit(6008, 6, Access::Key("GMP", |s| f64::from(s.code_calls.inside_others))),
     bit(6008, 7, Access::Key("IJK", |s| f64::from(s.plain_ijk))),
+    number(19625, Access::Key("19625", |s| s.blocks_read as f64)),
 ];
 
 /// Parameters that nothing a run shows depends on: what is written to them can be read again.

@@ -76,6 +76,7 @@ impl Core {
         if let Some(calling) = calling {
             self.plan_calling_word(program, words, &calling, plan)?;
         }
+        self.look_ahead(act, given, plan, span)?;
         self.check_unread(given, plan)?;
         self.check_stroke(plan, span)
     }
@@ -111,6 +112,11 @@ impl Core {
         let mut latched = before.cycle.is_some();
         for row in given.g_codes() {
             let new = match row.effect {
+                Effect::NotSimulated
+                    if (450..=480).contains(&row.code) && state.modal.cutter != CutterSide::Off =>
+                {
+                    return Err(Alarm::ToolOffsetInCompensation.at(span));
+                }
                 Effect::NotSimulated | Effect::Call => return Err(not_simulated(row.code, row.help).at(span)),
                 Effect::NoEffect => {
                     given.accept(b"IPQR");
@@ -141,6 +147,9 @@ impl Core {
             }
         }
         let modal = state.modal;
+        if modal.plane != before.plane && self.ahead.is_beside() {
+            return Err(Alarm::PlaneInCompensation.at(span));
+        }
         if modal.plane != before.plane && state.transform.rotation.is_some() {
             return Err(Alarm::PlaneInRotation.at(span));
         }
@@ -234,10 +243,9 @@ impl Core {
                 return Err(Alarm::ImproperAddress { letter: char::from(letter) }.at(given.span(letter)));
             }
         }
-        if plan.state.modal.cutter != CutterSide::Off
-            && self.offset_radius(plan.state.codes.d).is_none_or(|radius| radius != 0.0)
-        {
-            return Err(Alarm::NotSimulated { what: "cutter compensation (G41, G42)".into() }.at(span));
+        let sides = given.g_codes().any(|row| matches!(row.effect, Effect::Cutter(_)));
+        if given.has(b'D') || sides || self.settings.new_radius_at_once {
+            plan.state.radius = self.offset_radius(plan.state.codes.d).unwrap_or(0.0);
         }
         Ok(())
     }
@@ -341,13 +349,16 @@ impl Core {
         if !(named || arcs && given.has_any(b"IJKR")) {
             return self.settle(given, plan, lengthened, span);
         }
-        // Some controls round corners by R or read I J K here; cutter compensation off takes a vector.
+        // Some controls round corners by R or read I J K here; the end of cutter compensation takes a vector.
         let vector = given.g_codes().any(|row| row.effect == Effect::Cutter(CutterSide::Off));
         if let Some(letter) = b"IJKR".iter().find(|l| given.has(**l) && !arcs && !vector && !overruled) {
             let what = format!("{} beside a straight move", char::from(*letter));
             return Err(Alarm::NotSimulated { what }.at(given.span(*letter)));
         }
         let goal = self.goal(given, &mut plan.state)?;
+        if motion != Motion::Rapid {
+            plan.corner = self.corner_word(given, &plan.state)?;
+        }
         match motion {
             Motion::Rapid => self.rapid(plan, goal.machine),
             Motion::Thread => self.thread(plan, goal.machine, given, span)?,

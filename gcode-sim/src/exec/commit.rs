@@ -11,6 +11,9 @@ impl Core {
     /// Everything a plan says, in the order it says it.
     pub(super) fn commit<S: Sink>(&mut self, plan: &mut Plan, sink: &mut S) {
         self.state = plan.state;
+        if plan.reads_ahead {
+            self.advance(&mut plan.ahead, sink);
+        }
         for (kind, seconds) in plan.events.drain(..) {
             self.tell(kind, seconds, sink);
         }
@@ -61,15 +64,20 @@ impl Core {
 
     /// Tells the machine one thing and counts it.
     pub(super) fn tell<S: Sink>(&mut self, kind: EventKind, seconds: f64, sink: &mut S) {
+        self.count(&kind, seconds);
+        let block = self.block;
+        sink.event(&Event { kind, seconds: Seconds(seconds), block, calls: &self.frame().calls });
+    }
+
+    /// Counts what is told.
+    pub(super) fn count(&mut self, kind: &EventKind, seconds: f64) {
         self.seconds += seconds;
-        self.moves += u64::from(moves_something(&kind));
-        if let EventKind::Stop { kind, text, named } = &kind
+        self.moves += u64::from(moves_something(kind));
+        if let EventKind::Stop { kind, text, named } = kind
             && self.stops.len() < STOPS
         {
             self.stops.push(Stop { kind: *kind, text: text.clone(), named: named.clone() });
         }
-        let block = self.block;
-        sink.event(&Event { kind, seconds: Seconds(seconds), block, calls: &self.frame().calls });
     }
 
     pub(super) fn set_names(&mut self, first: u32, names: &[String]) -> Result<(), Alarm> {

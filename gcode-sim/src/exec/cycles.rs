@@ -341,6 +341,11 @@ impl Drill {
         }
     }
 
+    /// The tool comes from here.
+    pub(super) fn begins_at(&mut self, machine: Position) {
+        self.from.machine = machine;
+    }
+
     /// Where the last hole is.
     fn last(&self, core: &Core) -> Position {
         let mut hole = self.hole;

@@ -4,6 +4,7 @@
 //! earlier jump, which is kept for longer and longer. Where they agree the control itself is copied; when it equals
 //! its copy one turn later, all that follows repeats. Between such finds a jump costs a few instructions.
 use super::Core;
+use super::ahead::Ahead;
 use super::frames::Frame;
 use super::modal_calls::ModalCall;
 use super::offsets::Offsets;
@@ -29,6 +30,7 @@ struct Copy {
     state: State,
     vars: Vars,
     offsets: Offsets,
+    ahead: Ahead,
     frames: Vec<Frame>,
     modal_calls: Vec<ModalCall>,
     names: std::collections::BTreeMap<String, u32>,
@@ -139,6 +141,7 @@ impl Copy {
             state: core.state,
             vars: core.vars.clone(),
             offsets: core.offsets.clone(),
+            ahead: core.ahead.clone(),
             frames: core.frames.clone(),
             modal_calls: core.modal_calls.clone(),
             names: core.names.clone(),
@@ -161,6 +164,7 @@ impl Copy {
             && self.state == core.state
             && self.vars.same(&core.vars)
             && self.offsets == core.offsets
+            && self.ahead == core.ahead
             && self.modal_calls == core.modal_calls
             && self.names == core.names
             && (self.outputs, self.clocks, self.idle) == (core.outputs, core.clocks, core.idle)

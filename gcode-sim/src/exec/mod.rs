@@ -1,4 +1,5 @@
 //! Operations to events: a control that can be stepped block by block, held and looked at.
+mod ahead;
 mod arcs;
 mod arguments;
 mod block;
@@ -43,6 +44,7 @@ pub use print::printable;
 pub use state::{Codes, State};
 pub use vars::{Value, Vars};
 
+use self::ahead::Ahead;
 use self::endless::{Endless, Watch};
 use self::frames::{Frame, FrameKind};
 use self::modal_calls::ModalCall;
@@ -125,6 +127,8 @@ pub(crate) struct Core {
     state: State,
     vars: Vars,
     offsets: Offsets,
+    /// What has been read and waits for the next move.
+    ahead: Ahead,
     frames: Vec<Frame>,
     modal_calls: Vec<ModalCall>,
     /// Names given by SETVN.
@@ -165,6 +169,7 @@ impl Control {
             state: State::default(),
             vars,
             offsets,
+            ahead: Ahead::default(),
             frames: Vec::new(),
             modal_calls: Vec::new(),
             names: BTreeMap::new(),
@@ -236,8 +241,15 @@ impl Control {
         }
         let done = self.block(library, sink);
         let outcome = match done {
-            Ok(outcome) => outcome?,
+            Ok(None) => return None,
+            Ok(Some(outcome)) => {
+                if matches!(outcome, Outcome::End) {
+                    self.core.complete(None, sink);
+                }
+                outcome
+            }
             Err(alarm) => {
+                self.core.complete(Some(&alarm), sink);
                 let calls = self.core.frames.last().map(|f| f.calls.clone()).unwrap_or_default();
                 let place = Place { block: self.core.block, calls };
                 Outcome::Alarm(Stopped { alarm: alarm.node, span: alarm.span, place })
@@ -291,6 +303,7 @@ impl Control {
             OpKind::Empty if core.state.parameter_input && op.number.is_some() => {
                 return Err(Alarm::ParameterFormat { what: "R is missing".into() }.at(op.span));
             }
+            OpKind::Empty if op.number.is_some() => core.pass_number(op.span, sink)?,
             OpKind::Empty | OpKind::If { .. } => {}
             OpKind::Alarm(alarm) => return Err((**alarm).clone()),
             OpKind::Statement(statement) => {

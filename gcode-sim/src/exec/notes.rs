@@ -13,6 +13,8 @@ pub enum Note {
     CycleDataLost,
     /// M96 lets a signal call a macro, and no signal comes in a run.
     InterruptNeverComes,
+    /// `,R` or `,C` in a block that is no cutting move is ignored.
+    CornerIgnored,
     /// A drilling block with K0 stores its data and drills nothing, which is what K0 is for; whether its X and Y are
     /// gone to differs between controls.
     NoRepeats,
@@ -44,6 +46,10 @@ impl Note {
                 let message =
                     "the macro of M96 is never called: the signal UINT doesn't come in a run".to_owned();
                 ("no-interrupt", message, "call the macro with G65 to see what it does")
+            }
+            Self::CornerIgnored => {
+                let message = ",R and ,C are ignored: the block is no cutting move".to_owned();
+                ("corner-ignored", message, "write them in a block of G01, G02 or G03")
             }
             Self::NoRepeats => {
                 let message = "K0 stores the cycle without going to the block's X and Y".to_owned();

@@ -94,6 +94,10 @@ impl Core {
             OneShot::CirclePocket(turn) => self.circle_pocket(turn, given, plan, span),
             OneShot::BoltHoles(holes) => self.bolt_holes(holes, given, plan, span),
             OneShot::MachineSystem => self.machine_system(given, plan),
+            OneShot::CornerArc if self.ahead.is_on() => Ok(()),
+            OneShot::CornerArc => {
+                Err(Alarm::NotSimulated { what: "G39 without cutter compensation".into() }.at(span))
+            }
         }
     }
 

@@ -1,10 +1,12 @@
 //! What a block is going to do: made without touching the control, carried out afterwards without failing.
+use super::ahead::Ahead;
 use super::cycles::Drill;
 use super::frames::ByCodes;
 use super::notes::Note;
 use super::offsets::Register;
 use super::state::State;
 use super::vars::{Locals, Value};
+use crate::contour::Blend;
 use crate::control::ParameterPlace;
 use crate::motion::{EventKind, Position, StopKind};
 use crate::program::{OpIndex, ProgramId};
@@ -24,6 +26,11 @@ pub(super) struct Plan {
     /// A drilling cycle is expanded while it is told: its length has no bound.
     pub(super) drill: Option<Drill>,
     pub(super) writes: Vec<Write>,
+    /// The word `,R` or `,C` of a cutting move.
+    pub(super) corner: Option<Blend>,
+    /// The block goes by way of what is read ahead, which will be this.
+    pub(super) reads_ahead: bool,
+    pub(super) ahead: Ahead,
     /// Axes were commanded: what a modal macro call waits for.
     pub(super) moved: bool,
     pub(super) stop: Option<StopKind>,
@@ -128,6 +135,8 @@ impl Plan {
         self.after.clear();
         self.writes.clear();
         self.drill = None;
+        self.corner = None;
+        self.reads_ahead = false;
         self.moved = false;
         self.stop = None;
         self.passed_on = None;

@@ -25,6 +25,8 @@ pub struct State {
     pub has_intermediate: u8,
     /// #5061…: where the last G31 ended, in machine coordinates.
     pub skip: Position,
+    /// The radius of cutter compensation, as D or G41, G42 have found it; negative where it swaps sides.
+    pub radius: f64,
     pub transform: Transform,
     pub drilling: Drilling,
     pub codes: Codes,

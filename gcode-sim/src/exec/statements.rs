@@ -4,7 +4,7 @@ use super::notes::Note;
 use super::vars::{Kind, Value};
 use super::{Core, Outcome};
 use crate::alarm::Alarm;
-use crate::motion::{EventKind, Sink, StopKind};
+use crate::motion::{EventKind, Place, Sink, StopKind};
 use crate::program::{Operand, Program, Statement};
 use crate::source::{Span, Spanned};
 
@@ -160,7 +160,12 @@ impl Core {
             }
         }
         let text = text.to_owned();
-        self.tell(EventKind::Stop { kind: StopKind::Message, text, named }, 0.0, sink);
+        let stop = EventKind::Stop { kind: StopKind::Message, text, named };
+        if self.ahead.waits() {
+            let place = Place { block: self.block, calls: self.frame().calls.clone() };
+            return self.ahead.wait_behind(stop, place);
+        }
+        self.tell(stop, 0.0, sink);
     }
 }
 

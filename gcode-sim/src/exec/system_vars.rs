@@ -60,8 +60,8 @@ const ROWS: &[Row] = &[
     row(4201, 4330, Some(|c, n| c.modal_information(n + 1)), None),
     // Positions.
     row(5001, 5020, Some(|c, n| c.position(n, |c, axis| c.end_point()[axis])), None),
-    row(5021, 5040, Some(|c, n| c.position(n, |c, axis| c.rolled(axis, c.state.machine[axis]))), None),
-    row(5041, 5060, Some(|c, n| c.position(n, |c, axis| c.in_work(axis, c.state.machine[axis]))), None),
+    row(5021, 5040, Some(|c, n| c.position(n, |c, axis| c.rolled(axis, c.centre(axis)))), None),
+    row(5041, 5060, Some(|c, n| c.position(n, |c, axis| c.in_work(axis, c.centre(axis)))), None),
     row(5061, 5080, Some(|c, n| c.position(n, |c, axis| c.in_work(axis, c.state.skip[axis]))), None),
     row(5081, 5100, Some(|c, n| c.position(n, |c, axis| c.state.length[axis])), None),
     row(5101, 5140, Some(|c, n| c.position(n % 20, |_, _| 0.0)), None),
@@ -317,10 +317,17 @@ impl Core {
         Ok(())
     }
 
-    /// Geometry and wear of a D number, or `None` where it isn't in the table.
+    /// Geometry and wear of a D number, or half of them with ODI; `None` where it isn't in the table.
     pub(super) fn offset_radius(&self, d: u32) -> Option<f64> {
         let geometry = self.offsets.tool(Register::DGeometry, d).ok()?;
-        Some(geometry + self.offsets.tool(Register::DWear, d).ok()?)
+        let sum = geometry + self.offsets.tool(Register::DWear, d).ok()?;
+        Some(if self.settings.offsets_are_diameters { sum / 2.0 } else { sum })
+    }
+
+    /// Where the tool's centre stands, in machine coordinates; a move that waits for the next counts as done, as if
+    /// nothing followed.
+    pub(super) fn centre(&self, axis: Axis) -> f64 {
+        self.state.machine[axis] + self.ahead.offset(axis)
     }
 }
 

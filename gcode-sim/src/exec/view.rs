@@ -41,9 +41,13 @@ impl Control {
         self.core.shown(state, Some(axis), state.programmed[axis])
     }
 
-    /// In machine coordinates, mm and degrees.
+    /// The tool's centre in machine coordinates, mm and degrees.
     pub fn machine_position(&self) -> Position {
-        self.core.state.machine
+        let mut centre = self.core.state.machine;
+        for axis in 0..self.core.settings.axes.len() {
+            centre[axis] = self.core.centre(axis);
+        }
+        centre
     }
 
     pub fn state(&self) -> &State {

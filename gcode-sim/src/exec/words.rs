@@ -7,6 +7,7 @@ use super::code_calls::CallingWord;
 use super::eval::{Checked, at, integer};
 use super::state::State;
 use crate::alarm::Alarm;
+use crate::contour::Blend;
 use crate::control::{ArgumentScale, CodeSet};
 use crate::program::codes::{self, Row};
 use crate::program::m_codes;
@@ -37,6 +38,8 @@ pub(super) struct Given {
     g_count: usize,
     pub(super) m: [Option<(u32, Span)>; M_CODES],
     pub(super) m_count: usize,
+    /// `,R` or `,C`.
+    corner: Option<(u8, Raw, Span)>,
     /// An M code that a later one of the block has replaced.
     pub(super) lost_m: Option<u32>,
     /// The value in the comment of `G10 L85`.
@@ -53,6 +56,7 @@ impl Default for Given {
             g_count: 0,
             m: [None; M_CODES],
             m_count: 0,
+            corner: None,
             lost_m: None,
             punched: None,
         }
@@ -92,6 +96,11 @@ impl Given {
     /// A word's value before anything is made of it.
     pub(super) fn raw(&self, letter: u8) -> Option<Raw> {
         self.get(letter).map(|(raw, _)| raw)
+    }
+
+    /// Whether it has `,R` or `,C`.
+    pub(super) fn has_corner(&self) -> bool {
+        self.corner.is_some()
     }
 
     pub(super) fn span(&self, letter: u8) -> Span {
@@ -145,14 +154,22 @@ impl Core {
         given.m_count = 0;
         given.lost_m = None;
         given.punched = words.punched;
+        given.corner = None;
         for (place, word) in words.list.iter().enumerate() {
             if calling.is_some_and(|calling| calling.takes(place, word)) {
                 continue;
             }
             let Some(raw) = self.raw(program, word)? else { continue };
             if word.comma {
-                let what = format!("corner rounding and chamfer (,{})", char::from(word.letter));
-                return Err(Alarm::NotSimulated { what }.at(word.span));
+                if word.letter == b'A' {
+                    let what = "direct drawing dimensions (,A)".into();
+                    return Err(Alarm::NotSimulated { what }.at(word.span));
+                }
+                if !matches!(word.letter, b'R' | b'C') || given.corner.is_some() {
+                    return Err(Alarm::CornerWords.at(word.span));
+                }
+                given.corner = Some((word.letter, raw, word.span));
+                continue;
             }
             let letter = match word.axis {
                 Some(axis) => {
@@ -248,6 +265,18 @@ impl Core {
         let value = at(self.increments(raw, decimals), span)? / POWERS[decimals];
         let inch = state.modal.unit == Unit::Inch && !turns(letter);
         Ok(Some(if inch { self.clean(value * 25.4) } else { value }))
+    }
+
+    /// `,R` or `,C` of a cutting move.
+    pub(super) fn corner_word(&self, given: &Given, state: &State) -> Checked<Option<Blend>> {
+        let Some((letter, raw, span)) = given.corner else { return Ok(None) };
+        let decimals = self.decimals(b'X', state.modal.unit);
+        let value = at(self.increments(raw, decimals), span)? / POWERS[decimals];
+        if value < 0.0 {
+            return Err(Alarm::IllegalMinus { letter: char::from(letter) }.at(span));
+        }
+        let length = if state.modal.unit == Unit::Inch { self.clean(value * 25.4) } else { value };
+        Ok(Some(if letter == b'R' { Blend::Round(length) } else { Blend::Chamfer(length) }))
     }
 
     /// An angle at an address that is a length elsewhere: R of G68.

@@ -71,6 +71,7 @@ pub enum OneShot {
     LocalSystem,
     MachineSystem,
     SetSystem,
+    CornerArc,
     PresetSystem,
     OneSide,
     /// G12 and G13 of a Haas.
@@ -173,7 +174,7 @@ pub const CODES: &[Row] = &[
     haas(350, Effect::NotSimulated, "tool diameter measurement"),
     haas(360, Effect::NotSimulated, "work offset measurement"),
     row(370, Effect::NotSimulated, "tool length measurement"),
-    fanuc(390, Effect::NotSimulated, "corner arc"),
+    fanuc(390, Effect::OneShot(OneShot::CornerArc), "arc round a corner, in cutter compensation"),
     row(400, Effect::Cutter(CutterSide::Off), "cutter compensation off"),
     fanuc(401, Effect::NoEffect, "normal direction control off"),
     row(410, Effect::Cutter(CutterSide::Left), "cutter compensation left"),

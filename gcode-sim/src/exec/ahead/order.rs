@@ -1,0 +1,195 @@
+//! What a block commands of compensation and corner words, read off its plan.
+use super::centre::CornerArc;
+use super::{Ahead, Told};
+use crate::alarm::Alarm;
+use crate::contour::{Blend, Point};
+use crate::exec::Core;
+use crate::exec::block::Act;
+use crate::exec::eval::{Checked, at};
+use crate::exec::notes::Note;
+use crate::exec::plan::{Flow, Plan};
+use crate::exec::state::State;
+use crate::exec::words::Given;
+use crate::motion::{Axis, Event, Place, Sink};
+use crate::program::codes::{Effect, OneShot};
+use crate::program::modes::{CutterSide, Plane};
+use crate::source::{Span, Spanned};
+use crate::units::Seconds;
+
+/// One block, as far as it matters here.
+#[derive(Clone, Debug, PartialEq)]
+pub(in crate::exec) struct Order {
+    pub(super) plane: (Axis, Axis),
+    /// Of the centre to the left of the path; `None` without compensation, be it by G40 or by D0.
+    pub(super) distance: Option<f64>,
+    /// G40 with I J K: the direction of a wall that the tool comes to.
+    pub(super) towards: Option<Point>,
+    /// G41 or G42 stands in the block and was in force before.
+    pub(super) restated: bool,
+    /// G28, G53, a drilling cycle…: without compensation, and nothing is read before it.
+    pub(super) leaves: bool,
+    /// M00, M01, M02, M30: nothing is read before it is done.
+    pub(super) stops: bool,
+    /// It counts as a block without a move if it has none: calls and returns don't.
+    pub(super) counts: bool,
+    /// An axis of the plane is named: without a move, a move of length 0.
+    pub(super) no_length: bool,
+    pub(super) dwells: bool,
+    pub(super) blend: Option<Blend>,
+    pub(super) corner_arc: Option<CornerArc>,
+    pub(super) place: Place,
+}
+
+impl Core {
+    /// Lets a block's plan go by way of what is read ahead, where compensation or a corner word is in use.
+    pub(in crate::exec) fn look_ahead(
+        &self,
+        act: Option<Act>,
+        given: &Given,
+        plan: &mut Plan,
+        span: Span,
+    ) -> Checked<()> {
+        if given.has_corner() && plan.corner.is_none() {
+            plan.note = Some(Note::CornerIgnored);
+        }
+        let cancels = given.g_codes().any(|row| row.effect == Effect::Cutter(CutterSide::Off));
+        let towards = if cancels { self.vector(given, &plan.state)? } else { None };
+        let distance = self.distance(&plan.state);
+        let idle = self.ahead.is_idle();
+        if idle && distance.is_none() && plan.corner.is_none() {
+            return Ok(());
+        }
+        if plan.state.transform.tilt.is_some() && distance.is_some_and(|d| d != 0.0) {
+            let what = "cutter compensation in a tilted plane".into();
+            return Err(Alarm::NotSimulated { what }.at(span));
+        }
+        let plane = at(self.plane_axes(plan.state.modal.plane), span)?;
+        let named = |axis| given.has(self.settings.axes.letter(axis) as u8);
+        let sides = given.g_codes().any(|row| {
+            matches!(row.effect, Effect::Cutter(side) if side != CutterSide::Off)
+                && self.state.modal.cutter == plan.state.modal.cutter
+        });
+        let corner_arc = match act {
+            Some(Act::OneShot(OneShot::CornerArc)) => Some(self.corner_arc(given, plan, span)?),
+            _ => None,
+        };
+        let order = Order {
+            plane,
+            distance,
+            towards,
+            restated: sides,
+            leaves: plan.drill.is_some() || leaves(act) || plan.moved && plan.state.modal.cycle.is_some(),
+            stops: plan.stop.is_some() || matches!(plan.flow, Flow::End),
+            counts: matches!(plan.flow, Flow::Next | Flow::End) && corner_arc.is_none(),
+            no_length: act.is_none() && (named(plane.0) || named(plane.1)),
+            dwells: act == Some(Act::OneShot(OneShot::Dwell)),
+            blend: plan.corner,
+            corner_arc,
+            place: Place { block: span, calls: self.frame().calls.clone() },
+        };
+        plan.ahead.clone_from(&self.ahead);
+        plan.ahead.begin(self.state.machine);
+        if plan.drill.is_none() {
+            plan.events.append(&mut plan.after);
+        }
+        plan.ahead.block(self, &order, &plan.events)?;
+        plan.events.clear();
+        plan.reads_ahead = true;
+        if let Some(drill) = &mut plan.drill {
+            drill.begins_at(plan.ahead.centre);
+            plan.ahead = Ahead { told: std::mem::take(&mut plan.ahead.told), ..Ahead::default() };
+        }
+        Ok(())
+    }
+
+    /// How far the tool's centre is to be to the left of the path.
+    fn distance(&self, state: &State) -> Option<f64> {
+        let side = match state.modal.cutter {
+            CutterSide::Off => return None,
+            CutterSide::Left => 1.0,
+            CutterSide::Right => -1.0,
+        };
+        if state.codes.d == 0 {
+            return None;
+        }
+        let mirrored = self.plane_axes(state.modal.plane).is_ok_and(|plane| state.transform.on_arcs(plane).0);
+        Some(if mirrored { -side } else { side } * state.radius)
+    }
+
+    /// I, J, K of the plane as a direction in machine coordinates.
+    fn vector(&self, given: &Given, state: &State) -> Checked<Option<Point>> {
+        let letters = match state.modal.plane {
+            Plane::Xy => (b'I', b'J'),
+            Plane::Zx => (b'K', b'I'),
+            Plane::Yz => (b'J', b'K'),
+        };
+        let first = self.dimension(given, letters.0, state)?.unwrap_or(0.0);
+        let second = self.dimension(given, letters.1, state)?.unwrap_or(0.0);
+        let Ok(plane) = self.plane_axes(state.modal.plane) else { return Ok(None) };
+        if first == 0.0 && second == 0.0 {
+            return Ok(None);
+        }
+        let mut tip = state.programmed;
+        tip[plane.0] += first;
+        tip[plane.1] += second;
+        let (from, to) = (state.transform.forward(state.programmed), state.transform.forward(tip));
+        Ok(Some(Point::new(to[plane.0] - from[plane.0], to[plane.1] - from[plane.1])))
+    }
+
+    /// G39: a cutting feed round the corner.
+    fn corner_arc(&self, given: &Given, plan: &Plan, span: Span) -> Checked<CornerArc> {
+        let timed = self.time_along(&plan.state, 1.0, 1.0, 0.0, given.has(b'F'));
+        let (rate, _) = timed.map_err(|_| Alarm::ArcFeedZero.at(span))?;
+        Ok(CornerArc { towards: self.vector(given, &plan.state)?, rate })
+    }
+
+    /// Takes over what a plan has read ahead, and tells the machine what no longer waits.
+    pub(in crate::exec) fn advance<S: Sink>(&mut self, ahead: &mut Ahead, sink: &mut S) {
+        std::mem::swap(&mut self.ahead, ahead);
+        self.release(sink);
+    }
+
+    /// A block with nothing but a sequence number.
+    pub(in crate::exec) fn pass_number<S: Sink>(&mut self, block: Span, sink: &mut S) -> Checked<()> {
+        if self.ahead.is_idle() {
+            return Ok(());
+        }
+        let mut ahead = self.ahead.clone();
+        ahead.count_number(self, block)?;
+        self.advance(&mut ahead, sink);
+        Ok(())
+    }
+
+    /// Does what waits before the run ends, by an alarm or without one.
+    pub(in crate::exec) fn complete<S: Sink>(&mut self, alarm: Option<&Spanned<Alarm>>, sink: &mut S) {
+        if self.ahead.is_idle() {
+            return;
+        }
+        let cutting = alarm.filter(|alarm| alarm.node == Alarm::Interference).map(|alarm| alarm.span);
+        let mut ahead = std::mem::take(&mut self.ahead);
+        ahead.complete(self, cutting);
+        self.advance(&mut ahead, sink);
+    }
+
+    fn release<S: Sink>(&mut self, sink: &mut S) {
+        let told: Vec<Told> = std::mem::take(&mut self.ahead.told);
+        for (kind, seconds, place) in told {
+            self.count(&kind, seconds);
+            sink.event(&Event { kind, seconds: Seconds(seconds), block: place.block, calls: &place.calls });
+        }
+        if self.ahead.is_idle() {
+            self.ahead = Ahead::default();
+        }
+    }
+}
+
+/// What goes somewhere without compensation.
+fn leaves(act: Option<Act>) -> bool {
+    use OneShot::{CheckReference, FromReference, MachineSystem, Reference, SecondReference, Skip};
+    matches!(
+        act,
+        Some(Act::OneShot(
+            CheckReference | FromReference | MachineSystem | Reference | SecondReference | Skip
+        ))
+    )
+}
