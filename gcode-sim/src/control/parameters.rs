@@ -211,7 +211,8 @@ mod tests {
     fn each_row_reads_what_its_setting_says() {
         for row in ROWS {
             let Access::Key(key, read) = row.access else { continue };
-            for value in ["0", "1"] {
+            let values = if key == "19625" { ["3", "8"] } else { ["0", "1"] };
+            for value in values {
                 let mut settings = Settings::default();
                 settings.set(key, value).unwrap();
                 assert_eq!(read(&settings).to_string(), value, "{key}");
