@@ -5,6 +5,7 @@ mod arithmetic;
 mod budget;
 mod changes;
 mod check;
+mod compensation;
 mod control;
 mod control_page;
 mod corpus;

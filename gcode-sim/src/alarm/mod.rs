@@ -116,6 +116,8 @@ pub enum Alarm {
     Interference,
     /// G45 to G48.
     ToolOffsetInCompensation,
+    /// `,R` or `,C` in a block of G33.
+    CornerInThread,
     /// Behind `,R` or `,C`.
     NoMoveAfterCorner,
     NoCutAfterCorner,

@@ -45,6 +45,7 @@ impl Alarm {
             Self::ReferenceReturnInCycle => (Ps(44), "G27 to G30 in a drilling cycle".into(), Some("command G80 first")),
             Self::NoPeckDepth => (Ps(45), "G73 or G83 without a peck depth Q".into(), None),
             Self::ReferenceReturnP { p } => (Ps(46), format!("G30 P{p}: P must be 2, 3 or 4"), None),
+            Self::CornerInThread => (Ps(50), ",R or ,C in a block of G33".into(), Some("write the corner as a move of its own")),
             Self::NoMoveAfterCorner => (Ps(51), "behind ,R or ,C no move follows that makes a corner in the plane".into(), Some("write the move that makes the corner in the next block; only a G04 may stand between")),
             Self::NoCutAfterCorner => (Ps(52), "the move behind ,R or ,C is no G01, G02 or G03".into(), None),
             Self::CornerWords => (Ps(53), "behind a comma stand R or C, one in a block".into(), None),

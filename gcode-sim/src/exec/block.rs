@@ -356,6 +356,9 @@ impl Core {
             return Err(Alarm::NotSimulated { what }.at(given.span(*letter)));
         }
         let goal = self.goal(given, &mut plan.state)?;
+        if motion == Motion::Thread && given.has_corner() {
+            return Err(Alarm::CornerInThread.at(span));
+        }
         if motion != Motion::Rapid {
             plan.corner = self.corner_word(given, &plan.state)?;
         }

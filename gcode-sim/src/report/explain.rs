@@ -47,6 +47,7 @@ pub const PAGES: &[Page] = pages![
     "PS0044"
     "PS0045"
     "PS0046"
+    "PS0050"
     "PS0051"
     "PS0052"
     "PS0053"

@@ -12,7 +12,7 @@ use crate::exec::state::State;
 use crate::exec::words::Given;
 use crate::motion::{Axis, Event, Place, Sink};
 use crate::program::codes::{Effect, OneShot};
-use crate::program::modes::{CutterSide, Plane};
+use crate::program::modes::{CutterSide, Motion, Plane};
 use crate::source::{Span, Spanned};
 use crate::units::Seconds;
 
@@ -35,6 +35,8 @@ pub(in crate::exec) struct Order {
     /// An axis of the plane is named: without a move, a move of length 0.
     pub(super) no_length: bool,
     pub(super) dwells: bool,
+    /// G01, G02, G03.
+    pub(super) cuts: bool,
     pub(super) blend: Option<Blend>,
     pub(super) corner_arc: Option<CornerArc>,
     pub(super) place: Place,
@@ -63,6 +65,17 @@ impl Core {
             let what = "cutter compensation in a tilted plane".into();
             return Err(Alarm::NotSimulated { what }.at(span));
         }
+        let motion = plan.state.modal.motion;
+        let alone = match act {
+            Some(Act::OneShot(OneShot::OneSide)) => Some("G60"),
+            None if motion == Motion::Thread && plan.moved => Some("G33"),
+            _ => None,
+        };
+        if let Some(code) = alone
+            && (distance.is_some() || self.ahead.is_beside())
+        {
+            return Err(Alarm::NotSimulated { what: format!("{code} in cutter compensation") }.at(span));
+        }
         let plane = at(self.plane_axes(plan.state.modal.plane), span)?;
         let named = |axis| given.has(self.settings.axes.letter(axis) as u8);
         let sides = given.g_codes().any(|row| {
@@ -82,6 +95,8 @@ impl Core {
             stops: plan.stop.is_some() || matches!(plan.flow, Flow::End),
             counts: matches!(plan.flow, Flow::Next | Flow::End) && corner_arc.is_none(),
             no_length: act.is_none() && (named(plane.0) || named(plane.1)),
+            cuts: act.is_none()
+                && matches!(motion, Motion::Linear | Motion::Clockwise | Motion::Counterclockwise),
             dwells: act == Some(Act::OneShot(OneShot::Dwell)),
             blend: plan.corner,
             corner_arc,

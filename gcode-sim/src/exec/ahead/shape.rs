@@ -43,11 +43,10 @@ impl Ahead {
     /// Puts the corner's shape between two moves; the answer is what is left of the second.
     fn blend(&mut self, core: &Core, corner: Corner, piece: Piece, order: &Order) -> Checked<Piece> {
         let block = piece.place.block;
-        let cuts = matches!(piece.kind, EventKind::Feed { .. } | EventKind::Arc { .. });
         let (Some(first), Some(second)) = (&corner.piece.segment, &piece.segment) else {
             return Err(corner.no_move().at(block));
         };
-        if !cuts {
+        if !order.cuts {
             return Err(Alarm::NoCutAfterCorner.at(block));
         }
         if corner.order.plane != order.plane {
