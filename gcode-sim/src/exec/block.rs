@@ -243,8 +243,9 @@ impl Core {
                 return Err(Alarm::ImproperAddress { letter: char::from(letter) }.at(given.span(letter)));
             }
         }
-        let sides = given.g_codes().any(|row| matches!(row.effect, Effect::Cutter(_)));
-        if given.has(b'D') || sides || self.settings.new_radius_at_once {
+        let compensates = plan.state.modal.cutter != CutterSide::Off;
+        let sides = || given.g_codes().any(|row| matches!(row.effect, Effect::Cutter(_)));
+        if given.has(b'D') || compensates && (self.settings.new_radius_at_once || sides()) {
             plan.state.radius = self.offset_radius(plan.state.codes.d).unwrap_or(0.0);
         }
         Ok(())

@@ -51,14 +51,17 @@ impl Core {
         plan: &mut Plan,
         span: Span,
     ) -> Checked<()> {
+        let commanded = plan.state.modal.cutter != CutterSide::Off || given.has_corner();
+        if !commanded && self.ahead.is_idle() && !given.has_any(b"IJK") {
+            return Ok(());
+        }
         if given.has_corner() && plan.corner.is_none() {
             plan.note = Some(Note::CornerIgnored);
         }
         let cancels = given.g_codes().any(|row| row.effect == Effect::Cutter(CutterSide::Off));
         let towards = if cancels { self.vector(given, &plan.state)? } else { None };
         let distance = self.distance(&plan.state);
-        let idle = self.ahead.is_idle();
-        if idle && distance.is_none() && plan.corner.is_none() {
+        if self.ahead.is_idle() && distance.is_none() && plan.corner.is_none() {
             return Ok(());
         }
         if plan.state.transform.tilt.is_some() && distance.is_some_and(|d| d != 0.0) {
