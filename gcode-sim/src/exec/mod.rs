@@ -239,17 +239,16 @@ impl Control {
         if let Some(outcome @ (Outcome::End | Outcome::Alarm(_))) = &self.outcome {
             return Some(outcome.clone());
         }
-        let done = self.block(library, sink);
+        let mut done = self.block(library, sink);
+        if matches!(done, Ok(Some(Outcome::End)))
+            && let Err(alarm) = self.core.end_ahead(sink)
+        {
+            done = Err(alarm);
+        }
         let outcome = match done {
-            Ok(None) => return None,
-            Ok(Some(outcome)) => {
-                if matches!(outcome, Outcome::End) {
-                    self.core.complete(None, sink);
-                }
-                outcome
-            }
+            Ok(outcome) => outcome?,
             Err(alarm) => {
-                self.core.complete(Some(&alarm), sink);
+                self.core.complete(&alarm, sink);
                 let calls = self.core.frames.last().map(|f| f.calls.clone()).unwrap_or_default();
                 let place = Place { block: self.core.block, calls };
                 Outcome::Alarm(Stopped { alarm: alarm.node, span: alarm.span, place })

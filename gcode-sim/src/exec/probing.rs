@@ -14,7 +14,7 @@ impl Core {
     /// G31: a straight cut that ends where the skip signal comes. It is planned to its end; whether the signal comes
     /// is asked when everything is known to be in order.
     pub(super) fn skip(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<()> {
-        if plan.state.modal.cutter != CutterSide::Off {
+        if plan.state.modal.cutter != CutterSide::Off || self.ahead.is_beside() {
             return Err(Alarm::SkipInCompensation.at(span));
         }
         self.skip_signals(given, b'P')?;

@@ -1,5 +1,6 @@
 //! Stored stroke check 1: no move of a block may lead an axis beyond its limits (parameters 1320 and 1321).
 use super::Core;
+use super::ahead::Ahead;
 use super::eval::{Checked, at};
 use super::plan::Plan;
 use crate::alarm::Alarm;
@@ -16,6 +17,9 @@ impl Core {
         for (kind, _) in &plan.events {
             at(self.within_stroke(kind), span)?;
         }
+        if plan.reads_ahead {
+            self.check_told(&plan.ahead)?;
+        }
         let mut beyond = Ok(());
         if let Some(drill) = &plan.drill {
             self.drill(drill, &mut |kind, _| {
@@ -27,7 +31,12 @@ impl Core {
         at(beyond, span)
     }
 
-    fn within_stroke(&self, kind: &EventKind) -> Result<(), Alarm> {
+    /// What no longer waits: each with its own block.
+    pub(super) fn check_told(&self, ahead: &Ahead) -> Checked<()> {
+        ahead.told().try_for_each(|(kind, place)| at(self.within_stroke(kind), place.block))
+    }
+
+    pub(super) fn within_stroke(&self, kind: &EventKind) -> Result<(), Alarm> {
         match kind {
             EventKind::Rapid { to } | EventKind::Feed { to, .. } | EventKind::Skip { to, .. } => {
                 self.point_within(to)

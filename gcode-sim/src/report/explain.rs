@@ -120,6 +120,7 @@ pub const PAGES: &[Page] = pages![
     "SIM0002"
     "SIM0003"
     "axis-carries-nothing"
+    "corner-ignored"
     "cycle-data-lost"
     "feed-no-hole"
     "feed-not-along-tool"

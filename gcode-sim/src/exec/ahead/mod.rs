@@ -72,6 +72,11 @@ impl Ahead {
         self.open.is_some() || self.corner.is_some()
     }
 
+    /// What is to be told, and where it comes from.
+    pub(super) fn told(&self) -> impl Iterator<Item = (&EventKind, &Place)> + '_ {
+        self.told.iter().map(|(kind, _, place)| (kind, place))
+    }
+
     /// Lets something wait behind the move that waits.
     pub(super) fn wait_behind(&mut self, kind: EventKind, place: Place) {
         let held = Held::Other(kind, 0.0, place);
@@ -178,11 +183,20 @@ impl Ahead {
         }
     }
 
-    /// Does all that waits before the run ends. After the alarm that tells so, the move that would have cut into the
-    /// part isn't begun.
-    fn complete(&mut self, core: &Core, cutting: Option<Span>) {
+    /// The program ends: what waits is done, if nothing is against it.
+    fn end(&mut self, core: &Core, block: Span) -> Checked<()> {
+        if let Some(corner) = &self.corner {
+            return Err(corner.no_move().at(block));
+        }
+        self.settle(core)
+    }
+
+    /// Does all that waits before the run ends by an alarm. A move that would cut into the part, or go beyond the
+    /// stroke, isn't begun.
+    fn complete(&mut self, core: &Core, refused: Option<Span>) {
+        let stands = self.centre;
         if let Some(corner) = self.corner.take()
-            && cutting != Some(corner.piece.place.block)
+            && refused != Some(corner.piece.place.block)
         {
             let before = self.clone();
             match self.drive(core, corner.piece, &corner.order) {
@@ -191,11 +205,15 @@ impl Ahead {
                 Err(_) => *self = before,
             }
         }
-        if self.open.as_ref().is_some_and(|open| cutting == Some(open.piece.place.block)) {
+        if self.open.as_ref().is_some_and(|open| refused == Some(open.piece.place.block)) {
             self.open = None;
         }
         if self.settle(core).is_err() {
             self.behind.clear();
+        }
+        if let Some(beyond) = self.told.iter().position(|(kind, ..)| core.within_stroke(kind).is_err()) {
+            self.told.truncate(beyond);
+            self.centre = self.told.iter().rev().find_map(|(kind, ..)| piece::end(kind)).unwrap_or(stands);
         }
         for axis in 0..core.settings.axes.len() {
             self.offset[axis] = self.centre[axis] - self.at[axis];

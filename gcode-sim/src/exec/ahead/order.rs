@@ -174,18 +174,32 @@ impl Core {
         }
         let mut ahead = self.ahead.clone();
         ahead.count_number(self, block)?;
+        self.check_told(&ahead)?;
         self.advance(&mut ahead, sink);
         Ok(())
     }
 
-    /// Does what waits before the run ends, by an alarm or without one.
-    pub(in crate::exec) fn complete<S: Sink>(&mut self, alarm: Option<&Spanned<Alarm>>, sink: &mut S) {
+    /// Does what waits at the end of a program that has no M30.
+    pub(in crate::exec) fn end_ahead<S: Sink>(&mut self, sink: &mut S) -> Checked<()> {
+        if self.ahead.is_idle() {
+            return Ok(());
+        }
+        let mut ahead = self.ahead.clone();
+        ahead.end(self, self.block)?;
+        self.check_told(&ahead)?;
+        self.advance(&mut ahead, sink);
+        Ok(())
+    }
+
+    /// Does what waits before an alarm ends the run.
+    pub(in crate::exec) fn complete<S: Sink>(&mut self, alarm: &Spanned<Alarm>, sink: &mut S) {
         if self.ahead.is_idle() {
             return;
         }
-        let cutting = alarm.filter(|alarm| alarm.node == Alarm::Interference).map(|alarm| alarm.span);
+        let refused = matches!(alarm.node, Alarm::Interference | Alarm::Overtravel { .. });
+        let refused = refused.then_some(alarm.span);
         let mut ahead = std::mem::take(&mut self.ahead);
-        ahead.complete(self, cutting);
+        ahead.complete(self, refused);
         self.advance(&mut ahead, sink);
     }
 

@@ -55,18 +55,23 @@ impl Piece {
 
     /// Where it ends on the programmed path.
     pub(super) fn to(&self) -> Position {
-        match &self.kind {
-            EventKind::Rapid { to }
-            | EventKind::Feed { to, .. }
-            | EventKind::Arc { to, .. }
-            | EventKind::Skip { to, .. } => *to,
-            EventKind::Dwell { .. }
-            | EventKind::Tool { .. }
-            | EventKind::ToolLength { .. }
-            | EventKind::Spindle { .. }
-            | EventKind::Coolant { .. }
-            | EventKind::Stop { .. } => Position::default(),
-        }
+        end(&self.kind).unwrap_or_default()
+    }
+}
+
+/// Where a move ends.
+pub(super) fn end(kind: &EventKind) -> Option<Position> {
+    match kind {
+        EventKind::Rapid { to }
+        | EventKind::Feed { to, .. }
+        | EventKind::Arc { to, .. }
+        | EventKind::Skip { to, .. } => Some(*to),
+        EventKind::Dwell { .. }
+        | EventKind::Tool { .. }
+        | EventKind::ToolLength { .. }
+        | EventKind::Spindle { .. }
+        | EventKind::Coolant { .. }
+        | EventKind::Stop { .. } => None,
     }
 }
 
