@@ -12,6 +12,7 @@ mod corpus;
 mod docs;
 mod emitted;
 mod explain;
+mod honeycomb;
 mod limits;
 mod misplaced;
 mod pin_holes;

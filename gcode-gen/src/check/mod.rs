@@ -10,10 +10,16 @@ use gcode_sim::verify::Verdict;
 
 use crate::package::{Package, Program, file_name};
 
-/// Why the check can't be made at all: the package or the job contradicts itself.
+/// Why nothing can be said of the programs.
 #[derive(Debug, thiserror::Error)]
-#[error("{0}")]
-pub struct CheckError(String);
+pub enum CheckError {
+    /// No part can be what the job asks for.
+    #[error("{0}")]
+    Impossible(String),
+    /// The package contradicts itself.
+    #[error("{0}")]
+    Broken(String),
+}
 
 /// A package that was run.
 #[derive(Debug)]
@@ -45,17 +51,17 @@ impl Judgement {
 
 /// Simulates the main program on the machine of the package's own machine file.
 pub fn check(job: &Job, package: &Package) -> Result<Checked, CheckError> {
-    match Wanted::of_job(job).map_err(|e| told("the job's reference", &e))? {
+    match Wanted::of_job(job).map_err(|e| CheckError::Impossible(e.to_string()))? {
         Wanted::Holes(reference) => holes::check(job, package, &reference),
     }
 }
 
 fn told(what: &str, error: &dyn std::fmt::Display) -> CheckError {
-    CheckError(format!("{what}: {error}"))
+    CheckError::Broken(format!("{what}: {error}"))
 }
 
 fn main_program(package: &Package) -> Result<&Program, CheckError> {
-    let missing = || CheckError(format!("the main program O{} was not emitted", package.main));
+    let missing = || CheckError::Broken(format!("the main program O{} was not emitted", package.main));
     package.program(package.main).ok_or_else(missing)
 }
 

@@ -6,7 +6,7 @@ use gcode_sim::cli::{Refusal, Status, input, output};
 use gcode_sim::job::Job;
 use gcode_sim::picture::{self, PictureError, Size};
 
-use crate::check::{Checked, check};
+use crate::check::{CheckError, Checked, check};
 use crate::families;
 use crate::package::file_name;
 
@@ -14,7 +14,14 @@ pub(super) fn run(path: &Path, out: &Path) -> Result<Status, Refusal> {
     let text = input::text(path)?;
     let job = Job::parse(&text).map_err(|error| Refusal::new(format!("{}, {error}", path.display())))?;
     let package = families::emit(&job);
-    let checked = check(&job, &package).map_err(|error| Refusal::new(error.to_string()))?;
+    let checked = match check(&job, &package) {
+        Ok(checked) => checked,
+        Err(CheckError::Impossible(why)) => {
+            output::tell(&format!("error: {why}\nerror: nothing is written for {}\n", path.display()));
+            return Ok(Status::Fails);
+        }
+        Err(error) => return Err(Refusal::new(error.to_string())),
+    };
     if !checked.refusals.is_empty() {
         let reasons = checked.refusals.concat();
         let job = path.display();

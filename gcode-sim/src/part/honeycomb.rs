@@ -178,3 +178,126 @@ fn possible(job: &Honeycomb, pattern: &Pattern) -> Result<(), ReferenceError> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::Job;
+
+    fn job(changes: &[(&str, &str)]) -> Honeycomb {
+        let mut text = String::from(
+            "family = \"honeycomb\"\n[control]\ndialect = \"fanuc-31i\"\nincrement = \"IS-B\"\n[machine]\n\
+             rotary = { letter = \"B\", sign = 1 }\n[tolerance]\nposition = 0.1\n[cylinder]\ndiameter = 500\n\
+             length = 300\n[pattern]\npitch = 10\nmetric = \"arc\"\n[drill]\ndiameter = 5\ndepth = 12\n",
+        );
+        for (from, to) in changes {
+            assert!(text.contains(from), "{from}");
+            text = text.replace(from, to);
+        }
+        match Job::parse(&text) {
+            Ok(Job::Honeycomb(job)) => job,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    fn holes(changes: &[(&str, &str)]) -> Reference {
+        reference(&job(changes)).unwrap()
+    }
+
+    fn refused(changes: &[(&str, &str)]) -> String {
+        reference(&job(changes)).unwrap_err().to_string()
+    }
+
+    /// π·500/17.3205 = 90.69: 91 rows of each group. π·500/182/cos 30° = 9.96593; 300 of that are 30.1.
+    #[test]
+    fn the_example_worked_by_hand() {
+        let reference = holes(&[]);
+        let pattern = reference.pattern.unwrap();
+        assert_eq!(pattern.rows, 182);
+        assert!((pattern.pitch - 9.965_930_572_7).abs() < 1e-9, "{}", pattern.pitch);
+        assert_eq!(reference.holes.len(), 91 * 31 + 91 * 30);
+        let hole = reference.holes.iter().find(|h| h.id.as_deref() == Some("r91h2")).unwrap();
+        assert!((hole.entry[0] - 2.5 * 9.965_930_572_7).abs() < 1e-8, "an odd row begins half a pitch later");
+        assert!(hole.entry[1].abs() < 1e-9 && (hole.entry[2] + 250.0).abs() < 1e-9, "half a turn: {hole:?}");
+    }
+
+    /// 100·sin 3.75°/cos 30° = 7.55210.
+    #[test]
+    fn a_chord_worked_by_hand() {
+        let tube = [("pitch = 10", "divisions = 24"), ("arc", "chord"), ("diameter = 500", "diameter = 100")];
+        let pattern = holes(&tube).pattern.unwrap();
+        assert_eq!((pattern.rows, pattern.asked), (48, None));
+        assert!((pattern.pitch - 7.552_103).abs() < 1e-5, "{}", pattern.pitch);
+    }
+
+    /// Four and a half rows fit at a pitch of π·60/(4.5·√3) = 24.184.
+    #[test]
+    fn rows_are_rounded_to_the_nearest() {
+        let rows = |pitch: &str| {
+            let small = [("diameter = 500", "diameter = 60"), ("pitch = 10", pitch)];
+            holes(&small).pattern.unwrap().rows
+        };
+        assert_eq!((rows("pitch = 24.18"), rows("pitch = 24.19")), (10, 8));
+    }
+
+    #[test]
+    fn every_hole_inside_has_six_neighbours_at_the_pitch_to_the_micrometre() {
+        for metric in ["arc", "chord"] {
+            for (diameter, pitch) in [(500.0, 40.0), (80.0, 13.7), (60.0, 31.0), (233.3, 21.0)] {
+                let (d, p) = (format!("diameter = {diameter}"), format!("pitch = {pitch}"));
+                let reference = holes(&[("diameter = 500", &d), ("pitch = 10", &p), ("arc", metric)]);
+                let pattern = reference.pattern.unwrap();
+                let (p, inside) = (pattern.pitch, 1.01 * pattern.pitch..=300.0 - 1.01 * pattern.pitch);
+                let places: Vec<Point3<f64>> =
+                    reference.holes.iter().map(|h| Point3::from(h.entry)).collect();
+                let mut seen = 0;
+                for (index, at) in places.iter().enumerate().filter(|(_, at)| inside.contains(&at.x)) {
+                    let others = places.iter().enumerate().filter(|(other, _)| *other != index);
+                    let mut all: Vec<f64> = others.map(|(_, other)| pattern.distance(at, other)).collect();
+                    all.sort_by(f64::total_cmp);
+                    assert!(
+                        all[..6].iter().all(|d| (d - p).abs() < 1e-6),
+                        "{diameter} {metric}: {:?}",
+                        &all[..7]
+                    );
+                    assert!(all[6] > 1.2 * p, "{diameter} {metric}: a seventh at {}", all[6]);
+                    seen += 1;
+                }
+                assert!(seen > 20, "{seen}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_drilled_is_refused_with_its_numbers() {
+        let deep = refused(&[("pitch = 10", "pitch = 5.1"), ("depth = 12", "depth = 40")]);
+        let told =
+            "the holes overlap: with 356 rows the pitch is 5.095 mm, and holes of neighbouring rows are 4.";
+        assert!(deep.starts_with(told), "{deep}");
+        let close = refused(&[("pitch = 10", "divisions = 200")]);
+        let told = "the holes overlap: with 400 rows the pitch is 4.534 mm, and holes in a row are 4.534 mm";
+        assert!(close.starts_with(told), "{close}");
+        let many = refused(&[
+            ("pitch = 10", "pitch = 1"),
+            ("diameter = 5\n", "diameter = 0.5\n"),
+            ("length = 300", "length = 3000"),
+        ]);
+        assert!(many.starts_with("the pattern has 54"), "{many}");
+        // The bore ends the holes where they are still apart.
+        let tube = ("length = 300", "length = 300\nbore = 498");
+        holes(&[("pitch = 10", "pitch = 5.2"), ("depth = 12", "depth = 40"), tube]);
+    }
+
+    /// A hole lies where x is the length, to the last bit.
+    #[test]
+    fn the_last_hole_may_stand_at_the_very_end() {
+        let pitch = holes(&[]).pattern.unwrap().pitch;
+        let count = |length: f64| {
+            let length = format!("length = {length:?}");
+            holes(&[("length = 300", &length)]).holes.len()
+        };
+        assert_eq!(count(pitch), 91 * 2 + 91);
+        assert_eq!(count(pitch * 0.999_999), 91 + 91);
+        assert_eq!(count(pitch * 0.499_999), 91, "odd rows have no hole");
+    }
+}

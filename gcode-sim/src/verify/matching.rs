@@ -95,6 +95,12 @@ impl<'a> Comparison<'a> {
         self.on_line.get(&self.found[extra].first).copied()
     }
 
+    /// Nothing is missing, nothing too many, and every axis lies in its zone.
+    pub fn all_in_place(&self) -> bool {
+        let in_zone = |pair: &Pair| pair.deviation.phi() <= self.tolerances.position;
+        self.missing.is_empty() && self.extra.is_empty() && self.pairs.iter().all(in_zone)
+    }
+
     /// A wanted hole's name.
     pub fn id(&self, wanted: usize) -> &str {
         self.wanted[wanted].id.as_deref().unwrap_or("?")

@@ -20,10 +20,9 @@ pub(super) struct Rows {
     pub(super) rows: Vec<Row>,
     /// From each row to the next, from the last one round to the first.
     pub(super) gaps: Vec<Deg>,
-    /// The gap that half of them don't exceed.
+    /// The mean of those that are about as large as most: single ones are rounded to the rotary's increment.
     pub(super) usual: Deg,
-    /// From hole to hole in the first row that has several, mm: the distance that half of them don't exceed; and that
-    /// row.
+    /// From hole to hole in the first row that has several, mm, as usual; and that row.
     pub(super) spacing: Option<(f64, Row)>,
 }
 
@@ -31,8 +30,12 @@ pub(super) struct Rows {
 const FEWEST: usize = 4;
 
 impl Rows {
-    /// `None` where there are too few to speak of.
+    /// `None` where there are too few to speak of, and where all holes are in their places: what is said of rows only
+    /// explains what is wrong with holes.
     pub(super) fn of(comparison: &Comparison<'_>, pattern: &Pattern) -> Option<Self> {
+        if comparison.all_in_place() {
+            return None;
+        }
         let mut places: Vec<(Deg, f64, usize)> = Vec::with_capacity(comparison.found.len());
         for (index, hole) in comparison.found.iter().enumerate() {
             let at = pattern.crossing(&hole.bottom(), &hole.axis)?;
@@ -74,11 +77,11 @@ impl Rows {
         }
         let round = rows.iter().skip(1).map(|row| row.azimuth).chain([rows[0].azimuth + Deg(360.0)]);
         let gaps: Vec<Deg> = rows.iter().zip(round).map(|(row, next)| next - row.azimuth).collect();
-        let usual = Deg(median(gaps.iter().map(|gap| gap.0))?);
+        let usual = Deg(usual(gaps.iter().map(|gap| gap.0))?);
         let several = rows.iter().zip(&mut along).find(|(_, xs)| xs.len() > 2);
         let spacing = several.and_then(|(row, xs)| {
             xs.sort_by(f64::total_cmp);
-            Some((median(xs.windows(2).map(|pair| pair[1] - pair[0]))?, *row))
+            Some((self::usual(xs.windows(2).map(|pair| pair[1] - pair[0]))?, *row))
         });
         Some(Self { rows, gaps, usual, spacing })
     }
@@ -92,15 +95,38 @@ impl Rows {
         self.rows.iter().all(|row| off(row) < 0.1)
     }
 
+    /// Whether the rows are those of one group: none begins late, and they stand too far apart for both.
+    pub(super) fn one_group(&self, pattern: &Pattern) -> bool {
+        self.in_step(pattern) && self.usual.0 > 1.25 * pattern.step().0
+    }
+
     /// From row to row as the pattern wants it, of rows that stand as these do: both groups in turn, or one alone.
     pub(super) fn wanted(&self, pattern: &Pattern) -> Deg {
-        if self.in_step(pattern) { pattern.step() * 2.0 } else { pattern.step() }
+        if self.one_group(pattern) { pattern.step() * 2.0 } else { pattern.step() }
     }
 }
 
-/// What half of the numbers don't exceed.
-fn median(numbers: impl Iterator<Item = f64>) -> Option<f64> {
+/// The mean of the numbers that differ from the middle one by less than a quarter of it.
+fn usual(numbers: impl Iterator<Item = f64>) -> Option<f64> {
     let mut sorted: Vec<f64> = numbers.collect();
     sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len().checked_sub(1)? / 2).copied()
+    let middle = *sorted.get(sorted.len().checked_sub(1)? / 2)?;
+    let alike = sorted.iter().filter(|number| (**number - middle).abs() <= middle.abs() / 4.0);
+    let (sum, count) = alike.fold((0.0, 0.0), |(sum, count), number| (sum + number, count + 1.0));
+    Some(sum / count)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::usual;
+
+    /// 360/257/2 = 0.700389 commanded to 0.001: gaps of 0.700 and 0.701, and a seam that isn't usual.
+    #[test]
+    fn rounded_gaps_have_the_mean_they_were_made_from() {
+        let angles: Vec<f64> = (0..514).map(|row| (f64::from(row) * 700.389_105).round() / 1000.0).collect();
+        let gaps = angles.windows(2).map(|pair| pair[1] - pair[0]).chain([9.9]);
+        assert!((usual(gaps).unwrap() - 0.700_389).abs() < 1e-5);
+        assert_eq!(usual([3.0].into_iter()), Some(3.0));
+        assert_eq!(usual(std::iter::empty()), None);
+    }
 }
