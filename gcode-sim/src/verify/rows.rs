@@ -106,12 +106,12 @@ impl Rows {
     }
 }
 
-/// The mean of the numbers that differ from the middle one by less than a quarter of it.
+/// The mean of the numbers that differ from the middle one by no more than rounding makes of them, 2 %.
 fn usual(numbers: impl Iterator<Item = f64>) -> Option<f64> {
     let mut sorted: Vec<f64> = numbers.collect();
     sorted.sort_by(f64::total_cmp);
     let middle = *sorted.get(sorted.len().checked_sub(1)? / 2)?;
-    let alike = sorted.iter().filter(|number| (**number - middle).abs() <= middle.abs() / 4.0);
+    let alike = sorted.iter().filter(|number| (**number - middle).abs() <= 0.02 * middle.abs());
     let (sum, count) = alike.fold((0.0, 0.0), |(sum, count), number| (sum + number, count + 1.0));
     Some(sum / count)
 }
