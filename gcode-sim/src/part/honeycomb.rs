@@ -55,6 +55,12 @@ impl Pattern {
         (a > 1e-12 && root >= 0.0).then(|| on + out * ((root.sqrt() - half_b) / a))
     }
 
+    /// From a hole to the one abreast of it two rows further: behind the six neighbours the nearest, mm.
+    pub fn abreast(&self) -> f64 {
+        let radius = self.diameter / 2.0;
+        self.distance(&point(0.0, Deg::ZERO, radius), &point(0.0, self.step() * 2.0, radius))
+    }
+
     /// From one row to the next.
     pub fn step(&self) -> Deg {
         Deg(360.0 / f64::from(self.rows))

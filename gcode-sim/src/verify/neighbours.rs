@@ -6,9 +6,6 @@ use super::Comparison;
 use crate::holes::near::PointTree;
 use crate::part::honeycomb::{Pattern, azimuth};
 
-/// Halfway from the pitch to the next but one row, √3 pitches away: what is nearer counts as a neighbour.
-const REACH: f64 = 1.366;
-
 /// A hole has so many at most.
 const SIX: usize = 6;
 
@@ -91,7 +88,8 @@ fn around(
     let places: Vec<_> = holes.map(|(on, out)| pattern.crossing(&on, &out).unwrap_or(nowhere)).collect();
     let here: Vec<usize> = (0..places.len()).filter(|index| places[*index] != nowhere).collect();
     let tree = PointTree::new(here.iter().map(|index| places[*index]));
-    let reach = REACH * pattern.pitch;
+    // Halfway to those that are no neighbours any more.
+    let reach = (pattern.pitch + pattern.abreast()) / 2.0;
     let mut all = vec![None; places.len()];
     let mut near: Vec<(f64, usize)> = Vec::new();
     for index in &here {
