@@ -9,7 +9,7 @@
 //! | `alarm=PS0112` | the control stopped with this alarm; several with `\|`, `ANY` for some alarm |
 //! | `msg="TEXT"` | the alarm's text |
 //! | `stop=TEXT` | an operator stop with this text |
-//! | `note=lower-case` | the run told this note, by its name |
+//! | `note=lower-case` | the run told this note, by its name; `note=none` where it told none |
 //! | `printed="LINE\|LINE"` | what DPRNT printed, all of it |
 //! | `#100=1.5`, `#100=vacant` | the variable at the end; locals are those of the main program |
 //! | `abs.X=1`, `mach.X=1` | work and machine position |
@@ -96,6 +96,7 @@ impl Ran {
             }
             "note" => {
                 let holds = self.control.notes().any(|(note, _)| note.parts().0 == wanted);
+                let holds = if wanted == "none" { self.control.notes().next().is_none() } else { holds };
                 return self.not(holds, &format!("note={wanted}"));
             }
             "printed" => {

@@ -172,7 +172,7 @@ pub(super) struct RunConditions {
     #[arg(long, value_name = "MACHINE.toml")]
     pub(super) machine: Option<PathBuf>,
 
-    /// A code that calls a macro, e.g. G201=9010 or M50=9020 (repeatable)
+    /// A code that calls a program, e.g. G201=9010, M50=9020, M6=9001 or T=9000 (repeatable)
     #[arg(long, value_name = "CODE=PROGRAM")]
     pub(super) code: Vec<String>,
 
@@ -375,7 +375,7 @@ pub(super) struct CheckArguments {
     #[arg(long, value_name = "MACHINE.toml")]
     pub(super) machine: Option<PathBuf>,
 
-    /// A code that calls a macro, e.g. G201=9010 or M50=9020 (repeatable)
+    /// A code that calls a program, e.g. G201=9010, M50=9020, M6=9001 or T=9000 (repeatable)
     #[arg(long, value_name = "CODE=PROGRAM")]
     pub(super) code: Vec<String>,
 

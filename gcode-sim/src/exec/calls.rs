@@ -2,6 +2,7 @@
 use super::eval::{Checked, at};
 use super::frames::{ByCodes, Frame, FrameKind};
 use super::modal_calls::ModalCall;
+use super::notes::Note;
 use super::plan::{CallKind, CallPlan, Flow, Plan, Target};
 use super::words::count;
 use super::{Control, Core};
@@ -145,6 +146,7 @@ impl Core {
     pub(super) fn enter(&mut self, call: &CallPlan, block: Span) {
         let Target::Found(program, start) = call.target else { return };
         if call.repeats == 0 {
+            self.notes.entry(Note::NoPass).or_insert(block);
             return;
         }
         let kind = match call.kind {

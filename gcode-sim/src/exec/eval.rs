@@ -1,11 +1,12 @@
 //! Evaluates expressions and conditions.
 use super::Core;
 use super::functions::{atan2, binary, compare, function, power};
+use super::notes::Note;
 use super::vars::{Kind, Value};
 use crate::alarm::Alarm;
 use crate::program::{Code, Instruction, Operand, Operation, Program};
 use crate::source::{Span, Spanned};
-use crate::syntax::ast::BinaryOp;
+use crate::syntax::ast::{BinaryOp, Function};
 
 /// As many as [`crate::program`] lets an expression need.
 const STACK: usize = crate::program::STACK;
@@ -112,10 +113,22 @@ impl Core {
                 let right = stack.pop().number();
                 Value::Number(binary(op, stack.pop().number(), right, unsure)?)
             }
-            Operation::Function(name) => Value::Number(function(name, stack.pop().number(), &self.settings)?),
+            Operation::Function(name) => {
+                let argument = stack.pop().number();
+                let value = function(name, argument, &self.settings)?;
+                if name == Function::Tan && (argument % 180.0).abs() == 90.0 {
+                    self.told.set(Some(Note::TangentOf90));
+                }
+                Value::Number(value)
+            }
             Operation::Atan2 => {
                 let right = stack.pop().number();
-                Value::Number(atan2(stack.pop().number(), right, &self.settings)?)
+                let left = stack.pop().number();
+                let value = atan2(left, right, &self.settings)?;
+                if left == 0.0 && right == 0.0 {
+                    self.told.set(Some(Note::AtanOf0));
+                }
+                Value::Number(value)
             }
             Operation::Power => {
                 let right = stack.pop().number();

@@ -223,6 +223,7 @@ impl Control {
         if !main {
             self.core.leave();
         }
+        self.core.tell_jump(program, number, target);
         self.core.frame_mut().jump(target);
         Ok(None)
     }

@@ -147,6 +147,8 @@ pub(crate) struct Core {
     idle: f64,
     /// A clock was read since the last jump back.
     clock_read: Cell<bool>,
+    /// What a function of the block at hand has to tell.
+    told: Cell<Option<Note>>,
     blocks: u64,
     moves: u64,
     stops: Vec<Stop>,
@@ -181,6 +183,7 @@ impl Control {
             seconds: 0.0,
             idle: 0.0,
             clock_read: Cell::new(false),
+            told: Cell::new(None),
             blocks: 0,
             moves: 0,
             stops: Vec::new(),
@@ -244,6 +247,9 @@ impl Control {
             && let Err(alarm) = self.core.end_ahead(sink)
         {
             done = Err(alarm);
+        }
+        if let Some(note) = self.core.told.take() {
+            self.core.notes.entry(note).or_insert(self.core.block);
         }
         let outcome = match done {
             Ok(outcome) => outcome?,

@@ -1,5 +1,6 @@
 //! What a control does without a word and a programmer hardly means: told once for each kind, with its first block.
 use super::Control;
+use crate::program::codes::spelled;
 use crate::source::Span;
 
 /// A thing worth telling that is no alarm on a control.
@@ -18,6 +19,22 @@ pub enum Note {
     /// A drilling block with K0 stores its data and drills nothing, which is what K0 is for; whether its X and Y are
     /// gone to differs between controls.
     NoRepeats,
+    /// A call with L0 calls nothing.
+    NoPass,
+    /// A code that acts on axes, in a block that names none. G53 so only waits.
+    NoAxis { code: u32 },
+    /// G51 or G68 without axes: about the point where the program stands.
+    CentreHere { code: u32 },
+    /// G68 without R: it turns by nothing, or by 5410 where that is set.
+    NoAngle,
+    /// GOTO or M99 P found one of several blocks with this number.
+    DoubledNumber { number: u32 },
+    /// A jump into a loop, whose END will have no DO.
+    JumpIntoLoop { number: u8 },
+    /// TAN of 90 degrees answers a large number.
+    TangentOf90,
+    /// ATAN of 0 and 0 answers 0.
+    AtanOf0,
     /// G10 L52 has written a parameter that nothing here depends on.
     ParameterWithoutEffect { number: u16 },
     /// The program has letters in lower case, which some controls refuse.
@@ -54,6 +71,45 @@ impl Note {
             Self::NoRepeats => {
                 let message = "K0 stores the cycle without going to the block's X and Y".to_owned();
                 ("no-repeats", message, "K0-MOVES=1 is for a control that goes there")
+            }
+            Self::NoPass => {
+                ("no-pass", "L0: the program is not called".to_owned(), "leave L out for one pass")
+            }
+            Self::NoAxis { code } => {
+                let message = format!("G{} names no axis: nothing moves or is set", spelled(code));
+                ("no-axis", message, "name the axes it is for")
+            }
+            Self::CentreHere { code } => {
+                let message =
+                    format!("G{} names no axis: its centre is where the program stands", spelled(code));
+                ("centre-here", message, "name the centre's axes")
+            }
+            Self::NoAngle => {
+                let message =
+                    "G68 without R turns by nothing; a control may have an angle in 5410".to_owned();
+                ("no-angle", message, "write R")
+            }
+            Self::DoubledNumber { number } => {
+                let message =
+                    format!("N{number} is there more than once: which one a jump takes is the control's");
+                ("doubled-number", message, "give each block a number of its own")
+            }
+            Self::JumpIntoLoop { number } => {
+                let message = format!("a jump into the loop DO{number}: its END alarms, PS1124");
+                ("into-loop", message, "jump to the block of its DO or WHILE")
+            }
+            Self::TangentOf90 => {
+                let message =
+                    "TAN of 90 degrees is no number: some controls alarm, here it is a large one".to_owned();
+                (
+                    "tangent-of-90",
+                    message,
+                    "test the angle before; TAN-90-ALARM=1 is for a control that alarms",
+                )
+            }
+            Self::AtanOf0 => {
+                let message = "ATAN of 0 and 0 is no angle: some controls alarm, here it is 0".to_owned();
+                ("atan-of-0", message, "test the two before; ATAN-0-ALARM=1 is for a control that alarms")
             }
             Self::ParameterWithoutEffect { number } => {
                 let message = format!("parameter {number} is kept for PRM and has no effect here");

@@ -18,6 +18,9 @@ use crate::units::Seconds;
 impl Core {
     /// 4. What a block does instead of moving by its modal codes.
     pub(super) fn act(&self, act: Act, given: &Given, plan: &mut Plan, span: Span) -> Checked<()> {
+        if !self.names_axis(given) {
+            plan.note = without_axis(act).or(plan.note);
+        }
         match act {
             Act::OneShot(one) => self.one_shot(one, given, plan, span),
             Act::AdditionalWork => {
@@ -138,6 +141,10 @@ impl Core {
 
     /// G28 and G30: by rapid over the intermediate point to the reference position, the named axes only.
     fn reference(&self, given: &Given, plan: &mut Plan, reference: Position) -> Checked<()> {
+        if !self.names_axis(given) {
+            let code = given.g_codes().find(|row| row.code == 300).map_or(280, |row| row.code);
+            plan.note = Some(Note::NoAxis { code });
+        }
         let goal = self.goal(given, &mut plan.state)?;
         self.rapid(plan, goal.machine);
         let mut home = plan.state.machine;
@@ -334,4 +341,26 @@ impl Core {
             _ => Err(format(&format!("L{l} is not known"))),
         }
     }
+}
+
+/// What there is to tell of a code in a block that names no axis.
+fn without_axis(act: Act) -> Option<Note> {
+    let code = match act {
+        Act::Scale => return Some(Note::CentreHere { code: 510 }),
+        Act::Rotate => return Some(Note::CentreHere { code: 680 }),
+        Act::MirrorOn => 511,
+        Act::OneShot(one) => match one {
+            OneShot::CheckReference => 270,
+            OneShot::FromReference => 290,
+            OneShot::Skip => 310,
+            OneShot::LocalSystem => 520,
+            OneShot::MachineSystem => 530,
+            OneShot::OneSide => 600,
+            OneShot::SetSystem => 920,
+            OneShot::PresetSystem => 921,
+            _ => return None,
+        },
+        Act::AdditionalWork | Act::MirrorOff | Act::Tilt => return None,
+    };
+    Some(Note::NoAxis { code })
 }

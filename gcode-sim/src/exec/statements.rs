@@ -5,7 +5,7 @@ use super::vars::{Kind, Value};
 use super::{Core, Outcome};
 use crate::alarm::Alarm;
 use crate::motion::{EventKind, Place, Sink, StopKind};
-use crate::program::{Operand, Program, Statement};
+use crate::program::{OpIndex, Operand, Program, Statement};
 use crate::source::{Span, Spanned};
 
 /// No control has numbers beyond this for alarms of its programs.
@@ -98,8 +98,20 @@ impl Core {
         let Some(target) = program.find_number(number, from) else {
             return Err(self.no_target(number).at(to.span));
         };
+        self.tell_jump(program, number, target);
         self.frame_mut().jump(target);
         Ok(())
+    }
+
+    /// A jump that a control may take elsewhere, or that leads into a loop.
+    pub(super) fn tell_jump(&mut self, program: &Program, number: u32, target: OpIndex) {
+        if program.has_twice(number) {
+            self.notes.entry(Note::DoubledNumber { number }).or_insert(self.block);
+        }
+        let open = self.frame().loops;
+        if let Some(number) = program.loop_entered(target, &open) {
+            self.notes.entry(Note::JumpIntoLoop { number }).or_insert(self.block);
+        }
     }
 
     fn no_target(&self, number: u32) -> Alarm {

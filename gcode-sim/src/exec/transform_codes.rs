@@ -2,6 +2,7 @@
 use super::Core;
 use super::block::not_simulated;
 use super::eval::{Checked, at};
+use super::notes::Note;
 use super::plan::Plan;
 use super::transform::{Scale, Tilt, Transform, Turn};
 use super::words::Given;
@@ -18,7 +19,11 @@ impl Core {
         let letter = |axis| self.settings.axes.letter(axis) as u8;
         let first = self.dimension(given, letter(plane.0), state)?.unwrap_or(state.programmed[plane.0]);
         let second = self.dimension(given, letter(plane.1), state)?.unwrap_or(state.programmed[plane.1]);
-        let angle = self.angle(given, b'R')?.unwrap_or(0.0);
+        let angle = self.angle(given, b'R')?;
+        if angle.is_none() {
+            plan.note = Some(Note::NoAngle);
+        }
+        let angle = angle.unwrap_or(0.0);
         // Mirror and scaling act before the rotation, on its centre too; a mirror image turns the other way round.
         let mut centre = state.programmed;
         (centre[plane.0], centre[plane.1]) = (first, second);

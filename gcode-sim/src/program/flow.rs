@@ -55,6 +55,17 @@ fn join(ops: &mut [Op], from: OpIndex, to: OpIndex) {
     }
 }
 
+/// Each loop by its first and last operation, with its number.
+pub(super) fn loops(ops: &[Op]) -> Vec<(OpIndex, OpIndex, u8)> {
+    let of = |(index, op): (OpIndex, &Op)| match &op.kind {
+        OpKind::Statement(Statement::While { number, end, .. } | Statement::Do { number, end }) => {
+            Some((index, *end, *number))
+        }
+        _ => None,
+    };
+    ops.iter().enumerate().filter_map(of).collect()
+}
+
 /// Sequence numbers in the order a search needs them.
 pub(super) fn numbers(ops: &[Op]) -> Vec<(u32, OpIndex)> {
     let mut numbers: Vec<_> =

@@ -45,6 +45,7 @@ fn finish(Parts { name, span, context, blocks: mut ops, closed }: Parts<Lowering
         number,
         span: Span { end, ..span },
         numbers: flow::numbers(&ops),
+        loops: flow::loops(&ops),
         ops,
         instructions: context.instructions,
         names,

@@ -39,6 +39,8 @@ pub struct Program {
     instructions: Vec<Instruction>,
     /// Sequence numbers with their operations, by number, then by place.
     numbers: Vec<(u32, OpIndex)>,
+    /// DO, or WHILE, and END of each loop, with its number.
+    loops: Vec<(OpIndex, OpIndex, u8)>,
     /// The names that [`Operation::NameNumber`] counts.
     names: Vec<String>,
     /// Whether `%` or another program stands behind its last block.
@@ -161,6 +163,20 @@ impl Program {
 
     pub(crate) fn variable_name(&self, index: u32) -> &str {
         self.names.get(index as usize).map_or("", String::as_str)
+    }
+
+    /// Whether several blocks have this sequence number.
+    pub(crate) fn has_twice(&self, number: u32) -> bool {
+        let first = self.numbers.partition_point(|entry| *entry < (number, 0));
+        self.numbers.get(first + 1).is_some_and(|(n, _)| *n == number)
+    }
+
+    /// The number of a loop that `to` lies in and that isn't among those open.
+    pub(crate) fn loop_entered(&self, to: OpIndex, open: &[Option<(OpIndex, OpIndex)>]) -> Option<u8> {
+        let entered = |(first, last, _): &&(OpIndex, OpIndex, u8)| {
+            *first < to && to <= *last && !open.contains(&Some((*first, *last)))
+        };
+        self.loops.iter().find(entered).map(|(.., number)| *number)
     }
 
     /// The last block with this sequence number before `from`.

@@ -1,18 +1,25 @@
-//! A position read while the machine may still move: macro statements run as soon as they are read, ahead of the
-//! motion before them, and #5021… and #5041… are where the machine is at that instant.
+//! What is of the moment, read or written while the machine may still move: macro statements run as soon as they are
+//! read, ahead of the motion before them, and #5021…, #5041…, the clocks, the signals and the codes of the block at
+//! work are those of that instant.
 //!
 //! #5001… (the end of the block before) and #5061… (kept by G31) don't depend on the moment.
 use crate::check::literal;
 use crate::check::subject::{Finding, Subject, Unit};
 use crate::check::variables;
+use std::ops::RangeInclusive;
+
 use crate::control::Settings;
 use crate::program::codes::{Effect, OneShot};
 use crate::program::{Input, OpIndex, OpKind, Operand, Statement, Words};
 
 pub(super) const NAME: &str = "live-position";
 
-/// Positions, position deviations, handle interruption, distance to go.
-const LIVE: [std::ops::RangeInclusive<u32>; 3] = [5021..=5060, 5101..=5140, 5181..=5200];
+/// Inputs, clocks, codes of the block at work, positions, position deviations, handle interruption, distance to go.
+const LIVE: [RangeInclusive<u32>; 6] =
+    [1000..=1035, 3001..=3002, 4201..=4330, 5021..=5060, 5101..=5140, 5181..=5200];
+
+/// Outputs.
+const OUTPUTS: RangeInclusive<u32> = 1100..=1135;
 
 pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     let moving = moving(subject.settings, unit);
@@ -27,13 +34,19 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
             let message = format!("#{number} is read while the move before it may still be under way");
             let finding = unit.warning(NAME, block, message).on(read.span);
             let finding = finding.label(unit.op(motion).span, "the move");
-            found.push(
-                finding.help("put a block before it that waits for the move, as G53 or M00 do, or G31"),
-            );
+            found.push(finding.help(HELP));
+        }
+        let target = variables::assignment(written).and_then(|(target, _)| literal::variable(target));
+        if let Some(number) = target.filter(|number| OUTPUTS.contains(number)) {
+            let message = format!("#{number} is set while the move before it may still be under way");
+            let finding = unit.warning(NAME, block, message);
+            found.push(finding.label(unit.op(motion).span, "the move").help(HELP));
         }
     }
     found
 }
+
+const HELP: &str = "put a block before it that waits for the move, as G53 or M00 do, or G31";
 
 /// For each block a move that may still be under way before it, where there is one.
 fn moving(settings: &Settings, unit: &Unit<'_>) -> Vec<Option<OpIndex>> {
@@ -100,6 +113,19 @@ mod tests {
     fn a_move_may_be_under_way() {
         assert_eq!(lines(NAME, "O1\nG0 X10.\n#100=#5041\n#101=#5023*2\nM30\n"), [3, 4]);
         assert_eq!(lines(NAME, "O1\nG0 X10.\nM8\nIF[#5023 LT 0]GOTO 9\nN9 M30\n"), [4]);
+    }
+
+    #[test]
+    fn signals_and_clocks_are_of_the_moment_too() {
+        for read in ["#100=#1005", "#100=#3001", "#100=#4201", "IF[#1032 EQ 0]GOTO 9", "#100=[#_UI[3]]"] {
+            assert_eq!(lines(NAME, &format!("O1\nG0 X10.\n{read}\nN9 M30\n")), [3], "{read}");
+            assert_eq!(lines(NAME, &format!("O1\nG0 X10.\nM00\n{read}\nN9 M30\n")), NOWHERE, "{read}");
+        }
+        for written in ["#1100=1", "#1132=5", "IF[#1 EQ 1]THEN #1131=0"] {
+            assert_eq!(lines(NAME, &format!("O1\n#1=1\nG0 X10.\n{written}\nM30\n")), [4], "{written}");
+            assert_eq!(lines(NAME, &format!("O1\n#1=1\nG0 X10.\nG53\n{written}\nM30\n")), NOWHERE);
+        }
+        assert_eq!(lines(NAME, "O1\nG0 X10.\n#100=#4001+#3011+#1100\n#3003=1\nM30\n"), NOWHERE);
     }
 
     #[test]
