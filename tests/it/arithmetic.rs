@@ -48,8 +48,13 @@ fn single() -> impl Strategy<Value = Piece> {
     ]
 }
 
+/// 32 bits, signed or not.
 fn bits(value: f64) -> Option<i32> {
-    (value.abs() < 2e9).then_some(value.round() as i32)
+    let value = value.round();
+    if (0.0..=f64::from(u32::MAX)).contains(&value) {
+        return Some((value as u32).cast_signed());
+    }
+    (value >= f64::from(i32::MIN) && value < 0.0).then_some(value as i32)
 }
 
 fn apply(op: &str, left: f64, right: f64) -> Option<f64> {
