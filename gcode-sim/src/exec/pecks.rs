@@ -43,7 +43,7 @@ impl Core {
         let mut count = 1.0;
         while count <= pecks {
             let done = count == pecks;
-            let next = if done { z } else { self.clean(r + depth(data, count).copysign(z - r)) };
+            let next = if done { z } else { r + depth(data, count).copysign(z - r) };
             each(last, next, done);
             last = next;
             count += 1.0;

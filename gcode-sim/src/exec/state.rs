@@ -96,6 +96,16 @@ pub struct Level {
 }
 
 impl Drilling {
+    /// With pecks that come out as written where G51 makes `stretch` of each millimetre of the levels.
+    pub(super) fn unscaled(self, stretch: f64) -> Self {
+        let pecks = self.pecks.map(|pecks| Pecks {
+            first: pecks.first / stretch,
+            less: pecks.less / stretch,
+            least: pecks.least / stretch,
+        });
+        Self { q: self.q.map(|q| q / stretch), pecks, ..self }
+    }
+
     pub(super) fn r_level(&self) -> f64 {
         if self.r.incremental { self.initial + self.r.value } else { self.r.value }
     }
