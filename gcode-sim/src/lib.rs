@@ -33,6 +33,8 @@ pub mod machine;
 
 pub mod holes;
 
+pub mod flutes;
+
 pub mod verify;
 
 pub mod budget;

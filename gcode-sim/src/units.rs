@@ -112,6 +112,11 @@ impl Deg {
     }
 }
 
+/// The natural logarithm, the same bits everywhere like the sines.
+pub fn ln(value: f64) -> f64 {
+    libm::log(value)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -9,7 +9,7 @@ use gcode_sim::part::probed::Probed;
 use gcode_sim::part::wanted::Wanted;
 use gcode_sim::program::NoLibrary;
 use gcode_sim::report::explain::{self, PAGES, Page};
-use gcode_sim::session::{Request, simulate};
+use gcode_sim::session::{Request, grind, simulate};
 use gcode_sim::verify::Tolerances;
 use gcode_tests::expect;
 
@@ -31,7 +31,9 @@ fn alarms() -> BTreeSet<String> {
 fn findings() -> BTreeSet<String> {
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("../gcode-sim/src");
     let mut codes = BTreeSet::new();
-    for path in ["holes", "verify/checks", "exec/notes.rs"].map(|path| source.join(path)) {
+    for path in
+        ["holes", "verify/checks", "verify/flutes/checks", "exec/notes.rs"].map(|path| source.join(path))
+    {
         let files = match path.is_dir() {
             true => std::fs::read_dir(path).unwrap().map(|entry| entry.unwrap().path()).collect(),
             false => vec![path],
@@ -123,13 +125,12 @@ fn found(page: &Page, program: &str) -> Vec<Diagnostic> {
     let (jobs, machines): (Vec<&str>, Vec<&str>) =
         page.fenced("toml").into_iter().partition(|text| text.starts_with("family"));
     let machine = machines.first().map_or_else(Machine::default, |text| Machine::parse(text).unwrap());
-    let reference = page
-        .fenced("csv")
-        .into_iter()
-        .chain(jobs)
-        .next()
-        .map(|text| Wanted::parse(text).unwrap().into_holes().unwrap());
+    let wanted = page.fenced("csv").into_iter().chain(jobs).next().map(|text| Wanted::parse(text).unwrap());
     let request = Request::new("example.nc", program.as_bytes(), machine.clone());
+    if let Some(Wanted::Flutes(flutes)) = &wanted {
+        return grind(&request, &mut NoLibrary, flutes).unwrap().verify().diagnostics;
+    }
+    let reference = wanted.and_then(Wanted::into_holes);
     // Of a job on these pages only the surface counts, or the pattern.
     let surface = reference.as_ref().and_then(|reference| reference.surface);
     let simulation = simulate(&request, &mut NoLibrary, surface).unwrap();

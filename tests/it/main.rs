@@ -3,6 +3,7 @@
 
 mod arithmetic;
 mod budget;
+mod burr;
 mod changes;
 mod check;
 mod compensation;

@@ -1,4 +1,5 @@
-//! Draws the top view or the development a `case.toml` describes and holds it against `expected.png`, one step per channel allowed.
+//! Draws the view that a `case.toml` describes, or that of the burr in a `job.toml` beside it, and holds it against
+//! `expected.png`, one step per channel allowed.
 //!
 //! `says.snap` beside it has the picture's words. With an `other.toml` the picture is the comparison of both. What
 //! was drawn instead, and where it differs, is left in `target/pictures/`.
@@ -11,7 +12,7 @@ use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ImageFormat, RgbImage};
 use serde::Deserialize;
 
-use crate::{Case, root};
+use crate::{Case, burr_picture, root};
 
 /// A picture that people look at in a review is small.
 const MOST_BYTES: usize = 20 * 1024;
@@ -33,6 +34,15 @@ struct Picture {
     hole: Vec<HoleCase>,
     #[serde(default)]
     path: Vec<PathCase>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct BurrPicture {
+    size: String,
+    crop: [u32; 4],
+    /// `side`, `tip` or `helix`.
+    view: String,
 }
 
 #[derive(Deserialize)]
@@ -70,6 +80,12 @@ fn six() -> f64 {
 }
 
 pub(crate) fn run(case: &Case) {
+    if let Some(job) = case.optional("job.toml") {
+        let picture: BurrPicture = toml::from_str(&case.text("case.toml")).unwrap();
+        let scene = burr_picture::scene(&job, &picture.view);
+        let sheet = lay_out(&scene, picture.size.parse().unwrap()).unwrap();
+        return hold(case, &cropped(&png(&paint(&sheet)).unwrap(), picture.crop));
+    }
     let (picture, sheet) = draw(&case.text("case.toml"));
     let bytes = png(&paint(&sheet)).unwrap();
     let Some(other) = case.optional("other.toml") else {

@@ -1,15 +1,17 @@
 //! Cases of kind `verify`: a program held against a reference, as the inspector's table and the findings say it.
 //!
 //! `case.nc` is the program (programs it calls stand in the same file), `reference.toml`, `.csv` or `.json` what is
-//! wanted, `machine.toml`, where there is one, the machine. Where there is no reference the holes are shown.
+//! wanted (holes, or a burr's flutes), `machine.toml`, where there is one, the machine. Where there is no reference the holes are shown.
 use std::fmt::Write as _;
 
+use gcode_sim::diag::Diagnostic;
 use gcode_sim::machine::Machine;
 use gcode_sim::motion::Call;
 use gcode_sim::part::wanted::Wanted;
 use gcode_sim::program::NoLibrary;
+use gcode_sim::report::flute_table;
 use gcode_sim::report::verdict_table::{Layout, table};
-use gcode_sim::session::{Request, Simulation, simulate};
+use gcode_sim::session::{Request, Run, Simulation, grind, simulate};
 use gcode_sim::verify::Tolerances;
 
 use crate::Case;
@@ -19,39 +21,48 @@ pub(crate) fn run(case: &Case) {
         case.optional("machine.toml").map_or_else(Machine::default, |text| Machine::parse(&text).unwrap());
     let request = Request::new("case.nc", case.bytes("case.nc"), machine.clone());
     let files = ["reference.toml", "reference.csv", "reference.json"];
-    let reference = files
-        .iter()
-        .find_map(|name| case.optional(name))
-        .map(|text| Wanted::parse(&text).unwrap().into_holes().unwrap());
+    let wanted = files.iter().find_map(|name| case.optional(name)).map(|text| Wanted::parse(&text).unwrap());
+    if let Some(Wanted::Flutes(flutes)) = &wanted {
+        let grinding = grind(&request, &mut NoLibrary, flutes).unwrap();
+        let verdict = grinding.verify();
+        let shown = flute_table::table(&verdict);
+        return case.snapshot("verdict", &with_findings(shown, &verdict.diagnostics, &grinding.run));
+    }
+    let reference = wanted.and_then(Wanted::into_holes);
     let surface = reference.as_ref().and_then(|reference| reference.surface);
     let simulation = simulate(&request, &mut NoLibrary, surface).unwrap();
-    let (mut shown, findings) = match &reference {
+    let (shown, findings) = match &reference {
         Some(reference) => {
             let verdict = simulation.verify(reference, Tolerances::of(reference, None), &machine);
             (table(&verdict, Layout::default()), verdict.diagnostics)
         }
         None => (holes(&simulation), simulation.extracted.findings.clone()),
     };
-    for finding in &findings {
+    case.snapshot("verdict", &with_findings(shown, &findings, &simulation.run));
+}
+
+/// The table and what was found, with its places.
+fn with_findings(mut shown: String, findings: &[Diagnostic], run: &Run) -> String {
+    for finding in findings {
         let severity = finding.severity.name();
         write!(shown, "\n{severity} {}: {}\n", finding.code, finding.message).unwrap();
         if let Some(place) = &finding.place {
-            writeln!(shown, "  at {}", at(&simulation, place.block)).unwrap();
+            writeln!(shown, "  at {}", at(run, place.block)).unwrap();
             let mut next: Option<&Call> = place.calls.as_deref();
             while let Some(call) = next {
-                writeln!(shown, "  called from {}", at(&simulation, call.from)).unwrap();
+                writeln!(shown, "  called from {}", at(run, call.from)).unwrap();
                 next = call.outer.as_deref();
             }
         }
         finding.notes.iter().for_each(|note| writeln!(shown, "  {note}").unwrap());
         finding.help.iter().for_each(|help| writeln!(shown, "  help: {help}").unwrap());
     }
-    case.snapshot("verdict", &shown);
+    shown
 }
 
-fn at(simulation: &Simulation, block: gcode_sim::source::Span) -> String {
-    let (program, line) = simulation.run.locate(block);
-    let text = simulation.run.control.memory().sources().text(block);
+fn at(run: &Run, block: gcode_sim::source::Span) -> String {
+    let (program, line) = run.locate(block);
+    let text = run.control.memory().sources().text(block);
     format!("{program} line {line}: {}", text.trim())
 }
 

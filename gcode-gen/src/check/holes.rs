@@ -26,6 +26,7 @@ pub(super) fn check(job: &Job, package: &Package, reference: &Reference) -> Resu
         seconds: simulation.run.control.seconds().0,
         report: table(&verdict, Layout::default()),
         picture: picture::main_view(&top),
+        more_pictures: Vec::new(),
         judgement: Judgement::Holes(verdict),
     })
 }

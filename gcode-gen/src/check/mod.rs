@@ -1,5 +1,6 @@
 //! Runs an emitted package as the control would and holds what it does against the job's geometry. What doesn't pass
 //! here is not written.
+mod flutes;
 mod holes;
 
 use gcode_sim::job::Job;
@@ -7,6 +8,7 @@ use gcode_sim::part::wanted::Wanted;
 use gcode_sim::picture::Scene;
 use gcode_sim::program::Library;
 use gcode_sim::verify::Verdict;
+use gcode_sim::verify::flutes::FluteVerdict;
 
 use crate::package::{Package, Program, file_name};
 
@@ -31,6 +33,8 @@ pub struct Checked {
     /// What `verify` prints.
     pub report: String,
     pub picture: Scene,
+    /// Further views, by what is put behind the file's name.
+    pub more_pictures: Vec<(&'static str, Scene)>,
     pub judgement: Judgement,
 }
 
@@ -38,6 +42,7 @@ pub struct Checked {
 #[derive(Debug)]
 pub enum Judgement {
     Holes(Verdict),
+    Flutes(FluteVerdict),
 }
 
 impl Judgement {
@@ -45,6 +50,15 @@ impl Judgement {
     pub fn into_holes(self) -> Option<Verdict> {
         match self {
             Self::Holes(verdict) => Some(verdict),
+            Self::Flutes(_) => None,
+        }
+    }
+
+    /// Of a burr.
+    pub fn into_flutes(self) -> Option<FluteVerdict> {
+        match self {
+            Self::Flutes(verdict) => Some(verdict),
+            Self::Holes(_) => None,
         }
     }
 }
@@ -53,6 +67,7 @@ impl Judgement {
 pub fn check(job: &Job, package: &Package) -> Result<Checked, CheckError> {
     match Wanted::of_job(job).map_err(|e| CheckError::Impossible(e.to_string()))? {
         Wanted::Holes(reference) => holes::check(job, package, &reference),
+        Wanted::Flutes(wanted) => flutes::check(package, &wanted),
     }
 }
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use gcode_sim::cli::{Refusal, Status, input, output};
 use gcode_sim::job::Job;
-use gcode_sim::picture::{self, PictureError, Size};
+use gcode_sim::picture::{self, PictureError, Scene, Size};
 
 use crate::check::{CheckError, Checked, check};
 use crate::families;
@@ -28,11 +28,11 @@ pub(super) fn run(path: &Path, out: &Path) -> Result<Status, Refusal> {
         output::tell(&format!("{reasons}error: nothing is written, for the programs of {job} don't hold\n"));
         return Ok(Status::Fails);
     }
-    let picture = picture(&checked)?;
+    let pictures = pictures(&checked, package.main)?;
     make_folder(out)?;
     let mut files: Vec<(PathBuf, &[u8])> =
         package.files().into_iter().map(|(name, text)| (out.join(name), text.as_bytes())).collect();
-    files.push((out.join(file_name(package.main)).with_extension("png"), &picture));
+    files.extend(pictures.iter().map(|(name, png)| (out.join(name), png.as_slice())));
     let written: Vec<_> = files.iter().map(|(path, bytes)| (path.as_path(), *bytes)).collect();
     output::write_all(&written)?;
     let mut text = checked.report.clone();
@@ -45,11 +45,16 @@ pub(super) fn run(path: &Path, out: &Path) -> Result<Status, Refusal> {
     Ok(Status::Holds)
 }
 
-/// The view of what was simulated, as PNG.
-fn picture(checked: &Checked) -> Result<Vec<u8>, Refusal> {
+/// The views of what was simulated, as PNG: `O8100.png`, and where there are more `O8400-tip.png`.
+fn pictures(checked: &Checked, main: u32) -> Result<Vec<(String, Vec<u8>)>, Refusal> {
     let refused = |error: PictureError| Refusal::new(error.to_string());
     let size = Size::new(1600, 1200).map_err(refused)?;
-    picture::draw(&checked.picture, size).map_err(refused)
+    let program = file_name(main);
+    let stem = program.trim_end_matches(".nc");
+    let first = (format!("{stem}.png"), &checked.picture);
+    let more = checked.more_pictures.iter().map(|(view, scene)| (format!("{stem}-{view}.png"), scene));
+    let drawn = |(name, scene): (String, &Scene)| Ok((name, picture::draw(scene, size).map_err(refused)?));
+    std::iter::once(first).chain(more).map(drawn).collect()
 }
 
 /// The folder, and those it stands in.

@@ -1,4 +1,5 @@
 //! The part families: each turns its job into programs.
+pub mod burr;
 mod control;
 pub mod honeycomb;
 pub mod pin_holes;
@@ -17,12 +18,13 @@ pub struct Family {
 }
 
 /// Every family there is.
-pub const ALL: &[Family] = &[pin_holes::FAMILY, honeycomb::FAMILY];
+pub const ALL: &[Family] = &[pin_holes::FAMILY, honeycomb::FAMILY, burr::FAMILY];
 
 /// The programs of a job.
 pub fn emit(job: &Job) -> Package {
     match job {
         Job::PinHoles(job) => pin_holes::emit(job),
         Job::Honeycomb(job) => honeycomb::emit(job),
+        Job::Burr(job) => burr::emit(job),
     }
 }

@@ -248,7 +248,8 @@ pub(super) struct VerifyArguments {
     #[arg(long, value_name = "REF")]
     pub(super) reference: PathBuf,
 
-    /// Diameter of the tolerance zone, mm [default: the job's, or 0.1]
+    /// Diameter of the tolerance zone, or how far a burr's contact may be off its surface, mm [default: the
+    /// job's, or 0.1]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     pub(super) tolerance: Option<f64>,
 
@@ -264,7 +265,7 @@ pub(super) struct VerifyArguments {
     #[arg(long)]
     pub(super) full: bool,
 
-    /// Also draw the holes to this file: the top view, or a cylinder unrolled
+    /// Also draw to this file: the top view of holes, a cylinder unrolled, or a burr from the side
     #[arg(long, value_name = "OUT.png")]
     pub(super) picture: Option<PathBuf>,
 
@@ -290,9 +291,9 @@ pub(super) struct RenderArguments {
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     pub(super) tolerance: Option<f64>,
 
-    /// Which way to look
-    #[arg(long, value_enum, default_value_t = View::Top)]
-    pub(super) view: View,
+    /// Which way to look [default: top, or side for a burr]
+    #[arg(long, value_enum)]
+    pub(super) view: Option<View>,
 
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "1600x1200")]
@@ -479,4 +480,10 @@ pub(super) enum View {
     Top,
     /// A cylinder unrolled, with its seam; needs --reference with a job of a cylinder
     Development,
+    /// A burr from the side
+    Side,
+    /// A burr from its tip
+    Tip,
+    /// A burr's helix angle over the polar angle, with both laws
+    Helix,
 }

@@ -1,18 +1,20 @@
-//! `gcode-sim render`: a picture of the holes on the part.
+//! `gcode-sim render`: a picture of the holes on the part, or of a burr's flutes.
 use std::path::Path;
 
 use super::args::{RenderArguments, View};
 use super::{Refusal, Status, options, output};
+use crate::part::flutes::Flutes;
 use crate::part::reference::Reference;
 use crate::part::wanted::Wanted;
 use crate::picture::{self, Scene, Size, TopView};
-use crate::report::top;
+use crate::report::{flute_view, top};
 use crate::session::{self, Request, Simulation};
 use crate::verify::{Tolerances, Verdict};
 
 pub(super) fn run(arguments: &RenderArguments) -> Result<Status, Refusal> {
     match arguments.reference.as_deref().map(options::wanted).transpose()? {
         Some(Wanted::Holes(reference)) => holes(arguments, Some(reference)),
+        Some(Wanted::Flutes(wanted)) => flutes(arguments, wanted),
         None => holes(arguments, None),
     }
 }
@@ -31,8 +33,13 @@ fn holes(arguments: &RenderArguments, reference: Option<Reference>) -> Result<St
         None => top::of_holes(&name(&request), &simulation, &request.machine),
     };
     let scene = match arguments.view {
-        View::Top => picture::top_view(&drawn),
-        View::Development => picture::development(&drawn).ok_or_else(|| {
+        None | Some(View::Top) => picture::top_view(&drawn),
+        Some(View::Side | View::Tip | View::Helix) => {
+            let message =
+                "the views side, tip and helix are of a burr: --reference JOB.toml of that family is needed";
+            return Err(Refusal::new(message));
+        }
+        Some(View::Development) => picture::development(&drawn).ok_or_else(|| {
             let message = "--view development unrolls a cylinder: it needs --reference with a job of one";
             Refusal::new(message)
         })?,
@@ -40,6 +47,27 @@ fn holes(arguments: &RenderArguments, reference: Option<Reference>) -> Result<St
     write(&scene, &arguments.size, &arguments.output)?;
     output::print(&format!("picture: {}\n", arguments.output.display()))?;
     Ok(super::stopped(&simulation.run).unwrap_or(Status::Holds))
+}
+
+fn flutes(arguments: &RenderArguments, mut wanted: Flutes) -> Result<Status, Refusal> {
+    let (request, mut folders) = options::request(&arguments.program)?;
+    let asked = options::tolerance("--tolerance", arguments.tolerance)?;
+    wanted.surface_tolerance = asked.unwrap_or(wanted.surface_tolerance);
+    let grinding =
+        session::grind(&request, &mut folders, &wanted).map_err(|e| Refusal::new(e.to_string()))?;
+    let verdict = grinding.verify();
+    let view = flute_view::of(&name(&request), &grinding, &verdict);
+    let scene = match arguments.view {
+        None | Some(View::Side) => picture::side_view(&view),
+        Some(View::Tip) => picture::tip_view(&view),
+        Some(View::Helix) => picture::helix_graph(&view),
+        Some(View::Top | View::Development) => {
+            return Err(Refusal::new("that view is of holes; a burr has the views side, tip and helix"));
+        }
+    };
+    write(&scene, &arguments.size, &arguments.output)?;
+    output::print(&format!("picture: {}\n", arguments.output.display()))?;
+    Ok(super::stopped(&grinding.run).unwrap_or(Status::Holds))
 }
 
 /// What the views of a verdict are made of.

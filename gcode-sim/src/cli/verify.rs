@@ -2,10 +2,12 @@
 use super::args::{TextFormat, VerifyArguments};
 use super::library::Folders;
 use super::{Refusal, Status, options, output, render};
+use crate::part::flutes::Flutes;
 use crate::part::reference::Reference;
 use crate::part::wanted::Wanted;
 use crate::picture;
 use crate::report::verdict_table::{Layout, table};
+use crate::report::{flute_table, flute_view};
 use crate::session::{self, Request};
 use crate::verify::{Answer, Tolerances};
 
@@ -19,6 +21,48 @@ pub(super) fn run(arguments: &VerifyArguments) -> Result<Status, Refusal> {
             tolerances.depth = depth.unwrap_or(tolerances.depth);
             holes(arguments, &request, folders, &reference, tolerances)
         }
+        Wanted::Flutes(mut wanted) => {
+            let of_holes = [
+                ("--depth-tolerance", depth.is_some()),
+                ("--worst-first", arguments.worst_first),
+                ("--full", arguments.full),
+            ];
+            if let Some((flag, _)) = of_holes.iter().find(|(_, given)| *given) {
+                return Err(Refusal::new(format!("{flag} is about holes, and the reference is a burr")));
+            }
+            wanted.surface_tolerance = asked.unwrap_or(wanted.surface_tolerance);
+            flutes(arguments, &request, folders, &wanted)
+        }
+    }
+}
+
+fn flutes(
+    arguments: &VerifyArguments,
+    request: &Request,
+    mut folders: Folders,
+    wanted: &Flutes,
+) -> Result<Status, Refusal> {
+    let grinding =
+        session::grind(request, &mut folders, wanted).map_err(|error| Refusal::new(error.to_string()))?;
+    let verdict = grinding.verify();
+    match arguments.format {
+        TextFormat::Json => output::json(&verdict)?,
+        TextFormat::Text => output::print(&flute_table::table(&verdict))?,
+    }
+    if let Some(path) = &arguments.picture {
+        let scene = picture::side_view(&flute_view::of(&render::name(request), &grinding, &verdict));
+        render::write(&scene, "1600x1200", path)?;
+        if arguments.format == TextFormat::Text {
+            output::print(&format!("picture: {}\n", path.display()))?;
+        }
+    }
+    Ok(judged(super::findings(&verdict.diagnostics, &grinding.run), verdict.verdict))
+}
+
+fn judged(status: Status, answer: Answer) -> Status {
+    match answer {
+        Answer::Fail if status == Status::Holds => Status::Fails,
+        _ => status,
     }
 }
 
@@ -46,9 +90,5 @@ fn holes(
             output::print(&format!("picture: {}\n", path.display()))?;
         }
     }
-    let status = super::findings(&verdict.diagnostics, &simulation.run);
-    Ok(match verdict.verdict {
-        Answer::Fail if status == Status::Holds => Status::Fails,
-        _ => status,
-    })
+    Ok(judged(super::findings(&verdict.diagnostics, &simulation.run), verdict.verdict))
 }

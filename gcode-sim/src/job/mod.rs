@@ -2,6 +2,7 @@
 //!
 //! Unknown keys, missing keys and values out of range are errors that name the key, the line and what is allowed.
 mod alignment;
+mod burr;
 pub mod control_file;
 mod honeycomb;
 mod pin_holes;
@@ -13,6 +14,9 @@ use serde::Deserialize;
 use toml::Spanned;
 
 pub use alignment::{Alignment, Chord, Runout, SineTable};
+pub use burr::{
+    AxisSigns, Burr, BurrProgram, BurrShape, BurrTolerance, FluteLaw, Grinder, Nose, ProgramForm,
+};
 pub use honeycomb::{Clamp, CombMachine, Cylinder, Drill, Honeycomb, Metric, Spacing};
 pub use pin_holes::{
     AxisDirection, Head, HeadKind, HoleWanted, MacroSettings, PinHoles, PinMachine, Surface, Tool,
@@ -27,6 +31,7 @@ use crate::control::{Dialect, Increment};
 pub enum Job {
     PinHoles(PinHoles),
     Honeycomb(Honeycomb),
+    Burr(Burr),
 }
 
 /// The control a job is for.
@@ -48,7 +53,7 @@ struct Family {
     family: Spanned<String>,
 }
 
-pub const FAMILIES: [&str; 2] = ["pin-holes", "honeycomb"];
+pub const FAMILIES: [&str; 3] = ["pin-holes", "honeycomb", "burr"];
 
 impl Job {
     /// Reads a job file's text.
@@ -65,6 +70,7 @@ impl Job {
         match family.as_ref().as_str() {
             "pin-holes" => pin_holes::parse(&reader).map(Self::PinHoles),
             "honeycomb" => honeycomb::parse(&reader).map(Self::Honeycomb),
+            "burr" => burr::parse(&reader).map(Self::Burr),
             other => Err(reader
                 .error(&family, format!("family '{other}' is not known: one of {}", FAMILIES.join(", ")))),
         }
@@ -75,6 +81,7 @@ impl Job {
         match self {
             Self::PinHoles(job) => job.machine.clearance,
             Self::Honeycomb(job) => job.machine.clearance,
+            Self::Burr(job) => job.grinder.clearance,
         }
     }
 
@@ -82,6 +89,7 @@ impl Job {
         match self {
             Self::PinHoles(job) => job.control,
             Self::Honeycomb(job) => job.control,
+            Self::Burr(job) => job.control,
         }
     }
 }

@@ -11,6 +11,7 @@ mod probe;
 pub mod random;
 pub mod sources;
 mod touch;
+mod wheel;
 
 use nalgebra::{IsometryMatrix3, Point3, Translation3, Unit, Vector3};
 
@@ -18,6 +19,7 @@ pub use chain::{Chain, Link, LinkMotion};
 pub use file::error_file;
 pub use head::{Head, HeadKind};
 pub use probe::Probe;
+pub use wheel::Wheel;
 
 use crate::control::{Dialect, Increment};
 use crate::motion::{Axes, Axis, Position};
@@ -37,6 +39,8 @@ pub struct Machine {
     /// What carries the tool: the slides X Y Z that don't carry the part.
     pub slides: Chain,
     pub head: Head,
+    /// Of a grinder.
+    pub wheel: Option<Wheel>,
     pub tools: Vec<Tool>,
     pub offsets: Vec<WorkOffset>,
     pub part: Placement,
@@ -100,6 +104,7 @@ impl Default for Machine {
             dialect: Dialect::default(),
             increment: Increment::default(),
             head: Head::new(HeadKind::Free, 0.0),
+            wheel: None,
             tools: Vec::new(),
             offsets: Vec::new(),
             part: Placement::default(),
@@ -165,7 +170,8 @@ impl Machine {
     /// Whether the axis moves the tool or the part.
     pub fn carries(&self, axis: Axis) -> bool {
         let head = matches!(self.head.kind, HeadKind::Axis { axis: head, .. } if head == axis);
-        head || self.table.has(axis) || self.slides.has(axis)
+        let wheel = self.wheel.is_some_and(|wheel| wheel.swivels.is_some_and(|(swivel, _)| swivel == axis));
+        head || wheel || self.table.has(axis) || self.slides.has(axis)
     }
 }
 

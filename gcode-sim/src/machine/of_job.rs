@@ -6,7 +6,8 @@ use crate::job::{self, Job, Rotary};
 use crate::units::Deg;
 
 impl Machine {
-    /// The arrangement that goes with the job's family; `None` where the control has no such axis.
+    /// The arrangement that goes with the job's family; `None` where the control has no such axis, and for a burr, which needs
+    /// the machine file that stands beside its programs.
     pub fn of_job(job: &Job) -> Option<Self> {
         let nominal =
             Self { dialect: job.control().dialect, increment: job.control().increment, ..Self::default() };
@@ -43,6 +44,7 @@ impl Machine {
                     ..nominal
                 })
             }
+            Job::Burr(_) => None,
         }
     }
 

@@ -3,10 +3,12 @@
 //! This module knows no NC code and shares no formula with the generator: a verifier that did would agree with
 //! its mistakes.
 pub mod distance;
+pub mod flutes;
 pub mod hole;
 pub mod honeycomb;
 mod pin_holes;
 pub mod probed;
+pub mod profile;
 mod read;
 pub mod reference;
 pub mod surface;

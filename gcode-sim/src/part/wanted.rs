@@ -1,4 +1,5 @@
 //! What a program is held against, by the kind of part: read from a hole list or a job file.
+use super::flutes::Flutes;
 use super::read::{self, ReferenceError};
 use super::reference::Reference;
 use crate::job::Job;
@@ -8,6 +9,8 @@ use crate::job::Job;
 pub enum Wanted {
     /// Holes: `verify` says of each how far it is off.
     Holes(Reference),
+    /// The flutes of a burr.
+    Flutes(Flutes),
 }
 
 impl Wanted {
@@ -15,6 +18,7 @@ impl Wanted {
     pub fn holes(&self) -> Option<&Reference> {
         match self {
             Self::Holes(reference) => Some(reference),
+            Self::Flutes(_) => None,
         }
     }
 
@@ -41,6 +45,7 @@ impl Wanted {
         match job {
             Job::PinHoles(job) => super::pin_holes::reference(job).map(Self::Holes),
             Job::Honeycomb(job) => super::honeycomb::reference(job).map(Self::Holes),
+            Job::Burr(job) => Ok(Self::Flutes(Flutes::of_job(job))),
         }
     }
 
@@ -48,6 +53,7 @@ impl Wanted {
     pub fn into_holes(self) -> Option<Reference> {
         match self {
             Self::Holes(reference) => Some(reference),
+            Self::Flutes(_) => None,
         }
     }
 }

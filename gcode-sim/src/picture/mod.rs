@@ -7,6 +7,7 @@ mod bars;
 mod compare;
 mod dials;
 mod font;
+mod graph;
 mod ink;
 mod labels;
 mod lettering;
@@ -31,6 +32,8 @@ pub use scene::{Axis, LegendItem, Mark, Misfit, Pen, Point, Sample, Scene, Shape
 pub use sheet::{Sheet, lay_out};
 pub use size::Size;
 pub use views::development::development;
+pub use views::flutes::{FluteView, Spot, side_view, tip_view};
+pub use views::helix::helix_graph;
 pub use views::question::Question;
 pub use views::side::Side;
 pub use views::top::{Cylinder, DrawnHole, PathPiece, TopView, top_view};

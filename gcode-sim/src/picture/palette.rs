@@ -28,5 +28,8 @@ pub(super) fn pen(pen: Pen, text: f64) -> (Rgb, f64, Dash) {
         Pen::Construction => (Rgb(120, 120, 120), 0.06 * text, Dash::Pattern([0.55 * text, 0.4 * text])),
         Pen::Feed => (Rgb(0, 158, 115), 0.1 * text, Dash::Solid),
         Pen::Rapid => (Rgb(86, 180, 233), 0.07 * text, Dash::Pattern([0.25 * text, 0.25 * text])),
+        Pen::Grid => (Rgb(205, 205, 205), 0.05 * text, Dash::Solid),
+        Pen::First => (Rgb(0, 0, 0), 0.12 * text, Dash::Pattern([0.8 * text, 0.5 * text])),
+        Pen::Second => (Rgb(213, 94, 0), 0.14 * text, Dash::Pattern([0.22 * text, 0.3 * text])),
     }
 }

@@ -13,6 +13,8 @@ pub struct Scene {
     /// Diameter of the tolerance zone round every mark that has a misfit, mm.
     pub zone: Option<f64>,
     pub legend: Vec<LegendItem>,
+    /// No drawing of a part but a graph of degrees over degrees: a grid of so many, with numbers instead of a scale bar.
+    pub graph: Option<usize>,
 }
 
 /// The title block.
@@ -65,6 +67,11 @@ pub enum Pen {
     Feed,
     /// Path of the tool in rapid motion.
     Rapid,
+    /// Of a graph.
+    Grid,
+    /// Two curves of a graph to compare with what was found.
+    First,
+    Second,
 }
 
 /// How a hole stands against what was wanted.

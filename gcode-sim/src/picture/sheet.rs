@@ -2,6 +2,7 @@
 use super::PictureError;
 use super::dials::{Detail, Dials};
 use super::font::Font;
+use super::graph::numbers;
 use super::ink::{Ink, Rect};
 use super::labels::Field;
 use super::lettering::{Lettering, caption_strokes};
@@ -66,7 +67,10 @@ pub fn lay_out(scene: &Scene, size: Size) -> Result<Sheet, PictureError> {
         }
     }
     let Plan { mut inks, labels, notes, shown, .. } = best;
-    inks.extend(scale_bar(&frame, Rect { top: drawing.bottom, ..panel.drawing }));
+    inks.extend(match scene.graph {
+        Some(grid) => numbers(&frame, grid),
+        None => scale_bar(&frame, Rect { top: drawing.bottom, ..panel.drawing }),
+    });
     inks.extend(panel.inks(scene, &frame, shown, &notes));
     Ok(Sheet { size, inks, labels, notes, magnification: shown.magnification })
 }
@@ -219,6 +223,7 @@ mod tests {
                 item(Sample::Pen(Pen::Outline)),
                 item(Sample::Pen(Pen::Construction)),
             ],
+            graph: None,
         }
     }
 

@@ -128,6 +128,14 @@ pub const PAGES: &[Page] = pages![
     "feed-no-hole"
     "feed-not-along-tool"
     "feed-without-retract"
+    "flute-end"
+    "flute-extra"
+    "flute-head"
+    "flute-helix"
+    "flute-index"
+    "flute-missing"
+    "flute-surface"
+    "flutes-meet"
     "g53-ignored"
     "head-message-unclear"
     "head-not-manual"
@@ -163,6 +171,7 @@ pub const PAGES: &[Page] = pages![
     "spindle-stopped"
     "tangent-of-90"
     "tool-unknown"
+    "wheel-into-burr"
 ];
 
 /// The rules of `check`, each a section of their page.

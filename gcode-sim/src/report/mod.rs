@@ -4,6 +4,8 @@ pub mod changes;
 pub mod check;
 pub mod diagnostic;
 pub mod explain;
+pub mod flute_table;
+pub mod flute_view;
 pub mod holes;
 pub mod run;
 pub mod tested;

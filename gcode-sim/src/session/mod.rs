@@ -7,14 +7,17 @@ use crate::alarm::{Alarm, Code};
 use crate::control::Settings;
 use crate::diag::{Diagnostic, Severity};
 use crate::exec::{Control, Limits, Note, Outcome};
+use crate::flutes::{Follower, Ground, NoGrinder};
 use crate::holes::{Extracted, Extractor};
 use crate::machine::Machine;
 use crate::motion::{Place, Sink};
+use crate::part::flutes::Flutes;
 use crate::part::hole::HoleList;
 use crate::part::reference::Reference;
 use crate::part::surface::Surface;
 use crate::program::{Library, Memory};
 use crate::source::Span;
+use crate::verify::flutes::{FluteVerdict, verify_flutes};
 use crate::verify::{Tolerances, Verdict, verify};
 
 /// A program to run, and everything its run depends on.
@@ -108,6 +111,44 @@ fn presets<'a>(machine: &'a Machine, settings: &'a Settings) -> impl Iterator<It
         Some((variable, tool.length?))
     });
     work.chain(lengths)
+}
+
+/// A run with the flutes it ground.
+#[derive(Debug)]
+pub struct Grinding {
+    pub run: Run,
+    pub ground: Ground,
+    pub wanted: Flutes,
+}
+
+/// Why flutes can't be followed.
+#[derive(Debug, thiserror::Error)]
+pub enum GrindingError {
+    #[error(transparent)]
+    Machine(#[from] NoGrinder),
+    #[error(transparent)]
+    Session(#[from] SessionError),
+}
+
+/// Runs a program and follows the wheel on the burr that is wanted.
+pub fn grind(
+    request: &Request,
+    library: &mut impl Library,
+    wanted: &Flutes,
+) -> Result<Grinding, GrindingError> {
+    let mut follower = Follower::new(&request.machine, *wanted)?;
+    let run = run(request, library, &mut follower)?;
+    let mut ground = follower.finish();
+    ground.findings.extend(run.notes());
+    ground.findings.extend(run.stopped());
+    Ok(Grinding { run, ground, wanted: *wanted })
+}
+
+impl Grinding {
+    /// The flutes against the wanted ones.
+    pub fn verify(&self) -> FluteVerdict {
+        verify_flutes(&self.wanted, &self.ground, &|span| self.run.locate(span))
+    }
 }
 
 /// A run with the holes it made.

@@ -1,5 +1,6 @@
 //! Holds the holes a program makes against the wanted ones: which is which, how far off, and whether that will do.
 mod checks;
+pub mod flutes;
 mod matching;
 mod neighbours;
 pub mod position;

@@ -182,7 +182,7 @@ impl Verdict {
 }
 
 /// As many of each kind as people read; the last of them says how many more there are.
-fn readable(findings: impl Iterator<Item = Diagnostic>) -> Vec<Diagnostic> {
+pub(super) fn readable(findings: impl Iterator<Item = Diagnostic>) -> Vec<Diagnostic> {
     const SHOWN: usize = 8;
     let mut kinds: BTreeMap<String, (usize, usize)> = BTreeMap::new();
     let mut shown: Vec<Diagnostic> = Vec::new();

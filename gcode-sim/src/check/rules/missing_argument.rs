@@ -60,7 +60,9 @@ fn lacking(subject: &Subject<'_>, called: &Unit<'_>, entry: Locals, modal: bool)
     missing.iter().for_each(|(local, _)| filled.0[*local] = NUMBER);
     let mut lacks = Vec::new();
     let mut told = BTreeSet::new();
-    for (local, letter) in &missing {
+    // Letters that belong together may all be left out where each alone is refused.
+    let refused = refusal(subject, called, &states(called, entry)).is_some();
+    for (local, letter) in missing.iter().filter(|_| refused) {
         let mut without = filled;
         without.0[*local] = UNSET;
         if let Some(alarm) = refusal(subject, called, &states(called, without))
@@ -149,6 +151,17 @@ mod tests {
         assert_eq!(call("R5. F3."), ["O0002 needs D (#7): without it, it stops with MC3002 (D MISSING)"]);
         assert_eq!(call("R5. D2."), ["O0002 reckons with F (#9) in line 9: without it, it counts as 0"]);
         assert_eq!(call("").len(), 2, "R and D; F is not looked at before they are there");
+    }
+
+    /// A ball needs neither K nor Q, a nose of arcs both.
+    #[test]
+    fn letters_that_belong_together_may_both_be_left_out() {
+        let arcs = "O2\nIF[[#6 EQ #0]AND[#17 EQ #0]]GOTO 20\nIF[#6 LE 0]THEN #3000=1(K MISSING)\n\
+                    IF[#17 LE 0]THEN #3000=2(Q MISSING)\nN20 X1.\nM99\n";
+        let call = |words: &str| messages(NAME, &format!("O1\nG65 P2 {words}\nM30\n{arcs}"));
+        assert_eq!(call(""), [""; 0]);
+        assert_eq!(call("K14. Q4."), [""; 0]);
+        assert_eq!(call("K14."), ["O0002 needs Q (#17): without it, it stops with MC3002 (Q MISSING)"]);
     }
 
     #[test]

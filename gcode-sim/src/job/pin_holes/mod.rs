@@ -157,7 +157,11 @@ depth = 15.0
             ("depth = 15.0", "depth = nan", "line 19: key 'hole.depth' is NaN: 0.01 to 9999 mm"),
             ("axial", "radial", "line 17: key 'hole.axis' is 'radial': one of axial, normal"),
             ("IS-B", "IS-Z", "line 4: key 'control.increment' is 'IS-Z': one of IS-A, IS-B, IS-C"),
-            ("pin-holes", "pinholes", "line 1: family 'pinholes' is not known: one of pin-holes, honeycomb"),
+            (
+                "pin-holes",
+                "pinholes",
+                "line 1: family 'pinholes' is not known: one of pin-holes, honeycomb, burr",
+            ),
             (
                 "[control]\n",
                 "[contrl]\n",

@@ -5,6 +5,7 @@ mod errors;
 mod head;
 mod probe;
 mod spread;
+mod wheel;
 
 use errors::FileErrors;
 pub use errors::error_file;
@@ -13,6 +14,7 @@ use nalgebra::{Point3, Unit, Vector3};
 use probe::FileProbe;
 use serde::Deserialize;
 use toml::{Spanned, Table};
+use wheel::FileWheel;
 
 use super::{Chain, Head, HeadKind, Link, Machine, Placement, Tool, WorkOffset};
 use crate::control::{Dialect, Increment};
@@ -27,6 +29,7 @@ struct File {
     control: Option<FileControl>,
     table: Option<Vec<FileLink>>,
     head: Option<FileHead>,
+    wheel: Option<FileWheel>,
     tool: Option<Vec<FileTool>>,
     offsets: Option<Spanned<Table>>,
     part: Option<FilePart>,
@@ -117,6 +120,7 @@ impl Machine {
                 None => Increment::default(),
             },
             slides: Chain::slides(&axes, &table),
+            wheel: file.wheel.map(|wheel| wheel.check(&reader, &axes, &table, &head)).transpose()?,
             offsets: file.offsets.map_or(Ok(Vec::new()), |offsets| work_offsets(&reader, &axes, &offsets))?,
             axes,
             table,
@@ -370,7 +374,7 @@ tilt = [0.0, 0.0, 1.0]
         let cases = [
             (
                 "tables = []\n",
-                "line 1: key 'tables' is not known; allowed: control, table, head, tool, offsets, part, probe, errors",
+                "line 1: key 'tables' is not known; allowed: control, table, head, wheel, tool, offsets, part, probe, errors",
             ),
             ("[[table]]\nletter = \"B\"\nturns = \"y\"\n", "line 1: key 'table.sign' is missing"),
             (

@@ -42,7 +42,7 @@ pub fn development(view: &TopView) -> Option<Scene> {
         Axis { name: "x".to_owned(), direction: [0.0, -1.0] },
     ];
     let legend = legend(view, &marks);
-    Some(Scene { title, axes, strokes: sheet.strokes(), marks, zone: view.tolerance, legend })
+    Some(Scene { title, axes, strokes: sheet.strokes(), marks, zone: view.tolerance, legend, graph: None })
 }
 
 /// Places of the cylinder on the sheet, mm.

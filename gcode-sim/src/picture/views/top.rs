@@ -96,7 +96,7 @@ pub fn top_view(view: &TopView) -> Scene {
         caution: "Predicted by simulation, not measured".to_owned(),
     };
     let legend = legend(view, &marks, has_circles);
-    Scene { title, axes: view.side.axes(), strokes, marks, zone: view.tolerance, legend }
+    Scene { title, axes: view.side.axes(), strokes, marks, zone: view.tolerance, legend, graph: None }
 }
 
 /// Of a cylinder only the holes on this side are seen.

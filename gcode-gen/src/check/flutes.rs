@@ -1,0 +1,35 @@
+//! Runs the programs of a burr and holds the flutes against the job's geometry.
+use gcode_sim::diag::Severity;
+use gcode_sim::machine::Machine;
+use gcode_sim::part::flutes::Flutes;
+use gcode_sim::picture;
+use gcode_sim::report::{diagnostic, flute_table, flute_view};
+use gcode_sim::session::{Request, grind};
+use gcode_sim::verify::Answer;
+
+use super::{CheckError, Checked, Judgement, Programs, main_program, told};
+use crate::package::{Package, file_name};
+
+pub(super) fn check(package: &Package, wanted: &Flutes) -> Result<Checked, CheckError> {
+    let machine = Machine::parse(&package.machine).map_err(|e| told("machine.toml", &e))?;
+    let main = main_program(package)?;
+    let request = Request::new(file_name(main.number), main.text.as_bytes(), machine);
+    let grinding =
+        grind(&request, &mut Programs(package), wanted).map_err(|e| told("the main program", &e))?;
+    let verdict = grinding.verify();
+    let sources = grinding.run.control.memory().sources();
+    let failed = verdict.diagnostics.iter().filter(|finding| Severity::Error <= finding.severity);
+    let mut refusals: Vec<_> = failed.map(|finding| diagnostic::render(finding, sources)).collect();
+    if refusals.is_empty() && verdict.verdict == Answer::Fail {
+        refusals.push("the programs fail the job's reference\n".to_owned());
+    }
+    let view = flute_view::of(&file_name(main.number), &grinding, &verdict);
+    Ok(Checked {
+        refusals,
+        seconds: grinding.run.control.seconds().0,
+        report: flute_table::table(&verdict),
+        picture: picture::side_view(&view),
+        more_pictures: vec![("tip", picture::tip_view(&view)), ("helix", picture::helix_graph(&view))],
+        judgement: Judgement::Flutes(verdict),
+    })
+}

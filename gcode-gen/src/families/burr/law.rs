@@ -1,0 +1,93 @@
+//! How far a flute has turned at C, by its law, and how it bends there, which tells how long a straight move may be.
+use gcode_sim::job::FluteLaw;
+use gcode_sim::units::{Deg, ln};
+
+use super::nose::Arc;
+
+/// A flute on one arc of the nose.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Flute {
+    pub(super) law: FluteLaw,
+    pub(super) helix: Deg,
+    pub(super) arc: Arc,
+}
+
+/// The slope of a flute at a point and how A bends there.
+struct Bend {
+    /// tan of the helix angle: around over along.
+    slope: f64,
+    /// radius·A'', A by C in rad: mm.
+    around: f64,
+}
+
+impl Flute {
+    /// How far A turns between the beginning of the arc and C.
+    pub(super) fn turn(&self, c: Deg) -> Deg {
+        Deg(self.angle(c).0 - self.angle(self.arc.from).0)
+    }
+
+    /// A with an arbitrary zero.
+    fn angle(&self, c: Deg) -> Deg {
+        let tan = self.helix.tan();
+        let arc = &self.arc;
+        match self.law {
+            // The integral of tan(helix)·ρ·dC/(ρ·cos C − d); on a ball (d = 0) that is LN TAN[45 + C/2].
+            FluteLaw::ConstantHelix => {
+                let k = arc.beyond / arc.radius;
+                let t = Deg(c.0 / 2.0).tan() * ((1.0 + k) / (1.0 - k)).sqrt();
+                Deg::from_rad(tan * ln((1.0 + t) / (1.0 - t)) / ((1.0 - k) * (1.0 + k)).sqrt())
+            }
+            // Equations (5) to (8).
+            FluteLaw::Published => {
+                let station = arc.station(c);
+                Deg::from_rad(tan * station.along / station.radius)
+            }
+        }
+    }
+
+    fn bend(&self, c: Deg) -> Bend {
+        let (arc, tan) = (&self.arc, self.helix.tan());
+        let r = arc.station(c).radius;
+        match self.law {
+            FluteLaw::ConstantHelix => {
+                Bend { slope: tan, around: tan * arc.radius * arc.radius * c.sin() / r }
+            }
+            FluteLaw::Published => {
+                let along = arc.station(c).along;
+                // Of the quotient along/radius: its slope's numerator, and what is left of the second derivative's.
+                let first = arc.radius * (c.cos() * r + c.sin() * along);
+                let second = arc.radius * (arc.beyond * c.sin() + arc.along * c.cos());
+                Bend {
+                    slope: tan * first / (r * arc.radius),
+                    around: tan * (second / r + 2.0 * arc.radius * c.sin() * first / (r * r)),
+                }
+            }
+        }
+    }
+
+    /// How much the contact's path bends away from the flute it follows, per square of C in rad: mm.
+    ///
+    /// A straight move from C to C + c leaves the true X, Y and A by at most c²/8 of their second derivatives: X'' and
+    /// Y'' are Rot(C)·e. Y goes into the surface, X along the meridian, A around; of the last two only what is across
+    /// the flute counts.
+    fn bending(&self, c: Deg) -> f64 {
+        let [meridian, normal] = self.arc.carried(c);
+        let Bend { slope, around } = self.bend(c);
+        let across = (meridian * slope - around) / (1.0 + slope * slope).sqrt();
+        (normal * normal + across * across).sqrt()
+    }
+
+    /// The longest move from C on that stays within `error` mm of the flute, shortened so that moves of its length
+    /// fill the rest of the arc. The bending is taken where the move begins and where it would end by that, whichever
+    /// is more; 10° is the most.
+    pub(super) fn step(&self, c: Deg, error: f64) -> Deg {
+        let longest = Deg(10.0).to_rad();
+        let least = 8.0 * error / (longest * longest);
+        let by = |bending: f64| Deg::from_rad((8.0 * error / bending).sqrt());
+        let start = self.bending(c).max(least);
+        let there = Deg(c.0 + by(start).0.min(self.arc.to.0 - c.0));
+        let step = by(start.max(self.bending(there)));
+        let rest = self.arc.to - c;
+        Deg(rest.0 / (rest.0 / step.0).ceil())
+    }
+}

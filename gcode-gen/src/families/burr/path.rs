@@ -1,0 +1,85 @@
+//! The points of one flute as axis positions: along the cylinder, then arc by arc to the tip.
+use gcode_sim::job::Burr;
+use gcode_sim::units::Deg;
+
+use super::law::Flute;
+use super::nose::{arcs, cylinder};
+
+/// Where the axes stand at the end of a move, signs as the formulas have them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Point {
+    pub(super) x: f64,
+    pub(super) y: f64,
+    /// From the flute's start.
+    pub(super) a: Deg,
+    pub(super) c: Deg,
+    /// How long the contact's way is from the point before, on the burr.
+    pub(super) way: f64,
+}
+
+/// The part of the chord error that rounding doesn't take: Y is rounded by up to half an increment; C is on its grid
+/// before X, Y and A are computed.
+pub(super) fn error(job: &Burr) -> f64 {
+    job.chord_error - job.control.increment.size() / 2.0
+}
+
+/// The first point is where the wheel plunges; A counts from there.
+pub(super) fn points(job: &Burr) -> Vec<Point> {
+    let shape = &job.shape;
+    let [offset_x, offset_y] = job.grinder.c_offset;
+    let helix = Deg(job.helix);
+    let long = cylinder(shape);
+    let mut points = vec![Point { x: -long, y: 0.0, a: Deg(0.0), c: Deg(0.0), way: 0.0 }];
+    let turned = Deg::from_rad(long * helix.tan() / shape.radius);
+    if 0.0 < long {
+        points.push(Point { x: 0.0, y: 0.0, a: turned, c: Deg(0.0), way: long / helix.cos() });
+    }
+    let mut begun = turned;
+    for arc in arcs(job) {
+        let flute = Flute { law: job.law, helix, arc };
+        let (mut c, mut a) = (arc.from, begun);
+        while c < arc.to {
+            let step = flute.step(c, error(job));
+            // A step below the grid would be none.
+            let next = Deg(job.control.increment.round(c.0 + step.0).max(c.0 + job.control.increment.size()));
+            let turn = begun + flute.turn(next);
+            let middle = arc.station(Deg((c.0 + next.0) / 2.0)).radius;
+            let along = arc.radius * (next - c).to_rad();
+            let around = middle * (turn - a).to_rad();
+            let [x, y] = arc.carried(next);
+            points.push(Point {
+                x: offset_x - x,
+                y: offset_y - shape.radius + arc.radius - y,
+                a: turn,
+                c: next,
+                way: (along * along + around * around).sqrt(),
+            });
+            (c, a) = (next, turn);
+        }
+        begun = a;
+    }
+    points
+}
+
+/// Y at which no point of the burr is lower than the clearance above the wheel's contact, at any C up to the end of
+/// the flute, and the blank's depth besides.
+///
+/// The burr's lowest point is where its normal points down, which is where it touches while it is ground; so Y has to
+/// be as large as it is anywhere along the flute. A nose of arcs lies within a ball of the cylinder's radius that reaches
+/// as far.
+pub(super) fn clear(job: &Burr) -> f64 {
+    let shape = &job.shape;
+    let [offset_x, y] = job.grinder.c_offset;
+    let x = offset_x - (super::nose::tip(shape) - shape.radius);
+    let end = Deg(job.control.increment.round(90.0 - shape.tip_angle));
+    let at_end = y - y * end.cos() - x * end.sin();
+    let highest = Deg::atan2(-x, -y);
+    let between = (x != 0.0 || y != 0.0) && 0.0 < highest.0 && highest < end;
+    let top = if between { y + (x * x + y * y).sqrt() } else { at_end.max(0.0) };
+    top + stand_off(job)
+}
+
+/// From the tooth bottom to where rapid becomes feed.
+pub(super) fn stand_off(job: &Burr) -> f64 {
+    job.grinder.clearance + job.shape.tooth_depth
+}

@@ -1,0 +1,151 @@
+//! The contact's path on the burr: how far off the surface, how far along and around it, and its direction.
+use nalgebra::Point3;
+
+use crate::job::FluteLaw;
+use crate::motion::Place;
+use crate::part::flutes::Flutes;
+use crate::units::Deg;
+
+/// One point of the path; lengths in mm.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample {
+    pub at: Point3<f64>,
+    /// From the tooth bottom; below 0 inside.
+    pub off: f64,
+    /// Polar angle of the surface's normal, from the tip.
+    pub polar: Deg,
+    /// The way from the pass's beginning along the meridian, towards the tip.
+    pub along: f64,
+    /// The way around the axis; above 0 right-handed with the way along.
+    pub around: f64,
+    /// The way around that the wanted law makes of the way along.
+    pub wanted: f64,
+    /// The same by the other law.
+    pub other: f64,
+    /// The angle it has turned about the axis since the pass's beginning, in the sense of `around`.
+    pub turned: Deg,
+    /// The angle about the axis where the pass begins, in the same sense.
+    pub begun: Deg,
+    /// Which of [`Trace::places`] moved here.
+    place: usize,
+}
+
+/// The path of one pass.
+#[derive(Clone, Debug, Default)]
+pub struct Trace {
+    pub samples: Vec<Sample>,
+    places: Vec<Place>,
+}
+
+/// The path's direction over a stretch of gauge length.
+#[derive(Clone, Copy, Debug)]
+pub struct Window<'t> {
+    pub middle: &'t Sample,
+    pub helix: Deg,
+    pub wanted: Deg,
+    /// What the other law would have.
+    pub other: Deg,
+}
+
+/// Over how long a stretch a helix angle is measured.
+///
+/// A path that may stray from the flute by the chord error has no direction at a point: it has one over lengths
+/// against which that error is small. 0.5 mm, or 250 chord errors where that is more, keep what straying alone can
+/// make of the angle below 0.23°.
+pub fn gauge(flutes: &Flutes) -> f64 {
+    (250.0 * flutes.chord_error).max(0.5)
+}
+
+/// The angle about the axis in the sense of `around`.
+fn azimuth(p: &Point3<f64>) -> Deg {
+    Deg::atan2(-p.z, p.y)
+}
+
+impl Trace {
+    /// Goes on along `path`, whose first point is where the trace has come to.
+    pub(super) fn follow(&mut self, flutes: &Flutes, path: &[Point3<f64>], place: impl Fn() -> Place) {
+        let profile = &flutes.profile;
+        let index = self.places.len();
+        self.places.push(place());
+        let other = match flutes.law {
+            FluteLaw::ConstantHelix => FluteLaw::Published,
+            FluteLaw::Published => FluteLaw::ConstantHelix,
+        };
+        for at in path {
+            let mut sample = Sample {
+                at: *at,
+                off: profile.distance(at),
+                polar: profile.polar(at),
+                along: 0.0,
+                around: 0.0,
+                wanted: 0.0,
+                other: 0.0,
+                turned: Deg::ZERO,
+                begun: azimuth(at),
+                place: index,
+            };
+            if let Some(last) = self.samples.last() {
+                let by = at - last.at;
+                if by.norm() == 0.0 {
+                    continue;
+                }
+                let middle = nalgebra::center(at, &last.at);
+                let (meridian, around) = profile.directions(&middle);
+                let along = by.dot(&meridian);
+                sample.along = last.along + along;
+                sample.around = last.around + by.dot(&around);
+                sample.wanted = last.wanted + flutes.slope(flutes.law, &middle) * along;
+                sample.other = last.other + flutes.slope(other, &middle) * along;
+                sample.turned = last.turned + Deg(shorter(azimuth(at).0 - azimuth(&last.at).0));
+                sample.begun = last.begun;
+            }
+            self.samples.push(sample);
+        }
+    }
+
+    /// The block that moved to a sample.
+    pub fn place(&self, sample: &Sample) -> &Place {
+        &self.places[sample.place]
+    }
+
+    /// The direction of the path, over every stretch of the gauge's length, or over all of it if it is shorter.
+    pub fn windows(&self, gauge: f64) -> impl Iterator<Item = Window<'_>> {
+        let length =
+            |one: &Sample, other: &Sample| libm::hypot(other.along - one.along, other.around - one.around);
+        let samples = &self.samples;
+        let whole = samples.first().zip(samples.last()).map_or(0.0, |(first, last)| length(first, last));
+        let gauge = gauge.min(whole * (1.0 - 1e-9));
+        let mut end = 0;
+        samples.iter().enumerate().map_while(move |(start, first)| {
+            while length(first, samples.get(end)?) < gauge || end <= start {
+                end += 1;
+            }
+            let last = &samples[end];
+            // The same flute, whichever way it is ground.
+            let along = last.along - first.along;
+            let sense = if along < 0.0 { -1.0 } else { 1.0 };
+            let angle = |way: f64| Deg::atan2(way * sense, along.abs());
+            Some(Window {
+                middle: &samples[(start + end) / 2],
+                helix: angle(last.around - first.around),
+                wanted: angle(last.wanted - first.wanted),
+                other: angle(last.other - first.other),
+            })
+        })
+    }
+
+    /// The angle about the axis where the path crosses `x`; `None` where it doesn't.
+    pub fn angle_at(&self, x: f64) -> Option<Deg> {
+        let crossing = |pair: &[Sample]| (pair[0].at.x - x) * (pair[1].at.x - x) <= 0.0;
+        let pair = self.samples.windows(2).find(|pair| crossing(pair))?;
+        let (before, after) = (&pair[0], &pair[1]);
+        let way = before.at.x - after.at.x;
+        let part = if way == 0.0 { 0.0 } else { (before.at.x - x) / way };
+        Some(before.begun + before.turned + (after.turned - before.turned) * part)
+    }
+}
+
+/// The same turn by the shorter way, −180° to 180°.
+pub(crate) fn shorter(angle: f64) -> f64 {
+    (angle + 180.0).rem_euclid(360.0) - 180.0
+}

@@ -1,0 +1,289 @@
+//! Reads the job file of the family `burr`: every key checked, its line named.
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::{AxisSigns, Burr, BurrProgram, BurrShape, BurrTolerance, FluteLaw, Grinder, Nose, ProgramForm};
+use crate::control::{Dialect, Increment};
+use crate::job::sections::{FileControl, sign, within};
+use crate::job::{JobControl, JobError, Reader};
+use crate::units::Deg;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    #[serde(rename = "family")]
+    _family: String,
+    control: Option<FileControl>,
+    burr: FileBurr,
+    machine: FileMachine,
+    program: Option<FileProgram>,
+    tolerance: Option<FileTolerance>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FileBurr {
+    diameter: Spanned<f64>,
+    length: Spanned<f64>,
+    flutes: Spanned<i64>,
+    helix: Spanned<f64>,
+    law: Spanned<String>,
+    tip_angle: Spanned<f64>,
+    chord_error: Spanned<f64>,
+    tooth_depth: Option<Spanned<f64>>,
+    profile: Option<Spanned<FileProfile>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FileMachine {
+    c_offset: [Spanned<f64>; 2],
+    signs: Option<FileSigns>,
+    clearance: Option<Spanned<f64>>,
+    profile: Option<Spanned<FileProfile>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FileProfile {
+    large: Spanned<f64>,
+    small: Spanned<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FileSigns {
+    #[serde(rename = "X")]
+    x: Option<Spanned<i64>>,
+    #[serde(rename = "Y")]
+    y: Option<Spanned<i64>>,
+    #[serde(rename = "A")]
+    a: Option<Spanned<i64>>,
+    #[serde(rename = "B")]
+    b: Option<Spanned<i64>>,
+    #[serde(rename = "C")]
+    c: Option<Spanned<i64>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FileProgram {
+    form: Option<Spanned<String>>,
+    speed: Option<Spanned<f64>>,
+    plunge: Option<Spanned<f64>>,
+    wheel: Option<Spanned<f64>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FileTolerance {
+    helix: Option<Spanned<f64>>,
+    index: Option<Spanned<f64>>,
+}
+
+/// The job of a burr, whose control is the default one unless the file says more.
+pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<Burr, JobError> {
+    let file: File = toml::from_str(reader.text).map_err(|e| reader.syntax(&e))?;
+    let control = match &file.control {
+        Some(control) => control.check(reader)?,
+        None => JobControl { dialect: Dialect::default(), increment: Increment::default() },
+    };
+    let burr = &file.burr;
+    let profile = match (&burr.profile, &file.machine.profile) {
+        (Some(_), Some(second)) => {
+            return Err(
+                reader.error(second, "key 'profile' stands in [burr] and in [machine]: once is enough")
+            );
+        }
+        (one, other) => one.as_ref().or(other.as_ref()),
+    };
+    let helix = reader.number(
+        "burr.helix",
+        &burr.helix,
+        "1 to 60 degrees, or -60 to -1 for a left-hand burr (a straight flute has no move that turns A, which tells \
+         grinding from approach)",
+        |v| within(1.0, 60.0)(v.abs()),
+    )?;
+    let shape = burr.shape(reader, profile)?;
+    let increment = control.increment.size();
+    let chord = format!(
+        "{increment} to 1 mm: rounding to the least increment of {increment} takes half of that, and is part of it"
+    );
+    let chord_error = reader.number("burr.chord_error", &burr.chord_error, &chord, within(increment, 1.0))?;
+    Ok(Burr {
+        control,
+        shape,
+        flutes: burr.count(reader, &shape, chord_error)?,
+        helix,
+        law: reader.choice("burr.law", &burr.law, &FluteLaw::ALL)?,
+        chord_error,
+        grinder: file.machine.check(reader)?,
+        program: FileProgram::check(file.program.as_ref(), reader, control.dialect)?,
+        tolerance: FileTolerance::check(file.tolerance.as_ref(), reader)?,
+    })
+}
+
+/// A key that may be left out.
+fn optional(
+    reader: &Reader<'_>,
+    key: &str,
+    value: Option<&Spanned<f64>>,
+    (low, high, unit): (f64, f64, &str),
+    default: f64,
+) -> Result<f64, JobError> {
+    let allowed = format!("{low} to {high} {unit}");
+    value.map_or(Ok(default), |value| reader.number(key, value, &allowed, within(low, high)))
+}
+
+impl FileBurr {
+    fn shape(
+        &self,
+        reader: &Reader<'_>,
+        profile: Option<&Spanned<FileProfile>>,
+    ) -> Result<BurrShape, JobError> {
+        let diameter = reader.number("burr.diameter", &self.diameter, "0.5 to 200 mm", within(0.5, 200.0))?;
+        let radius = diameter / 2.0;
+        let nose = profile.map_or(Ok(Nose::Ball), |profile| profile.as_ref().check(reader, radius))?;
+        let long = nose_length(radius, nose);
+        let allowed = format!("{long:.3} (the nose alone) to 500 mm");
+        // As long as the nose is to the digit that a job would say it with.
+        let length =
+            reader.number("burr.length", &self.length, &allowed, within(long - 0.000_5, 500.0))?.max(long);
+        Ok(BurrShape {
+            radius,
+            length,
+            nose,
+            tip_angle: reader.number(
+                "burr.tip_angle",
+                &self.tip_angle,
+                "1 to 85 degrees: at the pole a flute would have no width",
+                within(1.0, 85.0),
+            )?,
+            tooth_depth: optional(
+                reader,
+                "burr.tooth_depth",
+                self.tooth_depth.as_ref(),
+                (0.0, radius, "mm (the radius)"),
+                0.0,
+            )?,
+        })
+    }
+
+    /// As many as have room beside each other at the tip, were they as wide as twice the chord error.
+    fn count(&self, reader: &Reader<'_>, shape: &BurrShape, chord_error: f64) -> Result<u32, JobError> {
+        let end = match shape.nose {
+            Nose::Ball => shape.radius,
+            Nose::Arcs { small, .. } => small,
+        };
+        let round = std::f64::consts::TAU * end * Deg(shape.tip_angle).sin();
+        let most = (round / (4.0 * chord_error)).floor().clamp(1.0, 360.0);
+        let flutes = *self.flutes.as_ref();
+        u32::try_from(flutes).ok().filter(|n| 1 <= *n && f64::from(*n) <= most).ok_or_else(|| {
+            let message = format!(
+                "key 'burr.flutes' is {flutes}: 1 to {most:.0}, for at the tip angle {round:.3} mm are there for all of \
+                 them"
+            );
+            reader.error(&self.flutes, message)
+        })
+    }
+}
+
+/// How far the nose reaches beyond the end of the cylinder.
+fn nose_length(radius: f64, nose: Nose) -> f64 {
+    match nose {
+        Nose::Ball => radius,
+        Nose::Arcs { large, small } => {
+            let (between, aside) = (large - small, large - radius);
+            (between * between - aside * aside).sqrt() + small
+        }
+    }
+}
+
+impl FileProfile {
+    fn check(&self, reader: &Reader<'_>, radius: f64) -> Result<Nose, JobError> {
+        let large = reader.number(
+            "profile.large",
+            &self.large,
+            &format!("above {radius} (half the diameter) to 2000 mm"),
+            |v| radius < v && v <= 2000.0,
+        )?;
+        let small = reader.number(
+            "profile.small",
+            &self.small,
+            &format!("0.05 to less than {radius} mm (half the diameter)"),
+            |v| 0.05 <= v && v < radius,
+        )?;
+        Ok(Nose::Arcs { large, small })
+    }
+}
+
+impl FileMachine {
+    fn check(&self, reader: &Reader<'_>) -> Result<Grinder, JobError> {
+        let [x, y] = &self.c_offset;
+        let offset = |value: &Spanned<f64>| {
+            reader.number("machine.c_offset", value, "-2000 to 2000 mm", within(-2000.0, 2000.0))
+        };
+        let of = |key: &str, value: Option<&Spanned<i64>>| {
+            value.map_or(Ok(1), |value| sign(reader, &format!("machine.signs.{key}"), value))
+        };
+        let given = self.signs.as_ref();
+        Ok(Grinder {
+            c_offset: [offset(x)?, offset(y)?],
+            signs: AxisSigns {
+                x: of("X", given.and_then(|s| s.x.as_ref()))?,
+                y: of("Y", given.and_then(|s| s.y.as_ref()))?,
+                a: of("A", given.and_then(|s| s.a.as_ref()))?,
+                b: of("B", given.and_then(|s| s.b.as_ref()))?,
+                c: of("C", given.and_then(|s| s.c.as_ref()))?,
+            },
+            clearance: optional(
+                reader,
+                "machine.clearance",
+                self.clearance.as_ref(),
+                (0.1, 500.0, "mm"),
+                2.0,
+            )?,
+        })
+    }
+}
+
+const FORMS: [(&str, ProgramForm); 2] = [("loop", ProgramForm::Loop), ("moves", ProgramForm::Moves)];
+
+impl FileProgram {
+    fn check(file: Option<&Self>, reader: &Reader<'_>, dialect: Dialect) -> Result<BurrProgram, JobError> {
+        // The function LN isn't in that control's manual.
+        let without_loop = dialect == Dialect::HaasNgc;
+        let form = match file.and_then(|file| file.form.as_ref()) {
+            Some(form) => match reader.choice("program.form", form, &FORMS)? {
+                ProgramForm::Loop if without_loop => {
+                    let message = "key 'program.form' is 'loop': haas-ngc has no LN, which the loop computes with; 'moves'";
+                    return Err(reader.error(form, message));
+                }
+                form => form,
+            },
+            None if without_loop => ProgramForm::Moves,
+            None => ProgramForm::Loop,
+        };
+        let number = |key: &str, value: Option<&Spanned<f64>>, bounds, default| {
+            optional(reader, &format!("program.{key}"), value, bounds, default)
+        };
+        Ok(BurrProgram {
+            form,
+            speed: number("speed", file.and_then(|f| f.speed.as_ref()), (1.0, 20_000.0, "mm/min"), 200.0)?,
+            plunge: number("plunge", file.and_then(|f| f.plunge.as_ref()), (0.1, 5_000.0, "mm/min"), 30.0)?,
+            wheel: number("wheel", file.and_then(|f| f.wheel.as_ref()), (1.0, 99_999.0, "r/min"), 3000.0)?,
+        })
+    }
+}
+
+impl FileTolerance {
+    fn check(file: Option<&Self>, reader: &Reader<'_>) -> Result<BurrTolerance, JobError> {
+        let number = |key: &str, value: Option<&Spanned<f64>>, default| {
+            optional(reader, &format!("tolerance.{key}"), value, (0.001, 10.0, "degrees"), default)
+        };
+        Ok(BurrTolerance {
+            helix: number("helix", file.and_then(|f| f.helix.as_ref()), 0.3)?,
+            index: number("index", file.and_then(|f| f.index.as_ref()), 0.05)?,
+        })
+    }
+}

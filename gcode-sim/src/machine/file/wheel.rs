@@ -1,0 +1,53 @@
+//! The machine file's `[wheel]`: where a grinder's wheel touches the part, and which axis swivels it.
+use nalgebra::Point3;
+use serde::Deserialize;
+use toml::Spanned;
+
+use super::{lengths, letter, sign};
+use crate::job::JobError;
+use crate::job::reader::Reader;
+use crate::machine::{Chain, Head, HeadKind, Wheel};
+use crate::motion::Axes;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FileWheel {
+    contact: [Spanned<f64>; 3],
+    letter: Option<Spanned<String>>,
+    sign: Option<Spanned<i64>>,
+}
+
+impl FileWheel {
+    pub(super) fn check(
+        &self,
+        reader: &Reader<'_>,
+        axes: &Axes,
+        table: &Chain,
+        head: &Head,
+    ) -> Result<Wheel, JobError> {
+        let contact = Point3::from(lengths(reader, "wheel.contact", &self.contact)?);
+        let swivels = match (&self.letter, &self.sign) {
+            (None, None) => None,
+            (None, Some(given)) => {
+                return Err(reader.error(given, "key 'wheel.sign' goes with 'wheel.letter' only"));
+            }
+            (Some(name), given) => {
+                let axis = letter(reader, "wheel.letter", name, axes)?;
+                if !axes.is_rotary(axis) {
+                    return Err(reader.error(name, "key 'wheel.letter': the wheel swivels by A, B or C"));
+                }
+                let of_head = matches!(head.kind, HeadKind::Axis { axis: other, .. } if other == axis);
+                if table.has(axis) || of_head {
+                    let message = format!(
+                        "key 'wheel.letter' is {}, which is the table's or the head's",
+                        axes.letter(axis)
+                    );
+                    return Err(reader.error(name, message));
+                }
+                let sign = given.as_ref().map_or(Ok(1.0), |s| sign(reader, "wheel.sign", s))?;
+                Some((axis, sign))
+            }
+        };
+        Ok(Wheel { contact, swivels })
+    }
+}

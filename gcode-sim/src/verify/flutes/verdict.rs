@@ -1,0 +1,191 @@
+//! The answer on flutes: the numbers of the worst place, both laws side by side, and the findings.
+use serde::Serialize;
+
+use super::Inspection;
+use crate::diag::{Diagnostic, Severity};
+use crate::flutes::{Window, gauge};
+use crate::job::FluteLaw;
+use crate::part::flutes::Flutes;
+use crate::part::hole::Origin;
+use crate::source::Span;
+use crate::units::Deg;
+use crate::verify::verdict::{Answer, Finding, readable};
+
+/// As `verify --format json` writes it. Lengths in mm, angles in degrees; nothing is rounded.
+#[derive(Clone, Debug, Serialize)]
+pub struct FluteVerdict {
+    /// Says what kind of numbers these are.
+    pub basis: &'static str,
+    pub verdict: Answer,
+    pub law: &'static str,
+    /// That are ground; passes over one that is there already don't count.
+    pub flutes: usize,
+    pub wanted_flutes: usize,
+    /// The largest distance of the contact from the tooth bottom, between the points too; null without a flute.
+    pub surface_deviation: Option<f64>,
+    /// What that may be: the job's chord error, or what was asked for.
+    pub tolerance: f64,
+    pub helix_min: Option<f64>,
+    pub helix_max: Option<f64>,
+    /// Of the law asked for, on the cylinder.
+    pub helix: f64,
+    /// The largest difference from the law asked for.
+    pub helix_error: Option<f64>,
+    pub helix_tolerance: f64,
+    /// The length over which a helix angle is measured.
+    pub gauge: f64,
+    /// The largest difference of a gap between neighbours from an even one.
+    pub index_error: Option<f64>,
+    pub index_tolerance: f64,
+    /// The least distance between neighbours, across them.
+    pub nearest: Option<f64>,
+    pub passes: usize,
+    /// Grinding moves of all passes.
+    pub moves: usize,
+    /// A burr has none.
+    pub holes: [(); 0],
+    pub laws: Vec<Law>,
+    pub findings: Vec<Finding>,
+    /// What the verdict says nothing about, in words.
+    pub not_checked: Vec<String>,
+    /// For plots: the helix angle along the first flute.
+    #[serde(skip)]
+    pub along: Vec<Angles>,
+    /// The findings with their places, for people.
+    #[serde(skip)]
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// The helix angle at one polar angle: measured, and by both laws.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Law {
+    pub theta: f64,
+    /// On the first flute; null where it doesn't come.
+    pub measured: Option<f64>,
+    pub constant_helix: f64,
+    pub published: f64,
+}
+
+/// What `reference` writes of a burr: what is wanted, without a program.
+#[derive(Clone, Debug, Serialize)]
+pub struct WantedFlutes {
+    pub unit: &'static str,
+    /// A burr has none.
+    pub holes: [(); 0],
+    pub flutes: u32,
+    pub law: &'static str,
+    /// Where they begin behind the end of the cylinder, and where the pole is, along the axis.
+    pub start: f64,
+    pub pole: f64,
+    pub tip_angle: f64,
+    pub laws: Vec<Law>,
+}
+
+impl WantedFlutes {
+    pub fn of(wanted: &Flutes) -> Self {
+        Self {
+            unit: "mm",
+            holes: [],
+            flutes: wanted.count,
+            law: wanted.law.name(),
+            start: wanted.start,
+            pole: wanted.profile.pole(),
+            tip_angle: wanted.tip_angle.0,
+            laws: laws(wanted, &[]),
+        }
+    }
+}
+
+/// A measured helix angle.
+#[derive(Clone, Copy, Debug)]
+pub struct Angles {
+    pub polar: Deg,
+    pub helix: Deg,
+}
+
+/// The polar angles of the table; the tip angle comes last.
+const POLAR: [f64; 9] = [90.0, 75.0, 60.0, 45.0, 30.0, 20.0, 15.0, 10.0, 5.0];
+
+pub(super) fn verdict(
+    inspection: &Inspection<'_>,
+    measured: bool,
+    findings: Vec<Diagnostic>,
+    locate: &dyn Fn(Span) -> (String, u32),
+) -> FluteVerdict {
+    let (wanted, ground, helix) = (inspection.wanted, inspection.ground, &inspection.helix);
+    let samples = ground.passes.iter().flat_map(|pass| &pass.trace.samples);
+    let fails = findings.iter().any(|finding| Severity::Error <= finding.severity);
+    let pitch = 360.0 / f64::from(wanted.count);
+    let gauge = gauge(wanted);
+    let along: Vec<Angles> = ground.passes.first().map_or(Vec::new(), |pass| {
+        let angles = |window: Window<'_>| Angles { polar: window.middle.polar, helix: window.helix };
+        pass.trace.windows(gauge).map(angles).collect()
+    });
+    FluteVerdict {
+        basis: "predicted by simulation, not measured",
+        verdict: if fails { Answer::Fail } else { Answer::Pass },
+        law: wanted.law.name(),
+        flutes: inspection.round.flutes.len(),
+        wanted_flutes: wanted.count as usize,
+        surface_deviation: samples.map(|s| s.off.abs()).reduce(f64::max),
+        tolerance: wanted.surface_tolerance,
+        helix_min: measured.then_some(helix.least.0),
+        helix_max: measured.then_some(helix.most.0),
+        helix: wanted.helix.0,
+        helix_error: helix.worst.map(|worst| worst.off().0),
+        helix_tolerance: wanted.helix_tolerance.0,
+        gauge,
+        index_error: inspection.round.worst_gap.map(|gap| (gap.found.0 - pitch).abs()),
+        index_tolerance: wanted.index_tolerance.0,
+        nearest: inspection.round.nearest,
+        passes: ground.passes.len(),
+        moves: ground.passes.iter().map(|pass| pass.moves).sum(),
+        holes: [],
+        laws: laws(wanted, &along),
+        findings: findings.iter().map(|finding| shown(finding, locate)).collect(),
+        not_checked: vec![
+            "the wheel's width, form and body: it is one point, so whether it gouges a neighbouring tooth beside its \
+             contact isn't known"
+                .to_owned(),
+            "which side of the wheel's swivel B is right: only its angle is held against the helix angle".to_owned(),
+        ],
+        along,
+        diagnostics: readable(findings.into_iter()),
+    }
+}
+
+fn laws(wanted: &Flutes, along: &[Angles]) -> Vec<Law> {
+    let tip = wanted.tip_angle.0;
+    let all = POLAR.into_iter().filter(|polar| tip < *polar).chain([tip]);
+    let at = |theta: f64| {
+        let near = |one: &&Angles, other: &&Angles| {
+            (one.polar.0 - theta).abs().total_cmp(&(other.polar.0 - theta).abs())
+        };
+        // At its end a flute is measured half a gauge before it.
+        let nearest = along.iter().min_by(near).filter(|angles| (angles.polar.0 - theta).abs() < 2.5);
+        Law {
+            theta,
+            measured: nearest.map(|angles| angles.helix.0),
+            constant_helix: wanted.angle(FluteLaw::ConstantHelix, Deg(theta)).0,
+            published: wanted.angle(FluteLaw::Published, Deg(theta)).0,
+        }
+    };
+    all.map(at).collect()
+}
+
+fn shown(finding: &Diagnostic, locate: &dyn Fn(Span) -> (String, u32)) -> Finding {
+    let from = finding.place.as_ref().map(|place| {
+        let (program, line) = locate(place.block);
+        Origin { program, line, tool: None }
+    });
+    Finding {
+        code: finding.code.clone(),
+        severity: finding.severity.name(),
+        message: finding.message.clone(),
+        help: finding.help.clone(),
+        notes: finding.notes.clone(),
+        from_motion: false,
+        hole: None,
+        from,
+    }
+}

@@ -1,0 +1,327 @@
+//! Burrs from job to verdict: random jobs, both forms of the program, how many moves there are, what the macro refuses.
+use gcode_gen::check::check;
+use gcode_gen::families;
+use gcode_gen::package::{Package, file_name};
+use gcode_sim::exec::Outcome;
+use gcode_sim::job::Job;
+use gcode_sim::machine::Machine;
+use gcode_sim::motion::{Event, EventKind, Position, Sink};
+use gcode_sim::part::wanted::Wanted;
+use gcode_sim::program::Library;
+use gcode_sim::session::{Request, grind, run};
+use gcode_sim::units::{Deg, ln};
+use gcode_sim::verify::Answer;
+use gcode_sim::verify::flutes::FluteVerdict;
+use proptest::prelude::*;
+
+/// The keys of a job that differ from test to test.
+#[derive(Clone, Debug)]
+struct Wish {
+    control: (&'static str, &'static str),
+    diameter: f64,
+    /// Of the cylinder.
+    cylinder: f64,
+    flutes: u32,
+    helix: f64,
+    law: &'static str,
+    tip_angle: f64,
+    chord_error: f64,
+    offset: [f64; 2],
+    /// Large and small radius, in parts of the burr's.
+    profile: Option<(f64, f64)>,
+    signs: [i8; 5],
+    form: &'static str,
+}
+
+impl Wish {
+    fn text(&self) -> String {
+        let radius = self.diameter / 2.0;
+        let (nose, profile) = match self.profile {
+            None => (radius, String::new()),
+            Some((large, small)) => {
+                let (large, small) = (large * radius, small * radius);
+                let nose = ((large - small).powi(2) - (large - radius).powi(2)).sqrt() + small;
+                (nose, format!("profile = {{ large = {large:?}, small = {small:?} }}\n"))
+            }
+        };
+        let [x, y, a, b, c] = self.signs;
+        format!(
+            "family = \"burr\"\n[control]\ndialect = \"{}\"\nincrement = \"{}\"\n[burr]\ndiameter = {:?}\n\
+             length = {:?}\nflutes = {}\nhelix = {:?}\nlaw = \"{}\"\ntip_angle = {:?}\nchord_error = {:?}\n\
+             tooth_depth = 0.3\n[machine]\nc_offset = {:?}\n{profile}\
+             signs = {{ X = {x}, Y = {y}, A = {a}, B = {b}, C = {c} }}\n[program]\nform = \"{}\"\n",
+            self.control.0,
+            self.control.1,
+            self.diameter,
+            self.cylinder + nose,
+            self.flutes,
+            self.helix,
+            self.law,
+            self.tip_angle,
+            self.chord_error,
+            self.offset,
+            self.form
+        )
+    }
+
+    fn job(&self) -> Job {
+        Job::parse(&self.text()).unwrap_or_else(|error| panic!("{error}\n{}", self.text()))
+    }
+}
+
+fn example() -> Wish {
+    Wish {
+        control: ("fanuc-31i", "IS-B"),
+        diameter: 12.0,
+        cylinder: 19.0,
+        flutes: 16,
+        helix: 20.0,
+        law: "constant-helix",
+        tip_angle: 5.0,
+        chord_error: 0.002,
+        offset: [40.0, -15.0],
+        profile: None,
+        signs: [1; 5],
+        form: "loop",
+    }
+}
+
+/// What is emitted must pass; its verdict.
+fn passed(wish: &Wish) -> FluteVerdict {
+    let job = wish.job();
+    let checked = check(&job, &families::emit(&job)).unwrap();
+    assert!(checked.refusals.is_empty(), "{}\n{}", checked.refusals.concat(), wish.text());
+    let verdict = checked.judgement.into_flutes().unwrap();
+    assert!(verdict.verdict == Answer::Pass);
+    verdict
+}
+
+fn wishes() -> impl Strategy<Value = Wish> {
+    let control = (
+        prop::sample::select(vec!["fanuc-31i", "fanuc-0i-f", "haas-ngc"]),
+        prop::sample::select(vec!["IS-B", "IS-C"]),
+    );
+    let burr = (4.0..20.0f64, prop_oneof![Just(0.0), 0.5..20.0f64], 1u32..7);
+    let flute = (
+        prop_oneof![5.0..40.0f64, -40.0..-5.0f64],
+        prop::sample::select(vec!["constant-helix", "published"]),
+        8.0..70.0f64,
+    );
+    let grinder = (
+        prop::array::uniform2(-80.0..80.0f64),
+        prop::array::uniform5(prop::sample::select(vec![1i8, -1])),
+        prop::option::of((1.2..3.0f64, 0.3..0.9f64)),
+        prop::sample::select(vec!["loop", "moves"]),
+    );
+    (control, burr, flute, 0.002..0.01f64, grinder).prop_map(
+        |(
+            control,
+            (diameter, cylinder, flutes),
+            (helix, law, tip_angle),
+            chord_error,
+            (offset, signs, profile, form),
+        )| {
+            let form = if control.0 == "haas-ngc" { "moves" } else { form };
+            Wish {
+                control,
+                diameter,
+                cylinder,
+                flutes,
+                helix,
+                law,
+                tip_angle,
+                chord_error,
+                offset,
+                profile,
+                signs,
+                form,
+            }
+        },
+    )
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(8))]
+
+    #[test]
+    fn a_random_burr_is_ground_as_wanted(wish in wishes()) {
+        let verdict = passed(&wish);
+        prop_assert_eq!(verdict.flutes, wish.flutes as usize);
+        prop_assert!(verdict.surface_deviation.unwrap() <= wish.chord_error + 1e-6);
+        let (least, most) = (verdict.helix_min.unwrap(), verdict.helix_max.unwrap());
+        if wish.law == "constant-helix" {
+            prop_assert!((least - wish.helix).abs() < 0.3 && (most - wish.helix).abs() < 0.3, "{least} {most}");
+        } else {
+            // It leans as B does where it begins and grows steeper from there.
+            let flat = if wish.helix < 0.0 { most } else { least };
+            prop_assert!((flat - wish.helix).abs() < 3.0, "{least} {most}");
+        }
+    }
+}
+
+/// Every motion of a run.
+#[derive(Default)]
+struct Path(Vec<(bool, Position, f64)>);
+
+impl Sink for Path {
+    fn event(&mut self, event: &Event<'_>) {
+        match &event.kind {
+            EventKind::Rapid { to } => self.0.push((true, *to, event.seconds.0)),
+            EventKind::Feed { to, .. } => self.0.push((false, *to, event.seconds.0)),
+            _ => {}
+        }
+    }
+}
+
+struct Memory<'p>(&'p Package);
+
+impl Library for Memory<'_> {
+    fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)> {
+        let program = self.0.program(number)?;
+        Some((file_name(number), program.text.as_bytes().to_vec()))
+    }
+}
+
+fn request(package: &Package) -> Request {
+    let main = package.program(package.main).unwrap();
+    let machine = Machine::parse(&package.machine).unwrap();
+    Request::new(file_name(main.number), main.text.as_bytes(), machine)
+}
+
+fn path(wish: &Wish) -> Path {
+    let package = families::emit(&wish.job());
+    let mut path = Path::default();
+    let done = run(&request(&package), &mut Memory(&package), &mut path).unwrap();
+    assert!(matches!(done.outcome, Outcome::End), "{:?}", done.outcome);
+    path
+}
+
+/// The control computes the very points that the generator writes out, and as fast.
+#[test]
+fn both_forms_make_the_same_moves() {
+    let arcs = Wish { profile: Some((14.0 / 6.0, 4.0 / 6.0)), ..example() };
+    let published = Wish { law: "published", signs: [-1, 1, -1, 1, -1], flutes: 3, ..arcs.clone() };
+    for wish in [example(), arcs, published] {
+        let (computed, written) = (path(&wish), path(&Wish { form: "moves", ..wish.clone() }));
+        assert_eq!(computed.0.len(), written.0.len());
+        for (one, other) in computed.0.iter().zip(&written.0) {
+            assert_eq!(one.0, other.0);
+            let apart = one.1.0.iter().zip(&other.1.0).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(apart < 0.001_5, "{one:?} {other:?}");
+            assert!((one.2 - other.2).abs() < 1e-4, "{one:?} {other:?}");
+        }
+    }
+}
+
+/// The longest move from C on whose contact strays less than `error` from the loxodrome on a ball of 6 mm: written out
+/// for this test, with the distance across the flute taken on the surface.
+fn longest(c: f64, end: f64, error: f64) -> f64 {
+    let (radius, tan) = (6.0, Deg(20.0).tan());
+    let [x, y] = example().offset;
+    let turn = |c: f64| tan * ln(Deg(45.0 + c / 2.0).tan());
+    let strays = |to: f64| {
+        (1..20).any(|n| {
+            let t = f64::from(n) / 20.0;
+            let mix = |f: &dyn Fn(f64) -> f64| f(c) + (f(to) - f(c)) * t;
+            let now = c + (to - c) * t;
+            let (sin, cos) = (Deg(now).sin(), Deg(now).cos());
+            // Where the centre is, less where it ought to be.
+            let dx = mix(&|c| -(x * Deg(c).cos() - y * Deg(c).sin())) + x * cos - y * sin;
+            let dy = mix(&|c| -(x * Deg(c).sin() + y * Deg(c).cos())) + x * sin + y * cos;
+            let around = radius * cos * (mix(&turn) - turn(now));
+            let across = dx * Deg(20.0).sin() - around * Deg(20.0).cos();
+            (dy * dy + across * across).sqrt() > error
+        })
+    };
+    let (mut fits, mut too_long) = (c, (c + 20.0).min(end));
+    if !strays(too_long) {
+        return too_long;
+    }
+    for _ in 0..60 {
+        let middle = (fits + too_long) / 2.0;
+        if strays(middle) { too_long = middle } else { fits = middle }
+    }
+    fits
+}
+
+#[test]
+fn there_are_as_few_moves_as_hold_the_chord_error() {
+    let mut c = 0.0;
+    let mut fewest = 1;
+    while c < 85.0 {
+        c = longest(c, 85.0, 0.0015);
+        fewest += 1;
+    }
+    let found = passed(&example()).moves / 16;
+    assert!(
+        fewest <= found + 1 && found <= fewest + fewest / 20 + 2,
+        "{found} moves where {fewest} would do"
+    );
+}
+
+/// Forward kinematics decides: the same programs on a machine with one axis turned round grind no such burr.
+#[test]
+fn each_axis_sign_counts() {
+    let job = example().job();
+    let package = families::emit(&job);
+    let Wanted::Flutes(wanted) = Wanted::of_job(&job).unwrap() else { panic!("a burr has flutes") };
+    for letter in ["X", "Y", "A", "B", "C"] {
+        let (before, after) = package.machine.split_once(&format!("letter = \"{letter}\"")).unwrap();
+        let turned = after.replacen("sign = 1", "sign = -1", 1);
+        let machine = format!("{before}letter = \"{letter}\"{turned}");
+        let package = Package { machine, ..package.clone() };
+        let verdict = grind(&request(&package), &mut Memory(&package), &wanted).unwrap().verify();
+        assert!(verdict.verdict == Answer::Fail, "{letter} turned round isn't noticed");
+    }
+}
+
+#[test]
+fn without_a_wheel_there_is_no_verdict() {
+    let job = example().job();
+    let Wanted::Flutes(wanted) = Wanted::of_job(&job).unwrap() else { panic!("a burr has flutes") };
+    let package = Package { machine: String::new(), ..families::emit(&job) };
+    let error = grind(&request(&package), &mut Memory(&package), &wanted).unwrap_err().to_string();
+    assert!(error.starts_with("the machine file has no [wheel]"), "{error}");
+}
+
+/// One argument of the macro's call is changed; the alarm comes before anything moves.
+#[test]
+fn the_macro_refuses_what_can_not_be_ground() {
+    let cases = [
+        ("A[#1*360./16.] ", "", 81),
+        ("B20.", "B0.", 82),
+        ("B20.", "B75.", 82),
+        ("C85.", "C90.", 83),
+        ("C85. ", "", 83),
+        ("D0.002", "D0.0009", 84),
+        ("E30.", "E-30.", 85),
+        ("F200. ", "", 86),
+        ("H0.", "H2.", 87),
+        ("H0. ", "", 87),
+        ("I40. ", "", 88),
+        ("J-15. ", "", 89),
+        (" R6.", " R0.", 90),
+        ("V2.3", "V0.", 91),
+        ("W19.", "W-1.", 92),
+        (" W19.", "", 92),
+        (" R6.", " K5. Q4. R6.", 93),
+        (" R6.", " Q4. R6.", 93),
+        (" R6.", " K14. R6.", 94),
+        (" R6.", " K14. Q6. R6.", 95),
+        ("G21", "G20", 96),
+    ];
+    let package = families::emit(&example().job());
+    let text = &package.program(package.main).unwrap().text;
+    for (from, to, number) in cases.into_iter().chain([("S3000 M03", "G93", 96)]) {
+        assert!(text.contains(from), "{from} isn't in\n{text}");
+        let mut request = request(&package);
+        request.bytes = text.replacen(from, to, 1).into_bytes().into();
+        let mut path = Path::default();
+        let done = run(&request, &mut Memory(&package), &mut path).unwrap();
+        let Outcome::Alarm(stopped) = &done.outcome else { panic!("{to} raises nothing") };
+        assert_eq!(stopped.alarm.code().to_string(), format!("MC{}", 3000 + number), "{from} -> {to}");
+        assert!(path.0.is_empty(), "{to} is refused after a move");
+    }
+    // What the refused ones differ from is fine.
+    assert!(passed(&Wish { profile: Some((14.0 / 6.0, 4.0 / 6.0)), ..example() }).flutes == 16);
+}

@@ -1,0 +1,27 @@
+//! Draws a burr's flutes as its job's programs grind them: cases of kind `picture` that have a `job.toml`.
+use gcode_gen::families;
+use gcode_sim::job::Job;
+use gcode_sim::machine::Machine;
+use gcode_sim::part::wanted::Wanted;
+use gcode_sim::picture::{Scene, helix_graph, side_view, tip_view};
+use gcode_sim::program::NoLibrary;
+use gcode_sim::report::flute_view;
+use gcode_sim::session::{Request, grind};
+
+/// The scene of one view; the job's form must be `moves`, for there is no library here.
+pub(super) fn scene(job: &str, view: &str) -> Scene {
+    let job = Job::parse(job).unwrap();
+    let package = families::emit(&job);
+    let main = package.program(package.main).unwrap();
+    let machine = Machine::parse(&package.machine).unwrap();
+    let request = Request::new("O8400.nc", main.text.as_bytes(), machine);
+    let Wanted::Flutes(wanted) = Wanted::of_job(&job).unwrap() else { panic!("the job is no burr") };
+    let grinding = grind(&request, &mut NoLibrary, &wanted).unwrap();
+    let view_of = flute_view::of("O8400.nc", &grinding, &grinding.verify());
+    match view {
+        "side" => side_view(&view_of),
+        "tip" => tip_view(&view_of),
+        "helix" => helix_graph(&view_of),
+        other => panic!("a burr is seen from the side, the tip, or as its helix angle, not {other}"),
+    }
+}
