@@ -207,7 +207,8 @@ fn both_forms_make_the_same_moves() {
         for (one, other) in computed.0.iter().zip(&written.0) {
             assert_eq!(one.0, other.0);
             let apart = one.1.0.iter().zip(&other.1.0).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            assert!(apart < 0.001_5, "{one:?} {other:?}");
+            // A C that falls halfway between two increments may go either way, and A after it.
+            assert!(apart < 0.005, "{one:?} {other:?}");
             assert!((one.2 - other.2).abs() < 1e-4, "{one:?} {other:?}");
         }
     }
