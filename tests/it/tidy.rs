@@ -120,3 +120,33 @@ fn nothing_is_left_unfinished() {
         }
     }
 }
+
+/// What merges and snapshots leave behind.
+#[test]
+fn no_file_is_left_over() {
+    let left = |path: &Path| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        [".orig", ".rej", ".snap.new", ".bak"].iter().any(|end| name.ends_with(end))
+    };
+    fn look(dir: &Path, left: &dyn Fn(&Path) -> bool) {
+        for entry in std::fs::read_dir(dir).unwrap() {
+            let path = entry.unwrap().path();
+            let hidden =
+                path.file_name().is_some_and(|n| n == "target" || n.to_string_lossy().starts_with('.'));
+            if path.is_dir() && !hidden {
+                look(&path, left);
+            }
+            assert!(!left(&path), "{} is left over", path.display());
+        }
+    }
+    look(&workspace(), &left);
+}
+
+/// A file has one subject; beyond this it has several.
+#[test]
+fn no_file_is_too_long() {
+    for path in all_sources() {
+        let lines = std::fs::read_to_string(&path).unwrap().lines().count();
+        assert!(lines <= 500, "{} has {lines} lines", path.display());
+    }
+}
