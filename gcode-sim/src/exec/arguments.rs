@@ -1,9 +1,13 @@
 //! The words of a macro call to the locals they set.
 use super::Core;
 use super::eval::Checked;
+use super::quantities::POWERS;
 use super::vars::{Locals, VACANT, Value};
+use super::words::Raw;
 use crate::alarm::Alarm;
-use crate::program::{ArgumentLocals, Coded, Program};
+use crate::control::ArgumentScale;
+use crate::program::{ArgumentLocals, Coded, Input, Program};
+use crate::syntax::ast::Decimal;
 
 impl Core {
     /// Word by word in the order they stand in; a vacant value leaves its local vacant. `every` is G66.1, which takes
@@ -23,5 +27,46 @@ impl Core {
             }
         }
         Ok(locals)
+    }
+
+    /// The value of a word that is an argument of a macro.
+    fn raw_argument(&self, program: &Program, word: &Coded) -> Checked<Option<Raw>> {
+        match word.value {
+            Input::Operand(operand) => {
+                Ok(self.argument_operand(program, operand)?.given().map(Raw::Computed))
+            }
+            Input::Literal(_) | Input::G(..) => self.raw(program, word),
+        }
+    }
+
+    /// An argument of a macro call: computed values and points as they are, otherwise counted in the increments of
+    /// the address (6007#4 CVA = 0).
+    pub(super) fn argument(&self, raw: Raw, letter: u8) -> f64 {
+        match raw {
+            Raw::Computed(value) => value,
+            Raw::Literal(number) => number.value() / POWERS[self.counted_decimals(raw, letter)],
+        }
+    }
+
+    /// The decimals that ADP takes back from an argument: none with CVA 6007#4.
+    fn argument_decimals(&self, raw: Raw, letter: u8) -> u8 {
+        if self.settings.converts_arguments { 0 } else { self.counted_decimals(raw, letter) as u8 }
+    }
+
+    /// How many decimals an argument without a point has that counts the increments of its address.
+    fn counted_decimals(&self, raw: Raw, letter: u8) -> usize {
+        let Raw::Literal(Decimal { places: None, .. }) = raw else { return 0 };
+        let scale = match letter {
+            b'D' | b'G' | b'H' | b'L' | b'M' | b'N' | b'P' | b'S' | b'T' => ArgumentScale::Whole,
+            b'E' => self.settings.unsure.argument_e,
+            b'F' => self.settings.unsure.argument_f,
+            _ => ArgumentScale::Increments,
+        };
+        match scale {
+            ArgumentScale::Whole => 0,
+            ArgumentScale::Feed => self.feed_decimals(&self.state),
+            ArgumentScale::Increments if self.settings.calculator_input => 0,
+            ArgumentScale::Increments => self.decimals(letter, self.state.modal.unit),
+        }
     }
 }

@@ -1,5 +1,5 @@
 //! Carries out what a block has planned, and tells the machine.
-use super::cycles::Drill;
+use super::drill::Drill;
 use super::plan::{Plan, Write};
 use super::vars::Kind;
 use super::{Core, STOPS, Stop};

@@ -1,48 +1,18 @@
-//! Expands a drilling cycle's row into moves, hole by hole.
+//! Checks a drilling block: its axis, its words, its repeats, and where it ends.
 use super::Core;
+use super::drill::{Circle, Drill};
 use super::eval::{Checked, at};
 use super::notes::Note;
 use super::patterns::Pattern;
-use super::pecks::{PECKS, pecks};
+use super::pecks::are_too_many;
 use super::plan::Plan;
-use super::state::{Level, PolarPoint, State};
+use super::state::{Level, State};
 use super::words::Given;
 use crate::alarm::Alarm;
-use crate::motion::{Axis, EventKind, Position, Spindle, StopKind};
+use crate::motion::{Axis, Position};
 use crate::program::cycles::{Cycle, Step};
 use crate::program::modes::{Distance, Plane, Polar, ReturnTo};
 use crate::source::Span;
-use crate::units::{Deg, MmPerMin, Rpm, Seconds};
-
-/// A drilling block, checked: telling it can't fail.
-#[derive(Clone, Debug)]
-pub(super) struct Drill {
-    cycle: &'static Cycle,
-    /// Where the block begins; after it the plan's state stands where it ends.
-    from: State,
-    /// The first hole, as programmed, and from hole to hole.
-    hole: Position,
-    step: Position,
-    circle: Option<Circle>,
-    pattern: Option<Pattern>,
-    repeats: u32,
-    axis: Axis,
-    shift: (Axis, f64),
-    rate: MmPerMin,
-    /// Seconds.
-    dwell: f64,
-    /// What G51 makes of a millimetre along the drilling axis; Q, 5114 and 5115 are not scaled.
-    stretch: f64,
-}
-
-/// Holes that K repeats in polar coordinates.
-#[derive(Clone, Copy, Debug)]
-struct Circle {
-    plane: (Axis, Axis),
-    first: PolarPoint,
-    /// Degrees from hole to hole.
-    turn: f64,
-}
 
 impl Core {
     /// Whether a block drills: it names an axis or R.
@@ -88,24 +58,8 @@ impl Core {
         span: Span,
     ) -> Checked<()> {
         let axis = at(self.drilling_axis(given, &plan.state), span)?;
-        let stretch = plan.state.transform.scaling.map_or(1.0, |s| s.factor[axis]);
-        let turned = stretch < 0.0 || plan.state.transform.mirrored >> axis & 1 == 1;
-        // Of cycles with a shift the manual says that G51 leaves them out, not how far.
-        let shifts = stretch != 1.0 && cycle.steps.contains(&Step::Shift);
-        if plan.state.transform.tilt.is_some() || turned || shifts {
-            let what =
-                "a drilling cycle whose axis is tilted or mirrored, or one with a shift that is scaled"
-                    .into();
-            return Err(Alarm::NotSimulated { what }.at(span));
-        }
-        let letter = self.settings.cycle_repeats;
-        let repeats = match pattern {
-            Some(pattern) => pattern.count,
-            None => given.count(letter)?.unwrap_or(1),
-        };
-        if repeats > 9999 {
-            return Err(Alarm::TooManyDigits.at(given.span(letter)));
-        }
+        let stretch = at(stretch_along(plan, cycle, axis), span)?;
+        let repeats = self.cycle_repeats(given, pattern)?;
         let incremental = plan.state.modal.distance == Distance::Incremental;
         let from = plan.state;
         // The block's own depth words are not a move.
@@ -113,25 +67,16 @@ impl Core {
         goal[axis] = from.programmed[axis];
         self.drilling_words(plan, given, axis, incremental)?;
         if cycle.needs_q {
-            if self.settings.shrinking_pecks && pattern.is_none() {
-                self.shrinking_pecks(plan, given, span)?;
-            }
-            let data = &plan.state.drilling;
-            if data.pecks.is_none() && data.q.is_none_or(|q| q == 0.0) {
-                return Err(Alarm::NoPeckDepth.at(span));
-            }
+            self.peck_words(plan, given, pattern, span)?;
         }
         let (rate, _) = at(self.time_along(&plan.state, 1.0, 1.0, 0.0, given.has(b'F')), span)?;
         plan.moved = true;
-        let data = plan.state.drilling.unscaled(stretch);
-        let pecks = pecks(data.r_level(), data.z_level(), &data);
-        if cycle.needs_q && pecks * f64::from(repeats.max(1)) > PECKS {
-            return Err(
-                Alarm::NotSimulated { what: "more than a million pecks in one block".into() }.at(span)
-            );
+        if cycle.needs_q && are_too_many(&plan.state.drilling.unscaled(stretch), repeats) {
+            let what = "more than a million pecks in one block".into();
+            return Err(Alarm::NotSimulated { what }.at(span));
         }
-        let turned = |(axis, letter): (Axis, char)| self.settings.roll_over[axis] && given.has(letter as u8);
-        if incremental && self.settings.axes.iter().any(turned) {
+        let rolls = |(axis, letter): (Axis, char)| self.settings.roll_over[axis] && given.has(letter as u8);
+        if incremental && self.settings.axes.iter().any(rolls) {
             let what = "a drilling cycle with an incremental axis that rolls over".into();
             return Err(Alarm::NotSimulated { what }.at(span));
         }
@@ -162,28 +107,49 @@ impl Core {
             dwell: plan.state.drilling.p,
             stretch,
         };
-        let last = drill.last(self);
+        plan.state.programmed = drill.last(self);
+        if repeats == 0 {
+            // Positions only.
+            let mut to = self.to_machine(&plan.state, plan.state.programmed);
+            to[axis] = from.machine[axis];
+            plan.state.machine = from.machine;
+            self.rapid(plan, to);
+            return Ok(());
+        }
         let level = if plan.state.modal.return_to == ReturnTo::R && cycle.starts_at_r {
             plan.state.drilling.r_level()
         } else {
             plan.state.drilling.initial
         };
-        let drills = repeats > 0;
-        plan.state.programmed = last;
-        if drills {
-            plan.state.programmed[axis] = level;
-        }
-        let machine = self.to_machine(&plan.state, plan.state.programmed);
-        if drills {
-            plan.drill = Some(drill);
-            plan.state.machine = machine;
-        } else {
-            let mut to = machine;
-            to[axis] = from.machine[axis];
-            plan.state.machine = from.machine;
-            self.rapid(plan, to);
-        }
+        plan.state.programmed[axis] = level;
+        plan.state.machine = self.to_machine(&plan.state, plan.state.programmed);
+        plan.drill = Some(drill);
         Ok(())
+    }
+
+    fn cycle_repeats(&self, given: &Given, pattern: Option<Pattern>) -> Checked<u32> {
+        let letter = self.settings.cycle_repeats;
+        let repeats = match pattern {
+            Some(pattern) => pattern.count,
+            None => given.count(letter)?.unwrap_or(1),
+        };
+        if repeats > 9999 { Err(Alarm::TooManyDigits.at(given.span(letter))) } else { Ok(repeats) }
+    }
+
+    /// A cycle with pecks needs their depth.
+    fn peck_words(
+        &self,
+        plan: &mut Plan,
+        given: &Given,
+        pattern: Option<Pattern>,
+        span: Span,
+    ) -> Checked<()> {
+        if self.settings.shrinking_pecks && pattern.is_none() {
+            self.shrinking_pecks(plan, given, span)?;
+        }
+        let data = &plan.state.drilling;
+        let none = data.pecks.is_none() && data.q.is_none_or(|q| q == 0.0);
+        if none { Err(Alarm::NoPeckDepth.at(span)) } else { Ok(()) }
     }
 
     /// How the holes of a block with K follow one another in polar coordinates; the next block's angle counts from the
@@ -230,175 +196,18 @@ impl Core {
         plan.state.drilling = data;
         Ok(())
     }
-
-    /// Tells a drilling block move by move.
-    pub(super) fn drill(&self, drill: &Drill, tell: &mut impl FnMut(EventKind, f64)) {
-        let mut way = Way { core: self, at: drill.from.machine, rate: drill.rate, tell };
-        let state = &drill.from;
-        let data = &state.drilling;
-        let (r, z) = (data.r_level(), data.z_level());
-        let mut hole = drill.hole;
-        for turn in 0..drill.repeats {
-            drill.advance(self, turn, &mut hole);
-            let level = |value: f64| {
-                let mut point = hole;
-                point[drill.axis] = value;
-                self.to_machine(state, point)
-            };
-            let mut over = level(r);
-            over[drill.axis] = way.at[drill.axis];
-            way.rapid(over);
-            if drill.cycle.starts_at_r {
-                way.rapid(level(r));
-            }
-            for step in drill.cycle.steps {
-                self.drill_step(*step, drill, &level, (r, z), &mut way);
-            }
-        }
-    }
-
-    fn drill_step<T: FnMut(EventKind, f64)>(
-        &self,
-        step: Step,
-        drill: &Drill,
-        level: &impl Fn(f64) -> Position,
-        (r, z): (f64, f64),
-        way: &mut Way<'_, T>,
-    ) {
-        let state = &drill.from;
-        let initial = state.drilling.initial;
-        let to_initial = state.modal.return_to == ReturnTo::Initial;
-        let turning = |turning| EventKind::Spindle { turning, speed: Rpm(state.codes.s) };
-        match step {
-            Step::FeedToBottom => way.feed(level(z)),
-            Step::PeckFull => {
-                self.peck((r, z), &state.drilling.unscaled(drill.stretch), |last, next, done| {
-                    if last != r {
-                        let clearance = (self.settings.g83_clearance / drill.stretch).min((r - last).abs());
-                        way.rapid(level(last + clearance.copysign(r - z)));
-                    }
-                    way.feed(level(next));
-                    if !done {
-                        way.rapid(level(r + self.settings.g83_above_r.copysign(r - z)));
-                    }
-                });
-            }
-            Step::PeckShort => {
-                let retract = (self.settings.g73_retract / drill.stretch).copysign(r - z);
-                self.peck((r, z), &state.drilling.unscaled(drill.stretch), |_, next, done| {
-                    way.feed(level(next));
-                    if !done {
-                        way.rapid(level(next + retract));
-                    }
-                });
-            }
-            Step::Dwell => way.dwell(drill.dwell),
-            Step::DwellAtR if self.settings.unsure.tap_dwells_at_r => way.dwell(drill.dwell),
-            Step::DwellAtR => {}
-            Step::FeedToR => way.feed(level(r)),
-            Step::RapidBack => way.shifted_to(level(if to_initial { initial } else { r }), drill.axis),
-            Step::RapidToInitial if to_initial => way.rapid(level(initial)),
-            Step::RapidToInitial => {}
-            Step::RapidToInitialAlways => way.shifted_to(level(initial), drill.axis),
-            Step::RapidToR => way.shifted_to(level(r), drill.axis),
-            Step::Shift => {
-                let mut to = way.at;
-                to[drill.shift.0] = self.clean(to[drill.shift.0] + drill.shift.1);
-                way.rapid(to);
-            }
-            Step::ShiftBack => {
-                let mut to = way.at;
-                to[drill.shift.0] = self.clean(to[drill.shift.0] - drill.shift.1);
-                way.rapid(to);
-            }
-            Step::SpindleStop => (way.tell)(turning(Spindle::Off), 0.0),
-            Step::SpindleForward => (way.tell)(turning(Spindle::Clockwise), 0.0),
-            Step::SpindleReverse => (way.tell)(turning(Spindle::Counterclockwise), 0.0),
-            Step::ManualRetract => {
-                let stop = EventKind::Stop {
-                    kind: StopKind::M00,
-                    text: "retract by hand to R".into(),
-                    named: Vec::new(),
-                };
-                (way.tell)(stop, 0.0);
-                way.rapid(level(r));
-            }
-        }
-    }
 }
 
-impl Drill {
-    /// From a hole to the one that K repeats as number `turn`; 0 is the block's own.
-    fn advance(&self, core: &Core, turn: u32, hole: &mut Position) {
-        if let Some(Pattern { radius, start, turn: angle, .. }) = self.pattern {
-            let angle = Deg(start + f64::from(turn) * angle);
-            hole[0] = core.clean(self.hole[0] + radius * angle.cos());
-            hole[1] = core.clean(self.hole[1] + radius * angle.sin());
-            return;
-        }
-        if turn == 0 {
-            return;
-        }
-        let from = *hole;
-        for (place, _) in core.settings.axes.iter() {
-            hole[place] = core.clean(self.hole[place] + f64::from(turn) * self.step[place]);
-        }
-        if let Some(Circle { plane, first, turn: angle }) = self.circle {
-            (hole[plane.0], hole[plane.1]) = (from[plane.0], from[plane.1]);
-            let here = PolarPoint { angle: first.angle + f64::from(turn) * angle, ..first };
-            core.polar_point(&here, plane, hole);
-        }
+/// What G51 makes of a millimetre along the drilling axis; an alarm for what isn't simulated.
+fn stretch_along(plan: &Plan, cycle: &Cycle, axis: Axis) -> Result<f64, Alarm> {
+    let transform = &plan.state.transform;
+    let stretch = transform.scaling.map_or(1.0, |s| s.factor[axis]);
+    let turned = stretch < 0.0 || transform.mirrored >> axis & 1 == 1;
+    // Of cycles with a shift the manual says that G51 leaves them out, not how far.
+    let shifts = stretch != 1.0 && cycle.steps.contains(&Step::Shift);
+    if transform.tilt.is_some() || turned || shifts {
+        let what = "a drilling cycle whose axis is tilted or mirrored, or one with a shift that is scaled";
+        return Err(Alarm::NotSimulated { what: what.into() });
     }
-
-    /// The tool comes from here.
-    pub(super) fn begins_at(&mut self, machine: Position) {
-        self.from.machine = machine;
-    }
-
-    /// Where the last hole is.
-    fn last(&self, core: &Core) -> Position {
-        let mut hole = self.hole;
-        for turn in 0..self.repeats {
-            self.advance(core, turn, &mut hole);
-        }
-        hole
-    }
-}
-
-/// The tool on its way through a cycle, in machine coordinates.
-struct Way<'c, T> {
-    core: &'c Core,
-    at: Position,
-    rate: MmPerMin,
-    tell: &'c mut T,
-}
-
-impl<T: FnMut(EventKind, f64)> Way<'_, T> {
-    fn rapid(&mut self, to: Position) {
-        if to != self.at {
-            (self.tell)(EventKind::Rapid { to }, self.core.rapid_seconds(&self.at, &to));
-            self.at = to;
-        }
-    }
-
-    /// Along the drilling axis only: the plane keeps its shift.
-    fn shifted_to(&mut self, to: Position, axis: Axis) {
-        let mut there = self.at;
-        there[axis] = to[axis];
-        self.rapid(there);
-    }
-
-    fn feed(&mut self, to: Position) {
-        if to != self.at {
-            let squares: f64 = (0..to.0.len()).map(|a| (to[a] - self.at[a]) * (to[a] - self.at[a])).sum();
-            (self.tell)(EventKind::Feed { to, rate: self.rate }, squares.sqrt() / self.rate.0 * 60.0);
-            self.at = to;
-        }
-    }
-
-    fn dwell(&mut self, seconds: f64) {
-        if seconds > 0.0 {
-            (self.tell)(EventKind::Dwell { time: Seconds(seconds) }, seconds);
-        }
-    }
+    Ok(stretch)
 }

@@ -8,7 +8,7 @@ use crate::alarm::Alarm;
 use crate::source::Span;
 
 /// A block with more pecks than this alarms: nobody drills so, and a run must end.
-pub(super) const PECKS: f64 = 1e6;
+const PECKS: f64 = 1e6;
 
 impl Core {
     /// G73 and G83 of a Haas: the first peck is I, each next one J less, none less than K.
@@ -63,7 +63,7 @@ fn depth(data: &Drilling, count: f64) -> f64 {
 }
 
 /// How many pecks a hole from R to Z takes.
-pub(super) fn pecks(r: f64, z: f64, data: &Drilling) -> f64 {
+fn pecks(r: f64, z: f64, data: &Drilling) -> f64 {
     let deep = (z - r).abs();
     if data.pecks.is_none() {
         return match data.q {
@@ -76,4 +76,9 @@ pub(super) fn pecks(r: f64, z: f64, data: &Drilling) -> f64 {
         count += 1.0;
     }
     count
+}
+
+/// Whether a block with so many holes has more pecks than anybody drills.
+pub(super) fn are_too_many(data: &Drilling, holes: u32) -> bool {
+    pecks(data.r_level(), data.z_level(), data) * f64::from(holes.max(1)) > PECKS
 }

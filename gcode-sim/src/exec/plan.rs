@@ -1,6 +1,6 @@
 //! What a block is going to do: made without touching the control, carried out afterwards without failing.
 use super::ahead::Ahead;
-use super::cycles::Drill;
+use super::drill::Drill;
 use super::frames::ByCodes;
 use super::notes::Note;
 use super::offsets::Register;

@@ -1,7 +1,7 @@
 //! G31 and the machine's answer to it: where the skip signal comes, and where the axes stand then.
 use super::Core;
-use super::block::not_simulated;
 use super::eval::{Checked, at};
+use super::modal_codes::not_simulated;
 use super::plan::{Plan, Probing};
 use super::words::Given;
 use crate::alarm::Alarm;
@@ -34,6 +34,16 @@ impl Core {
         plan.state.programmed = goal.programmed;
         plan.moved = true;
         Ok(())
+    }
+
+    /// G31 P and G04 Q name a set of skip signals.
+    pub(super) fn skip_signals(&self, given: &Given, letter: u8) -> Checked<()> {
+        match given.count(letter)? {
+            Some(set) if !(1..=4).contains(&set) => {
+                Err(Alarm::SkipSignals { letter: char::from(letter) }.at(given.span(letter)))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Asks where the signal comes and ends the planned motion there. The alarm, if any, is raised after the motion.

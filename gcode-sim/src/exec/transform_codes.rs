@@ -1,7 +1,7 @@
 //! G68, G68.2, G51 and G51.1: their words to a [`Transform`](super::transform::Transform).
 use super::Core;
-use super::block::not_simulated;
 use super::eval::{Checked, at};
+use super::modal_codes::not_simulated;
 use super::notes::Note;
 use super::plan::Plan;
 use super::transform::{Scale, Tilt, Transform, Turn};

@@ -1,0 +1,69 @@
+//! What the M codes of a block do, each at its time, and a new S.
+use super::Core;
+use super::eval::Checked;
+use super::notes::Note;
+use super::plan::{Flow, Plan};
+use super::words::Given;
+use crate::alarm::Alarm;
+use crate::motion::{EventKind, Spindle, StopKind};
+use crate::program::m_codes::{self, MEffect};
+use crate::units::Rpm;
+
+impl Core {
+    /// 2., 5. and 6. What M codes do, each at its time.
+    pub(super) fn m_codes(&self, given: &Given, plan: &mut Plan) -> Checked<()> {
+        if let Some(code) = given.lost_m {
+            plan.note = Some(Note::MCodeLost { code });
+        }
+        for (code, span) in given.m[..given.m_count].iter().flatten().copied() {
+            plan.state.codes.m = code;
+            let speed = Rpm(plan.state.codes.s);
+            let Some(effect) = m_codes::find(code, self.settings.codes) else {
+                plan.passed_on = Some(code);
+                continue;
+            };
+            match effect {
+                MEffect::Stop => plan.stop = Some(StopKind::M00),
+                MEffect::OptionalStop if self.settings.optional_stop => plan.stop = Some(StopKind::M01),
+                MEffect::OptionalStop | MEffect::NoEffect => {}
+                MEffect::End => plan.flow = Flow::End,
+                MEffect::SpindleForward => self.turn(plan, Spindle::Clockwise, speed),
+                MEffect::SpindleReverse => self.turn(plan, Spindle::Counterclockwise, speed),
+                MEffect::SpindleStop => {
+                    plan.state.spindle = Spindle::Off;
+                    plan.after.push((EventKind::Spindle { turning: Spindle::Off, speed }, 0.0));
+                }
+                MEffect::ToolChange => {
+                    plan.state.tool = plan.state.codes.t;
+                    plan.tell(EventKind::Tool { number: plan.state.codes.t });
+                }
+                MEffect::CoolantOn => {
+                    plan.state.coolant = true;
+                    plan.tell(EventKind::Coolant { on: true });
+                }
+                MEffect::CoolantOff => {
+                    plan.state.coolant = false;
+                    plan.after.push((EventKind::Coolant { on: false }, 0.0));
+                }
+                MEffect::InterruptOn => {
+                    given.accept(b"P");
+                    plan.note = Some(Note::InterruptNeverComes);
+                }
+                MEffect::InterruptOff => {}
+                MEffect::Call | MEffect::NotSimulated => {
+                    return Err(Alarm::NotSimulated { what: format!("M{code:02} here") }.at(span));
+                }
+            }
+        }
+        let told = plan.events.iter().any(|(kind, _)| matches!(kind, EventKind::Spindle { .. }));
+        if given.has(b'S') && plan.state.spindle != Spindle::Off && !told {
+            self.turn(plan, plan.state.spindle, Rpm(plan.state.codes.s));
+        }
+        Ok(())
+    }
+
+    fn turn(&self, plan: &mut Plan, turning: Spindle, speed: Rpm) {
+        plan.state.spindle = turning;
+        plan.tell(EventKind::Spindle { turning, speed });
+    }
+}

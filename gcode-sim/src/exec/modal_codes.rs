@@ -1,0 +1,113 @@
+//! The G codes of a block put in force, and what else than a move uses its axis words.
+use super::Core;
+use super::eval::{Checked, at};
+use super::plan::Plan;
+use super::state::{Drilling, PolarPoint};
+use super::words::Given;
+use crate::alarm::Alarm;
+use crate::program::codes::{Effect, OneShot, Row, spelled};
+use crate::program::modes::{CutterSide, Mirror, Polar, Rotation, Scaling};
+use crate::source::Span;
+
+/// What uses the axis words of a block that doesn't simply move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Act {
+    OneShot(OneShot),
+    AdditionalWork,
+    Scale,
+    MirrorOn,
+    MirrorOff,
+    Rotate,
+    Tilt,
+}
+
+impl Core {
+    /// 1. Modal G codes in the order they stand in; the answer is what uses the axis words instead of a move.
+    pub(super) fn modal_codes(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<Option<Act>> {
+        let state = &mut plan.state;
+        let before = state.modal;
+        let mut act = None;
+        let mut latched = before.cycle.is_some();
+        for row in given.g_codes() {
+            let new = at(act_of(row, given, state.modal.cutter), span)?;
+            if new.is_some() && act.is_some() && new != act {
+                let what = "several one-shot G codes in one block".into();
+                return Err(Alarm::NotSimulated { what }.at(span));
+            }
+            act = new.or(act);
+            state.modal.apply(row);
+            if matches!(row.effect, Effect::Motion(_) | Effect::Cycle(None)) {
+                state.drilling = Drilling::default();
+                latched = false;
+            }
+        }
+        let modal = state.modal;
+        if modal.plane != before.plane && self.ahead.is_beside() {
+            return Err(Alarm::PlaneInCompensation.at(span));
+        }
+        if modal.plane != before.plane && state.transform.rotation.is_some() {
+            return Err(Alarm::PlaneInRotation.at(span));
+        }
+        if before.scaling == Scaling::On
+            && modal.scaling == Scaling::On
+            && let Some(row) = given.g_codes().find(|row| row.effect.needs_plain_coordinates())
+        {
+            return Err(Alarm::CodeInScaling { code: spelled(row.code) }.at(span));
+        }
+        if modal.scaling == Scaling::Off {
+            state.transform.scaling = None;
+        }
+        if modal.rotation == Rotation::Off {
+            state.transform.rotation = None;
+            state.transform.tilt = None;
+        }
+        if modal.polar == Polar::On && before.polar == Polar::Off {
+            state.polar = PolarPoint::default();
+        }
+        if modal.work != before.work || state.transform != self.state.transform {
+            self.recompute(state);
+        }
+        if modal.cycle.is_some() && !latched {
+            let axis = at(self.drilling_axis(given, state), span)?;
+            state.drilling.axis = Some(axis);
+            state.drilling.initial = state.programmed[axis];
+        }
+        // G54 P is G54.1 P.
+        let additional = given.has(b'P')
+            && act.is_none()
+            && modal.cycle.is_none()
+            && given.g_codes().any(|row| row.effect == Effect::Work(1));
+        Ok(if additional { Some(Act::AdditionalWork) } else { act })
+    }
+}
+
+/// What uses the axis words because of a code, if anything.
+fn act_of(row: &Row, given: &Given, cutter: CutterSide) -> Result<Option<Act>, Alarm> {
+    Ok(match row.effect {
+        Effect::NotSimulated if (450..=480).contains(&row.code) && cutter != CutterSide::Off => {
+            return Err(Alarm::ToolOffsetInCompensation);
+        }
+        Effect::NotSimulated | Effect::Call => return Err(not_simulated(row.code, row.help)),
+        Effect::NoEffect => {
+            given.accept(b"IPQR");
+            None
+        }
+        Effect::Smoothness => {
+            given.accept(b"EP");
+            None
+        }
+        Effect::OneShot(one) => Some(Act::OneShot(one)),
+        Effect::AdditionalWork => Some(Act::AdditionalWork),
+        Effect::Scaling(Scaling::On) => Some(Act::Scale),
+        Effect::Mirror(Mirror::On) => Some(Act::MirrorOn),
+        Effect::Mirror(Mirror::Off) => Some(Act::MirrorOff),
+        Effect::Rotation(Rotation::On) => Some(Act::Rotate),
+        Effect::Rotation(Rotation::Tilted) => Some(Act::Tilt),
+        _ => None,
+    })
+}
+
+/// The alarm of a G code that isn't executed.
+pub(super) fn not_simulated(code: u32, help: &str) -> Alarm {
+    Alarm::NotSimulated { what: format!("G{} ({help})", spelled(code)) }
+}

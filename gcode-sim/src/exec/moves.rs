@@ -1,0 +1,96 @@
+//! A move by the modal codes: the tool length that it takes in, a drilling cycle, or group 01.
+use super::Core;
+use super::eval::{Checked, at};
+use super::notes::Note;
+use super::plan::Plan;
+use super::words::Given;
+use crate::alarm::Alarm;
+use crate::motion::EventKind;
+use crate::program::codes::Effect;
+use crate::program::modes::{CutterSide, Length, Motion};
+use crate::source::Span;
+
+impl Core {
+    /// 3. G43, G44, G49 and a new H; whether the offset changed.
+    pub(super) fn length(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<bool> {
+        let commanded = given.has(b'H') || given.g_codes().any(|row| matches!(row.effect, Effect::Length(_)));
+        if !commanded || (plan.state.modal.length == Length::Off && self.state.modal.length == Length::Off) {
+            return Ok(false);
+        }
+        let offset = at(self.length_offset(&plan.state), span)?;
+        if offset == plan.state.length {
+            return Ok(false);
+        }
+        plan.state.length = offset;
+        plan.tell(EventKind::ToolLength { offset });
+        Ok(true)
+    }
+
+    /// 4. A move by the modal codes: a drilling cycle, or group 01.
+    pub(super) fn motion(&self, given: &Given, plan: &mut Plan, lengthened: bool, span: Span) -> Checked<()> {
+        if let Some(cycle) = plan.state.modal.cycle {
+            if self.drills(given) {
+                return self.prepare_drill(plan, given, cycle, None, span);
+            }
+            // P and Q are stored by blocks that drill only.
+            if given.has_any(b"PQ") {
+                given.accept(b"PQ");
+                plan.note = Some(Note::CycleDataLost);
+            }
+            if lengthened {
+                self.recompute(&mut plan.state);
+            }
+            return Ok(());
+        }
+        let motion = plan.state.modal.motion;
+        let arcs = matches!(motion, Motion::Clockwise | Motion::Counterclockwise);
+        let named = self.names_axis(given);
+        // A code of group 01 behind that of a cycle: a plain move, the cycle's own words are nothing.
+        let overruled = given.g_codes().any(|row| matches!(row.effect, Effect::Cycle(Some(_))));
+        if overruled {
+            given.accept(b"KPQR");
+        }
+        if !(named || arcs && given.has_any(b"IJKR")) {
+            return self.settle(given, plan, lengthened, span);
+        }
+        // Some controls round corners by R or read I J K here; the end of cutter compensation takes a vector.
+        let vector = given.g_codes().any(|row| row.effect == Effect::Cutter(CutterSide::Off));
+        if let Some(letter) = b"IJKR".iter().find(|l| given.has(**l) && !arcs && !vector && !overruled) {
+            let what = format!("{} beside a straight move", char::from(*letter));
+            return Err(Alarm::NotSimulated { what }.at(given.span(*letter)));
+        }
+        let goal = self.goal(given, &mut plan.state)?;
+        if motion == Motion::Thread && given.has_corner() {
+            return Err(Alarm::CornerInThread.at(span));
+        }
+        if motion != Motion::Rapid {
+            plan.corner = self.corner_word(given, &plan.state)?;
+        }
+        match motion {
+            Motion::Rapid => self.rapid(plan, goal.machine),
+            Motion::Thread => self.thread(plan, goal.machine, given, span)?,
+            Motion::Linear => at(self.feed(plan, goal.machine, given), span)?,
+            Motion::Clockwise | Motion::Counterclockwise => self.arc(plan, given, &goal, span)?,
+        }
+        plan.state.programmed = goal.programmed;
+        plan.moved = true;
+        Ok(())
+    }
+
+    /// The tool length changed in a block without an axis: the axis moves by the offset at once, or keeps still.
+    fn settle(&self, given: &Given, plan: &mut Plan, lengthened: bool, span: Span) -> Checked<()> {
+        if !lengthened {
+            return Ok(());
+        }
+        if !self.settings.unsure.length_moves_at_once {
+            self.recompute(&mut plan.state);
+            return Ok(());
+        }
+        let to = self.to_machine(&plan.state, plan.state.programmed);
+        if plan.state.modal.motion == Motion::Rapid {
+            self.rapid(plan, to);
+            return Ok(());
+        }
+        at(self.feed(plan, to, given), span)
+    }
+}

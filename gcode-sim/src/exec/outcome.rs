@@ -1,0 +1,46 @@
+//! How long a run may take, and how it ends or stops.
+use crate::alarm::Alarm;
+use crate::motion::{Place, StopKind};
+use crate::source::Span;
+
+/// How long a run may take.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// Blocks executed, macro statements included.
+    pub blocks: u64,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self { blocks: 10_000_000 }
+    }
+}
+
+/// How a run ended.
+#[derive(Clone, Debug)]
+pub enum Outcome {
+    /// M02, M30, the M99 that ends the run, or the program's end.
+    End,
+    Alarm(Stopped),
+    /// The limit of blocks, or a loop that provably never ends ([`Control::endless_loop`](super::Control::endless_loop)).
+    Limit,
+}
+
+/// Where and why the control stopped.
+#[derive(Clone, Debug)]
+pub struct Stopped {
+    pub alarm: Alarm,
+    /// The part of the block it is about.
+    pub span: Span,
+    /// The block, and the calls that led to it.
+    pub place: Place,
+}
+
+/// An operator stop.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stop {
+    pub kind: StopKind,
+    pub text: String,
+    /// The variables that the text names, with their values.
+    pub named: Vec<(u32, f64)>,
+}

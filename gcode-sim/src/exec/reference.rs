@@ -1,0 +1,93 @@
+//! The reference position: G27 checks it, G28 and G30 go there, G29 comes back.
+use super::Core;
+use super::eval::Checked;
+use super::notes::Note;
+use super::plan::Plan;
+use super::words::Given;
+use crate::alarm::Alarm;
+use crate::motion::{EventKind, Position};
+use crate::program::modes::Length;
+use crate::source::Span;
+
+impl Core {
+    pub(super) fn check_reference(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<()> {
+        let goal = self.goal(given, &mut plan.state)?;
+        self.rapid(plan, goal.machine);
+        plan.state.programmed = goal.programmed;
+        for (axis, letter) in self.settings.axes.iter() {
+            if given.has(letter as u8) && self.rolled(axis, plan.state.machine[axis]) != 0.0 {
+                return Err(Alarm::NotAtReference { letter }.at(span));
+            }
+        }
+        plan.moved = true;
+        Ok(())
+    }
+
+    /// G28 and G30: by rapid over the intermediate point to the reference position, the named axes only.
+    pub(super) fn reference(&self, given: &Given, plan: &mut Plan, reference: Position) -> Checked<()> {
+        if !self.names_axis(given) {
+            let code = given.g_codes().find(|row| row.code == 300).map_or(280, |row| row.code);
+            plan.note = Some(Note::NoAxis { code });
+        }
+        let goal = self.goal(given, &mut plan.state)?;
+        self.rapid(plan, goal.machine);
+        let mut home = plan.state.machine;
+        for (axis, letter) in self.settings.axes.iter() {
+            if given.has(letter as u8) {
+                plan.state.intermediate[axis] = goal.machine[axis] - self.zero(&plan.state, axis);
+                plan.state.has_intermediate |= 1 << axis;
+                home[axis] = self.turned_to(axis, home[axis], reference[axis]);
+            }
+        }
+        self.rapid(plan, home);
+        // The length offset is cancelled where its axis reaches the reference position.
+        let z = self.settings.axes.find(b'Z');
+        if z.is_some() && given.has(b'Z') && plan.state.modal.length != Length::Off {
+            if plan.state.length != Position::default() {
+                plan.tell(EventKind::ToolLength { offset: Position::default() });
+            }
+            plan.state.length = Position::default();
+            plan.state.modal.length = Length::Off;
+        }
+        self.recompute(&mut plan.state);
+        plan.moved = true;
+        Ok(())
+    }
+
+    /// G28 of a Haas without an axis: all of them straight home, and no length offset any more.
+    pub(super) fn home_all(&self, plan: &mut Plan) {
+        let mut home = plan.state.machine;
+        for (axis, _) in self.settings.axes.iter() {
+            home[axis] = self.turned_to(axis, home[axis], 0.0);
+        }
+        self.rapid(plan, home);
+        if plan.state.length != Position::default() {
+            plan.tell(EventKind::ToolLength { offset: Position::default() });
+        }
+        plan.state.length = Position::default();
+        plan.state.modal.length = Length::Off;
+        self.recompute(&mut plan.state);
+        plan.moved = true;
+    }
+
+    /// G29: over the intermediate point of the last G28 to the given point.
+    pub(super) fn leave_reference(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<()> {
+        let mut over = plan.state.machine;
+        for (axis, letter) in self.settings.axes.iter() {
+            if !given.has(letter as u8) {
+                continue;
+            }
+            if plan.state.has_intermediate >> axis & 1 == 0 {
+                return Err(Alarm::NoIntermediatePoint.at(span));
+            }
+            over[axis] = self.clean(plan.state.intermediate[axis] + self.zero(&plan.state, axis));
+        }
+        self.rapid(plan, over);
+        self.recompute(&mut plan.state);
+        let goal = self.goal(given, &mut plan.state)?;
+        self.rapid(plan, goal.machine);
+        plan.state.programmed = goal.programmed;
+        plan.moved = true;
+        Ok(())
+    }
+}

@@ -1,0 +1,186 @@
+//! A run: block by block to the end, to an alarm, or to a limit.
+use super::eval::Checked;
+use super::frames::FrameKind;
+use super::notes::Note;
+use super::plan::Flow;
+use super::{Control, Core, Limits, Outcome, Stopped};
+use crate::alarm::Alarm;
+use crate::motion::{Place, Sink};
+use crate::program::{Form, Library, Op, OpKind};
+use crate::source::Span;
+
+/// A run ends after so many moves, and so many for every block that it may execute: a cycle with K or with small
+/// pecks is one block, and a loop round it must end as well.
+const MOVES: u64 = 1_000_000;
+const MOVES_PER_BLOCK: u64 = 20;
+
+impl Control {
+    /// Runs to the end, to an alarm, or to a limit.
+    pub fn run<S: Sink>(&mut self, limits: Limits, library: &mut impl Library, sink: &mut S) -> Outcome {
+        let moves = limits.blocks.saturating_mul(MOVES_PER_BLOCK).max(MOVES);
+        while self.core.blocks < limits.blocks && self.core.moves <= moves {
+            if let Some(outcome) = self.step(library, sink) {
+                return outcome;
+            }
+        }
+        self.outcome = Some(Outcome::Limit);
+        Outcome::Limit
+    }
+
+    /// Does one block; `Some` when the run is over. A block that alarms has changed nothing.
+    pub fn step<S: Sink>(&mut self, library: &mut impl Library, sink: &mut S) -> Option<Outcome> {
+        if let Some(outcome @ (Outcome::End | Outcome::Alarm(_))) = &self.outcome {
+            return Some(outcome.clone());
+        }
+        let mut done = self.block(library, sink);
+        if matches!(done, Ok(Some(Outcome::End)))
+            && let Err(alarm) = self.core.end_ahead(sink)
+        {
+            done = Err(alarm);
+        }
+        if let Some(note) = self.core.told.take() {
+            self.core.notes.entry(note).or_insert(self.core.block);
+        }
+        let outcome = match done {
+            Ok(outcome) => outcome?,
+            Err(alarm) => {
+                self.core.complete(&alarm, sink);
+                let calls = self.core.frames.last().map(|f| f.calls.clone()).unwrap_or_default();
+                let place = Place { block: self.core.block, calls };
+                Outcome::Alarm(Stopped { alarm: alarm.node, span: alarm.span, place })
+            }
+        };
+        self.outcome = Some(outcome.clone());
+        Some(outcome)
+    }
+
+    /// Reads the next block and does what it says.
+    fn block<S: Sink>(&mut self, library: &mut impl Library, sink: &mut S) -> Checked<Option<Outcome>> {
+        let Self { memory, core, plan, given, watch, endless, .. } = self;
+        if memory.programs().is_empty() {
+            return Err(Alarm::EndOfRecord.at(Span::default()));
+        }
+        let frame = core.frame();
+        let (id, place, main) = (frame.program, frame.next, frame.kind == FrameKind::Main);
+        let program = memory.get(id);
+        let Some(op) = program.ops.get(place) else {
+            core.block = Span { start: program.span.end, ..program.span };
+            // A text may just stop; running into `%` or another program is running off the tape.
+            if main && !program.closed {
+                return Ok(Some(Outcome::End));
+            }
+            return Err(Alarm::EndOfRecord.at(core.block));
+        };
+        core.block = op.span;
+        core.blocks += 1;
+        core.frame_mut().next = place + 1;
+        if op.skip.is_some_and(|switch| core.skips(switch)) {
+            return Ok(None);
+        }
+        core.take_forms(op)?;
+        let mut kind = &op.kind;
+        if let OpKind::If { condition, then } = kind
+            && core.holds(program, *condition)?
+        {
+            kind = then;
+        }
+        match kind {
+            OpKind::Empty if core.state.parameter_input && op.number.is_some() => {
+                return Err(Alarm::ParameterFormat { what: "R is missing".into() }.at(op.span));
+            }
+            OpKind::Empty if op.number.is_some() => core.pass_number(op.span, sink)?,
+            OpKind::Empty | OpKind::If { .. } => {}
+            OpKind::Alarm(alarm) => return Err((**alarm).clone()),
+            OpKind::Statement(statement) => {
+                let outcome = core.statement(program, statement, op.span, sink)?;
+                if core.frame().next <= place {
+                    *endless = watch.jumped(core);
+                    return Ok(endless.map(|_| Outcome::Limit));
+                }
+                return Ok(outcome);
+            }
+            OpKind::Words(words) if core.state.parameter_input => {
+                let span = op.span;
+                core.prepare_parameter(program, (words, op.number), given, plan, span)?;
+                return self.finish(span, library, sink);
+            }
+            OpKind::Words(words) => {
+                if core.call_by_block(program, words, op.number, op.span)? {
+                    core.state.codes.o = memory.get(core.frame().program).shown_number();
+                    return Ok(None);
+                }
+                core.prepare(program, words, given, plan, op.span)?;
+                let span = op.span;
+                if let Some(number) = op.number {
+                    plan.state.codes.n = number;
+                }
+                return self.finish(span, library, sink);
+            }
+        }
+        if let Some(number) = op.number {
+            core.state.codes.n = number;
+        }
+        Ok(None)
+    }
+
+    /// Carries out the plan of a block of words. What can still alarm comes first.
+    fn finish<S: Sink>(
+        &mut self,
+        span: Span,
+        library: &mut impl Library,
+        sink: &mut S,
+    ) -> Checked<Option<Outcome>> {
+        let mut flow = std::mem::take(&mut self.plan.flow);
+        if let Flow::Call(call) = &mut flow {
+            let at = call.span;
+            self.resolve(call, library).map_err(|alarm| alarm.at(at))?;
+        }
+        let broken_off = self.core.ask_for_signal(&mut self.plan, sink);
+        self.core.commit(&mut self.plan, sink);
+        if let Some(alarm) = broken_off {
+            return Err(alarm);
+        }
+        match flow {
+            Flow::Next if self.plan.moved && !self.core.modal_calls.is_empty() => {
+                self.core.call_after_move(span).map_err(|alarm| alarm.at(span))?;
+            }
+            Flow::Next => {}
+            Flow::Call(call) => {
+                self.core.enter(&call, span);
+                let program = self.core.frame().program;
+                self.core.state.codes.o = self.memory.get(program).shown_number();
+            }
+            Flow::Return(to) => {
+                let outcome = self.go_back(to, span)?;
+                let program = self.core.frame().program;
+                self.core.state.codes.o = self.memory.get(program).shown_number();
+                if outcome.is_none() {
+                    self.endless = self.watch.jumped(&mut self.core);
+                    return Ok(self.endless.map(|_| Outcome::Limit));
+                }
+                return Ok(outcome);
+            }
+            Flow::CancelModal => self.core.cancel_modal(),
+            Flow::End => {
+                self.core.parts[0] += 1.0;
+                return Ok(Some(Outcome::End));
+            }
+        }
+        Ok(None)
+    }
+}
+
+impl Core {
+    /// Ways of writing that not every control reads.
+    fn take_forms(&mut self, op: &Op) -> Checked<()> {
+        for form in &op.forms {
+            if !form.node.is_taken(&self.settings) {
+                return Err(form.node.alarm().at(form.span));
+            }
+            if form.node == Form::LowerCase {
+                self.notes.entry(Note::LowerCase).or_insert(op.span);
+            }
+        }
+        Ok(())
+    }
+}
