@@ -1,9 +1,21 @@
-//! The command line as written: clap's types, and the help texts with their examples.
+//! The command line as written: the commands, their help texts with examples, and the arguments that several share.
+//! Those of one command stand in its file.
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use super::budget::BudgetArguments;
+use super::check::CheckArguments;
+use super::compare::CompareArguments;
+use super::diff::DiffArguments;
+use super::explain::ExplainArguments;
 use super::front::Colours;
+use super::holes::HolesArguments;
+use super::reference::ReferenceArguments;
+use super::render::RenderArguments;
+use super::run::RunArguments;
+use super::test::TestArguments;
+use super::verify::VerifyArguments;
 
 /// Executes Fanuc Custom Macro B programs as the control would, follows the tool on the part, and holds the
 /// holes against a reference.
@@ -196,271 +208,6 @@ impl RunConditions {
     }
 }
 
-#[derive(Debug, Args)]
-pub(super) struct RunArguments {
-    #[command(flatten)]
-    pub(super) program: ProgramArguments,
-
-    /// Add every move to the result, in machine coordinates
-    #[arg(long)]
-    pub(super) moves: bool,
-
-    /// Write what the program prints (DPRNT, BPRNT) to this file
-    #[arg(long, value_name = "FILE")]
-    pub(super) output: Option<PathBuf>,
-
-    /// Show a system variable at the end, e.g. '#5041' (repeatable)
-    #[arg(long, value_name = "#N")]
-    pub(super) show: Vec<String>,
-
-    /// How the result is written
-    #[arg(long, value_enum, default_value_t = TextFormat::Text)]
-    pub(super) format: TextFormat,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct HolesArguments {
-    #[command(flatten)]
-    pub(super) program: ProgramArguments,
-
-    /// How the result is written
-    #[arg(long, value_enum, default_value_t = ListFormat::Text)]
-    pub(super) format: ListFormat,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct ReferenceArguments {
-    /// The job file
-    #[arg(value_name = "JOB.toml")]
-    pub(super) job: PathBuf,
-
-    /// How the result is written
-    #[arg(long, value_enum, default_value_t = ListFormat::Json)]
-    pub(super) format: ListFormat,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct VerifyArguments {
-    #[command(flatten)]
-    pub(super) program: ProgramArguments,
-
-    /// What the part should get: a hole list (JSON or CSV) or a job file (TOML)
-    #[arg(long, value_name = "REF")]
-    pub(super) reference: PathBuf,
-
-    /// Diameter of the tolerance zone, or how far a burr's contact may be off its surface, mm [default: the
-    /// job's, or 0.1]
-    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
-    pub(super) tolerance: Option<f64>,
-
-    /// How far a hole's depth may be off, mm [default: the job's, or 0.1]
-    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
-    pub(super) depth_tolerance: Option<f64>,
-
-    /// List the worst hole first
-    #[arg(long)]
-    pub(super) worst_first: bool,
-
-    /// All of an inspector's columns: nominal and actual x y z i j k d l
-    #[arg(long)]
-    pub(super) full: bool,
-
-    /// Also draw to this file: the top view of holes, a cylinder unrolled, or a burr from the side
-    #[arg(long, value_name = "OUT.png")]
-    pub(super) picture: Option<PathBuf>,
-
-    /// How the result is written
-    #[arg(long, value_enum, default_value_t = TextFormat::Text)]
-    pub(super) format: TextFormat,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct RenderArguments {
-    #[command(flatten)]
-    pub(super) program: ProgramArguments,
-
-    /// The picture to write
-    #[arg(short, long, value_name = "OUT.png")]
-    pub(super) output: PathBuf,
-
-    /// What the part should get: draws the outline, each hole's verdict and its misfit
-    #[arg(long, value_name = "REF")]
-    pub(super) reference: Option<PathBuf>,
-
-    /// Diameter of the tolerance zone, mm [default: the job's, or 0.1]
-    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
-    pub(super) tolerance: Option<f64>,
-
-    /// Which way to look [default: top, or side for a burr]
-    #[arg(long, value_enum)]
-    pub(super) view: Option<View>,
-
-    /// Width and height in pixels
-    #[arg(long, value_name = "WxH", default_value = "1600x1200")]
-    pub(super) size: String,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct BudgetArguments {
-    /// The job file: the holes, and the machine they are drilled on
-    #[arg(value_name = "JOB.toml")]
-    pub(super) job: PathBuf,
-
-    /// What set-up and machine are off by
-    #[arg(long, value_name = "ERRORS.toml")]
-    pub(super) errors: PathBuf,
-
-    /// How many parts are drawn
-    #[arg(long, value_name = "N", default_value_t = 100_000)]
-    pub(super) samples: usize,
-
-    /// Another seed draws other parts
-    #[arg(long, value_name = "S", default_value_t = 0)]
-    pub(super) seed: u64,
-
-    /// The machine, without errors [default: the one that goes with the job]
-    #[arg(long, value_name = "MACHINE.toml")]
-    pub(super) machine: Option<PathBuf>,
-
-    /// Diameter of the tolerance zone, mm [default: the job's]
-    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
-    pub(super) tolerance: Option<f64>,
-
-    /// On how many threads; the answer doesn't depend on it [default: as many as there are processors]
-    #[arg(long, value_name = "N")]
-    pub(super) threads: Option<std::num::NonZeroUsize>,
-
-    /// Also draw each source's share to this file
-    #[arg(long, value_name = "OUT.png")]
-    pub(super) picture: Option<PathBuf>,
-
-    /// How the result is written
-    #[arg(long, value_enum, default_value_t = TextFormat::Text)]
-    pub(super) format: TextFormat,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct ExplainArguments {
-    /// An alarm as the control shows it (PS0112, ps112, 112, MC3021) or a finding (hole-position)
-    #[arg(value_name = "CODE", required_unless_present = "list")]
-    pub(super) code: Option<String>,
-
-    /// Name all codes that can be explained
-    #[arg(long, conflicts_with = "code")]
-    pub(super) list: bool,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct CheckArguments {
-    /// The program; '-' reads standard input
-    #[arg(value_name = "PROGRAM.nc")]
-    pub(super) program: PathBuf,
-
-    /// A folder that holds called programs (repeatable; the program's own folder is searched first)
-    #[arg(long = "lib", value_name = "DIR")]
-    pub(super) libraries: Vec<PathBuf>,
-
-    /// The control: fanuc-31i, fanuc-0i-f or haas-ngc
-    #[arg(long, value_name = "NAME")]
-    pub(super) dialect: Option<String>,
-
-    /// A setting of the control, e.g. DPI=1 (repeatable)
-    #[arg(long, value_name = "KEY=VALUE")]
-    pub(super) control: Vec<String>,
-
-    /// A file of such settings (TOML): NAT = 1, 5115 = 0.5, ROA = "A"; flags go before it
-    #[arg(long, value_name = "CONTROL.toml")]
-    pub(super) control_file: Option<PathBuf>,
-
-    /// The machine: its axes and its control [default: the machine of the paper]
-    #[arg(long, value_name = "MACHINE.toml")]
-    pub(super) machine: Option<PathBuf>,
-
-    /// A code that calls a program, e.g. G201=9010, M50=9020, M6=9001 or T=9000 (repeatable)
-    #[arg(long, value_name = "CODE=PROGRAM")]
-    pub(super) code: Vec<String>,
-
-    /// How the result is written
-    #[arg(long, value_enum, default_value_t = TextFormat::Text)]
-    pub(super) format: TextFormat,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct DiffArguments {
-    /// The revision on the machine
-    #[arg(value_name = "OLD.nc")]
-    pub(super) old: PathBuf,
-
-    /// The revision to review
-    #[arg(value_name = "NEW.nc")]
-    pub(super) new: PathBuf,
-
-    #[command(flatten)]
-    pub(super) run: RunConditions,
-
-    /// What differs by no more than this is the same, mm or degrees
-    #[arg(long, value_name = "MM", default_value_t = 0.0001, allow_negative_numbers = true)]
-    pub(super) tolerance: f64,
-
-    /// Also draw the new holes over the old ones to this file
-    #[arg(long, value_name = "OUT.png")]
-    pub(super) picture: Option<PathBuf>,
-
-    /// How the result is written
-    #[arg(long, value_enum, default_value_t = TextFormat::Text)]
-    pub(super) format: TextFormat,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct TestArguments {
-    /// Folders with cases, at any depth
-    #[arg(value_name = "DIR", required = true)]
-    pub(super) folders: Vec<PathBuf>,
-
-    /// A folder that holds called programs, after each case's own folders (repeatable)
-    #[arg(long = "lib", value_name = "DIR")]
-    pub(super) libraries: Vec<PathBuf>,
-
-    /// Only cases with this in their names (repeatable)
-    #[arg(long, value_name = "NAME")]
-    pub(super) only: Vec<String>,
-
-    /// Only the K-th of N parts of the cases
-    #[arg(long, value_name = "K/N")]
-    pub(super) shard: Option<String>,
-
-    /// Accept what came of the cases: write their accepted.json
-    #[arg(long)]
-    pub(super) accept: bool,
-
-    /// What differs by no more than this is the same, mm or degrees
-    #[arg(long, value_name = "MM", default_value_t = 0.0001, allow_negative_numbers = true)]
-    pub(super) tolerance: f64,
-
-    /// How the result is written
-    #[arg(long, value_enum, default_value_t = TextFormat::Text)]
-    pub(super) format: TextFormat,
-}
-
-#[derive(Debug, Args)]
-pub(super) struct CompareArguments {
-    /// One picture
-    #[arg(value_name = "A.png")]
-    pub(super) left: PathBuf,
-
-    /// The other picture
-    #[arg(value_name = "B.png")]
-    pub(super) right: PathBuf,
-
-    /// Where to write the picture that marks what differs
-    #[arg(short, long, value_name = "DIFF.png")]
-    pub(super) output: Option<PathBuf>,
-
-    /// How much a colour value may differ, 0 to 255
-    #[arg(long, value_name = "STEPS", default_value_t = 1)]
-    pub(super) tolerance: u8,
-}
-
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum TextFormat {
     Text,
@@ -472,18 +219,4 @@ pub(super) enum ListFormat {
     Text,
     Json,
     Csv,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum View {
-    /// Along the axis of revolution, or along a spindle that stands
-    Top,
-    /// A cylinder unrolled, with its seam; needs --reference with a job of a cylinder
-    Development,
-    /// A burr from the side
-    Side,
-    /// A burr from its tip
-    Tip,
-    /// A burr's helix angle over the polar angle, with both laws
-    Helix,
 }

@@ -1,8 +1,11 @@
 //! `gcode-sim budget`: the spread of every hole's position under errors of set-up and machine.
 use std::num::NonZeroUsize;
+use std::path::PathBuf;
 use std::sync::atomic::AtomicUsize;
 
-use super::args::{BudgetArguments, TextFormat};
+use clap::Args;
+
+use super::args::TextFormat;
 use super::{Refusal, Status, input, options, output, progress};
 use crate::budget::{MOST_SAMPLES, Question, budget};
 use crate::job::Job;
@@ -11,6 +14,45 @@ use crate::part::wanted::Wanted;
 use crate::picture::Size;
 use crate::report::budget::BudgetReport;
 use crate::verify::Tolerances;
+
+#[derive(Debug, Args)]
+pub(super) struct BudgetArguments {
+    /// The job file: the holes, and the machine they are drilled on
+    #[arg(value_name = "JOB.toml")]
+    job: PathBuf,
+
+    /// What set-up and machine are off by
+    #[arg(long, value_name = "ERRORS.toml")]
+    errors: PathBuf,
+
+    /// How many parts are drawn
+    #[arg(long, value_name = "N", default_value_t = 100_000)]
+    samples: usize,
+
+    /// Another seed draws other parts
+    #[arg(long, value_name = "S", default_value_t = 0)]
+    seed: u64,
+
+    /// The machine, without errors [default: the one that goes with the job]
+    #[arg(long, value_name = "MACHINE.toml")]
+    machine: Option<PathBuf>,
+
+    /// Diameter of the tolerance zone, mm [default: the job's]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    tolerance: Option<f64>,
+
+    /// On how many threads; the answer doesn't depend on it [default: as many as there are processors]
+    #[arg(long, value_name = "N")]
+    threads: Option<NonZeroUsize>,
+
+    /// Also draw each source's share to this file
+    #[arg(long, value_name = "OUT.png")]
+    picture: Option<PathBuf>,
+
+    /// How the result is written
+    #[arg(long, value_enum, default_value_t = TextFormat::Text)]
+    format: TextFormat,
+}
 
 pub(super) fn run(arguments: &BudgetArguments) -> Result<Status, Refusal> {
     let named = |path: &std::path::Path, error: &dyn std::fmt::Display| {

@@ -1,8 +1,47 @@
 //! `gcode-sim check`: what can be known of a program without running it.
-use super::args::{CheckArguments, RunConditions, TextFormat};
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::args::{RunConditions, TextFormat};
 use super::{Refusal, Status, options, output};
 use crate::check::check;
 use crate::report::check::{CheckReport, text};
+
+#[derive(Debug, Args)]
+pub(super) struct CheckArguments {
+    /// The program; '-' reads standard input
+    #[arg(value_name = "PROGRAM.nc")]
+    program: PathBuf,
+
+    /// A folder that holds called programs (repeatable; the program's own folder is searched first)
+    #[arg(long = "lib", value_name = "DIR")]
+    libraries: Vec<PathBuf>,
+
+    /// The control: fanuc-31i, fanuc-0i-f or haas-ngc
+    #[arg(long, value_name = "NAME")]
+    dialect: Option<String>,
+
+    /// A setting of the control, e.g. DPI=1 (repeatable)
+    #[arg(long, value_name = "KEY=VALUE")]
+    control: Vec<String>,
+
+    /// A file of such settings (TOML): NAT = 1, 5115 = 0.5, ROA = "A"; flags go before it
+    #[arg(long, value_name = "CONTROL.toml")]
+    control_file: Option<PathBuf>,
+
+    /// The machine: its axes and its control [default: the machine of the paper]
+    #[arg(long, value_name = "MACHINE.toml")]
+    machine: Option<PathBuf>,
+
+    /// A code that calls a program, e.g. G201=9010, M50=9020, M6=9001 or T=9000 (repeatable)
+    #[arg(long, value_name = "CODE=PROGRAM")]
+    code: Vec<String>,
+
+    /// How the result is written
+    #[arg(long, value_enum, default_value_t = TextFormat::Text)]
+    format: TextFormat,
+}
 
 pub(super) fn run(arguments: &CheckArguments) -> Result<Status, Refusal> {
     let conditions = RunConditions {

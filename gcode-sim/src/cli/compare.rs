@@ -1,7 +1,29 @@
 //! `gcode-sim compare`: where two pictures differ.
-use super::args::CompareArguments;
+use std::path::PathBuf;
+
+use clap::Args;
+
 use super::{Refusal, Status, input, output};
 use crate::picture;
+
+#[derive(Debug, Args)]
+pub(super) struct CompareArguments {
+    /// One picture
+    #[arg(value_name = "A.png")]
+    left: PathBuf,
+
+    /// The other picture
+    #[arg(value_name = "B.png")]
+    right: PathBuf,
+
+    /// Where to write the picture that marks what differs
+    #[arg(short, long, value_name = "DIFF.png")]
+    output: Option<PathBuf>,
+
+    /// How much a colour value may differ, 0 to 255
+    #[arg(long, value_name = "STEPS", default_value_t = 1)]
+    tolerance: u8,
+}
 
 pub(super) fn run(arguments: &CompareArguments) -> Result<Status, Refusal> {
     let (left, right) = (input::bytes(&arguments.left)?, input::bytes(&arguments.right)?);

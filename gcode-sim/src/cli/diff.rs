@@ -1,10 +1,40 @@
 //! `gcode-sim diff`: what two revisions of a program do differently.
-use super::args::{DiffArguments, TextFormat};
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::args::{RunConditions, TextFormat};
 use super::{Refusal, Status, options, output, render};
 use crate::changes::{Revision, changes};
 use crate::picture;
 use crate::report::changes::ChangesReport;
 use crate::report::{diagnostic, top};
+
+#[derive(Debug, Args)]
+pub(super) struct DiffArguments {
+    /// The revision on the machine
+    #[arg(value_name = "OLD.nc")]
+    old: PathBuf,
+
+    /// The revision to review
+    #[arg(value_name = "NEW.nc")]
+    new: PathBuf,
+
+    #[command(flatten)]
+    run: RunConditions,
+
+    /// What differs by no more than this is the same, mm or degrees
+    #[arg(long, value_name = "MM", default_value_t = 0.0001, allow_negative_numbers = true)]
+    tolerance: f64,
+
+    /// Also draw the new holes over the old ones to this file
+    #[arg(long, value_name = "OUT.png")]
+    picture: Option<PathBuf>,
+
+    /// How the result is written
+    #[arg(long, value_enum, default_value_t = TextFormat::Text)]
+    format: TextFormat,
+}
 
 pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
     let tolerance = options::tolerance("--tolerance", Some(arguments.tolerance))?.unwrap_or_default();

@@ -1,9 +1,21 @@
 //! `gcode-sim holes`: the holes a program makes, in the part's frame.
-use super::args::{HolesArguments, ListFormat};
+use clap::Args;
+
+use super::args::{ListFormat, ProgramArguments};
 use super::{Refusal, Status, options, output};
 use crate::part::hole::HoleList;
 use crate::report::holes as report;
 use crate::session;
+
+#[derive(Debug, Args)]
+pub(super) struct HolesArguments {
+    #[command(flatten)]
+    program: ProgramArguments,
+
+    /// How the result is written
+    #[arg(long, value_enum, default_value_t = ListFormat::Text)]
+    format: ListFormat,
+}
 
 pub(super) fn run(arguments: &HolesArguments) -> Result<Status, Refusal> {
     let (request, mut folders) = options::request(&arguments.program)?;

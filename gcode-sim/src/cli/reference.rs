@@ -1,10 +1,25 @@
 //! `gcode-sim reference`: what the part should get, from the job's geometry alone.
-use super::args::{ListFormat, ReferenceArguments};
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::args::ListFormat;
 use super::{Refusal, Status, holes, input, output};
 use crate::job::Job;
 use crate::part::wanted::Wanted;
 use crate::report::flute_table;
 use crate::verify::flutes::WantedFlutes;
+
+#[derive(Debug, Args)]
+pub(super) struct ReferenceArguments {
+    /// The job file
+    #[arg(value_name = "JOB.toml")]
+    job: PathBuf,
+
+    /// How the result is written
+    #[arg(long, value_enum, default_value_t = ListFormat::Json)]
+    format: ListFormat,
+}
 
 pub(super) fn run(arguments: &ReferenceArguments) -> Result<Status, Refusal> {
     let named = |error: &dyn std::fmt::Display| Refusal::new(format!("{}, {error}", arguments.job.display()));

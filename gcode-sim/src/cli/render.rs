@@ -1,7 +1,9 @@
 //! `gcode-sim render`: a picture of the holes on the part, or of a burr's flutes.
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use super::args::{RenderArguments, View};
+use clap::{Args, ValueEnum};
+
+use super::args::ProgramArguments;
 use super::{Refusal, Status, options, output};
 use crate::part::flutes::Flutes;
 use crate::part::reference::Reference;
@@ -10,6 +12,46 @@ use crate::picture::{self, Scene, Size, TopView};
 use crate::report::{flute_view, top};
 use crate::session::{self, Request, Simulation};
 use crate::verify::{Tolerances, Verdict};
+
+#[derive(Debug, Args)]
+pub(super) struct RenderArguments {
+    #[command(flatten)]
+    program: ProgramArguments,
+
+    /// The picture to write
+    #[arg(short, long, value_name = "OUT.png")]
+    output: PathBuf,
+
+    /// What the part should get: draws the outline, each hole's verdict and its misfit
+    #[arg(long, value_name = "REF")]
+    reference: Option<PathBuf>,
+
+    /// Diameter of the tolerance zone, mm [default: the job's, or 0.1]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    tolerance: Option<f64>,
+
+    /// Which way to look [default: top, or side for a burr]
+    #[arg(long, value_enum)]
+    view: Option<View>,
+
+    /// Width and height in pixels
+    #[arg(long, value_name = "WxH", default_value = "1600x1200")]
+    size: String,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum View {
+    /// Along the axis of revolution, or along a spindle that stands
+    Top,
+    /// A cylinder unrolled, with its seam; needs --reference with a job of a cylinder
+    Development,
+    /// A burr from the side
+    Side,
+    /// A burr from its tip
+    Tip,
+    /// A burr's helix angle over the polar angle, with both laws
+    Helix,
+}
 
 pub(super) fn run(arguments: &RenderArguments) -> Result<Status, Refusal> {
     match arguments.reference.as_deref().map(options::wanted).transpose()? {

@@ -1,9 +1,35 @@
 //! `gcode-sim run`: executes a program and shows the end state.
-use super::args::{RunArguments, TextFormat};
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::args::{ProgramArguments, TextFormat};
 use super::{Refusal, Status, options, output};
 use crate::holes::Extractor;
 use crate::report::run::{MOST_MOVES, Moves, RunReport};
 use crate::session;
+
+#[derive(Debug, Args)]
+pub(super) struct RunArguments {
+    #[command(flatten)]
+    program: ProgramArguments,
+
+    /// Add every move to the result, in machine coordinates
+    #[arg(long)]
+    moves: bool,
+
+    /// Write what the program prints (DPRNT, BPRNT) to this file
+    #[arg(long, value_name = "FILE")]
+    output: Option<PathBuf>,
+
+    /// Show a system variable at the end, e.g. '#5041' (repeatable)
+    #[arg(long, value_name = "#N")]
+    show: Vec<String>,
+
+    /// How the result is written
+    #[arg(long, value_enum, default_value_t = TextFormat::Text)]
+    format: TextFormat,
+}
 
 pub(super) fn run(arguments: &RunArguments) -> Result<Status, Refusal> {
     let (request, mut folders) = options::request(&arguments.program)?;

@@ -1,5 +1,9 @@
 //! `gcode-sim verify`: a program against a reference, by what the part should get.
-use super::args::{TextFormat, VerifyArguments};
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::args::{ProgramArguments, TextFormat};
 use super::library::Folders;
 use super::{Refusal, Status, options, output, render};
 use crate::part::flutes::Flutes;
@@ -10,6 +14,41 @@ use crate::report::verdict_table::{Layout, table};
 use crate::report::{flute_table, flute_view};
 use crate::session::{self, Request};
 use crate::verify::{Answer, Tolerances};
+
+#[derive(Debug, Args)]
+pub(super) struct VerifyArguments {
+    #[command(flatten)]
+    program: ProgramArguments,
+
+    /// What the part should get: a hole list (JSON or CSV) or a job file (TOML)
+    #[arg(long, value_name = "REF")]
+    reference: PathBuf,
+
+    /// Diameter of the tolerance zone, or how far a burr's contact may be off its surface, mm [default: the
+    /// job's, or 0.1]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    tolerance: Option<f64>,
+
+    /// How far a hole's depth may be off, mm [default: the job's, or 0.1]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    depth_tolerance: Option<f64>,
+
+    /// List the worst hole first
+    #[arg(long)]
+    worst_first: bool,
+
+    /// All of an inspector's columns: nominal and actual x y z i j k d l
+    #[arg(long)]
+    full: bool,
+
+    /// Also draw to this file: the top view of holes, a cylinder unrolled, or a burr from the side
+    #[arg(long, value_name = "OUT.png")]
+    picture: Option<PathBuf>,
+
+    /// How the result is written
+    #[arg(long, value_enum, default_value_t = TextFormat::Text)]
+    format: TextFormat,
+}
 
 pub(super) fn run(arguments: &VerifyArguments) -> Result<Status, Refusal> {
     let asked = options::tolerance("--tolerance", arguments.tolerance)?;

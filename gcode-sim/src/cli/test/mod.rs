@@ -1,12 +1,46 @@
 //! `gcode-sim test`: a shop's own programs, each held against what was accepted of it.
 mod case;
 
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use clap::Args;
+
 use self::case::{ACCEPTED, Case, Tested, Tried};
-use super::args::{TestArguments, TextFormat};
+use super::args::TextFormat;
 use super::{Refusal, Status, options, output};
 use crate::report::tested::{CaseReport, TestReport};
+
+#[derive(Debug, Args)]
+pub(super) struct TestArguments {
+    /// Folders with cases, at any depth
+    #[arg(value_name = "DIR", required = true)]
+    folders: Vec<PathBuf>,
+
+    /// A folder that holds called programs, after each case's own folders (repeatable)
+    #[arg(long = "lib", value_name = "DIR")]
+    libraries: Vec<PathBuf>,
+
+    /// Only cases with this in their names (repeatable)
+    #[arg(long, value_name = "NAME")]
+    only: Vec<String>,
+
+    /// Only the K-th of N parts of the cases
+    #[arg(long, value_name = "K/N")]
+    shard: Option<String>,
+
+    /// Accept what came of the cases: write their accepted.json
+    #[arg(long)]
+    accept: bool,
+
+    /// What differs by no more than this is the same, mm or degrees
+    #[arg(long, value_name = "MM", default_value_t = 0.0001, allow_negative_numbers = true)]
+    tolerance: f64,
+
+    /// How the result is written
+    #[arg(long, value_enum, default_value_t = TextFormat::Text)]
+    format: TextFormat,
+}
 
 pub(super) fn run(arguments: &TestArguments) -> Result<Status, Refusal> {
     let tolerance = options::tolerance("--tolerance", Some(arguments.tolerance))?.unwrap_or_default();
