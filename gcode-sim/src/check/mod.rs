@@ -1,9 +1,9 @@
 //! What can be known of a program without running it: faults that a control would meet, and slips it would not notice.
 //!
 //! The program and the ones it calls by number are read into one subject (`subject`): their blocks with the ways from
-//! one to another (`flow`), what is called from where (`calls`), which locals are vacant where (`vacancy`). The
-//! rules, a file each in [`rules`], look at that and say what they find. A comment `(CHECK-OFF NAME)` on a block, or
-//! at the head of a program for all of it, silences a rule there (`silence`).
+//! one to another (`flow`), what is called from where (`calls`), which locals are vacant where (`vacancy`) and read
+//! there (`unset`). The rules, a file each in [`rules`], look at that and say what they find. A comment
+//! `(CHECK-OFF NAME)` on a block, or at the head of a program for all of it, silences a rule there (`silence`).
 mod calls;
 mod circles;
 mod flow;
@@ -12,6 +12,7 @@ mod parameters;
 pub mod rules;
 mod silence;
 mod subject;
+mod unset;
 mod vacancy;
 mod variables;
 
@@ -46,7 +47,7 @@ pub fn check(
     let mut memory = Memory::default();
     memory.load(name, bytes);
     let programs = gather(&mut memory, settings, library);
-    let subject = Subject::new(&memory, settings, &programs);
+    let subject = Subject::new(&memory, settings, &programs, rules::names());
     let findings = rules::findings(&subject);
     Checked { programs: programs.len(), memory, findings }
 }

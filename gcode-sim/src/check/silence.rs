@@ -3,7 +3,6 @@
 use crate::program::OpKind;
 use crate::source::Span;
 
-use super::rules::ALL;
 use super::subject::{Finding, Unit};
 
 /// The word that begins such a comment.
@@ -44,9 +43,8 @@ impl Silence {
         })
     }
 
-    /// Names that no rule has, with the comments they stand in.
-    pub(super) fn unknown(&self) -> impl Iterator<Item = (&str, Span)> {
-        let known = |name: &str| ALL.iter().any(|rule| rule.name.eq_ignore_ascii_case(name));
-        self.off.iter().filter(move |(_, name, _)| !known(name)).map(|(_, name, span)| (name.as_str(), *span))
+    /// The names in all the comments, in upper case, with the comments they stand in.
+    pub(super) fn names(&self) -> impl Iterator<Item = (&str, Span)> {
+        self.off.iter().map(|(_, name, span)| (name.as_str(), *span))
     }
 }

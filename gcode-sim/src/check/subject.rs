@@ -17,6 +17,8 @@ pub(crate) struct Subject<'a> {
     pub(crate) memory: &'a Memory,
     pub(crate) settings: &'a Settings,
     pub(crate) units: Vec<Unit<'a>>,
+    /// The names of all rules, as CHECK-OFF may have them.
+    pub(crate) rules: Vec<&'static str>,
     places: BTreeMap<ProgramId, usize>,
 }
 
@@ -50,7 +52,12 @@ pub(crate) enum Role {
 }
 
 impl<'a> Subject<'a> {
-    pub(super) fn new(memory: &'a Memory, settings: &'a Settings, programs: &[ProgramId]) -> Self {
+    pub(super) fn new(
+        memory: &'a Memory,
+        settings: &'a Settings,
+        programs: &[ProgramId],
+        rules: Vec<&'static str>,
+    ) -> Self {
         let places = programs.iter().enumerate().map(|(unit, id)| (*id, unit)).collect();
         let mut trees = trees(memory, programs);
         let units = programs
@@ -69,7 +76,7 @@ impl<'a> Subject<'a> {
                 }
             })
             .collect();
-        let mut subject = Self { memory, settings, units, places };
+        let mut subject = Self { memory, settings, units, rules, places };
         subject.connect();
         subject
     }

@@ -2,15 +2,13 @@
 //! the macro reckons with the vacant variable.
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::check::calls::CallSite;
 use crate::check::flow::raises;
 use crate::check::subject::{Finding, Subject, Unit};
-use crate::check::vacancy::{ANYTHING, Locals, NUMBER, States, UNSET, states, truth};
+use crate::check::unset::{entry, reads};
+use crate::check::vacancy::{Locals, NUMBER, States, UNSET, states, truth};
 use crate::check::variables::{self, Use};
 use crate::program::{OpIndex, OpKind, argument_letter};
 use crate::syntax::ast::Statement;
-
-use super::unset_variable::reads;
 
 pub(super) const NAME: &str = "missing-argument";
 
@@ -32,15 +30,6 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
         }
     }
     found
-}
-
-/// The locals as a call hands them over.
-pub(super) fn entry(call: &CallSite) -> Locals {
-    let mut entry = Locals::UNSET;
-    for argument in &call.arguments {
-        entry.0[argument.local] = if argument.number { NUMBER } else { ANYTHING };
-    }
-    entry
 }
 
 /// What comes of a letter that isn't there, in a sentence.

@@ -57,6 +57,11 @@ pub const ALL: &[Rule] = &[
     Rule { name: unknown_check::NAME, about: "CHECK-OFF with a name that no rule has", find: unknown_check::find },
 ];
 
+/// The names of all rules.
+pub(super) fn names() -> Vec<&'static str> {
+    ALL.iter().map(|rule| rule.name).collect()
+}
+
 /// What all rules find, the silenced left out: program by program, block by block.
 pub(super) fn findings(subject: &Subject<'_>) -> Vec<Diagnostic> {
     let mut all = Vec::new();

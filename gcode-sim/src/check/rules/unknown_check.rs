@@ -4,9 +4,10 @@ use crate::check::subject::{Finding, Subject, Unit};
 
 pub(super) const NAME: &str = "unknown-check";
 
-pub(super) fn find(_: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
+pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     let silence = Silence::new(unit);
-    let unknown = silence.unknown().map(|(name, span)| {
+    let known = |name: &str| subject.rules.iter().any(|rule| rule.eq_ignore_ascii_case(name));
+    let unknown = silence.names().filter(|(name, _)| !known(name)).map(|(name, span)| {
         let block = unit.blocks.iter().position(|b| b.comments.iter().any(|c| c.span == span)).unwrap_or(0);
         let message = match name {
             "" => "CHECK-OFF names no rule".to_owned(),

@@ -2,13 +2,11 @@
 use std::collections::BTreeMap;
 
 use crate::check::subject::{Finding, Role, Subject, Unit};
-use crate::check::vacancy::{Locals, States, guards, states, unset_at_first};
-use crate::check::variables::{self, Read, Use};
+use crate::check::unset::{entry, reads};
+use crate::check::vacancy::{Locals, states};
+use crate::check::variables::Use;
 use crate::program::{OpIndex, argument_letter};
 use crate::source::Span;
-use crate::syntax::ast::Statement;
-
-use super::missing_argument;
 
 pub(super) const NAME: &str = "unset-variable";
 
@@ -27,7 +25,7 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
                 if !call.own_locals || call.modal {
                     return Vec::new();
                 }
-                let states = states(unit, missing_argument::entry(call));
+                let states = states(unit, entry(call));
                 // What a letter could have set is told at the call.
                 unset.extend(
                     reads(unit, &states).filter(|((_, local), _)| argument_letter(*local as usize).is_none()),
@@ -48,54 +46,6 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
         found.push(unit.warning(NAME, block, message).on(span).help(help));
     }
     found
-}
-
-/// The reads of locals that are surely unset there, each block's local once.
-pub(super) fn reads<'a>(
-    unit: &'a Unit<'_>,
-    states: &'a States,
-) -> impl Iterator<Item = ((OpIndex, u32), (Span, Use))> + 'a {
-    let reached = unit.blocks.iter().enumerate().filter(|(block, _)| states[*block].is_some());
-    reached.flat_map(move |(block, written)| {
-        let itself = variables::assignment(written)
-            .filter(|(target, value)| target.kind == value.kind || same_variable(target, value));
-        let reads = variables::of_block(written).reads;
-        let minded = minded(unit, block, &reads);
-        let plain = reads.into_iter().filter(move |read| {
-            // `#1=#1` says nothing.
-            (1..=33).contains(&read.number)
-                && read.usage != Use::Tested
-                && itself.is_none()
-                && !minded.contains(&read.number)
-        });
-        plain
-            .filter(move |read| unset_at_first(unit, states, block, read.number))
-            .map(move |read| ((block, read.number), (read.span, read.usage)))
-    })
-}
-
-/// The locals whose vacancy a condition minds: what is behind it reads them only where they are set, and what stands
-/// beside the test in it means no harm.
-fn minded(unit: &Unit<'_>, block: OpIndex, reads: &[Read]) -> Vec<u32> {
-    use Statement::{IfGoto, IfThen, While};
-    let Some(IfThen { condition, .. } | IfGoto { condition, .. } | While { condition, .. }) =
-        variables::statement(&unit.blocks, block)
-    else {
-        return Vec::new();
-    };
-    let tested = reads.iter().filter(|read| read.usage == Use::Tested).map(|read| read.number);
-    // Behind IF[#9 EQ #0]THEN a #9 is a slip all the same.
-    tested.filter(|number| !computes(reads, *number) || guards(condition, *number)).collect()
-}
-
-/// Whether a local is used for more than comparing.
-fn computes(reads: &[Read], number: u32) -> bool {
-    reads.iter().any(|read| read.number == number && !matches!(read.usage, Use::Tested | Use::Compared))
-}
-
-fn same_variable(left: &crate::syntax::ast::Expr, right: &crate::syntax::ast::Expr) -> bool {
-    use crate::check::literal::variable;
-    variable(left).is_some() && variable(left) == variable(right)
 }
 
 #[cfg(test)]
