@@ -10,6 +10,8 @@
 //! | `msg="TEXT"` | the alarm's text |
 //! | `stop=TEXT` | an operator stop with this text |
 //! | `note=lower-case` | the run told this note, by its name; `note=none` where it told none |
+//! | `stops=M00,M01` | all operator stops, in their order |
+//! | `passed_on=M77,M78` | the M codes left to the machine builder, in ascending order |
 //! | `printed="LINE\|LINE"` | what DPRNT printed, all of it |
 //! | `#100=1.5`, `#100=vacant` | the variable at the end; locals are those of the main program |
 //! | `abs.X=1`, `mach.X=1` | work and machine position |
@@ -93,6 +95,15 @@ impl Ran {
             "stop" => {
                 let holds = self.control.stops().iter().any(|s| s.text == wanted.trim_matches('"'));
                 return self.not(holds, &format!("stop={wanted}"));
+            }
+            "stops" => {
+                let kinds: Vec<_> =
+                    self.control.stops().iter().map(|stop| format!("{:?}", stop.kind)).collect();
+                return self.not(kinds.join(",") == wanted, &format!("stops={wanted}"));
+            }
+            "passed_on" => {
+                let codes: Vec<_> = self.control.passed_on().keys().map(|code| format!("M{code}")).collect();
+                return self.not(codes.join(",") == wanted, &format!("passed_on={wanted}"));
             }
             "note" => {
                 let holds = self.control.notes().any(|(note, _)| note.parts().0 == wanted);

@@ -27,6 +27,16 @@ pub struct Family {
     pub kind: CodeCallKind,
 }
 
+impl Family {
+    /// The parameter that makes a code of this letter such a call.
+    fn parameter(&self, letter: u8, called: Called) -> Option<u16> {
+        let same = (self.kind == CodeCallKind::Subprogram) == (called.kind == CodeCallKind::Subprogram);
+        let place = u16::try_from(called.program.checked_sub(self.program)?).ok()?;
+        let number = self.first.checked_add(place)?;
+        (same && self.letter == letter && number <= self.last).then_some(number)
+    }
+}
+
 const fn family(letter: u8, first: u16, last: u16, program: u32, kind: CodeCallKind) -> Family {
     Family { letter, first, last, program, kind }
 }
@@ -89,6 +99,8 @@ const TAKEN: [(u8, u32); 13] = [
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct CodeCall {
+    /// The parameter of [`FAMILIES`] that holds it, if one does.
+    parameter: Option<u16>,
     letter: u8,
     /// × 10, as G codes are counted everywhere.
     code: u32,
@@ -121,17 +133,22 @@ impl CodeCalls {
         none && *addresses == [None; 2] && !(*by_t || *by_s || *by_b)
     }
 
-    /// What a G or M code × 10 calls. A code of its own goes before a range.
+    /// What a G or M code × 10 calls. A code of its own goes before a range, and of several parameters with the same
+    /// code the first.
     pub fn find(&self, letter: u8, code: u32) -> Option<Called> {
-        let own = self.codes.iter().find(|call| call.letter == letter && call.code == code);
+        let same = self.codes.iter().filter(|call| (call.letter, call.code) == (letter, code));
+        let own = same.min_by_key(|call| call.parameter);
         own.map(|call| call.called).or_else(|| self.in_range(letter, code))
     }
 
     fn in_range(&self, letter: u8, code: u32) -> Option<Called> {
         let number = code.is_multiple_of(10).then_some(i64::from(code / 10))?;
+        if TAKEN.contains(&(letter, code)) {
+            return None;
+        }
         RANGES.iter().zip(&self.ranges).find_map(|(family, [first, program, count])| {
             let place = number - first.abs();
-            if family.letter != letter || !(0..*count).contains(&place) {
+            if family.letter != letter || *first == 0 || !(0..*count).contains(&place) {
                 return None;
             }
             let kind = if *first < 0 { CodeCallKind::Modal } else { family.kind };
@@ -152,13 +169,8 @@ impl CodeCalls {
 
     /// The value of one of the parameters here; `None` for any other number.
     pub fn parameter(&self, number: u16) -> Option<i64> {
-        if let Some(family) = FAMILIES.iter().find(|f| (f.first..=f.last).contains(&number)) {
-            let program = family.program + u32::from(number - family.first);
-            let own = self.codes.iter().find(|call| {
-                let subprogram = call.called.kind == CodeCallKind::Subprogram;
-                let same = subprogram == (family.kind == CodeCallKind::Subprogram);
-                same && call.letter == family.letter && call.called.program == program
-            });
+        if family_of(number).is_some() {
+            let own = self.codes.iter().rfind(|call| call.parameter == Some(number));
             return Some(own.map_or(0, |call| {
                 let code = i64::from(call.code / 10);
                 if call.called.kind == CodeCallKind::Modal { -code } else { code }
@@ -173,21 +185,21 @@ impl CodeCalls {
 
     /// Sets one of the parameters here; `None` where it is none of them, or can't have this value.
     pub fn set_parameter(&mut self, number: u16, value: i64) -> Option<()> {
-        if let Some(family) = FAMILIES.iter().find(|f| (f.first..=f.last).contains(&number)) {
-            let program = family.program + u32::from(number - family.first);
+        if let Some(family) = family_of(number) {
             let modal = value < 0 && family.letter == b'G';
-            let kind = if modal { CodeCallKind::Modal } else { family.kind };
             if value < 0 && !modal {
                 return None;
             }
-            let subprogram = family.kind == CodeCallKind::Subprogram;
-            self.codes.retain(|call| {
-                let same = subprogram == (call.called.kind == CodeCallKind::Subprogram);
-                !(same && call.letter == family.letter && call.called.program == program)
-            });
+            let kind = if modal { CodeCallKind::Modal } else { family.kind };
+            let code = u32::try_from(value.unsigned_abs()).ok()?.checked_mul(10)?;
+            if value != 0 && TAKEN.contains(&(family.letter, code)) {
+                return None;
+            }
+            self.codes.retain(|call| call.parameter != Some(number));
             if value != 0 {
-                let code = u32::try_from(value.unsigned_abs()).ok()?.checked_mul(10)?;
-                self.add(family.letter, code, Called { program, kind })?;
+                let program = family.program + u32::from(number - family.first);
+                let called = Called { program, kind };
+                self.codes.push(CodeCall { parameter: Some(number), letter: family.letter, code, called });
             }
             return Some(());
         }
@@ -244,9 +256,15 @@ impl CodeCalls {
             return None;
         }
         self.codes.retain(|call| (call.letter, call.code) != (letter, code));
-        self.codes.push(CodeCall { letter, code, called });
+        let parameter = FAMILIES.iter().find_map(|family| family.parameter(letter, called));
+        self.codes.push(CodeCall { parameter, letter, code, called });
         Some(())
     }
+}
+
+/// The family that a parameter belongs to.
+fn family_of(number: u16) -> Option<&'static Family> {
+    FAMILIES.iter().find(|family| (family.first..=family.last).contains(&number))
 }
 
 /// The family of a range's parameter, and which of its three it is.
@@ -281,6 +299,36 @@ mod tests {
         assert_eq!((calls.find(b'G', 500), calls.parameter(6060)), (None, None));
         calls.set_parameter(6050, 0).unwrap();
         assert_eq!(calls.find(b'G', 2010), None, "0 calls nothing");
+    }
+
+    #[test]
+    fn each_parameter_keeps_its_value_beside_one_with_the_same_code() {
+        let mut calls = CodeCalls::default();
+        calls.set_parameter(6050, 201).unwrap();
+        calls.set_parameter(6051, 201).unwrap();
+        assert_eq!((calls.parameter(6050), calls.parameter(6051)), (Some(201), Some(201)));
+        assert_eq!(calls.find(b'G', 2010), called(9010, CodeCallKind::Macro));
+        assert_eq!(calls.set_parameter(6050, 65), None, "G65 is a call itself");
+        assert_eq!(calls.parameter(6050), Some(201), "what is refused changes nothing");
+        calls.set_parameter(6050, 0).unwrap();
+        assert_eq!(calls.find(b'G', 2010), called(9011, CodeCallKind::Macro));
+    }
+
+    #[test]
+    fn no_range_takes_what_ends_or_calls_by_itself() {
+        let mut calls = CodeCalls::default();
+        for (parameter, value) in [(6044, 1), (6045, 3000), (6046, 200), (6038, 60), (6039, 4000), (6040, 10)]
+        {
+            calls.set_parameter(parameter, value).unwrap();
+        }
+        for code in [1, 2, 30, 98, 99, 198] {
+            assert_eq!(calls.find(b'M', code * 10), None, "M{code}");
+        }
+        assert_eq!(calls.find(b'M', 40), called(3003, CodeCallKind::Subprogram));
+        assert_eq!((calls.find(b'G', 650), calls.find(b'G', 660)), (None, None));
+        assert_eq!(calls.find(b'G', 640), called(4004, CodeCallKind::Macro));
+        calls.set_parameter(6044, 0).unwrap();
+        assert_eq!(calls.find(b'M', 40), None, "a range from 0 on is none");
     }
 
     #[test]

@@ -102,19 +102,21 @@ const ROWS: &[Row] = &[
     number(19625, Access::Key("19625", |s| s.blocks_read as f64)),
 ];
 
-/// Parameters that nothing a run shows depends on: what is written to them can be read again.
-const WITHOUT_EFFECT: [(u16, u16); 3] = [
-    // Input and output devices.
-    (0, 139),
-    // Stored stroke limits 2 and 3, which are not checked here.
-    (1322, 1327),
-    // Display, editing, protection of programs.
-    (3100, 3299),
+/// Parameters that nothing a run shows depends on: what is written to them can be read again. Only those that are
+/// known to be so; any other may be one that moves the machine elsewhere.
+#[rustfmt::skip]
+const WITHOUT_EFFECT: &[u16] = &[
+    // Input and output devices: the channel, and of each channel its bits, its device and its baud rate.
+    20, 101, 102, 103, 111, 112, 113, 121, 122, 123,
+    // What the screens show.
+    3105, 3106, 3107, 3108, 3111, 3112, 3281,
+    // Protection of programs and offsets against the keyboard, their password, sequence numbers while editing.
+    3202, 3210, 3211, 3216, 3290,
 ];
 
 /// Whether a parameter changes nothing that a run shows.
 pub fn is_without_effect(number: u16) -> bool {
-    WITHOUT_EFFECT.iter().any(|(from, to)| (*from..=*to).contains(&number))
+    WITHOUT_EFFECT.contains(&number)
 }
 
 fn set_roll_over(settings: &mut Settings, axis: Axis, value: f64) -> Option<()> {

@@ -65,7 +65,7 @@ impl Core {
     /// What nothing has read may still mean something to a control: it isn't passed over in silence. M codes may take
     /// words of their own.
     fn check_unread(&self, given: &Given, plan: &Plan) -> Checked<()> {
-        let for_m_code = plan.passed_on.is_some() || given.m_count > 0 && !self.names_axis(given);
+        let for_m_code = !plan.passed_on.is_empty() || given.m_count > 0 && !self.names_axis(given);
         match given.unread() {
             Some((letter, span)) if !for_m_code => {
                 Err(Alarm::NotSimulated { what: format!("{letter} in such a block") }.at(span))

@@ -25,7 +25,7 @@ impl Core {
                     CallTarget::Number(word) => self.coded_count(program, word)?,
                     CallTarget::Name(_) | CallTarget::None => None,
                 };
-                plan.flow = Flow::Return(to);
+                plan.flow = Flow::Return { number: to, target: None };
                 return Ok(());
             }
             Calling::Cancel => {

@@ -38,13 +38,13 @@ impl Core {
             }
             self.offsets_changed();
         }
-        if let Some(kind) = plan.stop.take() {
+        for kind in plan.stops.drain(..) {
             self.tell(EventKind::Stop { kind, text: String::new(), named: Vec::new() }, 0.0, sink);
         }
-        if let Some(note) = plan.note.take() {
+        for note in plan.notes.drain(..) {
             self.notes.entry(note).or_insert(self.block);
         }
-        if let Some(code) = plan.passed_on.take() {
+        for code in plan.passed_on.drain(..) {
             self.passed_on.entry(code).or_insert(self.block);
         }
     }
@@ -81,11 +81,14 @@ impl Core {
     }
 
     pub(super) fn set_names(&mut self, first: u32, names: &[String]) -> Result<(), Alarm> {
-        for (place, name) in names.iter().enumerate() {
-            let number = first.saturating_add(place as u32);
-            if !(500..=549).contains(&number) {
-                return Err(Alarm::NoSuchVariable { number: i64::from(number) });
-            }
+        let numbered = || {
+            let number = |place: usize| first.saturating_add(place as u32);
+            names.iter().enumerate().map(move |(place, name)| (number(place), name))
+        };
+        if let Some((number, _)) = numbered().find(|(number, _)| !(500..=549).contains(number)) {
+            return Err(Alarm::NoSuchVariable { number: i64::from(number) });
+        }
+        for (number, name) in numbered() {
             // A variable has one name: the last.
             self.names.retain(|_, named| *named != number);
             self.names.insert(name.clone(), number);
@@ -104,4 +107,22 @@ fn moves_something(kind: &EventKind) -> bool {
         kind,
         EventKind::Rapid { .. } | EventKind::Feed { .. } | EventKind::Arc { .. } | EventKind::Skip { .. }
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::exec::{Control, Limits, Outcome};
+    use crate::program::{Memory, NoLibrary};
+
+    #[test]
+    fn names_are_given_all_or_none() {
+        let mut memory = Memory::default();
+        memory.load("names.nc", *b"O1\nSETVN548[A,B]\nSETVN549[C,D]\nM30\n");
+        let mut control = Control::new(memory, crate::control::Settings::default());
+        let outcome = control.run(Limits::default(), &mut NoLibrary, &mut ());
+        assert!(matches!(outcome, Outcome::Alarm(_)), "550 has no name");
+        let named: Vec<_> =
+            control.core.names.iter().map(|(name, number)| (name.as_str(), *number)).collect();
+        assert_eq!(named, [("A", 548), ("B", 549)]);
+    }
 }

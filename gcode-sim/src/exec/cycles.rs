@@ -81,7 +81,7 @@ impl Core {
             return Err(Alarm::NotSimulated { what }.at(span));
         }
         if repeats == 0 && !self.settings.unsure.k0_positions {
-            plan.note = Some(Note::NoRepeats);
+            plan.notes.push(Note::NoRepeats);
             return Ok(());
         }
         let mut step = Position::default();

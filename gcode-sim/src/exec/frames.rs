@@ -6,7 +6,7 @@ use super::{Control, Core};
 use crate::alarm::Alarm;
 use crate::motion::{Call, Calls};
 use crate::program::{OpIndex, ProgramId};
-use crate::source::{Span, Spanned};
+use crate::source::Span;
 
 /// One program on the way to the block at hand.
 #[derive(Clone, Debug)]
@@ -194,37 +194,50 @@ impl Core {
 }
 
 impl Control {
-    /// M99, M99 P.
-    pub(super) fn go_back(
-        &mut self,
-        to: Option<u32>,
-        span: Span,
-    ) -> Result<Option<super::Outcome>, Spanned<Alarm>> {
+    /// Where M99 P leads, before anything of its block has happened; `None` where it leads nowhere.
+    pub(super) fn find_return(&self, number: Option<u32>) -> Result<Option<OpIndex>, Alarm> {
+        let Some(number) = number.filter(|_| !self.is_last_pass()) else { return Ok(None) };
+        let program = self.memory.get(self.core.frames[self.returns_to()].program);
+        let found = program.find_number(number, 0);
+        found.map(Some).ok_or(Alarm::SequenceNumberNotFound { number })
+    }
+
+    /// Whether M99 of the main program ends the run.
+    fn is_last_pass(&self) -> bool {
+        let last = self.core.settings.cycles.is_some_and(|cycles| self.core.cycles + 1 >= cycles);
+        last && self.core.frame().kind == FrameKind::Main
+    }
+
+    /// The frame in which the run goes on after M99.
+    fn returns_to(&self) -> usize {
+        let called = usize::from(self.core.frame().kind != FrameKind::Main);
+        self.core.frames.len() - 1 - called
+    }
+
+    /// M99, and M99 P with its number and the place that [`Control::find_return`] has found.
+    pub(super) fn go_back(&mut self, to: Option<(u32, OpIndex)>) -> Option<super::Outcome> {
         let main = self.core.frame().kind == FrameKind::Main;
+        let ends = self.is_last_pass();
         if main {
             self.core.cycles += 1;
-            if self.core.settings.cycles.is_some_and(|cycles| self.core.cycles >= cycles) {
-                return Ok(Some(super::Outcome::End));
-            }
         }
-        let Some(number) = to else {
+        if ends {
+            return Some(super::Outcome::End);
+        }
+        let Some((number, target)) = to else {
             if main {
                 self.core.frame_mut().jump(0);
             } else {
                 self.core.repeat_or_leave();
             }
-            return Ok(None);
+            return None;
         };
-        let caller = if main { self.core.frames.len() - 1 } else { self.core.frames.len() - 2 };
-        let program = self.memory.get(self.core.frames[caller].program);
-        let Some(target) = program.find_number(number, 0) else {
-            return Err(Alarm::SequenceNumberNotFound { number }.at(span));
-        };
+        let program = self.memory.get(self.core.frames[self.returns_to()].program);
         if !main {
             self.core.leave();
         }
         self.core.tell_jump(program, number, target);
         self.core.frame_mut().jump(target);
-        Ok(None)
+        None
     }
 }

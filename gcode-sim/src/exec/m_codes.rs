@@ -13,18 +13,18 @@ impl Core {
     /// 2., 5. and 6. What M codes do, each at its time.
     pub(super) fn m_codes(&self, given: &Given, plan: &mut Plan) -> Checked<()> {
         if let Some(code) = given.lost_m {
-            plan.note = Some(Note::MCodeLost { code });
+            plan.notes.push(Note::MCodeLost { code });
         }
         for (code, span) in given.m[..given.m_count].iter().flatten().copied() {
             plan.state.codes.m = code;
             let speed = Rpm(plan.state.codes.s);
             let Some(effect) = m_codes::find(code, self.settings.codes) else {
-                plan.passed_on = Some(code);
+                plan.passed_on.push(code);
                 continue;
             };
             match effect {
-                MEffect::Stop => plan.stop = Some(StopKind::M00),
-                MEffect::OptionalStop if self.settings.optional_stop => plan.stop = Some(StopKind::M01),
+                MEffect::Stop => plan.stops.push(StopKind::M00),
+                MEffect::OptionalStop if self.settings.optional_stop => plan.stops.push(StopKind::M01),
                 MEffect::OptionalStop | MEffect::NoEffect => {}
                 MEffect::End => plan.flow = Flow::End,
                 MEffect::SpindleForward => self.turn(plan, Spindle::Clockwise, speed),
@@ -47,7 +47,7 @@ impl Core {
                 }
                 MEffect::InterruptOn => {
                     given.accept(b"P");
-                    plan.note = Some(Note::InterruptNeverComes);
+                    plan.notes.push(Note::InterruptNeverComes);
                 }
                 MEffect::InterruptOff => {}
                 MEffect::Call | MEffect::NotSimulated => {

@@ -20,10 +20,14 @@ pub(super) struct ModalCall {
 }
 
 impl Core {
+    /// Whether a block with motion may make the modal call that waits for it.
+    pub(super) fn check_call_after_move(&self) -> Result<(), Alarm> {
+        self.waiting_call().map_or(Ok(()), |_| self.check_levels(true))
+    }
+
     /// After a block with motion: the last modal call that this program's moves can trigger.
-    pub(super) fn call_after_move(&mut self, block: Span) -> Result<(), Alarm> {
-        let Some(index) = self.waiting_call() else { return Ok(()) };
-        self.check_levels(true)?;
+    pub(super) fn call_after_move(&mut self, block: Span) {
+        let Some(index) = self.waiting_call() else { return };
         let ModalCall { program, repeats, locals, by_code, .. } = self.modal_calls[index].clone();
         let frame = Frame {
             modal: index,
@@ -31,7 +35,6 @@ impl Core {
         };
         self.vars.enter(&locals);
         self.push(frame);
-        Ok(())
     }
 
     /// The modal call that a block of this program can trigger.

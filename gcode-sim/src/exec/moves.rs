@@ -35,7 +35,7 @@ impl Core {
             // P and Q are stored by blocks that drill only.
             if given.has_any(b"PQ") {
                 given.accept(b"PQ");
-                plan.note = Some(Note::CycleDataLost);
+                plan.notes.push(Note::CycleDataLost);
             }
             if lengthened {
                 self.recompute(&mut plan.state);

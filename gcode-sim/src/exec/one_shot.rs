@@ -18,7 +18,7 @@ impl Core {
     /// 4. What a block does instead of moving by its modal codes.
     pub(super) fn act(&self, act: Act, given: &Given, plan: &mut Plan, span: Span) -> Checked<()> {
         if !self.names_axis(given) {
-            plan.note = without_axis(act).or(plan.note);
+            plan.notes.extend(without_axis(act));
         }
         match act {
             Act::OneShot(one) => self.one_shot(one, given, plan, span),
@@ -160,7 +160,7 @@ impl Core {
         let incremental = plan.state.modal.distance == Distance::Incremental;
         if incremental && !self.settings.unsure.g53_moves_in_g91 {
             given.accept(b"ABCUVWXYZ");
-            plan.note = Some(Note::MachineMoveIgnored);
+            plan.notes.push(Note::MachineMoveIgnored);
             return Ok(());
         }
         for (axis, letter) in self.settings.axes.iter() {

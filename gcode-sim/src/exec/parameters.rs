@@ -100,7 +100,7 @@ impl Core {
         let kept = known == Err(ParameterError::Unknown) && is_without_effect(number);
         match known {
             Ok(()) => {}
-            Err(_) if kept => plan.note = Some(Note::ParameterWithoutEffect { number }),
+            Err(_) if kept => plan.notes.push(Note::ParameterWithoutEffect { number }),
             Err(ParameterError::AxisWanted) => return Err(wrong("P, the axis, is missing")),
             Err(ParameterError::NoAxis) => return Err(wrong("the parameter has no axis P")),
             Err(ParameterError::NoBit) => return Err(wrong("the parameter has no bit Q")),

@@ -33,10 +33,11 @@ pub(super) struct Plan {
     pub(super) ahead: Ahead,
     /// Axes were commanded: what a modal macro call waits for.
     pub(super) moved: bool,
-    pub(super) stop: Option<StopKind>,
-    /// An M code for the machine builder's logic.
-    pub(super) passed_on: Option<u32>,
-    pub(super) note: Option<Note>,
+    /// In the order of their M codes.
+    pub(super) stops: Vec<StopKind>,
+    /// M codes for the machine builder's logic.
+    pub(super) passed_on: Vec<u32>,
+    pub(super) notes: Vec<Note>,
     pub(super) flow: Flow,
 }
 
@@ -85,7 +86,11 @@ pub(super) enum Flow {
     #[default]
     Next,
     Call(Box<CallPlan>),
-    Return(Option<u32>),
+    /// M99, with the number behind P and, once it is found, its place.
+    Return {
+        number: Option<u32>,
+        target: Option<OpIndex>,
+    },
     /// G67.
     CancelModal,
     End,
@@ -138,9 +143,9 @@ impl Plan {
         self.corner = None;
         self.reads_ahead = false;
         self.moved = false;
-        self.stop = None;
-        self.passed_on = None;
-        self.note = None;
+        self.stops.clear();
+        self.passed_on.clear();
+        self.notes.clear();
         self.flow = Flow::Next;
     }
 

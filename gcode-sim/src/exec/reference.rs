@@ -27,7 +27,7 @@ impl Core {
     pub(super) fn reference(&self, given: &Given, plan: &mut Plan, reference: Position) -> Checked<()> {
         if !self.names_axis(given) {
             let code = given.g_codes().find(|row| row.code == 300).map_or(280, |row| row.code);
-            plan.note = Some(Note::NoAxis { code });
+            plan.notes.push(Note::NoAxis { code });
         }
         let goal = self.goal(given, &mut plan.state)?;
         self.rapid(plan, goal.machine);

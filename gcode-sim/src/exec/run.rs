@@ -131,9 +131,18 @@ impl Control {
         sink: &mut S,
     ) -> Checked<Option<Outcome>> {
         let mut flow = std::mem::take(&mut self.plan.flow);
-        if let Flow::Call(call) = &mut flow {
-            let at = call.span;
-            self.resolve(call, library).map_err(|alarm| alarm.at(at))?;
+        match &mut flow {
+            Flow::Call(call) => {
+                let at = call.span;
+                self.resolve(call, library).map_err(|alarm| alarm.at(at))?;
+            }
+            Flow::Return { number, target } => {
+                *target = self.find_return(*number).map_err(|alarm| alarm.at(span))?;
+            }
+            Flow::Next if self.plan.moved => {
+                self.core.check_call_after_move().map_err(|alarm| alarm.at(span))?;
+            }
+            Flow::Next | Flow::CancelModal | Flow::End => {}
         }
         let broken_off = self.core.ask_for_signal(&mut self.plan, sink);
         self.core.commit(&mut self.plan, sink);
@@ -141,17 +150,15 @@ impl Control {
             return Err(alarm);
         }
         match flow {
-            Flow::Next if self.plan.moved && !self.core.modal_calls.is_empty() => {
-                self.core.call_after_move(span).map_err(|alarm| alarm.at(span))?;
-            }
+            Flow::Next if self.plan.moved => self.core.call_after_move(span),
             Flow::Next => {}
             Flow::Call(call) => {
                 self.core.enter(&call, span);
                 let program = self.core.frame().program;
                 self.core.state.codes.o = self.memory.get(program).shown_number();
             }
-            Flow::Return(to) => {
-                let outcome = self.go_back(to, span)?;
+            Flow::Return { number, target } => {
+                let outcome = self.go_back(number.zip(target));
                 let program = self.core.frame().program;
                 self.core.state.codes.o = self.memory.get(program).shown_number();
                 if outcome.is_none() {

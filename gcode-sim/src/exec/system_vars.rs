@@ -139,6 +139,14 @@ fn first_signals(word: u32) -> Result<(), Alarm> {
     Ok(())
 }
 
+/// An axis that the control doesn't have has no variables.
+fn of_no_axis(alarm: Alarm, number: u32) -> Alarm {
+    match alarm {
+        Alarm::AxisNumber { .. } => Alarm::NoSuchVariable { number: i64::from(number) },
+        other => other,
+    }
+}
+
 impl Core {
     pub(super) fn read_system(&self, number: u32) -> Result<Value, Alarm> {
         if number == 3100 {
@@ -146,7 +154,7 @@ impl Core {
         }
         let row = find(number, self.settings.offset_variables)?;
         let read = row.read.ok_or(Alarm::ReadProtected { number })?;
-        read(self, number - row.from).map(Value::Number)
+        read(self, number - row.from).map(Value::Number).map_err(|alarm| of_no_axis(alarm, number))
     }
 
     pub(super) fn write_system(&mut self, number: u32, value: f64) -> Result<(), Alarm> {
@@ -155,7 +163,7 @@ impl Core {
         }
         let row = find(number, self.settings.offset_variables)?;
         let write = row.write.ok_or(Alarm::WriteProtected { number })?;
-        write(self, number - row.from, value)
+        write(self, number - row.from, value).map_err(|alarm| of_no_axis(alarm, number))
     }
 
     fn set_output(&mut self, bit: u32, on: bool) {
@@ -163,9 +171,13 @@ impl Core {
     }
 
     fn set_outputs(&mut self, word: u32, value: f64) -> Result<(), Alarm> {
-        let value = super::eval::integer(value)?;
+        let bits = super::eval::integer(value)?;
         first_signals(word)?;
-        self.outputs = value as u32;
+        // 32 bits, signed or not.
+        if !(i64::from(i32::MIN)..=i64::from(u32::MAX)).contains(&bits) {
+            return Err(Alarm::OutOfRange { function: "#1132".into(), value });
+        }
+        self.outputs = bits as u32;
         Ok(())
     }
 
@@ -188,7 +200,12 @@ impl Core {
         f64::from(seconds / 3600 * 10_000 + seconds / 60 % 60 * 100 + seconds % 60)
     }
 
+    /// #3003 has two bits, #3004 three.
     fn set_switch(&mut self, switch: u32, value: f64) -> Result<(), Alarm> {
+        let most = if switch == 0 { 3.0 } else { 7.0 };
+        if !(0.0..=most).contains(&value.round()) {
+            return Err(Alarm::OutOfRange { function: format!("#{}", 3003 + switch), value });
+        }
         self.switches[switch as usize] = value.round();
         Ok(())
     }
@@ -238,12 +255,15 @@ impl Core {
         }
     }
 
-    /// A position of axis 1…; axes that the control doesn't have stand at 0.
+    /// An axis of the control by its number from 0 on.
+    fn known_axis(&self, axis: u32) -> Result<Axis, Alarm> {
+        let known = Some(axis as usize).filter(|axis| *axis < self.settings.axes.len());
+        known.ok_or(Alarm::AxisNumber { number: i64::from(axis) + 1 })
+    }
+
+    /// A position of an axis, in the unit of the program.
     fn position(&self, axis: u32, of: impl Fn(&Self, Axis) -> f64) -> Result<f64, Alarm> {
-        let axis = axis as usize;
-        if axis >= self.settings.axes.len() {
-            return Ok(0.0);
-        }
+        let axis = self.known_axis(axis)?;
         Ok(self.shown(&self.state, Some(axis), of(self, axis)))
     }
 
@@ -262,11 +282,9 @@ impl Core {
 
     /// The offset of G52.
     fn set_local(&mut self, axis: u32, value: f64) -> Result<(), Alarm> {
-        let axis = axis as usize;
-        if axis < self.settings.axes.len() {
-            self.state.local[axis] = self.offset_in_range(self.stored(&self.state, Some(axis), value))?;
-            self.offsets_changed();
-        }
+        let axis = self.known_axis(axis)?;
+        self.state.local[axis] = self.offset_in_range(self.stored(&self.state, Some(axis), value))?;
+        self.offsets_changed();
         Ok(())
     }
 
@@ -277,10 +295,7 @@ impl Core {
 
     fn set_work_offset(&mut self, system: usize, axis: u32, value: f64) -> Result<(), Alarm> {
         self.known_system(system)?;
-        let axis = axis as usize;
-        if axis >= self.settings.axes.len() {
-            return Ok(());
-        }
+        let axis = self.known_axis(axis)?;
         let value = self.offset_in_range(self.stored(&self.state, Some(axis), value))?;
         self.offsets.work_mut(system)[axis] = value;
         self.offsets_changed();

@@ -21,7 +21,7 @@ impl Core {
         let second = self.dimension(given, letter(plane.1), state)?.unwrap_or(state.programmed[plane.1]);
         let angle = self.angle(given, b'R')?;
         if angle.is_none() {
-            plan.note = Some(Note::NoAngle);
+            plan.notes.push(Note::NoAngle);
         }
         let angle = angle.unwrap_or(0.0);
         // Mirror and scaling act before the rotation, on its centre too; a mirror image turns the other way round.

@@ -56,7 +56,7 @@ impl Core {
             return Ok(());
         }
         if given.has_corner() && plan.corner.is_none() {
-            plan.note = Some(Note::CornerIgnored);
+            plan.notes.push(Note::CornerIgnored);
         }
         let cancels = given.g_codes().any(|row| row.effect == Effect::Cutter(CutterSide::Off));
         let towards = if cancels { self.vector(given, &plan.state)? } else { None };
@@ -95,7 +95,7 @@ impl Core {
             towards,
             restated: sides,
             leaves: plan.drill.is_some() || leaves(act) || plan.moved && plan.state.modal.cycle.is_some(),
-            stops: plan.stop.is_some() || matches!(plan.flow, Flow::End),
+            stops: !plan.stops.is_empty() || matches!(plan.flow, Flow::End),
             counts: matches!(plan.flow, Flow::Next | Flow::End) && corner_arc.is_none(),
             no_length: act.is_none() && (named(plane.0) || named(plane.1)),
             cuts: act.is_none()
