@@ -32,8 +32,17 @@ impl PointTree {
 
     /// The index and the distance of the nearest point.
     pub fn nearest(&self, to: &Point3<f64>) -> Option<(usize, f64)> {
+        self.nearest_that(to, &|_, _| true)
+    }
+
+    /// The nearest of the points that `counts`, asked with index and distance.
+    pub fn nearest_that(
+        &self,
+        to: &Point3<f64>,
+        counts: &impl Fn(usize, f64) -> bool,
+    ) -> Option<(usize, f64)> {
         let mut best = None;
-        closest(&self.nodes, to, &mut best);
+        closest(&self.nodes, to, counts, &mut best);
         best
     }
 
@@ -157,21 +166,27 @@ fn visit(nodes: &[Node], low: &Point3<f64>, high: &Point3<f64>, each: &mut impl 
     }
 }
 
-fn closest(nodes: &[Node], to: &Point3<f64>, best: &mut Option<(usize, f64)>) {
+fn closest(
+    nodes: &[Node],
+    to: &Point3<f64>,
+    counts: &impl Fn(usize, f64) -> bool,
+    best: &mut Option<(usize, f64)>,
+) {
     let middle = nodes.len() / 2;
     let Some(Node { point, index, axis }) = nodes.get(middle) else { return };
     let distance = (point - to).norm();
-    if best.is_none_or(|(at, least)| (distance, *index as usize) < (least, at)) {
-        *best = Some((*index as usize, distance));
+    let index = *index as usize;
+    if best.is_none_or(|(at, least)| (distance, index) < (least, at)) && counts(index, distance) {
+        *best = Some((index, distance));
     }
     let beyond = to[usize::from(*axis)] - point[usize::from(*axis)];
     let (near, far) = match beyond < 0.0 {
         true => (&nodes[..middle], &nodes[middle + 1..]),
         false => (&nodes[middle + 1..], &nodes[..middle]),
     };
-    closest(near, to, best);
+    closest(near, to, counts, best);
     if best.is_none_or(|(_, least)| beyond.abs() <= least) {
-        closest(far, to, best);
+        closest(far, to, counts, best);
     }
 }
 
@@ -249,6 +264,9 @@ mod tests {
             let to = Point3::new(x, y, z);
             let least = points.iter().map(|p| (p - to).norm()).fold(f64::INFINITY, f64::min);
             prop_assert_eq!(tree.nearest(&to).unwrap().1, least);
+            let odd_ones = points.iter().skip(1).step_by(2).map(|p| (p - to).norm());
+            let odd = tree.nearest_that(&to, &|index, _| index % 2 == 1);
+            prop_assert_eq!(odd.map(|(_, distance)| distance), odd_ones.reduce(f64::min));
         }
     }
 }

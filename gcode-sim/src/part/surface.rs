@@ -39,24 +39,25 @@ impl Surface {
     /// How far below the surface a point lies, along the gradient there: the distance for a sphere, near the surface
     /// and on an axis of the body. Below 0 outside, to first order.
     pub fn depth(&self, p: &Point3<f64>) -> f64 {
-        let out = self.normal(p).unwrap_or(Vector3::y_axis());
         let value = self.value(p);
-        match self.exit(p, &out) {
-            Some(exit) if value < 0.0 => (exit - p).norm(),
-            _ => -value / self.gradient(p).norm(),
+        let out = || self.normal(p).unwrap_or(Vector3::y_axis());
+        match (value < 0.0).then(|| self.exit(p, &out())).flatten() {
+            Some(exit) => (exit - p).norm(),
+            None => -value / self.gradient(p).norm(),
         }
     }
 
     /// Where a line leaves the body towards `out`; `None` where it misses the body.
     pub fn exit(&self, on: &Point3<f64>, out: &Unit<Vector3<f64>>) -> Option<Point3<f64>> {
         let at = |t: f64| on + out.into_inner() * t;
-        let innermost = self.innermost(on, out);
+        // From a point inside the body there is one way out.
+        let inside = if self.value(on) < 0.0 { 0.0 } else { self.innermost(on, out) };
         // A line that touches is one that meets: what is left of the value there is rounding.
-        if self.value(&at(innermost)) > 1e-12 {
+        if self.value(&at(inside)) > 1e-12 {
             return None;
         }
-        let beyond = grow(innermost, 1.0, |t| self.value(&at(t)) > 0.0);
-        Some(at(bisect(innermost, beyond, |t| self.value(&at(t)) > 0.0)))
+        let beyond = grow(inside, 1.0, |t| self.value(&at(t)) > 0.0);
+        Some(at(bisect(inside, beyond, |t| self.value(&at(t)) > 0.0)))
     }
 
     /// At least this far from a straight way; below 0 where that can't be said.

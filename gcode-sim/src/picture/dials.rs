@@ -1,9 +1,12 @@
 //! How much can be shown of each hole: where there is room for a dial with the misfit, how large, how enlarged.
+use nalgebra::Point3;
+
 use super::ink::Px;
 use super::lettering::LABEL_LIMIT;
 use super::measure::magnification;
 use super::scene::{Mark, Scene, Standing};
 use super::sheet::Frame;
+use crate::holes::near::PointTree;
 
 /// How much is drawn of the holes, tried in this order until every hole has its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -105,26 +108,17 @@ impl Dials {
 /// The distance from each hole to its nearest neighbour, pixels. A surplus hole in the place of another doesn't count:
 /// its sign moves aside.
 fn gaps(scene: &Scene, frame: &Frame) -> Vec<f64> {
-    let mut places: Vec<(Px, bool, usize)> = Vec::new();
-    for (index, mark) in scene.marks.iter().enumerate() {
-        places.push((frame.scale.px(mark.at), mark.standing == Standing::Extra, index));
-    }
-    places.sort_by(|a, b| a.0.x.total_cmp(&b.0.x).then(a.2.cmp(&b.2)));
-    let mut gaps = vec![f64::INFINITY; places.len()];
-    for (i, (a, extra, index)) in places.iter().enumerate() {
-        for (b, other_extra, other) in &places[i + 1..] {
-            if gaps[*index].max(4.0 * frame.largest_dial) < b.x - a.x {
-                break;
-            }
-            let distance = a.distance(*b);
-            if (*extra || *other_extra) && distance < 0.3 * frame.text {
-                continue;
-            }
-            gaps[*index] = gaps[*index].min(distance);
-            gaps[*other] = gaps[*other].min(distance);
-        }
-    }
-    gaps
+    let places: Vec<Px> = scene.marks.iter().map(|mark| frame.scale.px(mark.at)).collect();
+    let flat = |place: &Px| Point3::new(place.x, place.y, 0.0);
+    let tree = PointTree::new(places.iter().map(flat));
+    let is_extra = |index: usize| scene.marks[index].standing == Standing::Extra;
+    let gap = |(index, place): (usize, &Px)| {
+        let counts = |other: usize, distance: f64| {
+            other != index && (0.3 * frame.text <= distance || !is_extra(index) && !is_extra(other))
+        };
+        tree.nearest_that(&flat(place), &counts).map_or(f64::INFINITY, |(_, distance)| distance)
+    };
+    places.iter().enumerate().map(gap).collect()
 }
 
 #[cfg(test)]

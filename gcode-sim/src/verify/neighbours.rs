@@ -55,9 +55,9 @@ pub(super) fn neighbours(
     let (around_wanted, _) = self::around(wanted, pattern);
     let mut names = vec![None; comparison.found.len()];
     for pair in &comparison.pairs {
-        names[pair.found] = Some(comparison.id(pair.wanted).to_owned());
+        names[pair.found] = Some(comparison.id(pair.wanted));
     }
-    let name = |index: usize| names[index].clone().unwrap_or_else(|| place(&places[index]));
+    let name = |index: usize| names[index].map_or_else(|| place(&places[index]), str::to_owned);
     let known = || around.iter().enumerate().filter_map(|(index, around)| Some((index, (*around)?)));
     let distance = |index: usize, other: usize, distance: f64| Distance {
         distance,

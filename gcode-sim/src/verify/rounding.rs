@@ -4,7 +4,7 @@ use nalgebra::{Point3, Vector3};
 
 use super::Comparison;
 use crate::holes::Found;
-use crate::machine::{HeadKind, LinkMotion, Machine};
+use crate::machine::{Frame, HeadKind, LinkMotion, Machine};
 use crate::motion::Axis;
 use crate::units::Deg;
 
@@ -32,10 +32,12 @@ pub(super) fn shares(comparison: &Comparison<'_>, machine: &Machine) -> Vec<Roun
         let out = Vector3::from(wanted.axis);
         let entry = Point3::from(wanted.entry);
         let found = &comparison.found[pair.found];
+        let frame = machine.part_frame(&found.at);
         let moved = axes.iter().map(|axis| {
             let aside = |v: Vector3<f64>| v - out * v.dot(&out);
             let ends = [(entry, wanted.depth), (entry - out * wanted.depth, 0.0)];
-            (*axis, ends.map(|(end, above)| aside(half_increment(machine, *axis, found, &end, above))))
+            let move_of = |(end, above)| aside(half_increment(machine, *axis, found, &frame, &end, above));
+            (*axis, ends.map(move_of))
         });
         worst_case(machine, moved.collect())
     });
@@ -54,19 +56,20 @@ fn rounded_axes(comparison: &Comparison<'_>, machine: &Machine) -> Vec<Axis> {
     machine.axes.iter().map(|(axis, _)| axis).filter(|axis| moves(*axis)).collect()
 }
 
-/// How a point of the hole's axis, `above` its bottom, moves on the part when `axis` goes half an increment.
+/// How a point of the hole's axis, `above` its bottom, moves on the part when `axis` goes half an increment; `frame` is
+/// the part's where the hole was found.
 fn half_increment(
     machine: &Machine,
     axis: Axis,
     found: &Found,
+    frame: &Frame,
     point: &Point3<f64>,
     above: f64,
 ) -> Vector3<f64> {
     let half = machine.increment.size() / 2.0;
-    let frame = machine.part_frame(&found.at);
-    let mut next = found.at;
-    next[axis] += half;
     if machine.table.has(axis) {
+        let mut next = found.at;
+        next[axis] += half;
         let there = frame * point;
         return machine.part_frame(&next).inverse_transform_point(&there) - point;
     }
