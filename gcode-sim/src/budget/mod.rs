@@ -105,31 +105,40 @@ fn sample(
     worst: &mut [f64],
     progress: &AtomicUsize,
 ) {
-    let length = question.samples.div_ceil(question.threads.get());
+    let length = question.samples.div_ceil(question.threads.get()).max(WORTH_A_THREAD);
     let root = Draw::new(question.seed);
+    let draw = |part: usize, phis: &mut [f64], worst: &mut [f64]| {
+        let mut machine = question.machine.clone();
+        for (offset, (phi, worst)) in phis.iter_mut().zip(worst).enumerate() {
+            let of_part = root.at((part * length + offset) as u64);
+            machine.reset(question.machine);
+            let of_hole = of_part.at(HOLES + index as u64);
+            for source in question.sources {
+                let draw = if source.quantity.is_set_up() { of_part } else { of_hole };
+                source.draw_into(&mut machine, draw);
+            }
+            *phi = hole.phi(&machine);
+            *worst = phi.max(*worst);
+            if offset % COUNTED == 0 {
+                progress.fetch_add(COUNTED, Ordering::Relaxed);
+            }
+        }
+    };
     std::thread::scope(|scope| {
-        let parts = phis.chunks_mut(length).zip(worst.chunks_mut(length));
-        for (part, (phis, worst)) in parts.enumerate() {
-            scope.spawn(move || {
-                let mut machine = question.machine.clone();
-                for (offset, (phi, worst)) in phis.iter_mut().zip(worst).enumerate() {
-                    let of_part = root.at((part * length + offset) as u64);
-                    machine.reset(question.machine);
-                    let of_hole = of_part.at(HOLES + index as u64);
-                    for source in question.sources {
-                        let draw = if source.quantity.is_set_up() { of_part } else { of_hole };
-                        source.draw_into(&mut machine, draw);
-                    }
-                    *phi = hole.phi(&machine);
-                    *worst = phi.max(*worst);
-                    if offset % COUNTED == 0 {
-                        progress.fetch_add(COUNTED, Ordering::Relaxed);
-                    }
-                }
-            });
+        let mut parts = phis.chunks_mut(length).zip(worst.chunks_mut(length)).enumerate();
+        let own = parts.next();
+        for (part, (phis, worst)) in parts {
+            let draw = &draw;
+            scope.spawn(move || draw(part, phis, worst));
+        }
+        if let Some((part, (phis, worst))) = own {
+            draw(part, phis, worst);
         }
     });
 }
+
+/// Starting a thread takes as long as drawing some hundred samples.
+const WORTH_A_THREAD: usize = 256;
 
 /// Draws of single holes lie beyond those of sources.
 const HOLES: u64 = 1000;

@@ -1,5 +1,5 @@
 //! The programs under check, each with its text, its blocks, its ways and its calls.
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::control::Settings;
 use crate::diag::{Diagnostic, Severity};
@@ -127,6 +127,7 @@ impl<'a> Subject<'a> {
 
 /// The trees of programs, read once more from the texts in memory: lowering doesn't keep them.
 fn trees(memory: &Memory, programs: &[ProgramId]) -> BTreeMap<ProgramId, Vec<ast::Block>> {
+    let programs: BTreeSet<_> = programs.iter().collect();
     let mut ids: BTreeMap<SourceId, Vec<ProgramId>> = BTreeMap::new();
     for id in memory.ids() {
         ids.entry(memory.get(id).span.source).or_default().push(id);

@@ -184,7 +184,7 @@ impl Field {
         };
         let bounds = Obstacle::Segment(from, to).bounds();
         let cells = self.touched(&bounds);
-        cells.into_iter().any(|i| self.cells[i].iter().any(|o| o.crosses(from, to) && !passable(o)))
+        cells.into_iter().any(|i| self.cells[i].iter().any(|o| !passable(o) && o.crosses(from, to)))
     }
 
     fn touched(&self, rect: &Rect) -> Vec<usize> {

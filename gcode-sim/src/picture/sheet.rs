@@ -95,7 +95,7 @@ struct Plan {
 
 impl Plan {
     fn new(scene: &Scene, frame: &Frame, drawing: Rect, extent: (Point, Point), detail: Detail) -> Self {
-        let mut field = Field::new(drawing.grown(-0.3 * frame.text), 3.0 * frame.text);
+        let mut field = Field::new(drawing.grown(-0.3 * frame.text), frame.text);
         let mut inks = Vec::new();
         for stroke in &scene.strokes {
             inks.push(stroke_ink(stroke, frame));

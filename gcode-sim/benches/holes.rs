@@ -1,0 +1,110 @@
+//! How long it takes to run a program of many holes, follow its tool, and hold the holes against the reference: ten times
+//! as many holes should take little more than ten times as long.
+use std::fmt::Write as _;
+
+use divan::counter::ItemsCount;
+use gcode_sim::job::Job;
+use gcode_sim::machine::Machine;
+use gcode_sim::part::reference::Reference;
+use gcode_sim::part::wanted::Wanted;
+use gcode_sim::program::NoLibrary;
+use gcode_sim::session::{Request, Simulation, simulate};
+use gcode_sim::verify::{Answer, Tolerances};
+
+fn main() {
+    divan::main();
+}
+
+/// Rows of both groups, and holes in each.
+const SIZES: [(u32, u32); 3] = [(20, 50), (100, 100), (200, 500)];
+
+/// A honeycomb with so many holes, and a program that drills them one by one with G81.
+struct Case {
+    request: Request,
+    reference: Reference,
+}
+
+impl Case {
+    fn new((rows, along): (u32, u32)) -> Self {
+        let job = Job::parse(&job(rows, along)).expect("the job is one");
+        let machine = Machine::of_job(&job).expect("the job has a machine");
+        let wanted = Wanted::of_job(&job).expect("the job has a part");
+        let reference = wanted.into_holes().expect("the part has holes");
+        assert_eq!(reference.holes.len() as u32, rows * along);
+        let program = program(&reference, along as usize);
+        Self { request: Request::new("O1.nc", program.into_bytes(), machine), reference }
+    }
+
+    fn simulate(&self) -> Simulation {
+        simulate(&self.request, &mut NoLibrary, self.reference.surface).expect("there is a program")
+    }
+
+    fn holds(&self, simulation: &Simulation) -> bool {
+        let tolerances = Tolerances::of(&self.reference, None);
+        let verdict = simulation.verify(&self.reference, tolerances, &self.request.machine);
+        verdict.verdict == Answer::Pass && verdict.holes.len() == self.reference.holes.len()
+    }
+}
+
+/// Holes about 10 mm apart, rows of all the same number of holes.
+fn job(rows: u32, along: u32) -> String {
+    let diameter = f64::from(rows) * 10.0 * 0.75f64.sqrt() / std::f64::consts::PI;
+    let length = 10.0 * (f64::from(along) - 0.25);
+    let divisions = rows / 2;
+    format!(
+        r#"family = "honeycomb"
+[control]
+dialect = "fanuc-31i"
+increment = "IS-B"
+[machine]
+rotary = {{ letter = "B", sign = 1 }}
+clearance = 2.0
+retract = 50.0
+[cylinder]
+diameter = {diameter}
+length = {length}
+[pattern]
+divisions = {divisions}
+metric = "arc"
+[drill]
+diameter = 5.0
+depth = 3.0
+number = 1
+speed = 1000
+feed = 60.0
+peck = 5.0
+[tolerance]
+position = 0.1
+depth = 0.1
+"#
+    )
+}
+
+fn program(reference: &Reference, along: usize) -> String {
+    let mut text = "O1\nG21 G17 G40 G49 G54 G80 G90 G94\nT1 M06\nS1000 M03\nG43 H1 Z50.\n".to_owned();
+    let rows = reference.holes.len() / along;
+    for (row, holes) in reference.holes.chunks(along).enumerate() {
+        let turn = 360.0 * row as f64 / rows as f64;
+        write!(text, "G80 G0 B{turn:.3}\nG98 G81 Z-3. R2. F60. K0\n").expect("a text takes all");
+        for hole in holes {
+            writeln!(text, "X{:.3} Y0.", hole.entry[0]).expect("a text takes all");
+        }
+    }
+    text + "G80\nM30\n"
+}
+
+/// The program run and the holes found in its motion.
+#[divan::bench(args = SIZES, sample_count = 5, sample_size = 1)]
+fn extract(bencher: divan::Bencher<'_, '_>, size: (u32, u32)) {
+    let case = Case::new(size);
+    bencher.counter(ItemsCount::new(case.reference.holes.len())).bench_local(|| case.simulate());
+}
+
+/// The holes found held against those wanted, with their neighbours.
+#[divan::bench(args = SIZES, sample_count = 5, sample_size = 1)]
+fn verify(bencher: divan::Bencher<'_, '_>, size: (u32, u32)) {
+    let case = Case::new(size);
+    let simulation = case.simulate();
+    assert!(case.holds(&simulation), "the program drills what is wanted");
+    bencher.counter(ItemsCount::new(case.reference.holes.len())).bench_local(|| case.holds(&simulation));
+}
