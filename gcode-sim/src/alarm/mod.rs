@@ -141,6 +141,8 @@ pub enum Alarm {
     },
     FileNotFound {
         name: String,
+        /// What couldn't be read while it was looked for.
+        unread: Option<String>,
     },
     G10Format {
         what: String,
@@ -157,10 +159,14 @@ pub enum Alarm {
     NoNameInCall,
     ProgramNotFound {
         number: u32,
+        /// What couldn't be read while it was looked for.
+        unread: Option<String>,
     },
     /// M198 of a file that isn't there.
     DeviceFileNotFound {
         number: u32,
+        /// What couldn't be read while it was looked for.
+        unread: Option<String>,
     },
     /// M198 in a program that M198 called.
     DeviceCallInDeviceCall,

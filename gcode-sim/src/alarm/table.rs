@@ -53,7 +53,7 @@ impl Alarm {
             Self::ProgramNumber => (Ps(74), "a program's number is 1 to 99999999".into(), None),
             Self::ProgramNotNamed => (Ps(76), "a call without a program number".into(), Some("write the program's number behind P")),
             Self::NoNameInCall => (Ps(311), "a call without a program number or name".into(), Some("write the program's number behind P")),
-            Self::ProgramNotFound { number } => (Ps(76), format!("program O{number:04} is not here"), Some("give the folder that holds it with --lib")),
+            Self::ProgramNotFound { number, unread } => (Ps(76), not_here(format!("program O{number:04}"), unread), Some("give the folder that holds it with --lib")),
             Self::TooManyCalls { limit } => (Ps(77), format!("more than {limit} calls inside one another"), Some("does a program call itself?")),
             Self::SequenceNumberNotFound { number } => (Ps(78), format!("no block N{number} to return to"), None),
             Self::NotAtReference { letter } => (Ps(92), format!("G27: {letter} is not at the reference position"), None),
@@ -86,11 +86,11 @@ impl Alarm {
             Self::TNotAllowed => (Ps(245), "T can't stand beside G04, G10 or G50".into(), Some("command T in a block of its own")),
             Self::CodeInScaling { code } => (Ps(300), format!("G{code} while scaling is on"), Some("command G50 first")),
             Self::NoIntermediatePoint => (Ps(305), "G29 without a G28 that left an intermediate point".into(), None),
-            Self::FileNotFound { name } => (Ps(310), format!("program <{name}> is not here"), None),
+            Self::FileNotFound { name, unread } => (Ps(310), not_here(format!("program <{name}>"), unread), None),
             Self::PluralM { first, second } => (Ps(335), format!("M{second:02} behind M{first:02} in one block: only the last M code counts"), Some("write the other code in the block before")),
             Self::SkipTorque => (Ps(369), "G31: Q, the torque limit, is 1 to 99".into(), None),
             Self::SkipSignals { letter } => (Ps(370), format!("{letter}, the set of skip signals, is 1 to 4"), None),
-            Self::DeviceFileNotFound { number } => (Ps(1079), format!("file {number} of M198 is not here"), Some("give the folder that holds it with --lib")),
+            Self::DeviceFileNotFound { number, unread } => (Ps(1079), not_here(format!("file {number} of M198"), unread), Some("give the folder that holds it with --lib")),
             Self::DeviceCallInDeviceCall => (Ps(1080), "M198 in a program that M198 called".into(), Some("call it with M98 from there")),
             Self::TwoSubprogramCalls => (Ps(1091), "two subprogram calls in one block".into(), None),
             Self::TwoMacroCalls => (Ps(1092), "two macro calls in one block".into(), None),
@@ -125,5 +125,13 @@ impl Alarm {
             Self::StylusBroken { pushed, give } => (Sim(3), format!("the stylus is pushed {pushed:.3} mm and gives {give:.3} mm"), Some("probe with a lower feed, and back off before the next touch")),
             Self::NotSimulated { what } => (Sim(1), format!("{what} is not simulated"), Some("a control may have it; this simulator does not execute it and will not guess")),
         }
+    }
+}
+
+/// A program that was looked for, and what may have held it.
+fn not_here(what: String, unread: &Option<String>) -> String {
+    match unread {
+        Some(unread) => format!("{what} is not here, and {unread}"),
+        None => format!("{what} is not here"),
     }
 }

@@ -1,5 +1,5 @@
 //! Finds called programs in folders: `O8101.nc` and `PROBE.nc` by their names, any other file by the programs it holds.
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::{Refusal, input};
@@ -12,6 +12,8 @@ pub struct Folders {
     folders: Vec<PathBuf>,
     /// What the files hold whose names don't tell; read at the first call that no name answers.
     contents: Option<Contents>,
+    /// Folders and files that couldn't be read, and why.
+    unread: BTreeSet<String>,
 }
 
 /// The files by what they hold.
@@ -32,62 +34,99 @@ impl Folders {
             Some(parent) => parent.to_owned(),
             None => PathBuf::from("."),
         };
-        Ok(Self { folders: std::iter::once(own).chain(folders.iter().cloned()).collect(), contents: None })
+        let folders = std::iter::once(own).chain(folders.iter().cloned()).collect();
+        Ok(Self { folders, contents: None, unread: BTreeSet::new() })
     }
 
-    fn by_name(&self, number: u32) -> Option<PathBuf> {
-        let wanted = |path: &Path| numbered(path) == Some(number);
-        self.folders.iter().find_map(|folder| files(folder).into_iter().find(|path| wanted(path)))
+    /// The first file, in the order of folders and names, that is wanted.
+    fn find(&mut self, wanted: impl Fn(&Path) -> bool) -> Option<PathBuf> {
+        self.files().into_iter().find(|path| wanted(path))
     }
 
-    fn contents(&mut self) -> &Contents {
-        self.contents.get_or_insert_with(|| {
-            let mut found = Contents::default();
-            for path in self.folders.iter().flat_map(|folder| files(folder)) {
-                let Ok(bytes) = input::bytes(&path) else { continue };
-                for program in programs_in(&bytes) {
-                    match program {
-                        ProgramName::Number(number) => {
-                            found.numbers.entry(number).or_insert_with(|| path.clone());
-                        }
-                        ProgramName::Name(name) => {
-                            found.names.entry(name).or_insert_with(|| path.clone());
-                        }
-                        ProgramName::Unnamed => {}
+    /// What can be a program: files that aren't of another kind by their ending, in the order of folders and names.
+    fn files(&mut self) -> Vec<PathBuf> {
+        const OTHERS: [&str; 12] =
+            ["toml", "json", "csv", "png", "md", "txt", "html", "snap", "pdf", "zip", "rs", "new"];
+        let mut files = Vec::new();
+        for folder in &self.folders {
+            match input::folder(folder) {
+                Ok(paths) => files.extend(paths),
+                Err(refusal) => _ = self.unread.insert(refusal.to_string()),
+            }
+        }
+        files.retain(|path| {
+            let ending = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
+            path.is_file() && !OTHERS.contains(&ending.as_str())
+        });
+        files
+    }
+
+    fn bytes(&mut self, path: &Path) -> Option<Vec<u8>> {
+        match input::bytes(path) {
+            Ok(bytes) => Some(bytes),
+            Err(refusal) => {
+                self.unread.insert(refusal.to_string());
+                None
+            }
+        }
+    }
+
+    fn read_contents(&mut self) -> Contents {
+        let mut found = Contents::default();
+        for path in self.files() {
+            let Some(bytes) = self.bytes(&path) else { continue };
+            for program in programs_in(&bytes) {
+                match program {
+                    ProgramName::Number(number) => {
+                        found.numbers.entry(number).or_insert_with(|| path.clone());
                     }
+                    ProgramName::Name(name) => {
+                        found.names.entry(name).or_insert_with(|| path.clone());
+                    }
+                    ProgramName::Unnamed => {}
                 }
             }
-            found
-        })
+        }
+        found
+    }
+
+    fn holder(&mut self, of: impl Fn(&Contents) -> Option<&PathBuf>) -> Option<PathBuf> {
+        if self.contents.is_none() {
+            self.contents = Some(self.read_contents());
+        }
+        self.contents.as_ref().and_then(of).cloned()
     }
 }
 
 impl Library for Folders {
     fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)> {
         // A file's name may promise a number that isn't in it: then the contents decide.
-        let named = self.by_name(number).and_then(|path| Some((input::bytes(&path).ok()?, path)));
         let holds = |bytes: &[u8]| programs_in(bytes).any(|name| name == ProgramName::Number(number));
+        let named = self.find(|path| numbered(path) == Some(number));
+        let named = named.and_then(|path| Some((self.bytes(&path)?, path)));
         let (bytes, path) = match named.filter(|(bytes, _)| holds(bytes)) {
             Some(found) => found,
             None => {
-                let path = self.contents().numbers.get(&number).cloned()?;
-                (input::bytes(&path).ok()?, path)
+                let path = self.holder(|contents| contents.numbers.get(&number))?;
+                (self.bytes(&path)?, path)
             }
         };
         Some((path.display().to_string(), bytes))
     }
 
     fn named(&mut self, name: &str) -> Option<(String, Vec<u8>)> {
-        let path = match self.contents().names.get(name).cloned() {
+        let path = match self.holder(|contents| contents.names.get(name)) {
             Some(path) => path,
             // A file of this name that says neither name nor number itself.
-            None => self.folders.iter().find_map(|folder| {
-                let called = |path: &PathBuf| path.file_stem().is_some_and(|s| s.eq_ignore_ascii_case(name));
-                files(folder).into_iter().find(called)
-            })?,
+            None => self.find(|path| path.file_stem().is_some_and(|stem| stem.eq_ignore_ascii_case(name)))?,
         };
-        let bytes = input::bytes(&path).ok()?;
+        let bytes = self.bytes(&path)?;
         Some((path.display().to_string(), bytes))
+    }
+
+    fn unread(&self) -> Option<String> {
+        let all: Vec<_> = self.unread.iter().map(String::as_str).collect();
+        (!all.is_empty()).then(|| all.join("; "))
     }
 }
 
@@ -106,22 +145,6 @@ fn numbered(path: &Path) -> Option<u32> {
     if digits.bytes().all(|b| b.is_ascii_digit()) { digits.parse().ok() } else { None }
 }
 
-/// What can be a program: files that aren't of another kind by their ending, in the order of their names.
-fn files(folder: &Path) -> Vec<PathBuf> {
-    const OTHERS: [&str; 12] =
-        ["toml", "json", "csv", "png", "md", "txt", "html", "snap", "pdf", "zip", "rs", "new"];
-    let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
-    let mut files: Vec<_> = entries
-        .filter_map(|entry| Some(entry.ok()?.path()))
-        .filter(|path| {
-            let ending = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
-            path.is_file() && !OTHERS.contains(&ending.as_str())
-        })
-        .collect();
-    files.sort();
-    files
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -133,5 +156,17 @@ mod tests {
         {
             assert_eq!(numbered(Path::new(name)), number, "{name}");
         }
+    }
+
+    #[test]
+    fn a_folder_that_can_not_be_read_is_told() {
+        let place = tempfile::tempdir().unwrap();
+        let mut folders = Folders::new(&place.path().join("main.nc"), &[]).unwrap();
+        assert!(folders.program(1).is_none());
+        assert_eq!(folders.unread(), None, "an empty folder has been read");
+        place.close().unwrap();
+        assert!(folders.program(1).is_none());
+        let told = folders.unread().unwrap();
+        assert!(told.contains("can't be read"), "{told}");
     }
 }

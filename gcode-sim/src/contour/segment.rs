@@ -66,27 +66,18 @@ impl Segment {
         self.to() + left(self.arrives()) * distance
     }
 
-    /// The radius of an arc's parallel where it begins or ends: negative where the arc is too small to have one.
-    fn parallel_radius(&self, at: Point, distance: f64) -> Option<f64> {
-        match self {
-            Self::Line { .. } => None,
-            Self::Arc { centre, sweep, .. } => Some((at - centre).norm() - distance * sweep.0.signum()),
-        }
-    }
-
     /// Whether the arc is too small for a parallel at this distance.
     pub fn is_too_small(&self, distance: f64) -> bool {
-        [self.from(), self.to()]
-            .into_iter()
-            .any(|at| self.parallel_radius(at, distance).is_some_and(|r| r < -NOTHING))
+        let Self::Arc { from, to, centre, sweep } = self else { return false };
+        [from, to].into_iter().any(|at| parallel_radius(*centre, *sweep, *at, distance) < -NOTHING)
     }
 
     /// Whether a point lies on the parallel of an arc where the arc begins; all points do for a line.
     pub fn parallel_begins_at(&self, point: Point, distance: f64) -> bool {
         match self {
             Self::Line { .. } => true,
-            Self::Arc { centre, from, .. } => {
-                let radius = self.parallel_radius(*from, distance).unwrap_or(0.0);
+            Self::Arc { centre, from, sweep, .. } => {
+                let radius = parallel_radius(*centre, *sweep, *from, distance);
                 ((point - centre).norm() - radius).abs() < 1e-6
             }
         }
@@ -107,8 +98,9 @@ impl Segment {
                 let direction = self.leaves();
                 Curve::Line { point: at + left(direction) * distance, direction }
             }
-            Self::Arc { centre, .. } => {
-                let radius = self.parallel_radius(at, distance).unwrap_or(0.0).max(0.0);
+            // No arc that is followed is smaller than that by more than rounding: see [`Segment::is_too_small`].
+            Self::Arc { centre, sweep, .. } => {
+                let radius = parallel_radius(*centre, *sweep, at, distance).max(0.0);
                 Curve::Circle { centre: *centre, radius }
             }
         }
@@ -122,18 +114,19 @@ impl Segment {
         }
     }
 
-    /// The sweep of an arc's parallel that begins and ends elsewhere than beside the arc's own ends.
+    /// The sweep of an arc's parallel that begins and ends elsewhere than beside the arc's own ends; a line has none.
     pub fn sweep_between(&self, start: Point, end: Point, distance: f64) -> Deg {
         let Self::Arc { centre, sweep, from, to } = self else { return Deg::ZERO };
-        let lost = |own: Point, new: Point, radius: Option<f64>| {
-            if radius.is_none_or(|radius| radius < NOTHING) {
+        let lost = |own: Point, new: Point| {
+            // A parallel that is a point turns through the angle of its arc.
+            if parallel_radius(*centre, *sweep, own, distance) < NOTHING {
                 return 0.0;
             }
             let (own, new) = (own - centre, new - centre);
             Deg::atan2(cross(own, new), own.dot(&new)).0
         };
-        let first = lost(*from, start, self.parallel_radius(*from, distance));
-        let last = lost(*to, end, self.parallel_radius(*to, distance));
+        let first = lost(*from, start);
+        let last = lost(*to, end);
         Deg(sweep.0 - first + last)
     }
 
@@ -172,6 +165,11 @@ impl Segment {
             Self::Arc { from, centre, sweep, .. } => (from - centre).norm() * sweep.abs().to_rad() > NOTHING,
         }
     }
+}
+
+/// The radius of an arc's parallel where it begins or ends: negative where the arc is too small to have one.
+fn parallel_radius(centre: Point, sweep: Deg, at: Point, distance: f64) -> f64 {
+    (at - centre).norm() - distance * sweep.0.signum()
 }
 
 #[cfg(test)]

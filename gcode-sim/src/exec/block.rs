@@ -11,6 +11,7 @@
 //!  7. call or return.
 use super::Core;
 use super::eval::Checked;
+use super::notes::Note;
 use super::plan::Plan;
 use super::words::Given;
 use crate::alarm::Alarm;
@@ -62,15 +63,16 @@ impl Core {
         self.check_stroke(plan, span)
     }
 
-    /// What nothing has read may still mean something to a control: it isn't passed over in silence. M codes may take
-    /// words of their own.
-    fn check_unread(&self, given: &Given, plan: &Plan) -> Checked<()> {
-        let for_m_code = !plan.passed_on.is_empty() || given.m_count > 0 && !self.names_axis(given);
-        match given.unread() {
-            Some((letter, span)) if !for_m_code => {
-                Err(Alarm::NotSimulated { what: format!("{letter} in such a block") }.at(span))
+    /// What nothing has read may still mean something to a control: it isn't passed over in silence. In a block
+    /// without axes such words go to the machine builder's logic with his M code.
+    fn check_unread(&self, given: &Given, plan: &mut Plan) -> Checked<()> {
+        let Some((letter, span)) = given.unread() else { return Ok(()) };
+        match plan.passed_on.last() {
+            Some(code) if !self.names_axis(given) => {
+                plan.notes.push(Note::WordsPassedOn { code: *code, letter });
+                Ok(())
             }
-            _ => Ok(()),
+            _ => Err(Alarm::NotSimulated { what: format!("{letter} in such a block") }.at(span)),
         }
     }
 

@@ -116,13 +116,13 @@ impl Control {
             Target::Number(number) => {
                 let found = self.memory.fetch(*number, library);
                 found.ok_or(match call.external {
-                    true => Alarm::DeviceFileNotFound { number: *number },
-                    false => Alarm::ProgramNotFound { number: *number },
+                    true => Alarm::DeviceFileNotFound { number: *number, unread: library.unread() },
+                    false => Alarm::ProgramNotFound { number: *number, unread: library.unread() },
                 })?
             }
             Target::Name(name) => {
                 let found = self.memory.fetch_name(name, library);
-                found.ok_or_else(|| Alarm::FileNotFound { name: name.clone() })?
+                found.ok_or_else(|| Alarm::FileNotFound { name: name.clone(), unread: library.unread() })?
             }
             Target::Found(program, _) => *program,
         };

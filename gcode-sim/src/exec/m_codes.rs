@@ -12,9 +12,7 @@ use crate::units::Rpm;
 impl Core {
     /// 2., 5. and 6. What M codes do, each at its time.
     pub(super) fn m_codes(&self, given: &Given, plan: &mut Plan) -> Checked<()> {
-        if let Some(code) = given.lost_m {
-            plan.notes.push(Note::MCodeLost { code });
-        }
+        plan.notes.extend(given.lost_m.iter().map(|code| Note::MCodeLost { code: *code }));
         for (code, span) in given.m[..given.m_count].iter().flatten().copied() {
             plan.state.codes.m = code;
             let speed = Rpm(plan.state.codes.s);
@@ -29,7 +27,10 @@ impl Core {
                 MEffect::End => plan.flow = Flow::End,
                 MEffect::SpindleForward => self.turn(plan, Spindle::Clockwise, speed),
                 MEffect::SpindleReverse => self.turn(plan, Spindle::Counterclockwise, speed),
-                MEffect::SpindleStop => {
+                MEffect::SpindleStop | MEffect::Orient => {
+                    if effect == MEffect::Orient {
+                        given.accept(b"PR");
+                    }
                     plan.state.spindle = Spindle::Off;
                     plan.after.push((EventKind::Spindle { turning: Spindle::Off, speed }, 0.0));
                 }

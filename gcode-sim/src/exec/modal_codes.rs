@@ -103,7 +103,24 @@ fn act_of(row: &Row, given: &Given, cutter: CutterSide) -> Result<Option<Act>, A
         Effect::Mirror(Mirror::Off) => Some(Act::MirrorOff),
         Effect::Rotation(Rotation::On) => Some(Act::Rotate),
         Effect::Rotation(Rotation::Tilted) => Some(Act::Tilt),
-        _ => None,
+        Effect::Scaling(Scaling::Off)
+        | Effect::Rotation(Rotation::Off)
+        | Effect::Motion(_)
+        | Effect::Plane(_)
+        | Effect::Distance(_)
+        | Effect::StrokeCheck(_)
+        | Effect::FeedMode(_)
+        | Effect::Unit(_)
+        | Effect::Cutter(_)
+        | Effect::Length(_)
+        | Effect::Cycle(_)
+        | Effect::ReturnTo(_)
+        | Effect::SpindleMode(_)
+        | Effect::Work(_)
+        | Effect::NumberedWork(_)
+        | Effect::Cutting(_)
+        | Effect::Polar(_)
+        | Effect::LookAhead => None,
     })
 }
 

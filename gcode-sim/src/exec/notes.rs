@@ -14,6 +14,10 @@ pub enum Note {
     CycleDataLost,
     /// M96 lets a signal call a macro, and no signal comes in a run.
     InterruptNeverComes,
+    /// G31, and nothing gives a skip signal: no part to touch and no place where it comes.
+    NoSignal,
+    /// A word beside an M code of the machine builder that nothing else in the block reads.
+    WordsPassedOn { code: u32, letter: char },
     /// `,R` or `,C` in a block that is no cutting move is ignored.
     CornerIgnored,
     /// A drilling block with K0 stores its data and drills nothing, which is what K0 is for; whether its X and Y are
@@ -63,6 +67,18 @@ impl Note {
                 let message =
                     "the macro of M96 is never called: the signal UINT doesn't come in a run".to_owned();
                 ("no-interrupt", message, "call the macro with G65 to see what it does")
+            }
+            Self::NoSignal => {
+                let message = "no skip signal is simulated: G31 goes to its end".to_owned();
+                (
+                    "no-signal",
+                    message,
+                    "give the part with --part, or SKIP, the part of the way where it comes",
+                )
+            }
+            Self::WordsPassedOn { code, letter } => {
+                let message = format!("{letter} goes with M{code:02} to the machine builder's logic");
+                ("words-passed-on", message, "the machine's manual says what the M code takes")
             }
             Self::CornerIgnored => {
                 let message = ",R and ,C are ignored: the block is no cutting move".to_owned();

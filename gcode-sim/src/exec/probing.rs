@@ -2,6 +2,7 @@
 use super::Core;
 use super::eval::{Checked, at};
 use super::modal_codes::not_simulated;
+use super::notes::Note;
 use super::plan::{Plan, Probing};
 use super::words::Given;
 use crate::alarm::Alarm;
@@ -58,7 +59,10 @@ impl Core {
                     self.clock_read.set(true);
                     signal
                 }
-                None => Signal::Missed,
+                None => {
+                    plan.notes.push(Note::NoSignal);
+                    Signal::Missed
+                }
             },
         };
         let (noted, stopped, alarm) = match signal {

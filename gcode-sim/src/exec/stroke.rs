@@ -45,7 +45,12 @@ impl Core {
                 self.point_within(to)?;
                 extremes(arc, to).iter().flatten().try_for_each(|point| self.point_within(point))
             }
-            _ => Ok(()),
+            EventKind::Dwell { .. }
+            | EventKind::Tool { .. }
+            | EventKind::ToolLength { .. }
+            | EventKind::Spindle { .. }
+            | EventKind::Coolant { .. }
+            | EventKind::Stop { .. } => Ok(()),
         }
     }
 

@@ -36,8 +36,8 @@ pub(super) struct Given {
     pub(super) m_count: usize,
     /// `,R` or `,C`.
     pub(super) corner: Option<(u8, Raw, Span)>,
-    /// An M code that a later one of the block has replaced.
-    pub(super) lost_m: Option<u32>,
+    /// M codes that a later one of the block has replaced.
+    pub(super) lost_m: Vec<u32>,
     /// The value in the comment of `G10 L85`.
     pub(super) punched: Option<u64>,
 }
@@ -53,7 +53,7 @@ impl Default for Given {
             m: [None; M_CODES],
             m_count: 0,
             corner: None,
-            lost_m: None,
+            lost_m: Vec::new(),
             punched: None,
         }
     }
@@ -67,7 +67,7 @@ impl Given {
         self.g_count = 0;
         self.m_count = 0;
         self.corner = None;
-        self.lost_m = None;
+        self.lost_m.clear();
         self.punched = None;
     }
 
@@ -102,7 +102,7 @@ impl Given {
             if m_codes::ends_or_stops(first) || settings.plural_m_alarms {
                 return Err(Alarm::PluralM { first, second: code });
             }
-            self.lost_m = Some(first);
+            self.lost_m.push(first);
         }
         self.m[place] = Some((code, span));
         self.m_count = place + 1;

@@ -100,7 +100,11 @@ impl Source {
                 }
             }
             Quantity::Head => machine.head.error = Wave::drawn(self.spread, 360.0, draw),
-            _ => self.draw_into(machine, Draw::new(drawn.seed)),
+            Quantity::Shift(_)
+            | Quantity::Tilt(_)
+            | Quantity::RunOut
+            | Quantity::Centre(_)
+            | Quantity::AxisTilt(_) => self.draw_into(machine, Draw::new(drawn.seed)),
         }
     }
 }

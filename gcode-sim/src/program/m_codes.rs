@@ -10,6 +10,8 @@ pub enum MEffect {
     SpindleForward,
     SpindleReverse,
     SpindleStop,
+    /// M19, with the angle in P or R: the spindle stands, at which angle moves nothing.
+    Orient,
     ToolChange,
     CoolantOn,
     CoolantOff,
@@ -59,7 +61,7 @@ pub const M_CODES: &[MRow] = &[
     row(7, MEffect::CoolantOn, "mist"),
     row(8, MEffect::CoolantOn, "coolant"),
     row(9, MEffect::CoolantOff, "coolant off"),
-    row(19, MEffect::SpindleStop, "oriented spindle stop"),
+    row(19, MEffect::Orient, "oriented spindle stop"),
     row(29, MEffect::NoEffect, "rigid tapping"),
     row(30, MEffect::End, "program end, rewind"),
     row(48, MEffect::NoEffect, "overrides on"),

@@ -19,6 +19,11 @@ pub trait Library {
     fn named(&mut self, _: &str) -> Option<(String, Vec<u8>)> {
         None
     }
+
+    /// What couldn't be read while a program was looked for.
+    fn unread(&self) -> Option<String> {
+        None
+    }
 }
 
 /// Nothing but what is in memory.
@@ -38,6 +43,10 @@ impl<L: Library + ?Sized> Library for &mut L {
 
     fn named(&mut self, name: &str) -> Option<(String, Vec<u8>)> {
         (**self).named(name)
+    }
+
+    fn unread(&self) -> Option<String> {
+        (**self).unread()
     }
 }
 

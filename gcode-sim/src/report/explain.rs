@@ -160,6 +160,7 @@ pub const PAGES: &[Page] = pages![
     "no-interrupt"
     "no-pass"
     "no-repeats"
+    "no-signal"
     "parameter-without-effect"
     "rapid-beyond-cut"
     "rapid-into-part"
@@ -172,6 +173,7 @@ pub const PAGES: &[Page] = pages![
     "tangent-of-90"
     "tool-unknown"
     "wheel-into-burr"
+    "words-passed-on"
 ];
 
 /// The rules of `check`, each a section of their page.

@@ -177,7 +177,10 @@ impl Ahead {
     /// G39: round the corner to beside a direction at once, or to beside the next move when that is read.
     pub(super) fn round(&mut self, core: &Core, arc: &CornerArc, order: &Order) -> Checked<()> {
         self.settle(core)?;
-        let distance = order.distance.unwrap_or(0.0);
+        let Some(distance) = order.distance else {
+            let what = "G39 without an offset of the cutter (D0)".into();
+            return Err(Alarm::NotSimulated { what }.at(order.place.block));
+        };
         let rounding = Rounding { place: order.place.clone(), rate: arc.rate, distance };
         let Some(direction) = arc.towards else {
             self.rounding = Some(rounding);

@@ -59,8 +59,8 @@ impl Core {
             plan.notes.push(Note::CornerIgnored);
         }
         let cancels = given.g_codes().any(|row| row.effect == Effect::Cutter(CutterSide::Off));
-        let towards = if cancels { self.vector(given, &plan.state)? } else { None };
-        let distance = self.distance(&plan.state);
+        let towards = if cancels { self.vector(given, &plan.state, span)? } else { None };
+        let distance = at(self.distance(&plan.state), span)?;
         if self.ahead.is_idle() && distance.is_none() && plan.corner.is_none() {
             return Ok(());
         }
@@ -121,21 +121,21 @@ impl Core {
     }
 
     /// How far the tool's centre is to be to the left of the path.
-    fn distance(&self, state: &State) -> Option<f64> {
+    fn distance(&self, state: &State) -> Result<Option<f64>, Alarm> {
         let side = match state.modal.cutter {
-            CutterSide::Off => return None,
+            CutterSide::Off => return Ok(None),
             CutterSide::Left => 1.0,
             CutterSide::Right => -1.0,
         };
         if state.codes.d == 0 {
-            return None;
+            return Ok(None);
         }
-        let mirrored = self.plane_axes(state.modal.plane).is_ok_and(|plane| state.transform.on_arcs(plane).0);
-        Some(if mirrored { -side } else { side } * state.radius)
+        let (mirrored, _) = state.transform.on_arcs(self.plane_axes(state.modal.plane)?);
+        Ok(Some(if mirrored { -side } else { side } * state.radius))
     }
 
     /// I, J, K of the plane as a direction in machine coordinates.
-    fn vector(&self, given: &Given, state: &State) -> Checked<Option<Point>> {
+    fn vector(&self, given: &Given, state: &State, span: Span) -> Checked<Option<Point>> {
         let letters = match state.modal.plane {
             Plane::Xy => (b'I', b'J'),
             Plane::Zx => (b'K', b'I'),
@@ -143,7 +143,7 @@ impl Core {
         };
         let first = self.dimension(given, letters.0, state)?.unwrap_or(0.0);
         let second = self.dimension(given, letters.1, state)?.unwrap_or(0.0);
-        let Ok(plane) = self.plane_axes(state.modal.plane) else { return Ok(None) };
+        let plane = at(self.plane_axes(state.modal.plane), span)?;
         if first == 0.0 && second == 0.0 {
             return Ok(None);
         }
@@ -158,7 +158,7 @@ impl Core {
     fn corner_arc(&self, given: &Given, plan: &Plan, span: Span) -> Checked<CornerArc> {
         let timed = self.time_along(&plan.state, 1.0, 1.0, 0.0, given.has(b'F'));
         let (rate, _) = timed.map_err(|_| Alarm::ArcFeedZero.at(span))?;
-        Ok(CornerArc { towards: self.vector(given, &plan.state)?, rate })
+        Ok(CornerArc { towards: self.vector(given, &plan.state, span)?, rate })
     }
 
     /// Takes over what a plan has read ahead, and tells the machine what no longer waits.

@@ -74,7 +74,14 @@ impl Ahead {
         let to: Position = self.with(piece.to(), segment.to());
         let rate = match piece.kind {
             EventKind::Feed { rate, .. } | EventKind::Arc { rate, .. } => rate,
-            _ => return piece.clone(),
+            EventKind::Rapid { .. }
+            | EventKind::Skip { .. }
+            | EventKind::Dwell { .. }
+            | EventKind::Tool { .. }
+            | EventKind::ToolLength { .. }
+            | EventKind::Spindle { .. }
+            | EventKind::Coolant { .. }
+            | EventKind::Stop { .. } => return piece.clone(),
         };
         let kind = match segment {
             Segment::Line { .. } => EventKind::Feed { to, rate },
