@@ -24,6 +24,26 @@ pub(super) fn length(reader: &Reader<'_>, key: &str, value: &Spanned<f64>) -> Re
     reader.number(key, value, LENGTH, within(0.01, 99_999.0))
 }
 
+/// `machine.clearance` and `machine.retract`: how far above the surface the tool feeds from, and how far it goes away. mm.
+pub(super) fn heights(
+    reader: &Reader<'_>,
+    clearance: Option<&Spanned<f64>>,
+    retract: Option<&Spanned<f64>>,
+) -> Result<(f64, f64), JobError> {
+    let clearance = match clearance {
+        Some(value) => reader.number("machine.clearance", value, "0.01 to 9999 mm", within(0.01, 9_999.0))?,
+        None => 2.0,
+    };
+    let retract = match retract {
+        Some(value) => {
+            let allowed = format!("{clearance} (the clearance) to 9999 mm");
+            reader.number("machine.retract", value, &allowed, within(clearance, 9_999.0))?
+        }
+        None => clearance.max(50.0),
+    };
+    Ok((clearance, retract))
+}
+
 /// 1 or −1.
 pub(super) fn sign(reader: &Reader<'_>, key: &str, value: &Spanned<i64>) -> Result<i8, JobError> {
     match *value.as_ref() {

@@ -3,7 +3,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::{Clamp, CombMachine, Cylinder, Drill, Honeycomb, Metric, Spacing};
-use crate::job::sections::{FileControl, FileRotary, FileTolerance, length, within};
+use crate::job::sections::{FileControl, FileRotary, FileTolerance, heights, length, within};
 use crate::job::{JobError, Reader};
 
 #[derive(Deserialize)]
@@ -87,19 +87,7 @@ pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<Honeycomb, JobError> 
 
 impl FileMachine {
     fn check(&self, reader: &Reader<'_>) -> Result<CombMachine, JobError> {
-        let clearance = match &self.clearance {
-            Some(value) => {
-                reader.number("machine.clearance", value, "0.01 to 9999 mm", within(0.01, 9_999.0))?
-            }
-            None => 2.0,
-        };
-        let retract = match &self.retract {
-            Some(value) => {
-                let allowed = format!("{clearance} (the clearance) to 9999 mm");
-                reader.number("machine.retract", value, &allowed, within(clearance, 9_999.0))?
-            }
-            None => clearance.max(50.0),
-        };
+        let (clearance, retract) = heights(reader, self.clearance.as_ref(), self.retract.as_ref())?;
         let clamp = self.clamp.as_ref().map(|clamp| clamp.check(reader)).transpose()?;
         Ok(CombMachine { rotary: self.rotary.check(reader)?, clearance, retract, clamp })
     }

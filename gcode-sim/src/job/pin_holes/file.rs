@@ -6,7 +6,7 @@ use toml::Spanned;
 
 use super::tools::{FileTool, ToolsWanted, assign, default_tools};
 use super::{AxisDirection, Head, HeadKind, HoleWanted, MacroSettings, PinHoles, PinMachine, Surface, Tool};
-use crate::job::sections::{FileControl, FileRotary, FileTolerance, ROTARY_LETTERS, length, within};
+use crate::job::sections::{FileControl, FileRotary, FileTolerance, ROTARY_LETTERS, heights, length, within};
 use crate::job::{JobError, Reader};
 
 #[derive(Deserialize)]
@@ -138,19 +138,7 @@ impl FileMachine {
             Some(head) => head.check(reader, rotary.letter)?,
             None => Head { kind: HeadKind::Manual, pivot: 0.0 },
         };
-        let clearance = match &self.clearance {
-            Some(value) => {
-                reader.number("machine.clearance", value, "0.01 to 9999 mm", within(0.01, 9_999.0))?
-            }
-            None => 2.0,
-        };
-        let retract = match &self.retract {
-            Some(value) => {
-                let allowed = format!("{clearance} (the clearance) to 9999 mm");
-                reader.number("machine.retract", value, &allowed, within(clearance, 9_999.0))?
-            }
-            None => clearance.max(50.0),
-        };
+        let (clearance, retract) = heights(reader, self.clearance.as_ref(), self.retract.as_ref())?;
         Ok(PinMachine { rotary, head, clearance, retract })
     }
 }
