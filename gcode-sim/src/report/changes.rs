@@ -1,4 +1,5 @@
 //! What two revisions do differently, as text and as data.
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use serde::Serialize;
@@ -47,14 +48,8 @@ impl ChangesReport {
 
     /// The same for people.
     pub fn text(&self) -> String {
-        const SHOWN: usize = 20;
         let mut text = String::new();
-        for change in self.changes.iter().take(SHOWN) {
-            entry(&mut text, change, "");
-        }
-        if SHOWN < self.changes.len() {
-            let _ = writeln!(text, "… and {} more: --format json has them all", self.changes.len() - SHOWN);
-        }
+        entries(&mut text, &self.changes, "");
         let _ = match self.changes.len() {
             0 => writeln!(text, "nothing changes on the part"),
             1 => writeln!(text, "1 change"),
@@ -79,8 +74,31 @@ pub(super) fn counted(count: u64, what: &str) -> String {
     if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
 }
 
+/// The changes with their blocks: of each kind as many as people read, and how many more there are.
+pub(super) fn entries(text: &mut String, changes: &[Change], indent: &str) {
+    const SHOWN: usize = 6;
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    for change in changes {
+        *counts.entry(change.code).or_default() += 1;
+    }
+    let mut seen: BTreeMap<&str, usize> = BTreeMap::new();
+    for change in changes {
+        let number = seen.entry(change.code).or_default();
+        *number += 1;
+        let all = counts[change.code];
+        if *number <= SHOWN {
+            entry(text, change, indent);
+        }
+        if *number == SHOWN && SHOWN < all {
+            let more = all - SHOWN;
+            let _ =
+                writeln!(text, "{indent}… and {more} more of {}: --format json has them all", change.code);
+        }
+    }
+}
+
 /// One change with its blocks and the calls that led to them.
-pub(super) fn entry(text: &mut String, change: &Change, indent: &str) {
+fn entry(text: &mut String, change: &Change, indent: &str) {
     let _ = writeln!(text, "{indent}{:<14} {}", change.code, change.message);
     for (word, place) in [("old", &change.old), ("new", &change.new)] {
         let Some(place) = place else { continue };

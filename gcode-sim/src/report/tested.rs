@@ -3,7 +3,7 @@ use std::fmt::Write;
 
 use serde::Serialize;
 
-use super::changes::{counted, entry};
+use super::changes::{counted, entries};
 use crate::changes::{Change, Totals};
 
 /// The document of `test --format json`.
@@ -35,7 +35,6 @@ impl TestReport {
 
     /// The same for people: what isn't as accepted, and how many are.
     pub fn text(&self) -> String {
-        const SHOWN: usize = 8;
         let mut text = String::new();
         for case in &self.cases {
             let totals = case
@@ -49,12 +48,7 @@ impl TestReport {
                 ("changed", _) => writeln!(text, "changed  {}", case.name),
                 _ => Ok(()),
             };
-            for change in case.changes.iter().take(SHOWN) {
-                entry(&mut text, change, "    ");
-            }
-            if SHOWN < case.changes.len() {
-                let _ = writeln!(text, "    … and {} more changes", case.changes.len() - SHOWN);
-            }
+            entries(&mut text, &case.changes, "    ");
             if let Some(against) = &case.against {
                 let _ = writeln!(text, "fails    {}: {against}", case.name);
             }
