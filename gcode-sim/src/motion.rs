@@ -149,6 +149,10 @@ pub enum EventKind {
     Coolant {
         on: bool,
     },
+    /// An M code for the machine builder's logic: what it does isn't simulated.
+    Auxiliary {
+        code: u32,
+    },
     /// The program waits for the operator.
     Stop {
         kind: StopKind,

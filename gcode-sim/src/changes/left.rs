@@ -1,9 +1,8 @@
-//! How the runs ended and what they leave behind: outcome, printed lines, M codes, variables, offsets and modes.
-use std::collections::{BTreeMap, BTreeSet};
+//! How the runs ended and what they leave behind: outcome, printed lines, variables, offsets and modes.
+use std::collections::BTreeSet;
 
 use super::Change;
-use super::record::{Record, Where};
-use crate::motion::Axes;
+use super::record::{Left, Record};
 
 /// Whether the runs ended in the same way.
 pub(super) fn outcome(old: &Record, new: &Record) -> Option<Change> {
@@ -17,9 +16,9 @@ pub(super) fn outcome(old: &Record, new: &Record) -> Option<Change> {
 
 pub(super) fn compare(old: &Record, new: &Record, tolerance: f64) -> Vec<Change> {
     let mut changes: Vec<Change> = printed(&old.ending.output, &new.ending.output).into_iter().collect();
-    changes.extend(m_codes(&old.ending.m_codes, &new.ending.m_codes));
-    let numbers: BTreeSet<u32> = old.ending.values.keys().chain(new.ending.values.keys()).copied().collect();
-    changes.extend(numbers.into_iter().filter_map(|number| value(old, new, number, tolerance)));
+    let (was, is) = (&old.ending.left, &new.ending.left);
+    let names: BTreeSet<&String> = was.keys().chain(is.keys()).collect();
+    changes.extend(names.into_iter().filter_map(|name| value(name, was.get(name), is.get(name), tolerance)));
     changes
 }
 
@@ -34,50 +33,33 @@ fn printed(was: &[String], is: &[String]) -> Option<Change> {
     Some(Change::new("output", message))
 }
 
-/// M codes for the machine builder's logic that one of the runs doesn't have.
-fn m_codes(was: &BTreeMap<u32, Where>, is: &BTreeMap<u32, Where>) -> Vec<Change> {
-    let lost = was.iter().filter(|(code, _)| !is.contains_key(code));
-    let added = is.iter().filter(|(code, _)| !was.contains_key(code));
-    let lost = lost.map(|(code, place)| {
-        Change::new("m-code", format!("M{code:02} is no longer there")).once_at(Some(place))
-    });
-    let added =
-        added.map(|(code, place)| Change::new("m-code", format!("M{code:02} is new")).now_at(Some(place)));
-    lost.chain(added).collect()
-}
-
-/// What the next program finds in a variable.
-fn value(old: &Record, new: &Record, number: u32, tolerance: f64) -> Option<Change> {
-    let (code, name) = named(number, &old.axes);
-    let (was, is) = (old.ending.values.get(&number), new.ending.values.get(&number));
+/// What the next program finds under a name.
+fn value(name: &str, was: Option<&Left>, is: Option<&Left>, tolerance: f64) -> Option<Change> {
+    let code = was.or(is)?.code.as_str();
+    // Only offsets are lengths and angles; what a variable means nobody knows.
+    let is_length = matches!(code, "work-offset" | "tool-offset");
+    // What isn't written down is 0; a variable is vacant, a parameter as it was.
+    let absent = (!matches!(code, "variable" | "parameter")).then_some(0.0);
+    let (was, is) = (was.map(|left| left.value).or(absent), is.map(|left| left.value).or(absent));
     let same = match (was, is) {
-        (Some(a), Some(b)) => (a - b).abs() <= tolerance,
+        (Some(a), Some(b)) if is_length => (a - b).abs() <= tolerance,
+        // The last digits of the arithmetic are no change.
+        (Some(a), Some(b)) => (a - b).abs() <= 1e-9 * a.abs().max(b.abs()),
         (a, b) => a == b,
     };
-    // System variables that aren't written down are 0.
-    let absent = if code == "variable" { "vacant" } else { "0" };
-    let shown = |value: Option<&f64>| value.map_or_else(|| absent.to_owned(), |v| plain(*v).to_string());
-    (!same).then(|| Change::new(code, format!("{name} is left {} instead of {}", shown(is), shown(was))))
+    let nothing = if code == "parameter" { "as it was" } else { "vacant" };
+    let shown = |value: Option<f64>| value.map_or_else(|| nothing.to_owned(), |v| plain(v).to_string());
+    (!same)
+        .then(|| Change::new(known(code), format!("{name} is left {} instead of {}", shown(is), shown(was))))
 }
 
-/// What a variable is, in a code and in words: `#5222, G54 Y,`.
-fn named(number: u32, axes: &Axes) -> (&'static str, String) {
-    let letter = |first: u32| axes.letter(((number - first) % 20) as usize);
-    match number {
-        4001..=4022 => ("mode", format!("#{number}, the mode of group {:02},", number - 4000)),
-        5201..=5220 => ("work-offset", format!("#{number}, the external work offset {},", letter(5201))),
-        5221..=5328 => {
-            ("work-offset", format!("#{number}, G{} {},", 54 + (number - 5221) / 20, letter(5221)))
-        }
-        14_001..=19_960 => {
-            ("work-offset", format!("#{number}, G54.1 P{} {},", 1 + (number - 14_001) / 20, letter(14_001)))
-        }
-        10_001..=13_400 => ("tool-offset", format!("#{number}, of tool offset {},", number % 1000)),
-        _ => ("variable", format!("#{number}")),
-    }
+/// The name of a change as every entry has it; a file may hold any.
+fn known(code: &str) -> &'static str {
+    let codes = ["variable", "mode", "work-offset", "tool-offset", "parameter", "signal", "counter"];
+    codes.into_iter().find(|known| *known == code).unwrap_or("variable")
 }
 
-/// Nobody can set more digits, and a residue of the arithmetic is none.
+/// Digits that nobody can set aren't shown.
 fn plain(value: f64) -> f64 {
-    (value * 1e6).round() / 1e6 + 0.0
+    (value * 1e9).round() / 1e9 + 0.0
 }

@@ -235,9 +235,13 @@ impl<'a> Motion<'a> {
             Kind::Spindle(Spindle::Counterclockwise, speed) => format!("M04 S{speed}"),
             Kind::Coolant(true) => "coolant on".to_owned(),
             Kind::Coolant(false) => "coolant off".to_owned(),
-            Kind::Stop(StopKind::M00, _) => "the stop M00".to_owned(),
-            Kind::Stop(StopKind::M01, _) => "the stop M01".to_owned(),
-            Kind::Stop(StopKind::Message, text) => format!("the stop #3006 ({text})"),
+            Kind::Auxiliary(code) => format!("M{code:02}"),
+            Kind::Stop(StopKind::M00, ..) => "the stop M00".to_owned(),
+            Kind::Stop(StopKind::M01, ..) => "the stop M01".to_owned(),
+            Kind::Stop(StopKind::Message, text, named) => {
+                let values = named.iter().map(|(number, value)| format!(", #{number} = {}", short(*value)));
+                format!("the stop #3006 ({text}){}", values.collect::<String>())
+            }
             Kind::Rapid | Kind::Feed(_) | Kind::Arc(..) | Kind::Probe(_) => format!("a {}", kind.name()),
         }
     }
@@ -273,6 +277,7 @@ fn lost_code(kind: &Kind) -> &'static str {
         Category::Length => "tool-length",
         Category::Spindle => "spindle",
         Category::Coolant => "coolant",
+        Category::Auxiliary => "m-code",
         Category::Stop => "stop",
     }
 }

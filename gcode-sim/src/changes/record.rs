@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::steps::{Recorder, Step};
 use crate::diag::{Diagnostic, Severity};
-use crate::exec::{Outcome, Value};
+use crate::exec::{Outcome, RemainderKind};
 use crate::holes::Found;
 use crate::motion::{Axes, MAX_AXES, Place, Position};
 use crate::part::surface::Surface;
@@ -65,10 +65,17 @@ pub(super) struct Ending {
     pub stopped: Option<Where>,
     /// The lines of DPRNT and BPRNT; bytes that are no text as `\xNN`.
     pub output: Vec<String>,
-    /// M codes for the machine builder's logic, each with the first block that has it.
-    pub m_codes: BTreeMap<u32, Where>,
-    /// Variables that aren't vacant: commons, and system variables that outlive a run and aren't 0.
-    pub values: BTreeMap<u32, f64>,
+    /// What the next program finds, by name: all that isn't vacant or 0.
+    pub left: BTreeMap<String, Left>,
+}
+
+/// A value that outlives the run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Left {
+    /// What a change of it is called.
+    pub code: String,
+    pub value: f64,
 }
 
 /// A run with its record.
@@ -94,6 +101,11 @@ impl Revision {
         }
         let record = record(&simulation, recorder);
         Ok(Self { simulation, record })
+    }
+
+    /// The run was cut off by a limit: what lies behind it isn't in the record.
+    pub fn is_cut_off(&self) -> bool {
+        self.stopped().any(|finding| finding.code == "limit")
     }
 
     /// Why the run stopped before its end, or can't be compared to its end.
@@ -160,6 +172,11 @@ impl Record {
     pub fn outcome(&self) -> &str {
         &self.ending.outcome
     }
+
+    /// How the run ended, in words.
+    pub fn words(&self) -> &str {
+        &self.ending.words
+    }
 }
 
 impl Where {
@@ -185,27 +202,31 @@ fn ending(run: &Run) -> Ending {
         }
         Outcome::Limit => ("limit", "the program doesn't end within the limits".to_owned(), None),
     };
-    let place = |block: Span| Where::of(run, &Place { block, calls: None });
     Ending {
         outcome: outcome.to_owned(),
         words,
         stopped,
         output: run.control.output().iter().map(|line| crate::exec::printable(line)).collect(),
-        m_codes: run.control.passed_on().iter().map(|(code, block)| (*code, place(*block))).collect(),
-        values: values(run),
+        left: left(run),
     }
 }
 
-/// System variables that outlive a run: modes of groups 1 to 22, work offsets, tool offsets (operator's manual, system
-/// variables).
-const LEFT: [std::ops::RangeInclusive<u32>; 6] =
-    [4001..=4022, 5201..=5328, 10_001..=10_400, 11_001..=11_400, 12_001..=13_400, 14_001..=19_960];
+/// What the next program finds, by name.
+fn left(run: &Run) -> BTreeMap<String, Left> {
+    let all = run.control.left_behind();
+    all.into_iter().map(|r| (r.name, Left { code: code(r.kind).to_owned(), value: r.value })).collect()
+}
 
-fn values(run: &Run) -> BTreeMap<u32, f64> {
-    let commons = run.control.variables().filter(|(number, _)| *number >= 100);
-    let read = |number| run.control.variable(number).ok().and_then(Value::given);
-    let system = LEFT.into_iter().flatten().filter_map(|number| Some((number, read(number)?)));
-    commons.chain(system.filter(|(_, value)| *value != 0.0)).collect()
+fn code(kind: RemainderKind) -> &'static str {
+    match kind {
+        RemainderKind::Variable => "variable",
+        RemainderKind::Mode => "mode",
+        RemainderKind::WorkOffset => "work-offset",
+        RemainderKind::ToolOffset => "tool-offset",
+        RemainderKind::Parameter => "parameter",
+        RemainderKind::Output => "signal",
+        RemainderKind::Counter => "counter",
+    }
 }
 
 /// Blocks that were told already: most steps come from the block and the call of the one before.

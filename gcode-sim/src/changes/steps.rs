@@ -31,7 +31,10 @@ pub(super) enum Kind {
     Length(Position),
     Spindle(Spindle, f64),
     Coolant(bool),
-    Stop(StopKind, String),
+    /// An M code for the machine builder's logic.
+    Auxiliary(u32),
+    /// With its text, and the variables that the text names with their values.
+    Stop(StopKind, String, Vec<(u32, f64)>),
 }
 
 /// What can be paired with what.
@@ -43,6 +46,7 @@ pub(super) enum Category {
     Length,
     Spindle,
     Coolant,
+    Auxiliary,
     Stop,
 }
 
@@ -55,6 +59,7 @@ impl Kind {
             Self::Length(_) => Category::Length,
             Self::Spindle(..) => Category::Spindle,
             Self::Coolant(_) => Category::Coolant,
+            Self::Auxiliary(_) => Category::Auxiliary,
             Self::Stop(..) => Category::Stop,
         }
     }
@@ -79,6 +84,7 @@ impl Kind {
             Self::Length(_) => "tool length offset",
             Self::Spindle(..) => "spindle command",
             Self::Coolant(_) => "coolant command",
+            Self::Auxiliary(_) => "M code",
             Self::Stop(..) => "stop",
         }
     }
@@ -99,6 +105,11 @@ impl Step {
                 near(&self.to, &other.to, tolerance) && is_same_arc(a, b, tolerance)
             }
             (Kind::Length(a), Kind::Length(b)) => near(a, b, tolerance),
+            (Kind::Stop(kind, text, named), Kind::Stop(other, words, values)) => {
+                let same = |(a, b): (&(u32, f64), &(u32, f64))| a.0 == b.0 && (a.1 - b.1).abs() <= tolerance;
+                let alike = named.len() == values.len() && named.iter().zip(values).all(same);
+                kind == other && text == words && alike
+            }
             (a, b) => a == b,
         }
     }
@@ -194,7 +205,10 @@ impl Sink for Recorder {
                 self.push(Kind::Spindle(*turning, speed), here, event);
             }
             EventKind::Coolant { on } => self.push(Kind::Coolant(*on), here, event),
-            EventKind::Stop { kind, text, .. } => self.push(Kind::Stop(*kind, text.clone()), here, event),
+            EventKind::Auxiliary { code } => self.push(Kind::Auxiliary(*code), here, event),
+            EventKind::Stop { kind, text, named } => {
+                self.push(Kind::Stop(*kind, text.clone(), named.clone()), here, event);
+            }
         }
     }
 }

@@ -39,7 +39,8 @@ enum Line {
     Length { offset: BTreeMap<char, f64>, place: usize },
     Spindle { turning: Turning, speed: f64, place: usize },
     Coolant { on: bool, place: usize },
-    Stop { kind: Waiting, text: String, place: usize },
+    Auxiliary { m: u32, place: usize },
+    Stop { kind: Waiting, text: String, named: Vec<(u32, f64)>, place: usize },
 }
 
 #[derive(Clone, Copy, Serialize, Deserialize)]
@@ -166,13 +167,14 @@ impl Record {
                 Line::Spindle { turning, speed: *speed, place }
             }
             Kind::Coolant(on) => Line::Coolant { on: *on, place },
-            Kind::Stop(kind, text) => {
+            Kind::Auxiliary(m) => Line::Auxiliary { m: *m, place },
+            Kind::Stop(kind, text, named) => {
                 let kind = match kind {
                     StopKind::M00 => Waiting::M00,
                     StopKind::M01 => Waiting::M01,
                     StopKind::Message => Waiting::Message,
                 };
-                Line::Stop { kind, text: text.clone(), place }
+                Line::Stop { kind, text: text.clone(), named: named.clone(), place }
             }
         }
     }
@@ -228,13 +230,14 @@ impl Steps<'_> {
                 (Kind::Spindle(turning, speed), place)
             }
             Line::Coolant { on, place } => (Kind::Coolant(on), place),
-            Line::Stop { kind, text, place } => {
+            Line::Auxiliary { m, place } => (Kind::Auxiliary(m), place),
+            Line::Stop { kind, text, named, place } => {
                 let kind = match kind {
                     Waiting::M00 => StopKind::M00,
                     Waiting::M01 => StopKind::M01,
                     Waiting::Message => StopKind::Message,
                 };
-                (Kind::Stop(kind, text), place)
+                (Kind::Stop(kind, text, named), place)
             }
         };
         let (from, to) = (difference(&before, &self.length), difference(&self.at, &self.length));

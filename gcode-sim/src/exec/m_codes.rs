@@ -18,6 +18,7 @@ impl Core {
             let speed = Rpm(plan.state.codes.s);
             let Some(effect) = m_codes::find(code, self.settings.codes) else {
                 plan.passed_on.push(code);
+                plan.tell(EventKind::Auxiliary { code });
                 continue;
             };
             match effect {

@@ -14,6 +14,7 @@ mod endless;
 mod eval;
 mod frames;
 mod functions;
+mod left;
 mod m_codes;
 mod modal;
 mod modal_calls;
@@ -48,6 +49,7 @@ mod words;
 use std::cell::Cell;
 use std::collections::BTreeMap;
 
+pub use left::{Remainder, RemainderKind};
 pub use modal::Modal;
 pub use notes::Note;
 pub use outcome::{Limits, Outcome, Stop, Stopped};

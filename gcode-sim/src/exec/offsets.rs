@@ -52,15 +52,28 @@ impl Offsets {
         }
     }
 
-    pub(super) fn tool(&self, register: Register, number: u32) -> Result<f64, Alarm> {
-        let table = match register {
+    /// The rows of a table; row 0 is no offset.
+    pub(super) fn table(&self, register: Register) -> &[f64] {
+        match register {
             Register::HGeometry => &self.h_geometry,
             Register::HWear => &self.h_wear,
             Register::DGeometry => &self.d_geometry,
             Register::DWear => &self.d_wear,
-        };
+        }
+    }
+
+    pub(super) fn tool(&self, register: Register, number: u32) -> Result<f64, Alarm> {
         let unknown = || Alarm::OffsetNumber { number: i64::from(number) };
-        table.get(number as usize).copied().ok_or_else(unknown)
+        self.table(register).get(number as usize).copied().ok_or_else(unknown)
+    }
+
+    pub(super) fn external(&self) -> &Position {
+        &self.external
+    }
+
+    /// G54 to G59.
+    pub(super) fn standard(&self) -> &[Position; 6] {
+        &self.standard
     }
 
     /// Geometry and wear of an H number; H0 is no offset.

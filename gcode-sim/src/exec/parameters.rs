@@ -120,8 +120,8 @@ impl Core {
 
     /// Carries out what [`Core::prepare_parameter`] has checked.
     pub(super) fn set_parameter(&mut self, place: ParameterPlace, value: f64, kept: bool) {
+        self.parameters.insert(place, value);
         if kept {
-            self.parameters.insert(place, value);
             return;
         }
         // It was tried on a copy when the block was checked.

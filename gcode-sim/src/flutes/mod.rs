@@ -200,6 +200,7 @@ impl Sink for Follower<'_> {
             | EventKind::ToolLength { .. }
             | EventKind::Spindle { .. }
             | EventKind::Coolant { .. }
+            | EventKind::Auxiliary { .. }
             | EventKind::Stop { .. } => {}
         }
     }

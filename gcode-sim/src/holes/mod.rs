@@ -254,7 +254,10 @@ impl Sink for Extractor<'_> {
                     self.set_up(|setup| setup.head_angle = Some(angle));
                 }
             }
-            EventKind::Stop { .. } | EventKind::Dwell { .. } | EventKind::Coolant { .. } => {}
+            EventKind::Stop { .. }
+            | EventKind::Dwell { .. }
+            | EventKind::Coolant { .. }
+            | EventKind::Auxiliary { .. } => {}
         }
     }
 }

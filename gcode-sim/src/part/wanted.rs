@@ -14,14 +14,6 @@ pub enum Wanted {
 }
 
 impl Wanted {
-    /// The holes, where the part gets holes.
-    pub fn holes(&self) -> Option<&Reference> {
-        match self {
-            Self::Holes(reference) => Some(reference),
-            Self::Flutes(_) => None,
-        }
-    }
-
     /// A job file, or a list of holes as JSON or CSV: told apart by how the text begins, since it may come from a
     /// pipe.
     pub fn parse(text: &str) -> Result<Self, ReferenceError> {

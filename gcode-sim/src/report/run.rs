@@ -156,6 +156,7 @@ impl Sink for Moves {
             | EventKind::ToolLength { .. }
             | EventKind::Spindle { .. }
             | EventKind::Coolant { .. }
+            | EventKind::Auxiliary { .. }
             | EventKind::Stop { .. } => return,
         };
         if to != self.at || matches!(kind, "arc" | "dwell") {

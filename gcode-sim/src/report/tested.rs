@@ -26,6 +26,8 @@ pub struct CaseReport {
     pub against: Option<String>,
     pub error: Option<String>,
     pub totals: Option<Totals>,
+    /// How the run ended, in words.
+    pub ending: Option<String>,
 }
 
 impl TestReport {
@@ -41,7 +43,10 @@ impl TestReport {
                 .totals
                 .as_ref()
                 .map(|t| format!("{}, {}", counted(t.holes as u64, "hole"), counted(t.moves, "move")));
-            let totals = totals.unwrap_or_default();
+            let mut totals = totals.unwrap_or_default();
+            if let Some(ending) = case.ending.as_ref().filter(|words| words.starts_with("alarm")) {
+                totals.push_str(&format!("; {ending}"));
+            }
             let _ = match (case.answer, &case.error) {
                 (_, Some(error)) => writeln!(text, "refused  {}: {error}", case.name),
                 ("new", _) => writeln!(text, "new      {}: nothing accepted yet ({totals})", case.name),
@@ -54,7 +59,11 @@ impl TestReport {
             }
         }
         for name in &self.accepted {
-            let _ = writeln!(text, "accepted {name}");
+            let case = self.cases.iter().find(|case| case.name == *name);
+            let ending =
+                case.and_then(|case| case.ending.as_deref()).filter(|words| words.starts_with("alarm"));
+            let ending = ending.map(|words| format!(", which ends with {words}")).unwrap_or_default();
+            let _ = writeln!(text, "accepted {name}{ending}");
         }
         let count = |answer| self.cases.iter().filter(|case| case.answer == answer).count();
         let mut words = vec![format!("{} as accepted", count("same"))];

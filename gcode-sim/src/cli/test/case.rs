@@ -4,8 +4,10 @@ use std::path::{Path, PathBuf};
 use crate::changes::{Change, Record, Revision, changes};
 use crate::cli::args::RunConditions;
 use crate::cli::{Refusal, input, options};
+use crate::diag::{Diagnostic, Severity};
 use crate::exec::Limits;
 use crate::part::wanted::Wanted;
+use crate::session::{self, SessionError};
 use crate::verify::{Answer, Tolerances};
 
 /// The file that holds what was accepted.
@@ -105,17 +107,29 @@ impl Case {
         let (request, mut folders) = options::request(&conditions.of(&self.program))?;
         let reference = ["reference.json", "reference.csv", "job.toml"].into_iter().find_map(there);
         let wanted = reference.as_deref().map(options::wanted).transpose()?;
-        let holes = wanted.as_ref().and_then(Wanted::holes);
-        let surface = holes.and_then(|reference| reference.surface);
-        let revision = Revision::of(&request, &mut folders, surface);
-        let revision = revision.map_err(|error| Refusal::new(error.to_string()))?;
-        let against = holes.and_then(|reference| {
-            let tolerances = Tolerances::of(reference, None);
-            let verdict = revision.simulation.verify(reference, tolerances, &request.machine);
-            let first = verdict.findings.iter().find(|finding| finding.severity == "error");
-            (verdict.verdict == Answer::Fail)
-                .then(|| first.map_or("the holes fail".to_owned(), |f| format!("{}: {}", f.code, f.message)))
-        });
+        let surface = match &wanted {
+            Some(Wanted::Holes(reference)) => reference.surface,
+            Some(Wanted::Flutes(_)) | None => None,
+        };
+        let refused = |error: SessionError| Refusal::new(error.to_string());
+        let revision = Revision::of(&request, &mut folders, surface).map_err(refused)?;
+        if revision.is_cut_off() {
+            let message = "the run was cut off by a limit: what lies behind it can't be compared";
+            return Err(Refusal::new(message));
+        }
+        let against = match &wanted {
+            None => None,
+            Some(Wanted::Holes(reference)) => {
+                let tolerances = Tolerances::of(reference, None);
+                let verdict = revision.simulation.verify(reference, tolerances, &request.machine);
+                fails(verdict.verdict, &verdict.diagnostics)
+            }
+            Some(Wanted::Flutes(flutes)) => {
+                let verdict = session::grind(&request, &mut folders, flutes);
+                let verdict = verdict.map_err(|error| Refusal::new(error.to_string()))?.verify();
+                fails(verdict.verdict, &verdict.diagnostics)
+            }
+        };
         let answer = match there(ACCEPTED) {
             None => Tested::New,
             Some(path) => {
@@ -127,4 +141,12 @@ impl Case {
         };
         Ok(Tried { name: self.name.clone(), answer, against, record: Some(revision.record) })
     }
+}
+
+/// The first thing that a failed verdict has against the program.
+fn fails(answer: Answer, findings: &[Diagnostic]) -> Option<String> {
+    let first = findings.iter().find(|finding| Severity::Error <= finding.severity);
+    let words =
+        || first.map_or_else(|| "not what it wants".to_owned(), |f| format!("{}: {}", f.code, f.message));
+    (answer == Answer::Fail).then(words)
 }

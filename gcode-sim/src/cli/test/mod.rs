@@ -46,7 +46,11 @@ pub(super) fn run(arguments: &TestArguments) -> Result<Status, Refusal> {
     let tolerance = options::tolerance("--tolerance", Some(arguments.tolerance))?.unwrap_or_default();
     let mut cases = Vec::new();
     for folder in &arguments.folders {
-        cases.extend(case::find(folder)?);
+        let mut found = case::find(folder)?;
+        if arguments.folders.len() > 1 {
+            found.iter_mut().for_each(|case| case.name = format!("{}/{}", folder.display(), case.name));
+        }
+        cases.extend(found);
     }
     if cases.is_empty() {
         return Err(Refusal::new("no cases: a case is a folder with a program (.nc)"));
@@ -90,22 +94,23 @@ fn all(cases: &[Case], arguments: &TestArguments, tolerance: f64) -> Vec<Tried> 
     let next = AtomicUsize::new(0);
     let work = || {
         let mut done = Vec::new();
-        while let Some(case) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
-            done.push(case.run(&arguments.libraries, tolerance));
+        loop {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            let Some(case) = cases.get(index) else { return done };
+            done.push((index, case.run(&arguments.libraries, tolerance)));
         }
-        done
     };
     let workers = std::thread::available_parallelism().map_or(1, usize::from).min(cases.len());
-    let mut tried: Vec<Tried> = std::thread::scope(|scope| {
+    let mut tried: Vec<(usize, Tried)> = std::thread::scope(|scope| {
         let workers: Vec<_> = (0..workers).map(|_| scope.spawn(work)).collect();
-        let join = |worker: std::thread::ScopedJoinHandle<'_, Vec<Tried>>| match worker.join() {
+        let join = |worker: std::thread::ScopedJoinHandle<'_, Vec<(usize, Tried)>>| match worker.join() {
             Ok(done) => done,
             Err(panic) => std::panic::resume_unwind(panic),
         };
         workers.into_iter().flat_map(join).collect()
     });
-    tried.sort_by(|a, b| a.name.cmp(&b.name));
-    tried
+    tried.sort_by_key(|(index, _)| *index);
+    tried.into_iter().map(|(_, tried)| tried).collect()
 }
 
 /// Writes what came of the cases as what is accepted of them, all files or none.
@@ -140,5 +145,6 @@ fn reported(tried: &Tried) -> CaseReport {
         against: tried.against.clone(),
         error,
         totals: tried.record.as_ref().map(|record| record.totals.clone()),
+        ending: tried.record.as_ref().map(|record| record.words().to_owned()),
     }
 }

@@ -47,6 +47,7 @@ impl Piece {
             | EventKind::ToolLength { .. }
             | EventKind::Spindle { .. }
             | EventKind::Coolant { .. }
+            | EventKind::Auxiliary { .. }
             | EventKind::Stop { .. } => return None,
         };
         let segment = segment.has_length().then_some(segment);
@@ -71,6 +72,7 @@ pub(super) fn end(kind: &EventKind) -> Option<Position> {
         | EventKind::ToolLength { .. }
         | EventKind::Spindle { .. }
         | EventKind::Coolant { .. }
+        | EventKind::Auxiliary { .. }
         | EventKind::Stop { .. } => None,
     }
 }
@@ -119,6 +121,7 @@ impl Ahead {
             | EventKind::ToolLength { .. }
             | EventKind::Spindle { .. }
             | EventKind::Coolant { .. }
+            | EventKind::Auxiliary { .. }
             | EventKind::Stop { .. } => (EventKind::Rapid { to }, core.rapid_seconds(&from, &to)),
         };
         self.told.push((kind, seconds, piece.place.clone()));
