@@ -21,8 +21,8 @@ pub(super) struct Compared {
 /// Steps that are different because a hole is: its feeds, by their numbers in either run.
 #[derive(Default)]
 pub(super) struct Explained {
-    /// Of holes that are somewhere else now.
-    pub shifted: (BTreeSet<usize>, BTreeSet<usize>),
+    /// Of holes that are somewhere else now, each with how much deeper its hole is, mm.
+    pub shifted: (BTreeMap<usize, f64>, BTreeMap<usize, f64>),
     /// Of holes that are lost, added, or made at another time.
     pub elsewhen: (BTreeSet<usize>, BTreeSet<usize>),
     /// Tool numbers, before and now, that an entry about holes names.
@@ -90,8 +90,10 @@ impl Told<'_> {
             let aspects = self.aspects(&self.old.holes[hole], &self.new.holes[*other]);
             let Some((code, _)) = aspects.first() else { continue };
             if aspects.iter().any(|(code, _)| ["hole-moved", "hole-tilted", "hole-depth"].contains(code)) {
-                self.moved.shifted.0.extend(&self.old.feeds[hole]);
-                self.moved.shifted.1.extend(&self.new.feeds[*other]);
+                let deeper = Apart::new(&self.old.holes[hole], &self.new.holes[*other]).deeper;
+                let with = |step: &usize| (*step, deeper);
+                self.moved.shifted.0.extend(self.old.feeds[hole].iter().map(with));
+                self.moved.shifted.1.extend(self.new.feeds[*other].iter().map(with));
             }
             let text = aspects.iter().map(|(_, text)| text.as_str()).collect::<Vec<_>>().join(", ");
             match groups.iter_mut().find(|(_, known, _)| *known == text) {

@@ -1,12 +1,10 @@
 //! Moves, feeds, tools, spindle and stops that are different and that no changed hole explains.
-use std::collections::BTreeSet;
-
 use super::Change;
 use super::align::Link;
 use super::holes::Explained;
 use super::record::Record;
 use super::steps::{Category, Kind, Step, difference, is_same_arc};
-use crate::motion::{Axes, Position, Spindle, StopKind};
+use crate::motion::{Axes, MAX_AXES, Position, Spindle, StopKind};
 
 pub(super) fn compare(
     old: &Record,
@@ -44,18 +42,65 @@ fn regions(links: &[Link], old: &[Step], new: &[Step]) -> Vec<Vec<Link>> {
     regions
 }
 
-/// For every link the last one so far that is wanted.
+/// A feed of a changed hole.
+#[derive(Clone, Copy)]
+struct Feed {
+    link: Link,
+    /// How much deeper the hole is, mm; `None` for one that is lost, added or made at another time.
+    deeper: Option<f64>,
+}
+
+fn feed_of(link: &Link, explained: &Explained) -> Option<Feed> {
+    let (old, new) = match *link {
+        Link::Same(i, j) | Link::Changed(i, j) => (Some(i), Some(j)),
+        Link::Lost(i) => (Some(i), None),
+        Link::Added(j) => (None, Some(j)),
+    };
+    let (shifted, elsewhen) = (&explained.shifted, &explained.elsewhen);
+    let deeper = old.and_then(|i| shifted.0.get(&i)).or_else(|| new.and_then(|j| shifted.1.get(&j)));
+    let is_elsewhen =
+        old.is_some_and(|i| elsewhen.0.contains(&i)) || new.is_some_and(|j| elsewhen.1.contains(&j));
+    match (is_elsewhen, deeper) {
+        (true, _) => Some(Feed { link: *link, deeper: None }),
+        (false, Some(deeper)) => Some(Feed { link: *link, deeper: Some(*deeper) }),
+        (false, None) => None,
+    }
+}
+
+/// For every link the last feed so far.
 fn nearest<'a>(
     links: impl Iterator<Item = &'a Link>,
-    wanted: impl Fn(&Link) -> bool,
-) -> Vec<Option<&'a Link>> {
+    feed: impl Fn(&Link) -> Option<Feed>,
+) -> Vec<Option<Feed>> {
     let mut last = None;
     links
         .map(|link| {
-            last = if wanted(link) { Some(link) } else { last };
+            last = feed(link).or(last);
             last
         })
         .collect()
+}
+
+/// How far rounded end points of moves that go together may be apart, mm or degrees.
+const ROUNDED: f64 = 0.0025;
+
+/// A move of a hole's old and new revision, each with the hole's feed: it has moved as the hole has, in every axis or in
+/// none, or stands as far above the hole's bottom on its line as before.
+fn goes_with(
+    (old, feed_old): (&Step, &Step),
+    (new, feed_new): (&Step, &Step),
+    deeper: f64,
+    tolerance: f64,
+) -> bool {
+    if std::mem::discriminant(&old.kind) != std::mem::discriminant(&new.kind) {
+        return false;
+    }
+    let (shift, hole) = (difference(&new.to, &old.to), difference(&feed_new.to, &feed_old.to));
+    let with = |axis: usize| shift[axis].abs() <= tolerance || (shift[axis] - hole[axis]).abs() <= tolerance;
+    let is_on_line = old.is_on_line_of(feed_old) && new.is_on_line_of(feed_new);
+    let above = new.distance(feed_new) - old.distance(feed_old) - deeper;
+    let moved_alike = (0..MAX_AXES).all(with) && (is_on_line || old.kind == Kind::Rapid);
+    moved_alike || is_on_line && above.abs() <= ROUNDED
 }
 
 /// Differences of one kind that say the same.
@@ -109,21 +154,14 @@ impl<'a> Motion<'a> {
 
     /// Moves that are different, but for those of changed holes: the way there and back is part of the change.
     fn region(&mut self, region: &[Link], explained: &Explained) {
-        let (shifted, elsewhen) = (&explained.shifted, &explained.elsewhen);
-        let feed = |link: &Link, steps: &(BTreeSet<usize>, BTreeSet<usize>)| match link {
-            Link::Changed(i, j) | Link::Same(i, j) => steps.0.contains(i) || steps.1.contains(j),
-            Link::Lost(i) => steps.0.contains(i),
-            Link::Added(j) => steps.1.contains(j),
-        };
-        let any = |link: &Link| feed(link, shifted) || feed(link, elsewhen);
         // For every move the nearest feed of a changed hole before and behind it.
-        let before = nearest(region.iter(), any);
-        let mut behind = nearest(region.iter().rev(), any);
+        let before = nearest(region.iter(), |link| feed_of(link, explained));
+        let mut behind = nearest(region.iter().rev(), |link| feed_of(link, explained));
         behind.reverse();
-        let gone = region.iter().any(|link| feed(link, elsewhen));
+        let gone = before.iter().flatten().any(|feed| feed.deeper.is_none());
         for (k, link) in region.iter().enumerate() {
-            let feeds = [before[k], behind[k]];
-            let is_part = feeds.iter().flatten().any(|feed| self.is_part_of_hole(link, feed));
+            let is_part =
+                [before[k], behind[k]].iter().flatten().any(|feed| self.is_part_of_hole(link, feed));
             match *link {
                 Link::Changed(i, j) if !is_part => self.changed(&self.old[i], &self.new[j]),
                 Link::Lost(i) if !(is_part && gone) => {
@@ -141,10 +179,16 @@ impl<'a> Motion<'a> {
         }
     }
 
-    /// Whether a move belongs to the hole that `feed` cuts: a rapid next to it, or a feed on the same line.
-    fn is_part_of_hole(&self, link: &Link, feed: &Link) -> bool {
+    /// Whether a move belongs to the hole that `feed` cuts. Of a hole that is there before and now, it does what it did,
+    /// seen from the hole; of a lost or added one it is a rapid next to it, or a feed on the same line.
+    fn is_part_of_hole(&self, link: &Link, feed: &Feed) -> bool {
+        if let (Link::Changed(i, j), Some(deeper)) = (*link, feed.deeper)
+            && let [Some(before), Some(now)] = self.sides(&feed.link)
+        {
+            return goes_with((&self.old[i], before), (&self.new[j], now), deeper, self.tolerance);
+        }
         self.sides(link).into_iter().flatten().all(|step| {
-            let feeds = self.sides(feed).into_iter().flatten();
+            let feeds = self.sides(&feed.link).into_iter().flatten();
             step.kind == Kind::Rapid || feeds.into_iter().any(|feed| step.is_on_line_of(feed))
         })
     }

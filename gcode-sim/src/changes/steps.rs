@@ -128,6 +128,12 @@ impl Step {
         (0..MAX_AXES).all(|axis| (aside[axis] - part * along[axis]).abs() <= 0.002)
     }
 
+    /// From where it ends to where `other` ends, all axes as equal numbers.
+    pub(super) fn distance(&self, other: &Self) -> f64 {
+        let way = difference(&self.to, &other.to);
+        (0..MAX_AXES).map(|axis| way[axis] * way[axis]).sum::<f64>().sqrt()
+    }
+
     fn way(&self) -> Position {
         difference(&self.to, &self.from)
     }
