@@ -3,8 +3,10 @@ mod findings;
 mod group;
 mod judge;
 mod line;
+mod machine_words;
 pub mod near;
 mod probing;
+mod rapids;
 #[cfg(test)]
 pub(crate) mod script;
 #[cfg(test)]
@@ -17,6 +19,7 @@ use group::Pass;
 use line::{After, Line};
 
 use self::findings::Findings;
+use self::rapids::Curved;
 use crate::diag::{Diagnostic, Severity};
 use crate::machine::path::Travel;
 use crate::machine::{Frame, Machine, Pose, Setup};
@@ -204,8 +207,8 @@ impl<'m> Extractor<'m> {
             self.judge_line(line, after, pace == Pace::Feed);
         }
         match pace {
-            Pace::Rapid => self.check_curved(event, travel, judge::Curved::Rapid),
-            Pace::Feed => self.check_curved(event, travel, judge::Curved::Feed),
+            Pace::Rapid => self.check_curved(event, travel, Curved::Rapid),
+            Pace::Feed => self.check_curved(event, travel, Curved::Feed),
             Pace::Probe => {}
         }
         self.look_outside();

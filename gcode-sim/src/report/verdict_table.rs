@@ -1,7 +1,7 @@
 //! A verdict as the table an inspector knows: nominal, actual, deviation, position, out of tolerance.
-use std::fmt::Write;
-
-use crate::verify::{Answer, Distance, HoleVerdict, Neighbours, Placed, Verdict};
+use super::figures::{count, near, signed, signed_to};
+use super::verdict_summary::{made_by, put, summary};
+use crate::verify::{HoleVerdict, Placed, Verdict};
 
 /// How much of it, and in which order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -11,9 +11,6 @@ pub struct Layout {
     /// Every column of an inspection report, four lines a hole, instead of one line a hole.
     pub full: bool,
 }
-
-/// How many ids of missing holes, and how many extra ones, are written out; the rest is counted.
-const LISTED: usize = 12;
 
 /// So many holes have a line each; of more, those that fail and the worst of the others, as many as are listed here.
 const LINES: usize = 100;
@@ -132,97 +129,6 @@ fn full(text: &mut String, hole: &HoleVerdict, tolerance: f64) {
     text.push('\n');
 }
 
-fn summary(text: &mut String, verdict: &Verdict) {
-    let good = verdict.holes.iter().filter(|hole| hole.ok).count();
-    let wanted = verdict.holes.len() + verdict.missing.len();
-    let answer = match verdict.verdict {
-        Answer::Pass => "PASS",
-        Answer::Fail => "FAIL",
-    };
-    let mut parts = vec![format!("{good} of {} good", count(wanted, "wanted hole"))];
-    if !verdict.missing.is_empty() {
-        parts.push(format!("{} missing", verdict.missing.len()));
-    }
-    if !verdict.extra.is_empty() {
-        parts.push(format!("{} too many", verdict.extra.len()));
-    }
-    let motion = verdict.findings.iter().filter(|f| f.severity == "error" && f.from_motion).count();
-    if motion != 0 {
-        parts.push(format!("{} in the motion", count(motion, "error")));
-    }
-    put(text, &format!("{answer}     {}", parts.join(", ")));
-    if let (Some(worst), Some(from)) = (verdict.worst, &verdict.worst_from) {
-        put(
-            text,
-            &format!(
-                "worst    Φ{} of Φ{}: {}",
-                near(worst, 4),
-                verdict.tolerance,
-                from.replace("; ", "\n         ")
-            ),
-        );
-        let by_phi = |a: &&HoleVerdict, b: &&HoleVerdict| a.phi.total_cmp(&b.phi);
-        if let Some(hole) = verdict.holes.iter().rev().max_by(by_phi) {
-            put(text, &format!("         made by {}", made_by(hole)));
-        }
-    }
-    if let Some(neighbours) = &verdict.neighbours {
-        say_neighbours(text, neighbours);
-    }
-    if let Some(rounding) = verdict.rounding {
-        let share = rounding / verdict.tolerance * 100.0;
-        let said = "rounding alone, to the control's least increment, can use up";
-        put(text, &format!("{said} Φ{rounding:.4}: {share:.1} % of the zone"));
-    }
-    for what in &verdict.not_checked {
-        put(text, &format!("not checked: {what}"));
-    }
-    if !verdict.missing.is_empty() {
-        put(text, &format!("missing  {}", some(&verdict.missing, |id| id.clone(), ", ")));
-    }
-    if !verdict.extra.is_empty() {
-        put(text, &format!("extra    {}", some(&verdict.extra, |extra| extra.why.clone(), "\n         ")));
-    }
-}
-
-/// How far neighbours are from one another, and where the extremes are.
-fn say_neighbours(text: &mut String, neighbours: &Neighbours) {
-    let Neighbours { metric, wanted, with_six, with_six_wanted, min, max } = neighbours;
-    put(
-        text,
-        &format!(
-            "neighbours wanted {wanted:.4} mm apart ({metric}); {with_six} of {with_six_wanted} holes have all six"
-        ),
-    );
-    for (what, extreme) in [("nearest", min), ("farthest", max)] {
-        if let Some(Distance { distance, between: [one, other] }) = extreme {
-            put(text, &format!("           {what:<8} {distance:.4} mm: {one} and {other}"));
-        }
-    }
-}
-
-/// The first few, and how many more there are.
-fn some<T>(all: &[T], name: impl Fn(&T) -> String, between: &str) -> String {
-    let mut shown: Vec<_> = all.iter().take(LISTED).map(name).collect();
-    if LISTED < all.len() {
-        shown.push(format!("… and {} more", all.len() - LISTED));
-    }
-    shown.join(between)
-}
-
-fn put(text: &mut String, line: &str) {
-    // Writing to a string can't fail.
-    let _ = writeln!(text, "{}", line.trim_end());
-}
-
-/// `O8101 line 53, T2, called from O8100 line 20`.
-fn made_by(hole: &HoleVerdict) -> String {
-    let tool = hole.from.tool.map_or(String::new(), |tool| format!(", T{tool}"));
-    let calls: Vec<_> =
-        hole.calls.iter().map(|c| format!(", called from {} line {}", c.program, c.line)).collect();
-    format!("{} line {}{tool}{}", hole.from.program, hole.from.line, calls.concat())
-}
-
 fn off(hole: &HoleVerdict) -> [f64; 3] {
     [0, 1, 2].map(|i| hole.actual.entry[i] - hole.nominal.entry[i])
 }
@@ -232,35 +138,11 @@ fn said(hole: &HoleVerdict) -> String {
     if hole.ok { "pass".to_owned() } else { format!("FAIL {}", why.join(", ")) }
 }
 
-fn count(number: usize, what: &str) -> String {
-    format!("{number} {what}{}", if number == 1 { "" } else { "s" })
-}
-
-/// Rounded; never "-0.000".
-fn near(value: f64, places: usize) -> String {
-    let text = format!("{value:.places$}");
-    match text.strip_prefix('-') {
-        Some(zero) if zero.bytes().all(|b| b == b'0' || b == b'.') => zero.to_owned(),
-        _ => text,
-    }
-}
-
-fn signed(value: f64) -> String {
-    signed_to(value, 4)
-}
-
-fn signed_to(value: f64, places: usize) -> String {
-    let text = near(value, places);
-    match value > 0.0 && text.bytes().any(|b| b.is_ascii_digit() && b != b'0') {
-        true => format!("+{text}"),
-        false => text,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::part::hole::Origin;
+    use crate::verify::Answer;
 
     fn hole(id: &str, phi: f64, objections: &[&str]) -> HoleVerdict {
         let placed = |x: f64| Placed {

@@ -13,10 +13,12 @@ mod function;
 mod laws;
 mod number;
 mod output;
+mod pieces;
 pub mod print;
 mod statement;
 mod token;
 mod word;
 
-pub use file::{Parts, Piece, Pieces, parse, parse_with};
+pub use file::{Parts, parse, parse_with};
+pub use pieces::{Piece, Pieces};
 pub use print::print;

@@ -2,47 +2,12 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::spread::{ANGLE, FileSpread, FileVector, Kind, LENGTH};
+use super::sections::{Collector, FileHead, FileLinear, FilePart, FileRotary};
+use super::spread::{FileSpread, LENGTH};
 use crate::job::JobError;
 use crate::job::reader::Reader;
-use crate::machine::sources::{Drawn, Quantity, Source};
-use crate::machine::{HeadKind, Machine};
-use crate::motion::Axis;
-
-/// The set-up of the part.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct FilePart {
-    shift: Option<FileVector>,
-    tilt: Option<FileVector>,
-    runout: Option<Spanned<FileSpread>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct FileLinear {
-    x: Option<Spanned<FileSpread>>,
-    y: Option<Spanned<FileSpread>>,
-    z: Option<Spanned<FileSpread>>,
-    wave: Option<Spanned<f64>>,
-    seed: Option<Spanned<u64>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct FileRotary {
-    index: Option<Spanned<FileSpread>>,
-    centre: Option<FileVector>,
-    tilt: Option<FileVector>,
-    seed: Option<Spanned<u64>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct FileHead {
-    angle: Option<Spanned<FileSpread>>,
-    seed: Option<Spanned<u64>>,
-}
+use crate::machine::Machine;
+use crate::machine::sources::{Drawn, Source};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -69,96 +34,6 @@ struct File {
     linear: Option<FileLinear>,
     rotary: Option<FileRotary>,
     head: Option<FileHead>,
-}
-
-/// Collects sources, and checks that the machine has what they are about.
-struct Collector<'r, 'm> {
-    reader: &'r Reader<'r>,
-    machine: &'m Machine,
-    /// `errors.` in a machine file.
-    before: &'static str,
-    found: Vec<Source>,
-}
-
-impl Collector<'_, '_> {
-    fn one(
-        &mut self,
-        key: &str,
-        spread: &Option<Spanned<FileSpread>>,
-        quantity: Quantity,
-        kind: Kind,
-    ) -> Result<(), JobError> {
-        let Some(spread) = spread else { return Ok(()) };
-        let key = format!("{}{key}", self.before);
-        let spread_checked = spread.as_ref().check(self.reader, &key, spread.span().start, kind)?;
-        if let Some(lacking) = self.lacking(quantity) {
-            return Err(self.reader.error(spread, format!("key '{key}': {lacking}")));
-        }
-        self.found.push(Source { quantity, spread: spread_checked });
-        Ok(())
-    }
-
-    fn vector(
-        &mut self,
-        key: &str,
-        vector: &Option<FileVector>,
-        quantity: impl Fn(usize) -> Quantity,
-        kind: Kind,
-    ) -> Result<(), JobError> {
-        let Some(vector) = vector else { return Ok(()) };
-        for (direction, spread) in [&vector.x, &vector.y, &vector.z].into_iter().enumerate() {
-            let letter = ["x", "y", "z"][direction];
-            self.one(&format!("{key}.{letter}"), spread, quantity(direction), kind)?;
-        }
-        Ok(())
-    }
-
-    fn part(&mut self, part: &FilePart) -> Result<(), JobError> {
-        self.vector("part.shift", &part.shift, Quantity::Shift, LENGTH)?;
-        self.vector("part.tilt", &part.tilt, Quantity::Tilt, ANGLE)?;
-        self.one("part.runout", &part.runout, Quantity::RunOut, LENGTH)
-    }
-
-    fn linear(&mut self, linear: &FileLinear) -> Result<(), JobError> {
-        for (letter, spread) in [(b'X', &linear.x), (b'Y', &linear.y), (b'Z', &linear.z)] {
-            let Some(written) = spread else { continue };
-            let name = char::from(letter).to_ascii_lowercase();
-            let axis: Option<Axis> =
-                self.machine.axes.find(letter).filter(|axis| self.machine.carries(*axis));
-            let Some(axis) = axis else {
-                let message =
-                    format!("key '{}linear.{name}': no such axis moves the tool or the part", self.before);
-                return Err(self.reader.error(written, message));
-            };
-            self.one(&format!("linear.{name}"), spread, Quantity::Linear(axis), LENGTH)?;
-        }
-        Ok(())
-    }
-
-    fn rotary(&mut self, rotary: &FileRotary) -> Result<(), JobError> {
-        self.one("rotary.index", &rotary.index, Quantity::Index, ANGLE)?;
-        self.vector("rotary.centre", &rotary.centre, Quantity::Centre, LENGTH)?;
-        self.vector("rotary.tilt", &rotary.tilt, Quantity::AxisTilt, ANGLE)
-    }
-
-    fn head(&mut self, head: &FileHead) -> Result<(), JobError> {
-        self.one("head.angle", &head.angle, Quantity::Head, ANGLE)
-    }
-
-    /// What an error needs that the machine hasn't got.
-    fn lacking(&self, quantity: Quantity) -> Option<&'static str> {
-        match quantity {
-            Quantity::RunOut | Quantity::Index | Quantity::Centre(_) | Quantity::AxisTilt(_) => {
-                let one = self.machine.rotary_axis().is_some();
-                (!one).then_some("needs one axis that turns the part; this machine has none, or several")
-            }
-            Quantity::Head => {
-                let turns = matches!(self.machine.head.kind, HeadKind::Manual { .. } | HeadKind::Axis { .. });
-                (!turns).then_some("needs a [head] of kind manual or axis")
-            }
-            Quantity::Shift(_) | Quantity::Tilt(_) | Quantity::Linear(_) => None,
-        }
-    }
 }
 
 fn seed(seed: &Option<Spanned<u64>>) -> u64 {

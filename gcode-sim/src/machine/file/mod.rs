@@ -3,25 +3,33 @@
 //! Unknown keys, missing keys and values out of range are errors that name the key, the line and what is allowed.
 mod errors;
 mod head;
+mod link;
+mod offsets;
+mod part;
 mod probe;
+mod sections;
 mod spread;
+mod tool;
 mod wheel;
 
 use errors::FileErrors;
 pub use errors::error_file;
 use head::FileHead;
-use nalgebra::{Point3, Unit, Vector3};
+use link::FileLink;
+use nalgebra::Vector3;
+use offsets::work_offsets;
+use part::FilePart;
 use probe::FileProbe;
 use serde::Deserialize;
 use toml::{Spanned, Table};
+use tool::FileTool;
 use wheel::FileWheel;
 
-use super::{Chain, Head, HeadKind, Link, Machine, Placement, Tool, WorkOffset};
+use super::{Chain, Head, HeadKind, Machine, Tool};
 use crate::control::{Dialect, Increment};
 use crate::job::JobError;
 use crate::job::reader::Reader;
 use crate::motion::{Axes, Axis};
-use crate::units::Deg;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -45,39 +53,7 @@ struct FileControl {
     axes: Option<Spanned<String>>,
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct FileLink {
-    letter: Spanned<String>,
-    turns: Option<Spanned<String>>,
-    slides: Option<Spanned<String>>,
-    sign: Spanned<i64>,
-    centre: Option<[Spanned<f64>; 3]>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct FileTool {
-    number: Spanned<i64>,
-    length: Option<Spanned<f64>>,
-    diameter: Option<Spanned<f64>>,
-}
-
-#[derive(Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct FilePart {
-    origin: Option<[Spanned<f64>; 3]>,
-    shift: Option<[Spanned<f64>; 3]>,
-    tilt: Option<[Spanned<f64>; 3]>,
-}
-
 const LENGTH: &str = "mm, from -100000 to 100000";
-const DIRECTIONS: [(&str, Vector3<f64>); 3] = [
-    ("x", Vector3::new(1.0, 0.0, 0.0)),
-    ("y", Vector3::new(0.0, 1.0, 0.0)),
-    ("z", Vector3::new(0.0, 0.0, 1.0)),
-];
-
 impl Machine {
     /// Reads a machine file's text.
     pub fn parse(text: &str) -> Result<Self, JobError> {
@@ -175,130 +151,13 @@ impl FileControl {
     }
 }
 
-impl FileLink {
-    fn check(
-        &self,
-        reader: &Reader<'_>,
-        axes: &Axes,
-        inner: &Chain,
-        origin: Point3<f64>,
-    ) -> Result<Link, JobError> {
-        let axis = letter(reader, "table.letter", &self.letter, axes)?;
-        if inner.has(axis) {
-            let message = format!("key 'table.letter': {} is there twice", axes.letter(axis));
-            return Err(reader.error(&self.letter, message));
-        }
-        let sign = sign(reader, "table.sign", &self.sign)?;
-        let kinds = (&self.turns, &self.slides);
-        let (key, direction) = match kinds {
-            (Some(about), None) => ("turns", about),
-            (None, Some(along)) => ("slides", along),
-            _ => {
-                let message = "a [[table]] has one of the keys 'turns' and 'slides': x, y or z";
-                return Err(reader.error(&self.letter, message));
-            }
-        };
-        if (key == "turns") != axes.is_rotary(axis) {
-            let message =
-                format!("key 'table.{key}' doesn't go with {}: A B C turn, others slide", axes.letter(axis));
-            return Err(reader.error(direction, message));
-        }
-        let unit = Unit::new_unchecked(reader.choice(&format!("table.{key}"), direction, &DIRECTIONS)?);
-        match (&self.centre, key) {
-            (Some([x, ..]), "slides") => Err(reader.error(x, "key 'table.centre' goes with 'turns' only")),
-            (_, "slides") => Ok(Link::slide(axis, unit, sign)),
-            (Some(centre), _) => {
-                Ok(Link::turn(axis, unit, Point3::from(lengths(reader, "table.centre", centre)?), sign))
-            }
-            (None, _) => Ok(Link::turn(axis, unit, origin, sign)),
-        }
-    }
-}
-
-impl FileTool {
-    fn check(&self, reader: &Reader<'_>, head: &Head) -> Result<Tool, JobError> {
-        let number = *self.number.as_ref();
-        let number =
-            u32::try_from(number).ok().filter(|n| (1..=99_999_999).contains(n)).ok_or_else(|| {
-                reader.error(&self.number, format!("key 'tool.number' is {number}: 1 to 99999999"))
-            })?;
-        if let (Some(length), HeadKind::Free) = (&self.length, &head.kind) {
-            let message = "key 'tool.length' acts along the tool, whose direction isn't known: give [head] with its kind, \
-                           or leave the length out";
-            return Err(reader.error(length, message));
-        }
-        let within = |key: &str, value: &Option<Spanned<f64>>, allowed: &str, least: f64| {
-            value
-                .as_ref()
-                .map(|v| reader.number(key, v, allowed, |v| v >= least && v <= 10_000.0))
-                .transpose()
-        };
-        Ok(Tool {
-            number,
-            length: within("tool.length", &self.length, "mm, 0 to 10000", 0.0)?,
-            diameter: within("tool.diameter", &self.diameter, "mm, 0.001 to 10000", 0.001)?,
-        })
-    }
-}
-
-impl FilePart {
-    fn check(&self, reader: &Reader<'_>) -> Result<Placement, JobError> {
-        let mut part = Placement::default();
-        if let Some(origin) = &self.origin {
-            part.origin = Point3::from(lengths(reader, "part.origin", origin)?);
-        }
-        if let Some(shift) = &self.shift {
-            part.shift = lengths(reader, "part.shift", shift)?;
-        }
-        if let Some(tilt) = &self.tilt {
-            for (angle, value) in part.tilt.iter_mut().zip(tilt) {
-                let allowed = "degrees from -360 to 360";
-                *angle = Deg(reader.number("part.tilt", value, allowed, |v| v.abs() <= 360.0)?);
-            }
-        }
-        Ok(part)
-    }
-}
-
-/// `G54 = { X = 500.0, B = 12.0 }`: axes that aren't named stay at 0.
-fn work_offsets(
-    reader: &Reader<'_>,
-    axes: &Axes,
-    offsets: &Spanned<Table>,
-) -> Result<Vec<WorkOffset>, JobError> {
-    let fail = |message: String| reader.error(offsets, message);
-    let mut found = Vec::new();
-    for (name, values) in offsets.as_ref() {
-        let code = name.strip_prefix('G').and_then(|code| code.parse::<u32>().ok());
-        let code = code
-            .filter(|code| (54..=59).contains(code))
-            .ok_or_else(|| fail(format!("key 'offsets.{name}' is not known: G54 to G59")))?;
-        let values = values
-            .as_table()
-            .ok_or_else(|| fail(format!("key 'offsets.{name}' names axes: {{ X = 0.0, Y = 0.0 }}")))?;
-        let mut offset = WorkOffset { code, values: Vec::new() };
-        for (letter, value) in values {
-            let axis = match letter.as_bytes() {
-                [letter] => axes.find(*letter),
-                _ => None,
-            };
-            let axis = axis.ok_or_else(|| {
-                fail(format!("key 'offsets.{name}.{letter}': the control has no axis {letter}"))
-            })?;
-            let number = value.as_float().or_else(|| value.as_integer().map(|v| v as f64));
-            let number = number.filter(|v| v.abs() <= 100_000.0).ok_or_else(|| {
-                fail(format!("key 'offsets.{name}.{letter}' is {value}: a number, -100000 to 100000"))
-            })?;
-            offset.values.push((axis, number));
-        }
-        found.push(offset);
-    }
-    Ok(found)
-}
-
 #[cfg(test)]
 mod tests {
+    use nalgebra::Point3;
+
+    use super::super::{Link, LinkMotion, Placement};
     use super::*;
+    use crate::units::Deg;
 
     const PAPER: &str = "[[table]]\nletter = \"B\"\nturns = \"y\"\nsign = 1\n";
 
@@ -354,8 +213,6 @@ tilt = [0.0, 0.0, 1.0]
         let LinkMotion::Turn { centre, .. } = &machine.table.0[0].motion else { panic!("it turns") };
         assert_eq!(*centre, Point3::new(5.0, 6.0, 7.0));
     }
-
-    use super::super::LinkMotion;
 
     fn refused(text: &str) -> String {
         Machine::parse(text).unwrap_err().to_string()

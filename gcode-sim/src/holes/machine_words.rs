@@ -1,0 +1,75 @@
+//! What a program asks of the machine that the machine file doesn't have: axes, tools, a head set by hand.
+use super::Extractor;
+use crate::diag::Diagnostic;
+use crate::motion::{Event, Position};
+use crate::units::Deg;
+
+impl Extractor<'_> {
+    /// An axis that the control has and the machine doesn't use was told to move.
+    pub(super) fn idle_axes(&mut self, event: &Event<'_>, from: &Position, to: &Position) {
+        for (axis, letter) in self.machine.axes.iter() {
+            if from[axis] != to[axis] && !self.machine.carries(axis) {
+                self.findings.add("axis-carries-nothing", &event.place(), axis as u32, || {
+                    Diagnostic::warning(
+                        "axis-carries-nothing",
+                        format!("{letter} moves to {}, but nothing is on that axis of the machine", to[axis]),
+                    )
+                    .help(format!(
+                        "say in the machine file what {letter} carries, or leave it out of the program"
+                    ))
+                });
+            }
+        }
+    }
+
+    /// A tool that the machine file has no row for.
+    pub(super) fn known_tool(&mut self, event: &Event<'_>, number: u32) {
+        if number != 0 && !self.machine.tools.is_empty() && self.machine.find_tool(number).is_none() {
+            self.findings.add("tool-unknown", &event.place(), number, || {
+                Diagnostic::warning(
+                    "tool-unknown",
+                    format!("T{number} isn't in the machine file's tool table: its length is taken from the length offset, its diameter isn't known"),
+                )
+                .help(format!("add a [[tool]] with number = {number}"))
+            });
+        }
+    }
+
+    /// The operator does what `#3006=1(SET HEAD TO #140)` says: the angle, where the message gives one.
+    pub(super) fn head_message(
+        &mut self,
+        event: &Event<'_>,
+        text: &str,
+        named: &[(u32, f64)],
+    ) -> Option<Deg> {
+        let mut words = text.split(|c: char| !c.is_ascii_alphanumeric());
+        if !words.any(|word| word.eq_ignore_ascii_case("HEAD")) {
+            return None;
+        }
+        if !self.machine.head.is_set_by_hand() {
+            self.findings.add("head-not-manual", &event.place(), 0, || {
+                Diagnostic::warning(
+                    "head-not-manual",
+                    format!(
+                        "the message ({text}) asks for a head set by hand, but the machine's head isn't one"
+                    ),
+                )
+                .help("give kind = \"manual\" under [head] in the machine file, or leave the message out")
+            });
+            return None;
+        }
+        match named {
+            [(_, angle)] if angle.is_finite() => Some(Deg(*angle)),
+            _ => {
+                self.findings.add("head-message-unclear", &event.place(), 0, || {
+                    Diagnostic::warning(
+                        "head-message-unclear",
+                        format!("the message ({text}) doesn't name one variable with a value: the head stays as it is"),
+                    )
+                    .help("name the variable that holds the angle, as in #3006=1(SET HEAD TO #140)")
+                });
+                None
+            }
+        }
+    }
+}

@@ -1,0 +1,41 @@
+//! `[[tool]]`: a tool's number, length and diameter.
+use serde::Deserialize;
+use toml::Spanned;
+
+use crate::job::JobError;
+use crate::job::reader::Reader;
+use crate::machine::{Head, HeadKind, Tool};
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FileTool {
+    pub(super) number: Spanned<i64>,
+    length: Option<Spanned<f64>>,
+    diameter: Option<Spanned<f64>>,
+}
+
+impl FileTool {
+    pub(super) fn check(&self, reader: &Reader<'_>, head: &Head) -> Result<Tool, JobError> {
+        let number = *self.number.as_ref();
+        let number =
+            u32::try_from(number).ok().filter(|n| (1..=99_999_999).contains(n)).ok_or_else(|| {
+                reader.error(&self.number, format!("key 'tool.number' is {number}: 1 to 99999999"))
+            })?;
+        if let (Some(length), HeadKind::Free) = (&self.length, &head.kind) {
+            let message = "key 'tool.length' acts along the tool, whose direction isn't known: give [head] with its kind, \
+                           or leave the length out";
+            return Err(reader.error(length, message));
+        }
+        let within = |key: &str, value: &Option<Spanned<f64>>, allowed: &str, least: f64| {
+            value
+                .as_ref()
+                .map(|v| reader.number(key, v, allowed, |v| v >= least && v <= 10_000.0))
+                .transpose()
+        };
+        Ok(Tool {
+            number,
+            length: within("tool.length", &self.length, "mm, 0 to 10000", 0.0)?,
+            diameter: within("tool.diameter", &self.diameter, "mm, 0.001 to 10000", 0.001)?,
+        })
+    }
+}

@@ -1,0 +1,26 @@
+//! Figures as tables show them: rounded, with their signs, counted.
+
+/// Rounded; never "-0.000".
+pub(super) fn near(value: f64, places: usize) -> String {
+    let text = format!("{value:.places$}");
+    match text.strip_prefix('-') {
+        Some(zero) if zero.bytes().all(|b| b == b'0' || b == b'.') => zero.to_owned(),
+        _ => text,
+    }
+}
+
+pub(super) fn signed(value: f64) -> String {
+    signed_to(value, 4)
+}
+
+pub(super) fn signed_to(value: f64, places: usize) -> String {
+    let text = near(value, places);
+    match value > 0.0 && text.bytes().any(|b| b.is_ascii_digit() && b != b'0') {
+        true => format!("+{text}"),
+        false => text,
+    }
+}
+
+pub(super) fn count(number: usize, what: &str) -> String {
+    format!("{number} {what}{}", if number == 1 { "" } else { "s" })
+}

@@ -1,0 +1,99 @@
+//! What stands below a verdict's table: the answer, the worst hole, what is missing or too many.
+use std::fmt::Write;
+
+use super::figures::{count, near};
+use crate::verify::{Answer, Distance, HoleVerdict, Neighbours, Verdict};
+
+/// How many ids of missing holes, and how many extra ones, are written out; the rest is counted.
+const LISTED: usize = 12;
+
+pub(super) fn summary(text: &mut String, verdict: &Verdict) {
+    let good = verdict.holes.iter().filter(|hole| hole.ok).count();
+    let wanted = verdict.holes.len() + verdict.missing.len();
+    let answer = match verdict.verdict {
+        Answer::Pass => "PASS",
+        Answer::Fail => "FAIL",
+    };
+    let mut parts = vec![format!("{good} of {} good", count(wanted, "wanted hole"))];
+    if !verdict.missing.is_empty() {
+        parts.push(format!("{} missing", verdict.missing.len()));
+    }
+    if !verdict.extra.is_empty() {
+        parts.push(format!("{} too many", verdict.extra.len()));
+    }
+    let motion = verdict.findings.iter().filter(|f| f.severity == "error" && f.from_motion).count();
+    if motion != 0 {
+        parts.push(format!("{} in the motion", count(motion, "error")));
+    }
+    put(text, &format!("{answer}     {}", parts.join(", ")));
+    if let (Some(worst), Some(from)) = (verdict.worst, &verdict.worst_from) {
+        put(
+            text,
+            &format!(
+                "worst    Φ{} of Φ{}: {}",
+                near(worst, 4),
+                verdict.tolerance,
+                from.replace("; ", "\n         ")
+            ),
+        );
+        let by_phi = |a: &&HoleVerdict, b: &&HoleVerdict| a.phi.total_cmp(&b.phi);
+        if let Some(hole) = verdict.holes.iter().rev().max_by(by_phi) {
+            put(text, &format!("         made by {}", made_by(hole)));
+        }
+    }
+    if let Some(neighbours) = &verdict.neighbours {
+        say_neighbours(text, neighbours);
+    }
+    if let Some(rounding) = verdict.rounding {
+        let share = rounding / verdict.tolerance * 100.0;
+        let said = "rounding alone, to the control's least increment, can use up";
+        put(text, &format!("{said} Φ{rounding:.4}: {share:.1} % of the zone"));
+    }
+    for what in &verdict.not_checked {
+        put(text, &format!("not checked: {what}"));
+    }
+    if !verdict.missing.is_empty() {
+        put(text, &format!("missing  {}", some(&verdict.missing, |id| id.clone(), ", ")));
+    }
+    if !verdict.extra.is_empty() {
+        put(text, &format!("extra    {}", some(&verdict.extra, |extra| extra.why.clone(), "\n         ")));
+    }
+}
+
+/// How far neighbours are from one another, and where the extremes are.
+fn say_neighbours(text: &mut String, neighbours: &Neighbours) {
+    let Neighbours { metric, wanted, with_six, with_six_wanted, min, max } = neighbours;
+    put(
+        text,
+        &format!(
+            "neighbours wanted {wanted:.4} mm apart ({metric}); {with_six} of {with_six_wanted} holes have all six"
+        ),
+    );
+    for (what, extreme) in [("nearest", min), ("farthest", max)] {
+        if let Some(Distance { distance, between: [one, other] }) = extreme {
+            put(text, &format!("           {what:<8} {distance:.4} mm: {one} and {other}"));
+        }
+    }
+}
+
+/// The first few, and how many more there are.
+fn some<T>(all: &[T], name: impl Fn(&T) -> String, between: &str) -> String {
+    let mut shown: Vec<_> = all.iter().take(LISTED).map(name).collect();
+    if LISTED < all.len() {
+        shown.push(format!("… and {} more", all.len() - LISTED));
+    }
+    shown.join(between)
+}
+
+pub(super) fn put(text: &mut String, line: &str) {
+    // Writing to a string can't fail.
+    let _ = writeln!(text, "{}", line.trim_end());
+}
+
+/// `O8101 line 53, T2, called from O8100 line 20`.
+pub(super) fn made_by(hole: &HoleVerdict) -> String {
+    let tool = hole.from.tool.map_or(String::new(), |tool| format!(", T{tool}"));
+    let calls: Vec<_> =
+        hole.calls.iter().map(|c| format!(", called from {} line {}", c.program, c.line)).collect();
+    format!("{} line {}{tool}{}", hole.from.program, hole.from.line, calls.concat())
+}
