@@ -115,27 +115,57 @@ pub(super) fn reference(job: &Honeycomb) -> Result<Reference, ReferenceError> {
 
 /// How many rows, and the pitch at which all six neighbours are equally far.
 fn pattern(job: &Honeycomb) -> Result<Pattern, ReferenceError> {
-    let diameter = job.cylinder.diameter;
+    let (diameter, metric) = (job.cylinder.diameter, job.metric);
+    let told = |message: String| Err(ReferenceError { line: None, message });
     let (rows, asked) = match job.spacing {
         Spacing::Divisions(divisions) => (2 * divisions, None),
-        Spacing::Pitch(pitch) => {
-            // Two rows further the holes stand abreast again: two heights of an equilateral triangle.
-            let height = (pitch * pitch - pitch * pitch / 4.0).sqrt();
-            let fit = std::f64::consts::PI * diameter / (2.0 * height);
-            // As many as leave least of the circumference over, or lack least of it.
-            let (fewer, more) = (fit.floor(), fit.ceil());
-            let count = if fit - fewer < more - fit { fewer } else { more };
-            (2 * count as u32, Some(pitch))
-        }
+        Spacing::Pitch(pitch) => match nearest_count(diameter, pitch) {
+            Some(count) => (2 * count, Some(pitch)),
+            None => {
+                return told(format!(
+                    "key 'pattern.pitch': with {pitch} round diameter {diameter} there are more than {MOST_HOLES} rows: \
+                     a larger pitch"
+                ));
+            }
+        },
     };
     if rows < 4 {
-        let message = format!(
+        return told(format!(
             "key 'pattern.pitch': fewer than two rows of one group fit round diameter {diameter}: a smaller pitch"
-        );
-        return Err(ReferenceError { line: None, message });
+        ));
     }
-    let guess =
-        Pattern { metric: job.metric, diameter, rows, pitch: 0.0, asked, length: job.cylinder.length };
+    let length = job.cylinder.length;
+    Ok(Pattern { pitch: closed(metric, diameter, rows), metric, diameter, rows, asked, length })
+}
+
+/// How many rows of each group come nearest to the pitch that was asked for; `None` where they are too many.
+///
+/// The pitch each count closes with is measured on the developed surface, in either metric; how far it is off the
+/// asked one adds up over the rows, and the count with the least sum is it. Of two as near the larger, the smaller pitch.
+fn nearest_count(diameter: f64, asked: f64) -> Option<u32> {
+    let too_far = |count: u32| asked < closed(Metric::Arc, diameter, 2 * count);
+    // The more rows the smaller the pitch: the last count that is too far apart stands before the first that isn't.
+    let (mut far, mut near) = (0, 1);
+    while too_far(near) {
+        if MOST_HOLES < f64::from(near) {
+            return None;
+        }
+        (far, near) = (near, 2 * near);
+    }
+    while far + 1 < near {
+        let middle = far + (near - far) / 2;
+        if too_far(middle) { far = middle } else { near = middle }
+    }
+    if far == 0 {
+        return Some(near);
+    }
+    let sum = |count: u32| f64::from(count) * (closed(Metric::Arc, diameter, 2 * count) - asked).abs();
+    Some(if sum(far) < sum(near) { far } else { near })
+}
+
+/// The pitch at which so many rows close: a hole's neighbours in the next row are as far as those in its own, mm.
+fn closed(metric: Metric, diameter: f64, rows: u32) -> f64 {
+    let guess = Pattern { metric, diameter, rows, pitch: 0.0, asked: None, length: 0.0 };
     // The neighbour in the next row stands half a pitch further: with a small pitch it is farther than the pitch.
     let next = |pitch: f64| {
         let (here, there) =
@@ -146,7 +176,7 @@ fn pattern(job: &Honeycomb) -> Result<Pattern, ReferenceError> {
     loop {
         let middle = low + (high - low) / 2.0;
         if middle <= low || high <= middle {
-            return Ok(Pattern { pitch: middle, ..guess });
+            return middle;
         }
         if next(middle) > middle {
             low = middle;
@@ -292,6 +322,19 @@ mod tests {
         // The bore ends the holes where they are still apart.
         let tube = ("length = 300", "length = 300\nbore = 498");
         holes(&[("pitch = 10", "pitch = 5.2"), ("depth = 12", "depth = 40"), tube]);
+    }
+
+    /// One diameter of 100, counted by hand: 100π is 314.159 round; rows of one group are 1.7320508·pitch apart.
+    /// 17.7 → 30.657, 10.247 of them; 17.3 → 29.964, 10.484; 17.27 → 29.913, 10.503; 16.9 → 29.272, 10.732;
+    /// 120 → 207.846, 1.51; 125 → 216.506, 1.45: one row of a group is no pattern.
+    #[test]
+    fn the_count_is_the_one_that_leaves_least_over() {
+        for (pitch, count) in
+            [(17.7, 10), (17.3, 10), (17.27, 11), (16.9, 11), (120.0, 2), (125.0, 1), (400.0, 1)]
+        {
+            assert_eq!(nearest_count(100.0, pitch), Some(count), "{pitch}");
+        }
+        assert_eq!(nearest_count(100.0, 0.000_1), None, "1.8 million rows");
     }
 
     /// A hole lies where x is the length, to the last bit.
