@@ -160,6 +160,34 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// The macro rounds a quotient; the reference tries counts and measures. Where a count changes into the next they
+    /// have to change together, in both metrics.
+    #[test]
+    fn generator_and_reference_count_the_rows_alike(
+        (divisions, over) in (2u32..60, prop_oneof![-0.001..0.001f64, -0.5..0.5f64]),
+        (diameter, chord) in (20.0..400.0f64, any::<bool>()),
+    ) {
+        // So many rows of each group, and a half: 2·cos 30° of the pitch each.
+        let pitch = std::f64::consts::PI * diameter / (3f64.sqrt() * (f64::from(divisions) + 0.5 + over));
+        let text = changed(&[
+            ("diameter = 100.0", &format!("diameter = {diameter:?}")),
+            ("pitch = 20.0", &format!("pitch = {pitch:?}")),
+            ("\"arc\"", if chord { "\"chord\"" } else { "\"arc\"" }),
+            ("length = 90.0", &format!("length = {:?}", 0.6 * pitch)),
+            ("diameter = 5.0", &format!("diameter = {:?}", 0.2 * pitch)),
+            ("depth = 12.0", &format!("depth = {:?}", 0.05 * diameter)),
+        ]);
+        let verdict = verdict(&text, &[]);
+        // One hole in every row: half a pitch on there is room for one more, a whole pitch on there is not.
+        let rows = 2 * (divisions + u32::from(0.0 <= over));
+        prop_assert_eq!(verdict.holes.len(), rows as usize, "{}", text);
+        prop_assert_eq!(verdict.missing.len() + verdict.extra.len(), 0, "{}", text);
+    }
+}
+
 fn codes(verdict: &Verdict) -> Vec<String> {
     let mut codes: Vec<_> = verdict.findings.iter().map(|f| f.code.clone()).collect();
     codes.dedup();
@@ -184,6 +212,17 @@ fn a_fault_in_the_macro_is_named() {
         let words: Vec<_> = found.map(|f| format!("{} {}", f.message, f.notes.join(" "))).collect();
         assert!(words.concat().contains(told), "{from} -> {to}: {:?} {words:?}", codes(&verdict));
     }
+}
+
+/// A hole beside the cylinder, 60 off its axis, is in no row; what the others' rows say is still said.
+#[test]
+fn a_hole_that_misses_the_cylinder_takes_no_advice_away() {
+    let fault = ("#15=180/#14", "#15=FIX[178/#14]");
+    let aside = ("G80\n", "G80\nG81 X10. Y60. Z-60. R2. F60.\nG80\n");
+    let verdict = verdict(SMALL, &[fault, aside]);
+    assert!(!verdict.extra.is_empty(), "{:?}", codes(&verdict));
+    let told: Vec<_> = verdict.findings.iter().filter(|f| f.code == "row-angle").collect();
+    assert!(told.len() == 1 && told[0].notes.concat().contains("105.26"), "{told:?}");
 }
 
 const CALL: &str = "G65 P8301 A5. B20. C2. D100. E0. F60. H0. I100. J0. Q5. U1. V50. X90. Z12.";

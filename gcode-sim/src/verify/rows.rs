@@ -38,7 +38,8 @@ impl Rows {
         }
         let mut places: Vec<(Deg, f64, usize)> = Vec::with_capacity(comparison.found.len());
         for (index, hole) in comparison.found.iter().enumerate() {
-            let at = pattern.crossing(&hole.bottom(), &hole.axis)?;
+            // A hole that misses the cylinder is in no row; the others' rows are still told.
+            let Some(at) = pattern.crossing(&hole.bottom(), &hole.axis) else { continue };
             places.push((Deg(azimuth(&at).0.rem_euclid(360.0)), at.x, index));
         }
         places.sort_by(|a, b| a.0.0.total_cmp(&b.0.0));
