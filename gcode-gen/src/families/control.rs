@@ -1,4 +1,4 @@
-//! What the programs and machine files of all families say of the control, and the marks of resident macros.
+//! What the programs and machine files of all families say of the control.
 use gcode_sim::control::{Dialect, Increment};
 use gcode_sim::job::JobControl;
 
@@ -23,9 +23,4 @@ pub(super) fn machine_file(control: JobControl) -> String {
          dialect = \"{dialect}\"\n\
          increment = \"{increment}\"\n"
     )
-}
-
-/// A macro's text with every `{mark}` replaced by what it stands for.
-pub(super) fn fill(text: &str, marks: &[(&str, String)]) -> String {
-    marks.iter().fold(text.to_owned(), |text, (mark, value)| text.replace(mark, value))
 }

@@ -3,6 +3,7 @@ pub mod burr;
 mod control;
 pub mod honeycomb;
 pub mod pin_holes;
+mod resident;
 
 use gcode_sim::job::Job;
 

@@ -1,0 +1,40 @@
+//! What all resident macros share: marks filled in, and what has to be true of the text for any control.
+
+/// A macro's text with every `{mark}` replaced by what it stands for.
+pub(super) fn fill(text: &str, marks: &[(&str, String)]) -> String {
+    marks.iter().fold(text.to_owned(), |text, (mark, value)| text.replace(mark, value))
+}
+
+/// Fails where a mark is left, a control can't show a character, or a message is longer than the 26 characters that an
+/// old control shows.
+#[cfg(test)]
+pub(super) fn hold(text: &str) {
+    assert!(!text.contains(['{', '}']), "a mark is left:\n{text}");
+    let shown = |b: u8| b == b'\n' || (b.is_ascii_graphic() || b == b' ') && !b.is_ascii_lowercase();
+    assert!(text.bytes().all(shown), "a character no control shows:\n{text}");
+    for line in text.lines() {
+        for stop in ["#3000=", "#3006="] {
+            let Some((_, rest)) = line.split_once(stop) else { continue };
+            let message = rest.split_once('(').expect(line).1.trim_end_matches(')');
+            assert!(message.len() <= 26, "{message} has {} characters", message.len());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn marks_are_filled_wherever_they_stand() {
+        let filled = fill("{a}{b}-{a}", &[("{a}", "1.".to_owned()), ("{b}", String::new())]);
+        assert_eq!(filled, "1.-1.");
+        hold("#3000=1(26 CHARACTERS ARE NOT MORE)\n#3006=1(SO)\n");
+    }
+
+    #[test]
+    #[should_panic(expected = "has 27 characters")]
+    fn a_long_message_is_seen() {
+        hold("IF[#1 EQ #0]THEN #3000=1(27 CHARACTERS ARE TOO MANY!)\n");
+    }
+}
