@@ -46,7 +46,10 @@ fn nesting_without_end_is_an_alarm() {
             "*",
         ] {
             let code = block(&format!("{beginning}{}1", piece.repeat(2_000)));
-            assert_ne!(code, "limit", "{beginning} {piece}");
+            // Strokes and a number are a block that may be skipped, with nothing in it. All else is nonsense.
+            let skipped = beginning == "/" && piece == "/";
+            let right = if skipped { code == "end" } else { code.starts_with("PS") };
+            assert!(right, "{beginning} {piece}: {code}");
         }
     }
 }

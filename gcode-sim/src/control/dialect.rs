@@ -6,6 +6,8 @@ use super::{Dialect, Settings};
 pub struct DialectRow {
     pub dialect: Dialect,
     pub name: &'static str,
+    /// The family it is like but for what it sets itself.
+    pub like: Option<Dialect>,
     /// Keys of [`super::ROWS`] with their values.
     pub sets: &'static [(&'static str, &'static str)],
 }
@@ -16,7 +18,7 @@ pub struct DialectRow {
 /// 96-8210 (its predecessor 96-8000 where that says nothing).
 #[rustfmt::skip]
 pub const DIALECTS: &[DialectRow] = &[
-    DialectRow { dialect: Dialect::Fanuc31i, name: "fanuc-31i", sets: &[
+    DialectRow { dialect: Dialect::Fanuc31i, name: "fanuc-31i", like: None, sets: &[
         ("CODES", "fanuc-31i"), ("MACRO-LEVELS", "5"), ("CALL-LEVELS", "15"), ("OFFSETS", "400"), ("WORK-SYSTEMS", "300"),
         ("MORE-COMMONS", "98000-98499"), ("ALIASED-COMMONS", "0"), ("VARIABLE-BITS", "0"), ("OFFSET-VARIABLES", "fanuc"),
         ("ALARM-BASE", "3000"), ("ALARM-MOST", "200"), ("PRINT-EXPANDS", "0"), ("PRINT-DIGITS", "8"),
@@ -26,18 +28,12 @@ pub const DIALECTS: &[DialectRow] = &[
         ("TAP-DWELL-R", "1"),
     ] },
     // Four axes move at once, so nothing for five; 48 additional work coordinate systems, 300 by option.
-    DialectRow { dialect: Dialect::Fanuc0iF, name: "fanuc-0i-f", sets: &[
-        ("CODES", "fanuc-0i-f"), ("MACRO-LEVELS", "5"), ("CALL-LEVELS", "15"), ("OFFSETS", "400"), ("WORK-SYSTEMS", "48"),
-        ("MORE-COMMONS", "98000-98499"), ("ALIASED-COMMONS", "0"), ("VARIABLE-BITS", "0"), ("OFFSET-VARIABLES", "fanuc"),
-        ("ALARM-BASE", "3000"), ("ALARM-MOST", "200"), ("PRINT-EXPANDS", "0"), ("PRINT-DIGITS", "8"),
-        ("PLAIN-IF", "0"), ("THEN-WORDS", "0"), ("THEN-GOTO", "0"), ("G67-ALARM", "1"),
-        ("NEW-WORDS", "1"), ("MORE-FUNCTIONS", "1"), ("G10-PARAMETERS", "1"), ("REPEATS-IN-P", "1"), ("M97-CALLS", "0"),
-        ("CYCLE-REPEATS", "K"), ("K0-MOVES", "0"), ("HOME-ALL", "0"), ("DWELL-SECONDS", "0"), ("FEED-INCREMENTS", "0"), ("PECK-IJK", "0"),
-        ("TAP-DWELL-R", "1"),
+    DialectRow { dialect: Dialect::Fanuc0iF, name: "fanuc-0i-f", like: Some(Dialect::Fanuc31i), sets: &[
+        ("CODES", "fanuc-0i-f"), ("WORK-SYSTEMS", "48"),
     ] },
     // Nine macro levels in all; offsets as #2001 and #2201 length and its wear, #2401 and #2601 diameter and its wear;
     // #3000=n shows 1000 + n; DPRNT prints all digits, seven at most are asked for; IF without THEN.
-    DialectRow { dialect: Dialect::HaasNgc, name: "haas-ngc", sets: &[
+    DialectRow { dialect: Dialect::HaasNgc, name: "haas-ngc", like: None, sets: &[
         ("CODES", "haas-ngc"), ("MACRO-LEVELS", "9"), ("CALL-LEVELS", "9"), ("OFFSETS", "200"), ("WORK-SYSTEMS", "99"),
         ("MORE-COMMONS", "10000-10999"), ("ALIASED-COMMONS", "1"), ("VARIABLE-BITS", "1"), ("OFFSET-VARIABLES", "haas"),
         ("ALARM-BASE", "1000"), ("ALARM-MOST", "999"), ("PRINT-EXPANDS", "1"), ("PRINT-DIGITS", "7"),
@@ -52,8 +48,10 @@ impl Settings {
     /// Makes the control one of a family: sets all that the family's row names.
     pub fn become_dialect(&mut self, dialect: Dialect) {
         self.dialect = dialect;
-        let row = DIALECTS.iter().find(|row| row.dialect == dialect);
-        for (key, value) in row.iter().flat_map(|row| row.sets) {
+        let row = |dialect: Dialect| DIALECTS.iter().find(|row| row.dialect == dialect);
+        let own = row(dialect);
+        let like = own.and_then(|own| own.like).and_then(row);
+        for (key, value) in like.into_iter().chain(own).flat_map(|row| row.sets) {
             // A test holds that every row can be set.
             let taken = self.set(key, value);
             debug_assert_eq!(taken, Ok(()));
@@ -65,6 +63,19 @@ impl Settings {
 mod tests {
     use super::*;
 
+    /// 48 additional work coordinate systems and its own codes; what it doesn't name is as on a 31i.
+    #[test]
+    fn a_0i_f_is_a_31i_with_fewer_work_systems() {
+        let mut wanted = Settings::default();
+        wanted.set("CODES", "fanuc-0i-f").unwrap();
+        wanted.set("WORK-SYSTEMS", "48").unwrap();
+        wanted.dialect = Dialect::Fanuc0iF;
+        let mut settings = Settings::default();
+        settings.become_dialect(Dialect::HaasNgc);
+        settings.become_dialect(Dialect::Fanuc0iF);
+        assert_eq!(settings, wanted);
+    }
+
     #[test]
     fn every_row_can_be_set_and_the_first_is_the_default() {
         for row in DIALECTS {
@@ -72,6 +83,12 @@ mod tests {
             for (key, value) in row.sets {
                 settings.set(key, value).unwrap();
             }
+            let like = row.like.and_then(|like| DIALECTS.iter().find(|other| other.dialect == like));
+            assert!(
+                like.is_none_or(|like| like.like.is_none()),
+                "{}: like one that is like another",
+                row.name
+            );
             settings.become_dialect(row.dialect);
             assert_eq!(settings.dialect, row.dialect);
             settings.become_dialect(Dialect::default());
