@@ -129,7 +129,7 @@ impl<'j> Main<'j> {
         let call = call
             .word('R', number(shape.radius))
             .word('V', number(stand_off(job)))
-            .word('W', number(cylinder(shape)));
+            .word('W', number(cylinder(job)));
         self.text.block(call);
         self.block("#1=#1+1");
         self.block("END1");

@@ -42,9 +42,10 @@ impl Arc {
     }
 }
 
-/// The length of the cylinder.
-pub(super) fn cylinder(shape: &BurrShape) -> f64 {
-    shape.length - tip(shape)
+/// The length of the cylinder; what is less than half an increment is none, for no axis moves by it.
+pub(super) fn cylinder(job: &Burr) -> f64 {
+    let length = job.shape.length - tip(&job.shape);
+    if length < job.control.increment.size() / 2.0 { 0.0 } else { length }
 }
 
 /// From the end of the cylinder to the pole.

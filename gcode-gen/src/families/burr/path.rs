@@ -28,7 +28,7 @@ pub(super) fn points(job: &Burr) -> Vec<Point> {
     let shape = &job.shape;
     let [offset_x, offset_y] = job.grinder.c_offset;
     let helix = Deg(job.helix);
-    let long = cylinder(shape);
+    let long = cylinder(job);
     let mut points = vec![Point { x: -long, y: 0.0, a: Deg(0.0), c: Deg(0.0), way: 0.0 }];
     let turned = Deg::from_rad(long * helix.tan() / shape.radius);
     if 0.0 < long {
