@@ -326,3 +326,91 @@ fn the_macro_refuses_what_can_not_be_ground() {
     // What the refused ones differ from is fine.
     assert!(passed(&Wish { profile: Some((14.0 / 6.0, 4.0 / 6.0)), ..example() }).flutes == 16);
 }
+
+/// The verdict on the example's program with more blocks before its end, at C 0 with the wheel clear of the burr.
+fn with(blocks: &str) -> FluteVerdict {
+    let job = example().job();
+    let Wanted::Flutes(wanted) = Wanted::of_job(&job).unwrap() else { panic!("a burr has flutes") };
+    let mut package = families::emit(&job);
+    let main = package.programs.iter_mut().find(|program| program.number == package.main).unwrap();
+    assert!(main.text.contains(" G00 C0.\n"));
+    main.text = main.text.replace(" G00 C0.\n", &format!(" G00 C0.\n{blocks}"));
+    grind(&request(&package), &mut Memory(&package), &wanted).unwrap().verify()
+}
+
+/// The blank stands `depth` above the tooth bottom at Y 0; the wheel goes along it from X -19 to X 0.
+#[test]
+fn what_goes_into_the_blank_without_a_pass_is_told() {
+    let depth = example_depth();
+    let below = |y: f64| format!("{:.3} mm below the blank's surface", depth - y);
+    let cases = [
+        (
+            "X-19.\nG01 Y0. F30.\nX0.\nG00 Y50.\n",
+            format!("19.000 mm along the burr in the cut, {}", below(0.0)),
+        ),
+        ("X-19.\nG01 Y0. F30.\nC10.\nG00 Y50.\n", "along the burr in the cut".to_owned()),
+        ("X-19.\nG01 Y50. F30.\nX-10. Y0.\nG00 Y50.\n", "along the burr in the cut".to_owned()),
+        ("X-19.\nG01 Y0. F30.\nY3.\nG00 Y50.\n", format!("is fed {} where no pass begins", below(0.0))),
+        ("X-19.\nG01 Y0. F30.\nG00 Y50.\n", format!("is fed {} where no pass begins", below(0.0))),
+        ("X-19.\nG01 Y0. F30.\n", format!("is fed {} where no pass begins", below(0.0))),
+        ("X-19.\nG01 Y-0.1 F30.\nG00 Y50.\n", "0.100 mm below the tooth bottom".to_owned()),
+        ("X-19.\nY0.\nG00 Y50.\n", format!("rapid motion while the wheel touches the blank, {}", "")),
+    ];
+    for (blocks, told) in cases {
+        let verdict = with(blocks);
+        let found: Vec<_> = verdict.findings.iter().filter(|f| f.code == "wheel-into-burr").collect();
+        assert!(
+            found.iter().any(|f| f.message.contains(&told)),
+            "{blocks}: {:?}, not {told}",
+            verdict.findings
+        );
+    }
+    // As near as may be without touching it, from end to end.
+    let clear = format!("X-19.\nG01 Y{:.3} F30.\nX0.\nG00 Y50.\n", depth + 0.01);
+    assert!(with(&clear).verdict == Answer::Pass, "{:?}", with(&clear).findings);
+}
+
+fn example_depth() -> f64 {
+    let Wanted::Flutes(wanted) = Wanted::of_job(&example().job()).unwrap() else {
+        panic!("a burr has flutes")
+    };
+    wanted.tooth_depth.max(wanted.surface_tolerance)
+}
+
+/// Sixteen whole turns in one block: where it is looked at must not be the same place every time.
+#[test]
+fn whole_turns_in_one_block_are_seen() {
+    let verdict = with("X-19.\nG01 Y0. F30.\nG91 A5760.\nG90 G00 Y50.\n");
+    assert!(verdict.findings.iter().any(|f| f.code == "flute-helix"), "{:?}", verdict.findings);
+}
+
+/// 2500 turns round 12 mm are 94 m, 1.9 million points of 0.05 mm; round 242 mm 1900 m, 7.6 million of 0.25 mm.
+#[test]
+fn moves_without_measure_end_in_a_finding() {
+    for (blocks, told) in [
+        ("X-19.\nG01 Y0. F30.\nG91 A900000.\nG90 G00 Y50.\n", "more than 1000000 points of passes"),
+        ("Y100.\nG91 A900000.\nG90\n", "more than 4000000 points of the wheel's path"),
+    ] {
+        let verdict = with(blocks);
+        assert!(verdict.verdict == Answer::Fail);
+        let found: Vec<_> = verdict.findings.iter().filter(|f| f.code == "limit").collect();
+        assert!(found.len() == 1 && found[0].message.starts_with(told), "{blocks}: {:?}", verdict.findings);
+    }
+}
+
+#[test]
+fn where_the_axes_stand_at_the_start_is_told_as_not_checked() {
+    let verdict = passed(&example());
+    let told = "rapid motion up to where the wheel first stands off the blank (1 move)";
+    assert!(verdict.not_checked.iter().any(|line| line.starts_with(told)), "{:?}", verdict.not_checked);
+}
+
+/// A length that is the nose's but for the last bit leaves no cylinder: no move of no length, at a feed without end.
+#[test]
+fn a_cylinder_of_less_than_an_increment_is_none() {
+    let nose = Wish { cylinder: 0.0, profile: Some((2.636492154445089, 0.711623293272912)), ..example() };
+    for form in ["moves", "loop"] {
+        passed(&Wish { diameter: 6.01912604312952, flutes: 1, helix: 5.0, form, ..nose.clone() });
+        passed(&Wish { cylinder: 0.000_4, flutes: 1, form, ..example() });
+    }
+}

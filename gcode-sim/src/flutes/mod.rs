@@ -1,10 +1,13 @@
 //! Motion → flutes: follows a grinder's wheel on the burr and tells grinding from approach, retract and indexing.
 //!
 //! Feeds that turn A are grinding moves; whatever else moves lies between two passes.
+mod dives;
 mod trace;
 
 use nalgebra::Point3;
 
+use dives::Dives;
+pub use dives::{Dive, Kind};
 pub use trace::{Sample, Trace, Window, gauge};
 
 use crate::diag::{Diagnostic, Severity};
@@ -12,11 +15,18 @@ use crate::machine::path::Travel;
 use crate::machine::{LinkMotion, Machine, Wheel};
 use crate::motion::{Arc2, Axis, Event, EventKind, Place, Position, Sink};
 use crate::part::flutes::Flutes;
-use crate::part::profile::Profile;
 use crate::units::Deg;
 
 /// More moves than this aren't kept: no burr has so many, but a loop that never ends makes them.
 const MOVES: usize = 500_000;
+/// More points than this aren't kept of all passes together: the whole path of a large burr has a tenth of them.
+const KEPT: usize = 1_000_000;
+/// More points than this aren't computed in all, those between the passes included.
+const COMPUTED: usize = 4_000_000;
+
+/// How far apart the points of a pass are, and those between two passes, mm.
+const APART: f64 = 0.05;
+const APART_BETWEEN: f64 = 0.25;
 
 /// What is left of the arithmetic's own rounding, mm.
 pub const ARITHMETIC: f64 = 1e-6;
@@ -45,21 +55,14 @@ pub struct Pass {
     pub head: Option<(Deg, Deg)>,
 }
 
-/// Where the wheel came too near between two passes: in rapid motion to the blank, else below the tooth bottom.
-#[derive(Clone, Debug)]
-pub struct Dive {
-    pub place: Place,
-    /// Where it was nearest: below the blank's surface, or below the tooth bottom, mm.
-    pub depth: f64,
-    pub rapid: bool,
-}
-
 /// What a program does to a burr.
 #[derive(Clone, Debug, Default)]
 pub struct Ground {
     pub passes: Vec<Pass>,
     /// The deepest of each block.
     pub dives: Vec<Dive>,
+    /// Rapids before the wheel first stood off the blank: where they began nobody knows, and nothing is said of them.
+    pub unseen: usize,
     pub findings: Vec<Diagnostic>,
 }
 
@@ -74,9 +77,13 @@ pub struct Follower<'m> {
     at: Position,
     open: Option<Pass>,
     ground: Ground,
+    dives: Dives,
     moves: usize,
-    /// The wheel has been off the blank: what moves before that, nobody knows where it stood.
-    outside: bool,
+    /// Points kept of passes, and computed at all.
+    kept: usize,
+    computed: usize,
+    /// No more is looked at, and that is told.
+    full: bool,
 }
 
 impl<'m> Follower<'m> {
@@ -98,13 +105,18 @@ impl<'m> Follower<'m> {
             at: Position::default(),
             open: None,
             ground: Ground::default(),
+            dives: Dives::default(),
             moves: 0,
-            outside: false,
+            kept: 0,
+            computed: 0,
+            full: false,
         })
     }
 
     pub fn finish(mut self) -> Ground {
         self.close();
+        self.ground.unseen = self.dives.unseen;
+        self.ground.dives = self.dives.finish();
         self.ground
     }
 
@@ -112,25 +124,41 @@ impl<'m> Follower<'m> {
         self.ground.passes.extend(self.open.take());
     }
 
+    /// Tells once that nothing is looked at from here on.
+    fn stop(&mut self, event: &Event<'_>, what: String) {
+        self.full = true;
+        let finding =
+            Diagnostic::new(Severity::Alarm, "limit", format!("{what}: from here on none is looked at"));
+        let finding =
+            finding.help("does a loop never end, or turn the burr round and round? else split the program");
+        self.ground.findings.push(finding.at(event.place()));
+    }
+
     fn motion(&mut self, event: &Event<'_>, rapid: bool, to: &Position, arc: Option<&Arc2>) {
         let from = self.at;
         self.at = *to;
+        if self.full || (from == *to && arc.is_none()) {
+            return;
+        }
         self.moves += 1;
         if self.moves > MOVES {
-            if self.moves == MOVES + 1 {
-                let message = format!("more than {MOVES} moves: those from here on aren't looked at");
-                let finding = Diagnostic::new(Severity::Alarm, "limit", message).at(event.place());
-                self.ground.findings.push(finding.help("does a loop never end? else split the program"));
-            }
-            return;
+            return self.stop(event, format!("more than {MOVES} moves"));
         }
         let travel = Travel { from: &from, to, arc };
-        if rapid || from[self.burr] == to[self.burr] {
+        let grinds = !rapid && from[self.burr] != to[self.burr];
+        let Some(path) = self.path(&travel, if grinds { APART } else { APART_BETWEEN }) else {
+            return self.stop(event, format!("more than {COMPUTED} points of the wheel's path"));
+        };
+        if !grinds {
             self.close();
-            self.look_for_dives(event, rapid, &travel);
+            self.dives.look(&self.flutes, event.place(), rapid, &path);
             return;
         }
-        let path = self.path(&travel, 0.05);
+        self.kept += path.len();
+        if self.kept > KEPT {
+            return self.stop(event, format!("more than {KEPT} points of passes, one every {APART} mm"));
+        }
+        self.dives.ground();
         let head = self.wheel.angle(&from).zip(self.wheel.angle(to));
         let pass = self.open.get_or_insert_with(|| Pass {
             trace: Trace::default(),
@@ -147,45 +175,26 @@ impl<'m> Follower<'m> {
         }
     }
 
-    /// The contact on the burr along a motion, no two points farther apart than about `apart` mm.
-    fn path(&self, travel: &Travel<'_>, apart: f64) -> Vec<Point3<f64>> {
-        let at = |n: usize, of: usize| {
-            let position = travel.position(n as f64 / of as f64);
-            self.machine.contact(&self.wheel, &position)
-        };
-        let coarse: Vec<_> = (0..=16).map(|n| at(n, 16)).collect();
-        let length: f64 = coarse.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
-        let steps = ((length / apart).ceil() as usize).clamp(4, 8192).next_multiple_of(2);
-        (0..=steps).map(|n| at(n, steps)).collect()
+    /// The contact on the burr along a motion, no two points farther apart than about `apart` mm; `None` where that
+    /// would make too many of them in all.
+    fn path(&mut self, travel: &Travel<'_>, apart: f64) -> Option<Vec<Point3<f64>>> {
+        // The length is measured first: by points a twelfth of a turn apart, for after whole turns all are in one place.
+        let sweep = travel.arc.map_or(Deg::ZERO, |arc| arc.sweep.abs());
+        let turn = self.machine.table.turned(travel.from, travel.to) + sweep;
+        let first = self.points(travel, (turn.0 / 30.0).ceil().max(16.0))?;
+        let length: f64 = first.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
+        self.points(travel, (length / apart).ceil().max(4.0))
     }
 
-    /// Rapid motion keeps off the blank, everything that is no grinding off the tooth bottom.
-    fn look_for_dives(&mut self, event: &Event<'_>, rapid: bool, travel: &Travel<'_>) {
-        let profile: &Profile = &self.flutes.profile;
-        let path = self.path(travel, 0.25);
-        let known = self.outside;
-        self.outside |= path.last().is_some_and(|p| self.flutes.tooth_depth < profile.distance(p));
-        if !known {
-            return;
+    /// So many steps along a motion, one more if that is odd.
+    fn points(&mut self, travel: &Travel<'_>, steps: f64) -> Option<Vec<Point3<f64>>> {
+        if (COMPUTED - self.computed) as f64 <= steps + 2.0 {
+            return None;
         }
-        let distance = |p: &Point3<f64>| profile.distance(p);
-        let nearest = path.iter().map(distance).fold(f64::INFINITY, f64::min);
-        if !rapid {
-            if nearest < -self.flutes.surface_tolerance - ARITHMETIC {
-                self.ground.dives.push(Dive { place: event.place(), depth: -nearest, rapid });
-            }
-            return;
-        }
-        // A rapid that goes straight out of the cut begins on the tooth bottom.
-        let leaves = path.windows(2).all(|pair| distance(&pair[0]) < distance(&pair[1]));
-        let starts = path.first().map_or(0.0, distance);
-        if leaves && -self.flutes.surface_tolerance - ARITHMETIC < starts {
-            return;
-        }
-        let depth = self.flutes.tooth_depth - nearest;
-        if -ARITHMETIC < depth {
-            self.ground.dives.push(Dive { place: event.place(), depth: depth.max(0.0), rapid });
-        }
+        let steps = (steps as usize).next_multiple_of(2);
+        self.computed += steps + 1;
+        let at = |n: usize| travel.position(n as f64 / steps as f64);
+        Some((0..=steps).map(|n| self.machine.contact(&self.wheel, &at(n))).collect())
     }
 }
 

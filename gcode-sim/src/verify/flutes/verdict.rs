@@ -143,15 +143,28 @@ pub(super) fn verdict(
         holes: [],
         laws: laws(wanted, &along),
         findings: findings.iter().map(|finding| shown(finding, locate)).collect(),
-        not_checked: vec![
-            "the wheel's width, form and body: it is one point, so whether it gouges a neighbouring tooth beside its \
-             contact isn't known"
-                .to_owned(),
-            "which side of the wheel's swivel B is right: only its angle is held against the helix angle".to_owned(),
-        ],
+        not_checked: not_checked(ground.unseen),
         along,
         diagnostics: readable(findings.into_iter()),
     }
+}
+
+/// What the verdict says nothing about; so many rapids began nobody knows where.
+fn not_checked(unseen: usize) -> Vec<String> {
+    let mut all = vec![
+        "the wheel's width, form and body: it is one point, so whether it gouges a neighbouring tooth beside its contact \
+         isn't known"
+            .to_owned(),
+        "which side of the wheel's swivel B is right: only its angle is held against the helix angle".to_owned(),
+    ];
+    if 0 < unseen {
+        let moves = if unseen == 1 { "1 move" } else { &format!("{unseen} moves") };
+        all.push(format!(
+            "rapid motion up to where the wheel first stands off the blank ({moves}): where the axes stand at the start isn't \
+             known"
+        ));
+    }
+    all
 }
 
 fn laws(wanted: &Flutes, along: &[Angles]) -> Vec<Law> {

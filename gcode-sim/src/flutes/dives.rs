@@ -1,0 +1,186 @@
+//! What the wheel does in the blank between two passes: it may go straight in where a pass begins and straight out where
+//! one ends; all else is a dive.
+use std::collections::BTreeMap;
+
+use nalgebra::Point3;
+
+use super::ARITHMETIC;
+use crate::motion::Place;
+use crate::part::flutes::Flutes;
+
+/// How the wheel came into the burr where no pass was.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    /// In rapid motion.
+    Rapid,
+    /// A feed that doesn't turn the burr, below the tooth bottom.
+    Below,
+    /// A feed that doesn't turn the burr, so far along or around it, mm.
+    Sideways(f64),
+    /// Straight in, where no pass begins.
+    Pit,
+}
+
+/// Where the wheel came too near between two passes.
+#[derive(Clone, Debug)]
+pub struct Dive {
+    pub place: Place,
+    pub kind: Kind,
+    /// Where it was nearest: below the tooth bottom if that is what's wrong, else below the blank's surface, mm.
+    pub depth: f64,
+    /// How often the block did it; the depth is the greatest.
+    pub times: usize,
+}
+
+/// Motion is straight in or out if it goes no more than this part of its way sideways: 3°.
+const STRAIGHT: f64 = 0.05;
+
+/// How the wheel stands.
+#[derive(Clone, Debug, Default)]
+enum Stand {
+    /// Off the blank, or nothing is known.
+    #[default]
+    Off,
+    /// Fed straight in here, so far below the blank's surface, and no pass has begun yet.
+    Plunged(Place, f64),
+    /// In the cut of a pass that began here, or of a dive that is told already.
+    Ground,
+}
+
+/// Looks at every motion between two passes.
+#[derive(Debug, Default)]
+pub(super) struct Dives {
+    stand: Stand,
+    found: Vec<Dive>,
+    /// By the block and the kind, in `found`.
+    index: BTreeMap<(u32, u32, u8), usize>,
+    /// The wheel has been off the blank: before that, nobody knows where a rapid began.
+    outside: bool,
+    /// Rapids that weren't looked at for that reason.
+    pub(super) unseen: usize,
+}
+
+impl Dives {
+    /// A pass goes on, or begins where the wheel stands.
+    pub(super) fn ground(&mut self) {
+        self.stand = Stand::Ground;
+    }
+
+    pub(super) fn finish(mut self) -> Vec<Dive> {
+        self.pit();
+        self.found
+    }
+
+    /// The wheel stood in the blank and no pass began.
+    fn pit(&mut self) {
+        if let Stand::Plunged(place, depth) = std::mem::take(&mut self.stand) {
+            self.add(place, Kind::Pit, depth);
+        }
+    }
+
+    /// The deepest of each block: a loop makes all of its dives alike.
+    fn add(&mut self, place: Place, kind: Kind, depth: f64) {
+        let which = match kind {
+            Kind::Rapid => 0,
+            Kind::Below => 1,
+            Kind::Sideways(_) => 2,
+            Kind::Pit => 3,
+        };
+        let key = (place.block.source.0, place.block.start, which);
+        let index = *self.index.entry(key).or_insert(self.found.len());
+        match self.found.get_mut(index) {
+            None => self.found.push(Dive { place, kind, depth, times: 1 }),
+            Some(dive) => {
+                dive.times += 1;
+                if dive.depth < depth {
+                    (dive.depth, dive.kind) = (depth, kind);
+                }
+            }
+        }
+    }
+
+    /// Looks at a motion that is no pass.
+    pub(super) fn look(&mut self, flutes: &Flutes, place: Place, rapid: bool, path: &[Point3<f64>]) {
+        let way = Way::of(flutes, path);
+        let known = self.outside;
+        self.outside |= flutes.tooth_depth < way.last;
+        if !way.starts {
+            self.stand = Stand::Off;
+        }
+        let depth = (flutes.tooth_depth - way.nearest).max(0.0);
+        if rapid {
+            self.pit();
+            self.stand = if way.ends { Stand::Ground } else { Stand::Off };
+            // A rapid that goes straight out of the cut begins on the tooth bottom.
+            let leaves = way.leaves && way.straight && -flutes.surface_tolerance - ARITHMETIC < way.first;
+            if !known {
+                self.unseen += 1;
+            } else if !leaves && way.nearest < flutes.tooth_depth + ARITHMETIC {
+                self.add(place, Kind::Rapid, depth);
+            }
+            return;
+        }
+        if way.nearest < -flutes.surface_tolerance - ARITHMETIC {
+            self.add(place.clone(), Kind::Below, -way.nearest);
+        }
+        if !way.straight {
+            self.add(place, Kind::Sideways(way.sideways), depth);
+            self.stand = if way.ends { Stand::Ground } else { Stand::Off };
+        } else if !way.ends {
+            self.pit();
+        } else if way.starts && matches!(self.stand, Stand::Off) {
+            // Where the program begins in the cut, nobody knows how it came there.
+            self.stand = Stand::Ground;
+        } else if matches!(self.stand, Stand::Off) {
+            self.stand = Stand::Plunged(place, depth);
+        }
+    }
+}
+
+/// A motion as the blank sees it.
+struct Way {
+    /// Distances from the tooth bottom, mm.
+    first: f64,
+    last: f64,
+    nearest: f64,
+    /// Whether it starts and ends in the cut.
+    starts: bool,
+    ends: bool,
+    /// It goes away from the burr all the time.
+    leaves: bool,
+    /// In the cut it goes straight in or out.
+    straight: bool,
+    /// How far it goes along and around the burr in the cut, mm.
+    sideways: f64,
+}
+
+impl Way {
+    fn of(flutes: &Flutes, path: &[Point3<f64>]) -> Self {
+        let profile = &flutes.profile;
+        let distances: Vec<f64> = path.iter().map(|p| profile.distance(p)).collect();
+        // What is as near to the tooth bottom as a pass may be is in the cut even if no blank stands above it.
+        let cut = flutes.tooth_depth.max(flutes.surface_tolerance) - ARITHMETIC;
+        let (first, last) = (distances.first().copied(), distances.last().copied());
+        let (mut sideways, mut length) = (0.0, 0.0);
+        for (points, off) in path.windows(2).zip(distances.windows(2)) {
+            if cut <= off[0] || cut <= off[1] {
+                continue;
+            }
+            let by = points[1] - points[0];
+            let (meridian, around) = profile.directions(&nalgebra::center(&points[0], &points[1]));
+            sideways += libm::hypot(by.dot(&meridian), by.dot(&around));
+            length += by.norm();
+        }
+        let far = f64::INFINITY;
+        Self {
+            first: first.unwrap_or(far),
+            last: last.unwrap_or(far),
+            nearest: distances.iter().copied().fold(far, f64::min),
+            starts: first.is_some_and(|first| first < cut),
+            ends: last.is_some_and(|last| last < cut),
+            leaves: distances.windows(2).all(|pair| pair[0] < pair[1]),
+            straight: sideways <= flutes.surface_tolerance + STRAIGHT * length,
+            sideways,
+        }
+    }
+}
