@@ -41,6 +41,8 @@ pub struct Trace {
 #[derive(Clone, Copy, Debug)]
 pub struct Window<'t> {
     pub middle: &'t Sample,
+    /// Its first and its last sample, counted from 0.
+    pub ends: [usize; 2],
     pub helix: Deg,
     pub wanted: Deg,
     /// What the other law would have.
@@ -127,6 +129,7 @@ impl Trace {
             let angle = |way: f64| Deg::atan2(way * sense, along.abs());
             Some(Window {
                 middle: &samples[(start + end) / 2],
+                ends: [start, end],
                 helix: angle(last.around - first.around),
                 wanted: angle(last.wanted - first.wanted),
                 other: angle(last.other - first.other),

@@ -7,38 +7,74 @@ use crate::verify::flutes::{FluteVerdict, Law, WantedFlutes};
 /// Lengths in mm, angles in degrees; judged unrounded, shown rounded.
 pub fn table(verdict: &FluteVerdict) -> String {
     let mut text = format!(
-        "Flutes of a burr, law {}: {}\nmm and degrees; a helix angle is measured over {} mm\n\n",
+        "Flutes of a burr, law {}: {}\na helix angle is measured over {} mm of the flute; tolerances are either way\n\n",
         verdict.law, verdict.basis, verdict.gauge
     );
     let number = |value: Option<f64>, places: usize| match value {
         Some(value) => format!("{value:.places$}"),
         None => "-".to_owned(),
     };
-    let mut row = |what: &str, found: String, wanted: String| {
-        let _ = writeln!(text, "{what:<42} {found:>18}  {wanted}");
+    let mut row = |what: &str, found: String, wanted: String, tolerance: String| {
+        let line = format!("{what:<46} {found:>14} {wanted:>16} {tolerance:>10}");
+        let _ = writeln!(text, "{}", line.trim_end());
     };
-    row("", "found".to_owned(), "allowed".to_owned());
-    row("flutes", verdict.flutes.to_string(), verdict.wanted_flutes.to_string());
-    row("contact off the tooth bottom", number(verdict.surface_deviation, 4), verdict.tolerance.to_string());
+    let [found, wanted, tolerance] = ["found", "wanted", "tolerance"].map(str::to_owned);
+    row("", found, wanted, tolerance);
+    row("flutes", verdict.flutes.to_string(), verdict.wanted_flutes.to_string(), String::new());
     row(
-        "helix angle, least and greatest",
-        format!("{} {}", number(verdict.helix_min, 2), number(verdict.helix_max, 2)),
-        format!("{} on the cylinder", verdict.helix),
+        "contact off the tooth bottom, mm",
+        number(verdict.surface_deviation, 4),
+        "0".to_owned(),
+        verdict.tolerance.to_string(),
     );
-    row("helix angle off the law", number(verdict.helix_error, 3), verdict.helix_tolerance.to_string());
     row(
-        "gap between neighbours off an even one",
+        "helix angle, least and greatest, degrees",
+        format!("{} {}", number(verdict.helix_min, 2), number(verdict.helix_max, 2)),
+        format!("{} on cylinder", verdict.helix),
+        String::new(),
+    );
+    row(
+        "helix angle off the law, degrees",
+        number(verdict.helix_error, 3),
+        "0".to_owned(),
+        verdict.helix_tolerance.to_string(),
+    );
+    row(
+        "gap between neighbours off an even one, degrees",
         number(verdict.index_error, 4),
+        "0".to_owned(),
         verdict.index_tolerance.to_string(),
     );
-    row("neighbours' least distance", number(verdict.nearest, 3), String::new());
-    row("passes and grinding moves", format!("{} {}", verdict.passes, verdict.moves), String::new());
+    row(
+        "neighbours' least distance, mm",
+        number(verdict.nearest, 3),
+        format!("at least {}", verdict.nearest_allowed),
+        String::new(),
+    );
+    row(
+        "passes, and grinding moves in them",
+        format!("{} {}", verdict.passes, verdict.moves),
+        String::new(),
+        String::new(),
+    );
     laws(&mut text, &verdict.laws);
+    if !verdict.along.is_empty() {
+        let _ = writeln!(text, "measured: on pass {}, the farthest from the law", verdict.along_pass);
+        if verdict.laws.iter().any(|law| law.measured.is_none()) {
+            let least = verdict.along.iter().map(|angles| angles.polar.0).fold(f64::INFINITY, f64::min);
+            let _ = writeln!(
+                text,
+                "-: not measured within 2.5 degrees of that theta; the last {} mm of the flute are one measurement, at theta {least:.1}",
+                verdict.gauge
+            );
+        }
+        text.push('\n');
+    }
     let said = match verdict.verdict {
         Answer::Pass => "PASS",
         Answer::Fail => "FAIL",
     };
-    let _ = writeln!(text, "{said}     {} of {} wanted flutes", verdict.flutes, verdict.wanted_flutes);
+    let _ = writeln!(text, "{said}     {}", verdict.sentence());
     for what in &verdict.not_checked {
         let _ = writeln!(text, "not checked: {what}");
     }
@@ -55,11 +91,11 @@ pub fn wanted(burr: &WantedFlutes) -> String {
     text
 }
 
-/// The helix angle by polar angle θ from the tip: measured on the first flute, and what each law has there.
+/// The helix angle by polar angle θ from the tip: in degrees, as measured, and what each law has there.
 fn laws(text: &mut String, laws: &[Law]) {
     let _ = writeln!(
         text,
-        "\n{:>8} {:>10} {:>15} {:>10}   helix angle",
+        "\n{:>8} {:>10} {:>15} {:>10}   helix angle, degrees",
         "theta", "measured", "constant-helix", "published"
     );
     for law in laws {

@@ -34,16 +34,17 @@ pub fn of(name: &str, grinding: &Grinding, verdict: &FluteVerdict) -> FluteView 
     FluteView {
         name: name.to_owned(),
         verdict: match verdict.verdict {
-            Answer::Pass => (Standing::Good, format!("PASS: {} flutes", verdict.flutes)),
-            Answer::Fail => {
-                let why = verdict.findings.iter().find(|f| f.severity == "error" || f.severity == "alarm");
-                let why = why.map_or(String::new(), |finding| format!(", {}", finding.code));
-                (Standing::Bad, format!("FAIL: {} of {} flutes{why}", verdict.flutes, verdict.wanted_flutes))
-            }
+            Answer::Pass => (Standing::Good, format!("PASS: {}", verdict.sentence())),
+            Answer::Fail => (Standing::Bad, format!("FAIL: {}", verdict.sentence())),
         },
         lines: vec![
             format!("Law: {}, {}° on the cylinder", verdict.law, verdict.helix),
-            format!("Helix angle {}° to {}°", number(verdict.helix_min, 2), number(verdict.helix_max, 2)),
+            format!(
+                "Helix angle {}° to {}°, farthest from the law on pass {}",
+                number(verdict.helix_min, 2),
+                number(verdict.helix_max, 2),
+                verdict.along_pass
+            ),
             format!("Contact off the surface: {} mm at most", number(verdict.surface_deviation, 4)),
         ],
         outline,

@@ -17,7 +17,7 @@ pub struct FluteView {
     /// Of the circle at which the flutes end.
     pub tip_radius: f64,
     pub flutes: Vec<Vec<Spot>>,
-    /// Polar angle and helix angle along the first flute.
+    /// Polar angle and helix angle along the flute that is farthest from the law.
     pub measured: Vec<Point>,
     /// The same as each law has it.
     pub constant_helix: Vec<Point>,

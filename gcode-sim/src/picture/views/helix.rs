@@ -35,7 +35,7 @@ pub fn helix_graph(view: &FluteView) -> Scene {
         strokes,
         graph: Some(GRID),
         legend: vec![
-            item(Pen::Feed, "Measured along the first flute"),
+            item(Pen::Feed, "Measured, on the worst flute"),
             item(Pen::First, "Law constant-helix"),
             item(Pen::Second, "Law published"),
         ],

@@ -1,6 +1,7 @@
 //! Holds the flutes a program grinds against the wanted ones: on the surface, at the helix angle, evenly spaced, all
 //! there. The wheel is one point: how wide it grinds, and whether its body gouges a neighbour, is not modelled.
 mod checks;
+mod near;
 mod round;
 mod verdict;
 
@@ -8,7 +9,8 @@ pub use round::Round;
 pub use verdict::{Angles, FluteVerdict, Law, WantedFlutes};
 
 use crate::diag::Diagnostic;
-use crate::flutes::{Ground, gauge};
+use crate::flutes::{Ground, Trace, gauge};
+use crate::motion::Place;
 use crate::part::flutes::Flutes;
 use crate::source::Span;
 use crate::units::Deg;
@@ -27,22 +29,43 @@ pub struct Inspection<'g> {
 pub struct HelixRange {
     pub least: Deg,
     pub most: Deg,
-    /// Off the wanted angle: pass and sample counted from 0, found, wanted, by the other law.
+    /// Off the wanted angle.
     pub worst: Option<WorstHelix>,
 }
 
 #[derive(Clone, Copy, Debug)]
 pub struct WorstHelix {
+    /// Counted from 0.
     pub pass: usize,
     pub polar: Deg,
     pub found: Deg,
     pub wanted: Deg,
-    pub other: Deg,
+    /// The first and the last sample of the stretch, counted from 0.
+    ends: [usize; 2],
 }
 
 impl WorstHelix {
     pub fn off(&self) -> Deg {
         (self.found - self.wanted).abs()
+    }
+
+    /// The block that goes farthest off the law there, or a gauge length beside it. One point out of place makes two
+    /// moves wrong, there and back: the first of them is its block.
+    pub fn place<'g>(&self, trace: &'g Trace, gauge: f64) -> Option<&'g Place> {
+        let samples = &trace.samples;
+        let [first, last] = self.ends.map(|end| samples[end].along);
+        let (low, high) = (first.min(last) - gauge, first.max(last) + gauge);
+        let mut blocks: Vec<(&Place, f64)> = Vec::new();
+        for pair in samples.windows(2).filter(|pair| (low..=high).contains(&pair[1].along)) {
+            let off = (pair[1].around - pair[1].wanted) - (pair[0].around - pair[0].wanted);
+            let place = trace.place(&pair[1]);
+            match blocks.last_mut().filter(|(last, _)| std::ptr::eq(*last, place)) {
+                Some((_, sum)) => *sum += off,
+                None => blocks.push((place, off)),
+            }
+        }
+        let most = blocks.iter().map(|(_, off)| off.abs()).fold(0.0, f64::max);
+        blocks.iter().find(|(_, off)| 0.9 * most <= off.abs()).map(|(place, _)| *place)
     }
 }
 
@@ -57,13 +80,13 @@ impl HelixRange {
                     polar: window.middle.polar,
                     found: window.helix,
                     wanted: window.wanted,
-                    other: window.other,
+                    ends: window.ends,
                 };
                 let range =
                     range.get_or_insert(Self { least: window.helix, most: window.helix, worst: None });
                 range.least = if window.helix < range.least { window.helix } else { range.least };
                 range.most = if range.most < window.helix { window.helix } else { range.most };
-                if range.worst.is_none_or(|worst| worst.off() < here.off()) {
+                if range.worst.is_none_or(|worst| worst.off().0 + 1e-6 < here.off().0) {
                     range.worst = Some(here);
                 }
             }

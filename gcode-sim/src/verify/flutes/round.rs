@@ -1,5 +1,8 @@
 //! The flutes round the burr: which passes are one flute, how evenly they are spaced, how near neighbours come.
-use crate::flutes::Pass;
+use nalgebra::Point3;
+
+use super::near;
+use crate::flutes::{Pass, Sample};
 use crate::part::flutes::Flutes;
 use crate::units::Deg;
 
@@ -11,24 +14,39 @@ pub struct Round {
     pub flutes: Vec<(usize, Deg)>,
     /// Passes that go over a flute that is there already.
     pub again: usize,
-    /// The gap that is most off, of the wanted number of flutes.
+    /// The gap that is most off, of the wanted number of flutes, anywhere along them.
     pub worst_gap: Option<Gap>,
-    /// The least distance between neighbours, across them, mm.
+    /// The least distance between the paths of neighbours, in a straight line, mm.
     pub nearest: Option<f64>,
 }
 
-/// From one flute to the next one round the burr.
+/// From one flute to the next one round the burr, at one place along them.
 #[derive(Clone, Copy, Debug)]
 pub struct Gap {
     /// Counted from 0, as in [`Round::flutes`].
     pub from: usize,
     pub found: Deg,
-    /// Along x, where it is so.
+    /// How far it is from the wanted one.
+    pub off: Deg,
+    /// Along x, where it is so, and the polar angle there.
     pub x: f64,
+    pub polar: Deg,
+    /// Of the two flutes the one that stands farther from the middle between its neighbours, and which of its samples.
+    pub pass: usize,
+    pub sample: usize,
+    /// How far it stands from there.
+    astray: f64,
 }
 
-/// At so many places along the flutes their spacing is measured.
-const STATIONS: usize = 24;
+/// Angles nearer to each other than this are the same, degrees.
+const SAME: f64 = 1e-6;
+
+/// A flute's angle about the axis by its place along the meridian.
+struct Course {
+    /// Growing towards the tip, mm.
+    places: Vec<f64>,
+    angles: Vec<f64>,
+}
 
 impl Round {
     pub(super) fn of(wanted: &Flutes, passes: &[Pass]) -> Self {
@@ -56,39 +74,112 @@ impl Round {
                 round.flutes.push((pass, angle));
             }
         }
-        for station in 0..STATIONS {
-            let part = (station as f64 + 0.5) / STATIONS as f64;
-            round.look_at(wanted, passes, wanted.start + (end - wanted.start) * part);
-        }
-        // The tip is where flutes come nearest.
-        round.look_at(wanted, passes, end + 1e-4 * wanted.profile.radius());
+        round.worst_gap = round.gaps(wanted, passes);
+        round.nearest = round.nearest(passes);
         round
     }
 
-    /// The gaps between neighbours at a place along the burr.
-    fn look_at(&mut self, wanted: &Flutes, passes: &[Pass], x: f64) {
+    /// The gaps on both sides of every flute at every one of its samples: the worst.
+    fn gaps(&self, wanted: &Flutes, passes: &[Pass]) -> Option<Gap> {
         let pitch = 360.0 / f64::from(wanted.count);
-        for from in 0..self.flutes.len() {
-            let to = (from + 1) % self.flutes.len();
-            let (one, other) = (self.flutes[from].0, self.flutes[to].0);
-            let angles = passes[one].trace.angle_at(x).zip(passes[other].trace.angle_at(x));
-            let Some((one_angle, other_angle)) = angles else { continue };
-            let turn = other_angle.0 - one_angle.0;
-            // One flute alone is its own neighbour a whole turn further.
-            let found = if from == to { 360.0 } else { turn.rem_euclid(360.0) };
-            let gap = Gap { from, found: Deg(found), x };
-            let off = |gap: &Gap| (gap.found.0 - pitch).abs();
-            if self.worst_gap.is_none_or(|worst| off(&worst) < off(&gap)) {
-                self.worst_gap = Some(gap);
-            }
-            let Some(sample) = passes[one].trace.samples.iter().find(|s| s.at.x <= x) else { continue };
-            let radius = libm::hypot(sample.at.y, sample.at.z);
-            let slope = wanted.slope(wanted.law, &sample.at);
-            // Across the flutes, which cross the circle at their helix angle.
-            let near = radius * Deg(found.min(360.0 - found)).to_rad() / (1.0 + slope * slope).sqrt();
-            if from != to && self.nearest.is_none_or(|nearest| near < nearest) {
-                self.nearest = Some(near);
+        let courses: Vec<Course> =
+            self.flutes.iter().map(|(pass, _)| Course::of(wanted, &passes[*pass])).collect();
+        let count = courses.len();
+        let mut worst: Option<Gap> = None;
+        for (flute, (pass, _)) in self.flutes.iter().enumerate() {
+            let (before, after) = ((flute + count - 1) % count, (flute + 1) % count);
+            for (index, sample) in passes[*pass].trace.samples.iter().enumerate() {
+                let (at, angle) = (place(wanted, sample), (sample.begun + sample.turned).0);
+                // One flute alone is its own neighbour a whole turn further.
+                let turn = |angle: f64| if count == 1 { 360.0 } else { angle.rem_euclid(360.0) };
+                let behind = courses[before].angle(at).map(|other| turn(angle - other));
+                let ahead = courses[after].angle(at).map(|other| turn(other - angle));
+                let astray = behind.zip(ahead).map_or(0.0, |(behind, ahead)| (behind - ahead).abs() / 2.0);
+                for (from, found) in [(flute, ahead), (before, behind)] {
+                    let Some(found) = found else { continue };
+                    let gap = Gap {
+                        from,
+                        found: Deg(found),
+                        off: Deg((found - pitch).abs()),
+                        x: sample.at.x,
+                        polar: sample.polar,
+                        pass: *pass,
+                        sample: index,
+                        astray,
+                    };
+                    if worst.is_none_or(|worst| gap.is_worse(&worst)) {
+                        worst = Some(gap);
+                    }
+                }
             }
         }
+        worst
+    }
+
+    fn nearest(&self, passes: &[Pass]) -> Option<f64> {
+        let paths: Vec<Vec<Point3<f64>>> = self
+            .flutes
+            .iter()
+            .map(|(pass, _)| passes[*pass].trace.samples.iter().map(|sample| sample.at).collect())
+            .collect();
+        let pairs = (0..paths.len()).map(|from| (from, (from + 1) % paths.len()));
+        pairs
+            .filter(|(from, to)| from != to)
+            .filter_map(|(from, to)| near::distance(&paths[from], &paths[to]))
+            .reduce(f64::min)
+    }
+}
+
+impl Gap {
+    fn is_worse(&self, than: &Self) -> bool {
+        let more = self.off.0 - than.off.0;
+        SAME < more || (-SAME <= more && than.astray + SAME < self.astray)
+    }
+}
+
+/// The way along the meridian from the end of the cylinder, towards the tip: on the nose by the direction of the normal,
+/// which a depth that is off doesn't change.
+fn place(wanted: &Flutes, sample: &Sample) -> f64 {
+    if 0.0 < sample.at.x {
+        -sample.at.x
+    } else {
+        wanted.profile.radius() * (Deg(90.0) - sample.polar).to_rad()
+    }
+}
+
+impl Course {
+    /// Stretches that go back are left out.
+    fn of(wanted: &Flutes, pass: &Pass) -> Self {
+        let mut all: Vec<(f64, f64)> = pass
+            .trace
+            .samples
+            .iter()
+            .map(|sample| (place(wanted, sample), (sample.begun + sample.turned).0))
+            .collect();
+        if all.first().zip(all.last()).is_some_and(|(first, last)| last.0 < first.0) {
+            all.reverse();
+        }
+        let mut course = Self { places: Vec::new(), angles: Vec::new() };
+        for (place, angle) in all {
+            if course.places.last().is_none_or(|last| *last < place) {
+                course.places.push(place);
+                course.angles.push(angle);
+            }
+        }
+        course
+    }
+
+    /// `None` where the flute doesn't come.
+    fn angle(&self, place: f64) -> Option<f64> {
+        let (first, last) = (*self.places.first()?, *self.places.last()?);
+        let slack = 1e-6;
+        if place < first - slack || last + slack < place {
+            return None;
+        }
+        let after = self.places.partition_point(|one| *one < place).min(self.places.len() - 1);
+        let before = after.saturating_sub(1);
+        let way = self.places[after] - self.places[before];
+        let part = if way == 0.0 { 0.0 } else { ((place - self.places[before]) / way).clamp(0.0, 1.0) };
+        Some(self.angles[before] + (self.angles[after] - self.angles[before]) * part)
     }
 }

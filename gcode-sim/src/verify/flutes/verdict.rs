@@ -37,7 +37,7 @@ pub struct FluteVerdict {
     /// The largest difference of a gap between neighbours from an even one.
     pub index_error: Option<f64>,
     pub index_tolerance: f64,
-    /// The least distance between neighbours, across them.
+    /// The least distance between the paths of neighbours, in a straight line.
     pub nearest: Option<f64>,
     pub passes: usize,
     /// Grinding moves of all passes.
@@ -48,9 +48,14 @@ pub struct FluteVerdict {
     pub findings: Vec<Finding>,
     /// What the verdict says nothing about, in words.
     pub not_checked: Vec<String>,
-    /// For plots: the helix angle along the first flute.
+    /// For plots: the helix angle along the flute that is farthest from the law, and which pass that is, counted from 1.
     #[serde(skip)]
     pub along: Vec<Angles>,
+    #[serde(skip)]
+    pub along_pass: usize,
+    /// What neighbours' least distance may be: twice the chord error.
+    #[serde(skip)]
+    pub nearest_allowed: f64,
     /// The findings with their places, for people.
     #[serde(skip)]
     pub diagnostics: Vec<Diagnostic>,
@@ -60,7 +65,7 @@ pub struct FluteVerdict {
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Law {
     pub theta: f64,
-    /// On the first flute; null where it doesn't come.
+    /// On the flute that is farthest from the law; null where it isn't measured.
     pub measured: Option<f64>,
     pub constant_helix: f64,
     pub published: f64,
@@ -79,6 +84,37 @@ pub struct WantedFlutes {
     pub pole: f64,
     pub tip_angle: f64,
     pub laws: Vec<Law>,
+}
+
+impl FluteVerdict {
+    /// How many flutes there are, and what else is wrong, in one line.
+    pub fn sentence(&self) -> String {
+        let mut text = match self.flutes <= self.wanted_flutes {
+            true => format!("{} of {} wanted flutes are there", self.flutes, self.wanted_flutes),
+            false => format!("{} flutes are there where {} are wanted", self.flutes, self.wanted_flutes),
+        };
+        let mut said: Vec<&str> = Vec::new();
+        for finding in self.findings.iter().filter(|f| f.severity == "error" || f.severity == "alarm") {
+            let what = match finding.code.as_str() {
+                // The numbers say it.
+                "flute-missing" | "flute-extra" => continue,
+                "flute-surface" => "contact off the tooth bottom",
+                "flute-helix" => "helix angle out",
+                "flute-index" => "spacing uneven",
+                "flute-end" => "an end out of place",
+                "flute-head" => "the wheel's angle out",
+                "flutes-meet" => "neighbours meet",
+                "wheel-into-burr" => "the wheel runs into the burr",
+                other => other,
+            };
+            if !said.contains(&what) {
+                said.push(what);
+                text.push_str(", ");
+                text.push_str(what);
+            }
+        }
+        text
+    }
 }
 
 impl WantedFlutes {
@@ -115,9 +151,9 @@ pub(super) fn verdict(
     let (wanted, ground, helix) = (inspection.wanted, inspection.ground, &inspection.helix);
     let samples = ground.passes.iter().flat_map(|pass| &pass.trace.samples);
     let fails = findings.iter().any(|finding| Severity::Error <= finding.severity);
-    let pitch = 360.0 / f64::from(wanted.count);
     let gauge = gauge(wanted);
-    let along: Vec<Angles> = ground.passes.first().map_or(Vec::new(), |pass| {
+    let worst_pass = helix.worst.map_or(0, |worst| worst.pass);
+    let along: Vec<Angles> = ground.passes.get(worst_pass).map_or(Vec::new(), |pass| {
         let angles = |window: Window<'_>| Angles { polar: window.middle.polar, helix: window.helix };
         pass.trace.windows(gauge).map(angles).collect()
     });
@@ -135,7 +171,7 @@ pub(super) fn verdict(
         helix_error: helix.worst.map(|worst| worst.off().0),
         helix_tolerance: wanted.helix_tolerance.0,
         gauge,
-        index_error: inspection.round.worst_gap.map(|gap| (gap.found.0 - pitch).abs()),
+        index_error: inspection.round.worst_gap.map(|gap| gap.off.0),
         index_tolerance: wanted.index_tolerance.0,
         nearest: inspection.round.nearest,
         passes: ground.passes.len(),
@@ -145,6 +181,8 @@ pub(super) fn verdict(
         findings: findings.iter().map(|finding| shown(finding, locate)).collect(),
         not_checked: not_checked(ground.unseen),
         along,
+        along_pass: worst_pass + 1,
+        nearest_allowed: 2.0 * wanted.chord_error,
         diagnostics: readable(findings.into_iter()),
     }
 }

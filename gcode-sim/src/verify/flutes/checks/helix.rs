@@ -1,6 +1,7 @@
 //! The helix angle along every flute is that of the law asked for.
 use super::super::{Inspection, WorstHelix};
 use crate::diag::Diagnostic;
+use crate::flutes::{Window, gauge};
 use crate::job::FluteLaw;
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
@@ -11,24 +12,31 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
         "the helix angle is {:.2}° at polar angle {:.1}° where {:.2}° is wanted: {}° either way is allowed",
         worst.found.0, worst.polar.0, worst.wanted.0, tolerance.0
     );
-    let finding = Diagnostic::error("flute-helix", message).at(pass.place.clone());
+    let place = worst.place(&pass.trace, gauge(inspection.wanted)).unwrap_or(&pass.place);
+    let finding = Diagnostic::error("flute-helix", message).at(place.clone());
     findings.push(finding.help(help(inspection, &worst)));
 }
 
+/// Another law or the other hand is named only where the whole flute has it, not one place by chance.
 fn help(inspection: &Inspection<'_>, worst: &WorstHelix) -> String {
     let law = inspection.wanted.law;
     let other = match law {
         FluteLaw::ConstantHelix => FluteLaw::Published,
         FluteLaw::Published => FluteLaw::ConstantHelix,
     };
-    if (worst.found - worst.other).abs() < inspection.wanted.helix_tolerance * 2.0 {
+    let gauge = gauge(inspection.wanted);
+    let allowed = inspection.wanted.helix_tolerance * 2.0;
+    let all_along = |fits: &dyn Fn(&Window<'_>) -> bool| {
+        inspection.ground.passes[worst.pass].trace.windows(gauge).all(|window| fits(&window))
+    };
+    if all_along(&|window| (window.helix - window.other).abs() < allowed) {
         return format!(
-            "this is what the law '{}' has there, and the job asks for '{}'",
+            "all along the flute this is what the law '{}' has, and the job asks for '{}'",
             other.name(),
             law.name()
         );
     }
-    if (worst.found + worst.wanted).abs() < inspection.wanted.helix_tolerance * 2.0 {
+    if all_along(&|window| (window.helix + window.wanted).abs() < allowed) {
         return "A turns the wrong way round: the flute has the other hand".to_owned();
     }
     "check how A is computed, in degrees, and its sign in the machine file".to_owned()

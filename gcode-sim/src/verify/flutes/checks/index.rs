@@ -10,18 +10,19 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
     }
     let Some(gap) = inspection.round.worst_gap else { return };
     let pitch = 360.0 / f64::from(wanted.count);
-    if (gap.found.0 - pitch).abs() <= wanted.index_tolerance.0 {
+    if gap.off <= wanted.index_tolerance {
         return;
     }
-    let (pass, _) = inspection.round.flutes[gap.from];
+    let trace = &inspection.ground.passes[gap.pass].trace;
     let message = format!(
-        "from one flute to the next it is {:.3}° where {pitch:.3}° is wanted, at x = {:.3}: {}° either way is allowed",
-        gap.found.0, gap.x, wanted.index_tolerance.0
+        "from one flute to the next it is {:.3}° where {pitch:.3}° is wanted, at x = {:.3} and polar angle {:.1}°: {}° \
+         either way is allowed",
+        gap.found.0, gap.x, gap.polar.0, wanted.index_tolerance.0
     );
     findings.push(
         Diagnostic::error("flute-index", message)
-            .note("the first of the two begins here")
-            .help("check A at the beginning of both flutes")
-            .at(inspection.ground.passes[pass].place.clone()),
+            .note("of the two flutes this one is farther from the middle between its neighbours")
+            .help("check A in this block, and where the flute begins")
+            .at(trace.place(&trace.samples[gap.sample]).clone()),
     );
 }

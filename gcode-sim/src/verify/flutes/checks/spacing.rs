@@ -1,4 +1,4 @@
-//! No flute runs into its neighbour.
+//! No flute's path runs into its neighbour.
 use super::super::Inspection;
 use crate::diag::Diagnostic;
 
