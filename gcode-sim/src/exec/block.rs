@@ -58,6 +58,10 @@ impl Core {
         if let Some(calling) = calling {
             self.plan_calling_word(program, words, &calling, plan)?;
         }
+        if plan.moved {
+            plan.state.ended = None;
+            self.check_modal_call(&plan.flow, span)?;
+        }
         self.look_ahead(act, given, plan, span)?;
         self.check_unread(given, plan)?;
         self.check_stroke(plan, span)

@@ -66,6 +66,12 @@ impl Core {
         let mut goal = self.goal(given, &mut plan.state)?.programmed;
         goal[axis] = from.programmed[axis];
         self.drilling_words(plan, given, axis, incremental)?;
+        let data = &plan.state.drilling;
+        for (level, letter) in [(data.r, 'R'), (data.z, self.settings.axes.letter(axis))] {
+            if !level.commanded {
+                plan.notes.push(Note::LevelMissing { letter });
+            }
+        }
         if cycle.needs_q {
             self.peck_words(plan, given, pattern, span)?;
         }
@@ -181,10 +187,10 @@ impl Core {
         let state = &plan.state;
         let mut data = state.drilling;
         if let Some(value) = self.dimension(given, b'R', state)? {
-            data.r = Level { value, incremental };
+            data.r = Level { value, incremental, commanded: true };
         }
         if let Some(value) = self.dimension(given, self.settings.axes.letter(axis) as u8, state)? {
-            data.z = Level { value, incremental };
+            data.z = Level { value, incremental, commanded: true };
         }
         if let Some(value) = self.dimension(given, b'Q', state)? {
             // Its sign is ignored.

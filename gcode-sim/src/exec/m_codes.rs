@@ -19,6 +19,9 @@ impl Core {
             let Some(effect) = m_codes::find(code, self.settings.codes) else {
                 plan.passed_on.push(code);
                 plan.tell(EventKind::Auxiliary { code });
+                if code > 9999 {
+                    plan.notes.push(Note::LongMCode { code });
+                }
                 continue;
             };
             match effect {

@@ -41,6 +41,7 @@ mod system_vars;
 mod thread;
 mod transform;
 mod transform_codes;
+mod transform_order;
 mod travel;
 mod vars;
 mod view;

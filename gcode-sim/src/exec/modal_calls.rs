@@ -2,6 +2,7 @@
 use super::Core;
 use super::eval::Checked;
 use super::frames::{ByCodes, Frame, FrameKind};
+use super::plan::Flow;
 use super::vars::{Locals, Value};
 use crate::alarm::Alarm;
 use crate::program::{Calling, Program, ProgramId, Words};
@@ -35,6 +36,19 @@ impl Core {
         };
         self.vars.enter(&locals);
         self.push(frame);
+    }
+
+    /// What comes first after a move is settled where its block does nothing else with the flow of the program.
+    pub(super) fn check_modal_call(&self, flow: &Flow, block: Span) -> Checked<()> {
+        let what = match flow {
+            Flow::Next | Flow::Return { .. } => return Ok(()),
+            _ if self.waiting_call().is_none() => return Ok(()),
+            Flow::Call(_) => "a modal macro call after a block that moves and calls as well",
+            Flow::CancelModal => "a modal macro call after a block that moves and has G67",
+            Flow::End => "a modal macro call after a block that moves and ends the program",
+        };
+        let what = format!("{what} (give the move a block of its own)");
+        Err(Alarm::NotSimulated { what }.at(block))
     }
 
     /// The modal call that a block of this program can trigger.

@@ -3,6 +3,7 @@ use super::Core;
 use super::eval::{Checked, at};
 use super::plan::Plan;
 use super::state::{Drilling, PolarPoint};
+use super::transform_order;
 use super::words::Given;
 use crate::alarm::Alarm;
 use crate::program::codes::{Effect, OneShot, Row, spelled};
@@ -54,6 +55,7 @@ impl Core {
         {
             return Err(Alarm::CodeInScaling { code: spelled(row.code) }.at(span));
         }
+        at(transform_order::check(given, &before, state, self.names_axis(given)), span)?;
         if modal.scaling == Scaling::Off {
             state.transform.scaling = None;
         }
@@ -64,8 +66,11 @@ impl Core {
         if modal.polar == Polar::On && before.polar == Polar::Off {
             state.polar = PolarPoint::default();
         }
-        if modal.work != before.work || state.transform != self.state.transform {
+        if modal.work != before.work {
+            state.ended = None;
             self.recompute(state);
+        } else if state.transform != self.state.transform {
+            self.transform_changed(state);
         }
         if modal.cycle.is_some() && !latched {
             let axis = at(self.drilling_axis(given, state), span)?;

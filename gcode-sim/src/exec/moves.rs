@@ -6,7 +6,7 @@ use super::plan::Plan;
 use super::words::Given;
 use crate::alarm::Alarm;
 use crate::motion::EventKind;
-use crate::program::codes::Effect;
+use crate::program::codes::{Effect, Row};
 use crate::program::modes::{CutterSide, Length, Motion};
 use crate::source::Span;
 
@@ -16,6 +16,13 @@ impl Core {
         let commanded = given.has(b'H') || given.g_codes().any(|row| matches!(row.effect, Effect::Length(_)));
         if !commanded || (plan.state.modal.length == Length::Off && self.state.modal.length == Length::Off) {
             return Ok(false);
+        }
+        let on = |row: &&Row| matches!(row.effect, Effect::Length(Length::Plus | Length::Minus));
+        if let Some(row) = given.g_codes().find(on)
+            && plan.state.codes.h == 0
+            && !given.has(b'H')
+        {
+            plan.notes.push(Note::LengthOfNothing { code: row.code });
         }
         let offset = at(self.length_offset(&plan.state), span)?;
         if offset == plan.state.length {

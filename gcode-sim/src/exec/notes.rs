@@ -43,6 +43,18 @@ pub enum Note {
     ParameterWithoutEffect { number: u16 },
     /// The program has letters in lower case, which some controls refuse.
     LowerCase,
+    /// An M code of more than four digits that is left to the machine builder: M981000 was M98 P1000.
+    LongMCode { code: u32 },
+    /// #5001… are read behind a switch of G51.1, G51 or G68, when the program's coordinates of the tool are others.
+    EndBeforeSwitch,
+    /// The first move behind such a switch leaves out an axis whose coordinate it has changed.
+    AxisLeftOut,
+    /// DPRNT has printed the lower digits of a number only.
+    DigitsLost,
+    /// A drilling cycle drills though its R or its depth was never commanded.
+    LevelMissing { letter: char },
+    /// G43 or G44 with H0, which is no offset.
+    LengthOfNothing { code: u32 },
     /// `#3000=n` with a number beyond those that the manual names.
     LargeAlarm { number: u16, most: u16 },
 }
@@ -134,6 +146,40 @@ impl Note {
             Self::LowerCase => {
                 let message = "lower case is read as capitals; some controls refuse it".to_owned();
                 ("lower-case", message, "write capitals, or set LOWER-CASE=0 if the control refuses it")
+            }
+            Self::LongMCode { code } => {
+                let message = format!("M{code} calls nothing: it is one M code, left to the machine builder");
+                ("long-m-code", message, "write P before the program's number: M98 P1000")
+            }
+            Self::EndBeforeSwitch => {
+                let message =
+                    "#5001 and on show the end of the last move as it was programmed, before the switch of \
+                     G51.1, G51 or G68"
+                        .to_owned();
+                ("end-before-switch", message, "read them behind the next move, or before the switch")
+            }
+            Self::AxisLeftOut => {
+                let message =
+                    "an axis left out here stays where the tool stands; after a switch of G51.1, G51 or \
+                               G68 a control may take it elsewhere"
+                        .to_owned();
+                ("axis-left-out", message, "name every axis in the first move after the switch")
+            }
+            Self::DigitsLost => {
+                let message = "DPRNT prints the lower digits only: the format has too few places".to_owned();
+                (
+                    "digits-lost",
+                    message,
+                    "give the format more places; PRINT-EXPANDS=1 is for a control that makes room",
+                )
+            }
+            Self::LevelMissing { letter } => {
+                let message = format!("the cycle drills with {letter} at 0: none was commanded");
+                ("level-missing", message, "write R and the depth in the block that begins the cycle")
+            }
+            Self::LengthOfNothing { code } => {
+                let message = format!("G{} with H0: no tool length is in force", spelled(code));
+                ("length-of-nothing", message, "write H with the tool's number")
             }
             Self::LargeAlarm { number, most } => {
                 let message = format!("#3000={number}: a control's manual names numbers up to {most}");

@@ -1,6 +1,6 @@
 //! The offset tables: work coordinate systems and tool offsets, held in increments as a control holds them.
 use super::Core;
-use super::state::State;
+use super::state::{Ended, State};
 use super::travel::shorter_way;
 use crate::alarm::Alarm;
 use crate::motion::{Axis, MAX_AXES, Position};
@@ -111,13 +111,37 @@ impl Core {
         machine
     }
 
-    /// Where the program stands after something other than a move changed its coordinates.
-    pub(super) fn recompute(&self, state: &mut State) {
+    /// The tool in the work coordinate system, without the length offset.
+    fn work_point(&self, state: &State) -> Position {
         let mut work = Position::default();
         for axis in 0..self.settings.axes.len() {
             let at = state.machine[axis] - self.zero(state, axis) - state.length[axis];
             work[axis] = self.rolled(axis, self.clean(at));
         }
+        work
+    }
+
+    /// Mirror, scaling or rotation were switched: the program stands elsewhere in its coordinates, and #5001… go on
+    /// showing where its last move was programmed to end.
+    pub(super) fn transform_changed(&self, state: &mut State) {
+        let (programmed, work) = (self.move_end(state), self.work_point(state));
+        self.recompute(state);
+        state.ended = (state.programmed != programmed).then_some(Ended { programmed, work });
+    }
+
+    /// The end of the last move as it was programmed.
+    pub(super) fn move_end(&self, state: &State) -> Position {
+        let Some(Ended { mut programmed, work }) = state.ended else { return state.programmed };
+        let now = self.work_point(state);
+        for axis in 0..self.settings.axes.len() {
+            programmed[axis] = self.clean(programmed[axis] + now[axis] - work[axis]);
+        }
+        programmed
+    }
+
+    /// Where the program stands after something other than a move changed its coordinates.
+    pub(super) fn recompute(&self, state: &mut State) {
+        let work = self.work_point(state);
         state.programmed = state.transform.backward(work);
         if !state.transform.is_none() {
             for axis in 0..MAX_AXES {

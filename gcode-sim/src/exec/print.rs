@@ -1,6 +1,7 @@
 //! POPEN, DPRNT, BPRNT and PCLOS: lines that a program sends to the control's output device.
 use super::Core;
 use super::eval::Checked;
+use super::notes::Note;
 use crate::alarm::Alarm;
 use crate::control::Settings;
 use crate::program::{PrintPart, Program};
@@ -48,9 +49,11 @@ impl Core {
                     let number = self.operand(program, *value)?.number();
                     let printed = match kind {
                         PrintKind::Decimal => decimal(number, *whole, *decimals, &self.settings, &mut line),
-                        PrintKind::Binary => binary(number, *decimals, &mut line),
+                        PrintKind::Binary => binary(number, *decimals, &mut line).map(|()| true),
                     };
-                    printed.map_err(|alarm| alarm.at(span))?;
+                    if !printed.map_err(|alarm| alarm.at(span))? {
+                        self.told.set(Some(Note::DigitsLost));
+                    }
                 }
             }
         }
@@ -64,14 +67,15 @@ impl Core {
 }
 
 /// `#n[ab]`: a digits before the point and b behind it. In front stands the place of the sign; with PRT (6001#1)
-/// blanks are left out. A control prints the lower digits of a number that has more than a before its point.
+/// blanks are left out. A control prints the lower digits of a number that has more than a before its point: the answer
+/// is whether all of them were printed.
 fn decimal(
     number: f64,
     whole: u8,
     decimals: u8,
     settings: &Settings,
     line: &mut Vec<u8>,
-) -> Result<(), Alarm> {
+) -> Result<bool, Alarm> {
     let most = settings.print_digits;
     if !(1..=most).contains(&usize::from(whole + decimals)) {
         return Err(Alarm::PrintFormat);
@@ -85,8 +89,9 @@ fn decimal(
     let scaled = scaled as u64;
     let width = usize::from(whole);
     let mut before = (scaled / unit).to_string();
+    let mut all = true;
     if before.len() > width && !settings.print_expands {
-        before.drain(..before.len() - width);
+        all = before.drain(..before.len() - width).all(|digit| digit == '0');
     }
     let negative = number < 0.0 && scaled > 0;
     if negative {
@@ -103,7 +108,7 @@ fn decimal(
         line.push(b'.');
         line.extend(format!("{behind:0width$}", width = usize::from(decimals)).bytes());
     }
-    Ok(())
+    Ok(all)
 }
 
 /// `#n[d]`: the value × 10^d as two words, the highest byte first.

@@ -11,6 +11,8 @@ pub struct State {
     /// Where the program stands in its work coordinate system, before mirror, scaling and rotation, without the
     /// tool length.
     pub programmed: Position,
+    /// Until the next move after G51.1, G51, G68 or their end: what #5001… show.
+    pub ended: Option<Ended>,
     /// The same in machine coordinates, tool length included.
     pub machine: Position,
     /// G52.
@@ -39,11 +41,20 @@ pub struct State {
     pub tool: u32,
 }
 
+/// Where the last move ended, as it was programmed, while the program stands elsewhere in its coordinates because a
+/// transform was switched.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Ended {
+    pub programmed: Position,
+    /// The tool in the work coordinate system when the transform was switched: an offset that changes later moves both.
+    pub work: Position,
+}
+
 /// What G16 keeps from block to block.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PolarPoint {
-    /// mm.
-    pub radius: f64,
+    /// mm; `None` before one was commanded.
+    pub radius: Option<f64>,
     /// Degrees.
     pub angle: f64,
     /// The radius was commanded in G91: it is measured from where the tool stands, not from the work zero.
@@ -93,6 +104,8 @@ pub struct Pecks {
 pub struct Level {
     pub value: f64,
     pub incremental: bool,
+    /// It was, in this cycle.
+    pub commanded: bool,
 }
 
 impl Drilling {

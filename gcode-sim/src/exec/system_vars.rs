@@ -1,5 +1,6 @@
 //! The system variables: one row per range, how it is read and how it is written.
 use super::Core;
+use super::notes::Note;
 use super::offsets::Register;
 use super::vars::Value;
 use crate::alarm::Alarm;
@@ -251,7 +252,12 @@ impl Core {
     fn end_point(&self) -> crate::motion::Position {
         match self.settings.unsure.shows_transformed {
             true => self.state.transform.forward(self.state.programmed),
-            false => self.state.programmed,
+            false => {
+                if self.state.ended.is_some() {
+                    self.told.set(Some(Note::EndBeforeSwitch));
+                }
+                self.move_end(&self.state)
+            }
         }
     }
 

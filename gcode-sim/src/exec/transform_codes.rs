@@ -31,7 +31,7 @@ impl Core {
         let (mirrored, _) = state.transform.on_arcs(plane);
         let angle = if mirrored { -angle } else { angle };
         state.transform.rotation = Some(Turn::new(plane, (centre[plane.0], centre[plane.1]), angle));
-        self.recompute(state);
+        self.transform_changed(state);
         Ok(())
     }
 
@@ -48,7 +48,7 @@ impl Core {
             angles[place] = self.angle(given, angle)?.unwrap_or(0.0);
         }
         plan.state.transform.tilt = Some(Tilt::new(axes, origin, angles));
-        self.recompute(&mut plan.state);
+        self.transform_changed(&mut plan.state);
         Ok(())
     }
 
@@ -76,7 +76,7 @@ impl Core {
             scale.factor[axis] = factor / unit;
         }
         plan.state.transform.scaling = Some(scale);
-        self.recompute(&mut plan.state);
+        self.transform_changed(&mut plan.state);
         Ok(())
     }
 
@@ -95,7 +95,7 @@ impl Core {
             }
         }
         state.modal.mirror = if state.transform.mirrored == 0 { Mirror::Off } else { Mirror::On };
-        self.recompute(state);
+        self.transform_changed(state);
         Ok(())
     }
 }

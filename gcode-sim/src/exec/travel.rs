@@ -1,6 +1,7 @@
 //! Straight moves: where a block's axis words lead, and how long the way takes.
 use super::Core;
 use super::eval::Checked;
+use super::notes::Note;
 use super::plan::Plan;
 use super::state::{PolarPoint, State};
 use super::words::Given;
@@ -58,6 +59,13 @@ impl Core {
         if state.modal.polar == Polar::On {
             self.polar(given, state, &mut programmed)?;
         }
+        let stays = |(axis, letter): (Axis, char)| {
+            !given.has(letter as u8) && self.move_end(state)[axis] != state.programmed[axis]
+        };
+        let absolute = state.modal.distance == Distance::Absolute;
+        if state.ended.is_some() && absolute && self.settings.axes.iter().any(stays) {
+            self.told.set(Some(Note::AxisLeftOut));
+        }
         let mut machine = self.to_machine(state, programmed);
         for (axis, way) in turned.iter().enumerate() {
             if let Some(way) = way {
@@ -97,7 +105,11 @@ impl Core {
         let incremental = state.modal.distance == Distance::Incremental;
         // Radius and angle are each absolute or incremental, as the block that commands them has it.
         if let Some(radius) = radius {
-            state.polar = PolarPoint { radius, from_here: incremental, ..state.polar };
+            state.polar = PolarPoint { radius: Some(radius), from_here: incremental, ..state.polar };
+        }
+        if state.polar.radius.is_none() {
+            let what = "an angle in G16 before any radius (write both in its first block)".into();
+            return Err(Alarm::NotSimulated { what }.at(given.span(letter(second))));
         }
         if let Some(angle) = angle {
             state.polar.angle = if incremental { state.polar.angle + angle } else { angle };
@@ -109,8 +121,9 @@ impl Core {
     /// Moves a point to where radius and angle lead.
     pub(super) fn polar_point(&self, polar: &PolarPoint, plane: (Axis, Axis), point: &mut Position) {
         let centre = if polar.from_here { (point[plane.0], point[plane.1]) } else { (0.0, 0.0) };
-        point[plane.0] = self.clean(centre.0 + polar.radius * Deg(polar.angle).cos());
-        point[plane.1] = self.clean(centre.1 + polar.radius * Deg(polar.angle).sin());
+        let radius = polar.radius.unwrap_or(0.0);
+        point[plane.0] = self.clean(centre.0 + radius * Deg(polar.angle).cos());
+        point[plane.1] = self.clean(centre.1 + radius * Deg(polar.angle).sin());
     }
 
     /// Tells a rapid to a point in machine coordinates; nothing where the tool already is there.
