@@ -2,6 +2,7 @@
 use gcode_sim::diag::Severity;
 use gcode_sim::job::Job;
 use gcode_sim::machine::Machine;
+use gcode_sim::part::overlap::overlaps;
 use gcode_sim::part::reference::Reference;
 use gcode_sim::picture;
 use gcode_sim::report::verdict_table::{Layout, table};
@@ -22,7 +23,7 @@ pub(super) fn check(job: &Job, package: &Package, reference: &Reference) -> Resu
     let verdict = simulation.verify(reference, tolerances, &machine);
     let top = top::of_verdict(&file_name(main.number), &simulation, reference, &verdict, &machine);
     Ok(Checked {
-        refusals: refusals(job, &simulation, &verdict),
+        refusals: refusals(job, reference, &simulation, &verdict),
         seconds: simulation.run.control.seconds().0,
         report: table(&verdict, Layout::default()),
         picture: picture::main_view(&top),
@@ -32,10 +33,15 @@ pub(super) fn check(job: &Job, package: &Package, reference: &Reference) -> Resu
 }
 
 /// Every reason with its block; then what rounding has to do with it.
-fn refusals(job: &Job, simulation: &Simulation, verdict: &Verdict) -> Vec<String> {
+fn refusals(job: &Job, reference: &Reference, simulation: &Simulation, verdict: &Verdict) -> Vec<String> {
     let sources = simulation.run.control.memory().sources();
     let failed = verdict.diagnostics.iter().filter(|finding| Severity::Error <= finding.severity);
     let mut refusals: Vec<_> = failed.map(|finding| diagnostic::render(finding, sources)).collect();
+    // A pattern sees to its own before it has any holes.
+    if reference.pattern.is_none() {
+        let cut = overlaps(&reference.holes);
+        refusals.extend(cut.iter().map(|overlap| format!("error: {}\n", overlap.sentence(&reference.holes))));
+    }
     let increment = job.control().increment;
     for hole in verdict.holes.iter().filter(|hole| hole.phi > verdict.tolerance) {
         if hole.rounding > verdict.tolerance - (hole.phi - hole.rounding).max(0.0) {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::args::{RunConditions, TextFormat};
-use super::{Refusal, Status, options, output, render};
+use super::{Refusal, Status, options, output, render, unused_machine};
 use crate::changes::{Revision, changes};
 use crate::picture;
 use crate::report::changes::ChangesReport;
@@ -40,6 +40,7 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
     let tolerance = options::tolerance("--tolerance", Some(arguments.tolerance))?.unwrap_or_default();
     let (old_request, mut old_folders) = options::request(&arguments.run.of(&arguments.old))?;
     let (new_request, mut new_folders) = options::request(&arguments.run.of(&arguments.new))?;
+    unused_machine::tell(&arguments.run.of(&arguments.new), &new_request);
     let refused = |error: crate::session::SessionError| Refusal::new(error.to_string());
     let old = Revision::of(&old_request, &mut old_folders, None).map_err(refused)?;
     let new = Revision::of(&new_request, &mut new_folders, None).map_err(refused)?;

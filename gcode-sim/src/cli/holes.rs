@@ -2,7 +2,7 @@
 use clap::Args;
 
 use super::args::{ListFormat, ProgramArguments};
-use super::{Refusal, Status, options, output};
+use super::{Refusal, Status, options, output, unused_machine};
 use crate::part::hole::HoleList;
 use crate::report::holes as report;
 use crate::session;
@@ -19,6 +19,7 @@ pub(super) struct HolesArguments {
 
 pub(super) fn run(arguments: &HolesArguments) -> Result<Status, Refusal> {
     let (request, mut folders) = options::request(&arguments.program)?;
+    unused_machine::tell(&arguments.program, &request);
     let simulation =
         session::simulate(&request, &mut folders, None).map_err(|e| Refusal::new(e.to_string()))?;
     print(&simulation.list(), arguments.format)?;

@@ -17,6 +17,7 @@ mod render;
 mod run;
 mod settings;
 mod test;
+mod unused_machine;
 mod verify;
 
 use std::ffi::OsString;

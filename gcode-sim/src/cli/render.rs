@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use super::args::ProgramArguments;
-use super::{Refusal, Status, options, output};
+use super::{Refusal, Status, options, output, unused_machine};
 use crate::part::flutes::Flutes;
 use crate::part::reference::Reference;
 use crate::part::wanted::Wanted;
@@ -63,6 +63,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<Status, Refusal> {
 
 fn holes(arguments: &RenderArguments, reference: Option<Reference>) -> Result<Status, Refusal> {
     let (request, mut folders) = options::request(&arguments.program)?;
+    unused_machine::tell(&arguments.program, &request);
     let asked = options::tolerance("--tolerance", arguments.tolerance)?;
     let surface = reference.as_ref().and_then(|r| r.surface);
     let simulation =
@@ -93,6 +94,7 @@ fn holes(arguments: &RenderArguments, reference: Option<Reference>) -> Result<St
 
 fn flutes(arguments: &RenderArguments, mut wanted: Flutes) -> Result<Status, Refusal> {
     let (request, mut folders) = options::request(&arguments.program)?;
+    unused_machine::tell(&arguments.program, &request);
     let asked = options::tolerance("--tolerance", arguments.tolerance)?;
     wanted.surface_tolerance = asked.unwrap_or(wanted.surface_tolerance);
     let grinding =

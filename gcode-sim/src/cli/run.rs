@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::args::{ProgramArguments, TextFormat};
-use super::{Refusal, Status, options, output};
+use super::{Refusal, Status, options, output, unused_machine};
 use crate::holes::Extractor;
 use crate::report::run::{MOST_MOVES, Moves, RunReport};
 use crate::session;
@@ -33,6 +33,7 @@ pub(super) struct RunArguments {
 
 pub(super) fn run(arguments: &RunArguments) -> Result<Status, Refusal> {
     let (request, mut folders) = options::request(&arguments.program)?;
+    unused_machine::tell(&arguments.program, &request);
     let wanted = arguments.show.iter().map(|text| options::variable(text)).collect::<Result<Vec<_>, _>>()?;
     let mut moves = arguments.moves.then(Moves::default);
     // Follows the tool only where there is a part that it could touch.

@@ -5,7 +5,7 @@ use clap::Args;
 
 use super::args::{ProgramArguments, TextFormat};
 use super::library::Folders;
-use super::{Refusal, Status, options, output, render};
+use super::{Refusal, Status, options, output, render, unused_machine};
 use crate::part::flutes::Flutes;
 use crate::part::reference::Reference;
 use crate::part::wanted::Wanted;
@@ -54,6 +54,7 @@ pub(super) fn run(arguments: &VerifyArguments) -> Result<Status, Refusal> {
     let asked = options::tolerance("--tolerance", arguments.tolerance)?;
     let depth = options::tolerance("--depth-tolerance", arguments.depth_tolerance)?;
     let (request, folders) = options::request(&arguments.program)?;
+    unused_machine::tell(&arguments.program, &request);
     match options::wanted(&arguments.reference)? {
         Wanted::Holes(reference) => {
             let mut tolerances = Tolerances::of(&reference, asked);

@@ -148,6 +148,7 @@ pub const PAGES: &[Page] = pages![
     "hole-diameter"
     "hole-extra"
     "hole-missing"
+    "hole-overlap"
     "hole-position"
     "hole-tilted"
     "hole-tools"

@@ -4,6 +4,7 @@ mod depth;
 mod diameter;
 mod mirrored;
 mod missing;
+mod overlap;
 mod position;
 mod row_angle;
 mod row_group;
@@ -29,4 +30,5 @@ pub(super) const ALL: &[Check] = &[
     depth::check,
     diameter::check,
     tools::check,
+    overlap::check,
 ];
