@@ -14,6 +14,14 @@ pub(super) fn remark(control: JobControl) -> String {
     format!("{dialect}, INCREMENT {increment}")
 }
 
+/// What the control adds to n of `#3000=n`, in thousands: a Fanuc shows 3000 + n, a Haas 1000 + n.
+pub(super) fn alarm_thousands(dialect: Dialect) -> &'static str {
+    match dialect {
+        Dialect::HaasNgc => "1",
+        Dialect::Fanuc31i | Dialect::Fanuc0iF => "3",
+    }
+}
+
 /// How every machine file begins.
 pub(super) fn machine_file(control: JobControl) -> String {
     let (dialect, increment) = names(control);

@@ -62,6 +62,7 @@ fn header(job: &Honeycomb) -> Vec<String> {
         .machine
         .clamp
         .map(|clamp| format!("M{} LETS THE ROTARY GO BEFORE IT TURNS, M{} HOLDS IT", clamp.off, clamp.on));
+    let k = control::alarm_thousands(job.control.dialect);
     let mut lines = vec![
         format!("DIAMETER {outer}, LENGTH {length}, DRILL {}", number(job.drill.diameter)),
         format!("{wanted} ON DIAMETER {diameter}, {measured}"),
@@ -74,7 +75,7 @@ fn header(job: &Honeycomb) -> Vec<String> {
         "A DRILL, B PITCH, C CLEARANCE, D DIAMETER OF THE PITCH, E DIVISIONS".to_owned(),
         "F FEED, H 0. DEVELOPED 1. STRAIGHT, I OUTER DIAMETER, J BORE, Q PECK".to_owned(),
         format!("U SIGN OF {}, V RETRACT, X LENGTH, Z DEPTH", rotary.letter),
-        format!("ALARMS 3031-3050 BY O{COMB}"),
+        format!("ALARMS {k}031-{k}050 BY O{COMB}"),
         "START WITH THE TOOL CLEAR OF THE PART".to_owned(),
     ];
     lines.extend(clamp);

@@ -68,6 +68,7 @@ impl<'j> Main<'j> {
         };
         let control = control::remark(job.control);
         let common = self.resident.common;
+        let k = control::alarm_thousands(job.control.dialect);
         let lines = [
             format!("HOLES {holes}, SURFACE [X*X+Z*Z]/A/A+Y*Y/B/B = 1, A {a} B {b}"),
             "NUMBERS ARE MILLIMETRES AND DEGREES, FEEDS MM/MIN".to_owned(),
@@ -85,7 +86,7 @@ impl<'j> Main<'j> {
             "E FEED OUT, F FEED IN, H 0. NORMAL 1. AXIAL, Q PIVOT TO TIP".to_owned(),
             format!("R RADIUS, U SIGN OF {}, V RETRACT, W AZIMUTH", rotary.letter),
             format!("COMMON VARIABLES #{common} HEAD ANGLE TO SET, #{} ANGLE SET", common + 1),
-            format!("ALARMS 3001-3016 BY O{HOLE}, 3021-3029 BY O{HEAD}"),
+            format!("ALARMS {k}001-{k}016 BY O{HOLE}, {k}021-{k}029 BY O{HEAD}"),
             "START WITH THE TOOL CLEAR OF THE PART, ABOVE OR BESIDE IT".to_owned(),
         ];
         for line in lines {
