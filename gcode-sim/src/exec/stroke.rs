@@ -50,6 +50,7 @@ impl Core {
             | EventKind::ToolLength { .. }
             | EventKind::Spindle { .. }
             | EventKind::Coolant { .. }
+            | EventKind::Auxiliary { .. }
             | EventKind::Stop { .. } => Ok(()),
         }
     }

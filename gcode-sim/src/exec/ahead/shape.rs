@@ -81,6 +81,7 @@ impl Ahead {
             | EventKind::ToolLength { .. }
             | EventKind::Spindle { .. }
             | EventKind::Coolant { .. }
+            | EventKind::Auxiliary { .. }
             | EventKind::Stop { .. } => return piece.clone(),
         };
         let kind = match segment {
