@@ -161,6 +161,24 @@ pub enum EventKind {
     },
 }
 
+impl EventKind {
+    /// Where a move ends; `None` for what moves nothing.
+    pub fn end(&self) -> Option<&Position> {
+        match self {
+            Self::Rapid { to } | Self::Feed { to, .. } | Self::Arc { to, .. } | Self::Skip { to, .. } => {
+                Some(to)
+            }
+            Self::Dwell { .. }
+            | Self::Tool { .. }
+            | Self::ToolLength { .. }
+            | Self::Spindle { .. }
+            | Self::Coolant { .. }
+            | Self::Auxiliary { .. }
+            | Self::Stop { .. } => None,
+        }
+    }
+}
+
 /// An arc of [`EventKind::Arc`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arc2 {

@@ -16,6 +16,17 @@ pub(super) enum Link {
     Added(usize),
 }
 
+impl Link {
+    /// The numbers of the steps, old and new.
+    pub(super) fn sides(self) -> (Option<usize>, Option<usize>) {
+        match self {
+            Self::Same(i, j) | Self::Changed(i, j) => (Some(i), Some(j)),
+            Self::Lost(i) => (Some(i), None),
+            Self::Added(j) => (None, Some(j)),
+        }
+    }
+}
+
 /// The search gives up beyond so many lost and added steps: what is left then counts as changed from end to end.
 const MOST_EDITS: usize = 1_000;
 

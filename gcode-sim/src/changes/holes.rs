@@ -87,11 +87,12 @@ impl Told<'_> {
         let mut groups: Vec<(&'static str, String, Vec<usize>)> = Vec::new();
         for (hole, other) in partner.iter().enumerate() {
             let Some(other) = other else { continue };
-            let aspects = self.aspects(&self.old.holes[hole], &self.new.holes[*other]);
+            let (before, now) = (&self.old.holes[hole], &self.new.holes[*other]);
+            let apart = Apart::new(before, now);
+            let aspects = self.aspects(before, now, &apart);
             let Some((code, _)) = aspects.first() else { continue };
             if aspects.iter().any(|(code, _)| ["hole-moved", "hole-tilted", "hole-depth"].contains(code)) {
-                let deeper = Apart::new(&self.old.holes[hole], &self.new.holes[*other]).deeper;
-                let with = |step: &usize| (*step, deeper);
+                let with = |step: &usize| (*step, apart.deeper);
                 self.moved.shifted.0.extend(self.old.feeds[hole].iter().map(with));
                 self.moved.shifted.1.extend(self.new.feeds[*other].iter().map(with));
             }
@@ -114,9 +115,8 @@ impl Told<'_> {
     }
 
     /// All that is different about one hole.
-    fn aspects(&mut self, old: &Found, new: &Found) -> Vec<(&'static str, String)> {
+    fn aspects(&mut self, old: &Found, new: &Found, apart: &Apart) -> Vec<(&'static str, String)> {
         let mut aspects = Vec::new();
-        let apart = Apart::new(old, new);
         if apart.entry.norm() > self.tolerance {
             let [x, y, z] = [apart.entry.x, apart.entry.y, apart.entry.z].map(plain);
             aspects.push(("hole-moved", format!("moved by {x:+.4} {y:+.4} {z:+.4} mm")));

@@ -28,10 +28,8 @@ pub(super) fn compare(
 fn regions(links: &[Link], old: &[Step], new: &[Step]) -> Vec<Vec<Link>> {
     let mut regions = vec![Vec::new()];
     for link in links {
-        let is_move = match *link {
-            Link::Same(i, _) | Link::Changed(i, _) | Link::Lost(i) => old[i].is_move(),
-            Link::Added(j) => new[j].is_move(),
-        };
+        let (i, j) = link.sides();
+        let is_move = i.map(|i| &old[i]).or(j.map(|j| &new[j])).is_some_and(Step::is_move);
         match (is_move, link) {
             (false, _) => {}
             (true, Link::Same(..)) => regions.push(Vec::new()),
@@ -51,11 +49,7 @@ struct Feed {
 }
 
 fn feed_of(link: &Link, explained: &Explained) -> Option<Feed> {
-    let (old, new) = match *link {
-        Link::Same(i, j) | Link::Changed(i, j) => (Some(i), Some(j)),
-        Link::Lost(i) => (Some(i), None),
-        Link::Added(j) => (None, Some(j)),
-    };
+    let (old, new) = link.sides();
     let (shifted, elsewhen) = (&explained.shifted, &explained.elsewhen);
     let deeper = old.and_then(|i| shifted.0.get(&i)).or_else(|| new.and_then(|j| shifted.1.get(&j)));
     let is_elsewhen =
@@ -195,11 +189,8 @@ impl<'a> Motion<'a> {
 
     /// The steps of a link, old and new.
     fn sides(&self, link: &Link) -> [Option<&'a Step>; 2] {
-        match *link {
-            Link::Same(i, j) | Link::Changed(i, j) => [Some(&self.old[i]), Some(&self.new[j])],
-            Link::Lost(i) => [Some(&self.old[i]), None],
-            Link::Added(j) => [None, Some(&self.new[j])],
-        }
+        let (i, j) = link.sides();
+        [i.map(|i| &self.old[i]), j.map(|j| &self.new[j])]
     }
 
     /// A move that goes elsewhere or in another way.

@@ -55,7 +55,7 @@ impl Core {
         let calls = self.frame().calls.clone();
         self.drill(drill, &mut |kind, time| {
             seconds += time;
-            moves += u64::from(moves_something(&kind));
+            moves += u64::from(kind.end().is_some());
             sink.event(&Event { kind, seconds: Seconds(time), block, calls: &calls });
         });
         self.seconds += seconds;
@@ -72,7 +72,7 @@ impl Core {
     /// Counts what is told.
     pub(super) fn count(&mut self, kind: &EventKind, seconds: f64) {
         self.seconds += seconds;
-        self.moves += u64::from(moves_something(kind));
+        self.moves += u64::from(kind.end().is_some());
         if let EventKind::Stop { kind, text, named } = kind
             && self.stops.len() < STOPS
         {
@@ -100,13 +100,6 @@ impl Core {
         let unknown = || Alarm::NoVariableName { name: name.to_owned() };
         self.names.get(name).copied().ok_or_else(unknown)
     }
-}
-
-fn moves_something(kind: &EventKind) -> bool {
-    matches!(
-        kind,
-        EventKind::Rapid { .. } | EventKind::Feed { .. } | EventKind::Arc { .. } | EventKind::Skip { .. }
-    )
 }
 
 #[cfg(test)]

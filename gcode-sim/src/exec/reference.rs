@@ -43,11 +43,7 @@ impl Core {
         // The length offset is cancelled where its axis reaches the reference position.
         let z = self.settings.axes.find(b'Z');
         if z.is_some() && given.has(b'Z') && plan.state.modal.length != Length::Off {
-            if plan.state.length != Position::default() {
-                plan.tell(EventKind::ToolLength { offset: Position::default() });
-            }
-            plan.state.length = Position::default();
-            plan.state.modal.length = Length::Off;
+            end_length(plan);
         }
         self.recompute(&mut plan.state);
         plan.moved = true;
@@ -61,11 +57,7 @@ impl Core {
             home[axis] = self.turned_to(axis, home[axis], 0.0);
         }
         self.rapid(plan, home);
-        if plan.state.length != Position::default() {
-            plan.tell(EventKind::ToolLength { offset: Position::default() });
-        }
-        plan.state.length = Position::default();
-        plan.state.modal.length = Length::Off;
+        end_length(plan);
         self.recompute(&mut plan.state);
         plan.moved = true;
     }
@@ -90,4 +82,13 @@ impl Core {
         plan.moved = true;
         Ok(())
     }
+}
+
+/// No tool length offset any more, nor G43 or G44.
+fn end_length(plan: &mut Plan) {
+    if plan.state.length != Position::default() {
+        plan.tell(EventKind::ToolLength { offset: Position::default() });
+    }
+    plan.state.length = Position::default();
+    plan.state.modal.length = Length::Off;
 }

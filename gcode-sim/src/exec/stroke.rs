@@ -37,22 +37,12 @@ impl Core {
     }
 
     pub(super) fn within_stroke(&self, kind: &EventKind) -> Result<(), Alarm> {
-        match kind {
-            EventKind::Rapid { to } | EventKind::Feed { to, .. } | EventKind::Skip { to, .. } => {
-                self.point_within(to)
-            }
-            EventKind::Arc { to, arc, .. } => {
-                self.point_within(to)?;
-                extremes(arc, to).iter().flatten().try_for_each(|point| self.point_within(point))
-            }
-            EventKind::Dwell { .. }
-            | EventKind::Tool { .. }
-            | EventKind::ToolLength { .. }
-            | EventKind::Spindle { .. }
-            | EventKind::Coolant { .. }
-            | EventKind::Auxiliary { .. }
-            | EventKind::Stop { .. } => Ok(()),
+        let Some(to) = kind.end() else { return Ok(()) };
+        self.point_within(to)?;
+        if let EventKind::Arc { arc, .. } = kind {
+            extremes(arc, to).iter().flatten().try_for_each(|point| self.point_within(point))?;
         }
+        Ok(())
     }
 
     fn point_within(&self, point: &Position) -> Result<(), Alarm> {

@@ -4,6 +4,7 @@ use std::fmt::Write;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
+use crate::changes::Where;
 use crate::exec::{Outcome, Value, printable};
 use crate::motion::{Axes, Event, EventKind, Position, Sink, StopKind};
 use crate::session::Run;
@@ -47,14 +48,7 @@ pub struct AlarmReport {
     pub block: String,
     pub help: Option<String>,
     /// The calls that led there, innermost first.
-    pub calls: Vec<CallReport>,
-}
-
-#[derive(Debug, Serialize)]
-pub struct CallReport {
-    pub program: String,
-    pub line: u32,
-    pub block: String,
+    pub calls: Vec<Where>,
 }
 
 #[derive(Debug, Serialize)]
@@ -277,16 +271,8 @@ fn alarm(run: &Run) -> Option<AlarmReport> {
     let Outcome::Alarm(stopped) = &run.outcome else { return None };
     let row = stopped.alarm.row();
     let sources = run.control.memory().sources();
-    let (program, _) = run.locate(stopped.place.block);
     let at = sources.place(stopped.span);
-    let block = |span| sources.text(span).trim().to_owned();
-    let mut calls = Vec::new();
-    let mut next = &stopped.place.calls;
-    while let Some(call) = next {
-        let (program, line) = run.locate(call.from);
-        calls.push(CallReport { program, line, block: block(call.from) });
-        next = &call.outer;
-    }
+    let Where { program, block, calls, .. } = Where::of(run, &stopped.place);
     Some(AlarmReport {
         number: row.code.number(),
         code: row.code.to_string(),
@@ -294,7 +280,7 @@ fn alarm(run: &Run) -> Option<AlarmReport> {
         program,
         line: at.line,
         column: at.column,
-        block: block(stopped.place.block),
+        block,
         help: row.help,
         calls,
     })

@@ -213,7 +213,7 @@ impl Ahead {
         }
         if let Some(beyond) = self.told.iter().position(|(kind, ..)| core.within_stroke(kind).is_err()) {
             self.told.truncate(beyond);
-            self.centre = self.told.iter().rev().find_map(|(kind, ..)| piece::end(kind)).unwrap_or(stands);
+            self.centre = self.told.iter().rev().find_map(|(kind, ..)| kind.end().copied()).unwrap_or(stands);
         }
         for axis in 0..core.settings.axes.len() {
             self.offset[axis] = self.centre[axis] - self.at[axis];

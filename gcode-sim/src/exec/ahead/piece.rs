@@ -32,23 +32,15 @@ impl Piece {
     /// `None` for an event that is no move.
     pub(super) fn new(kind: &EventKind, from: Position, order: &Order) -> Option<Self> {
         let point = |p: &Position| Point::new(p[order.plane.0], p[order.plane.1]);
+        let to = point(kind.end()?);
         let segment = match kind {
-            EventKind::Rapid { to } | EventKind::Feed { to, .. } | EventKind::Skip { to, .. } => {
-                Segment::Line { from: point(&from), to: point(to) }
-            }
-            EventKind::Arc { to, arc, .. } => Segment::Arc {
+            EventKind::Arc { arc, .. } => Segment::Arc {
                 from: point(&from),
-                to: point(to),
+                to,
                 centre: Point::new(arc.centre.0, arc.centre.1),
                 sweep: arc.sweep,
             },
-            EventKind::Dwell { .. }
-            | EventKind::Tool { .. }
-            | EventKind::ToolLength { .. }
-            | EventKind::Spindle { .. }
-            | EventKind::Coolant { .. }
-            | EventKind::Auxiliary { .. }
-            | EventKind::Stop { .. } => return None,
+            _ => Segment::Line { from: point(&from), to },
         };
         let segment = segment.has_length().then_some(segment);
         Some(Self { kind: kind.clone(), segment, place: order.place.clone() })
@@ -56,24 +48,7 @@ impl Piece {
 
     /// Where it ends on the programmed path.
     pub(super) fn to(&self) -> Position {
-        end(&self.kind).unwrap_or_default()
-    }
-}
-
-/// Where a move ends.
-pub(super) fn end(kind: &EventKind) -> Option<Position> {
-    match kind {
-        EventKind::Rapid { to }
-        | EventKind::Feed { to, .. }
-        | EventKind::Arc { to, .. }
-        | EventKind::Skip { to, .. } => Some(*to),
-        EventKind::Dwell { .. }
-        | EventKind::Tool { .. }
-        | EventKind::ToolLength { .. }
-        | EventKind::Spindle { .. }
-        | EventKind::Coolant { .. }
-        | EventKind::Auxiliary { .. }
-        | EventKind::Stop { .. } => None,
+        self.kind.end().copied().unwrap_or_default()
     }
 }
 
