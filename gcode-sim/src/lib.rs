@@ -25,6 +25,8 @@ pub mod exec;
 
 pub mod check;
 
+pub mod gauge;
+
 pub mod job;
 
 pub mod part;

@@ -3,9 +3,11 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::{Alignment, Chord, Runout, SineTable};
+use crate::gauge::{self, GaugeSet};
 use crate::job::pin_holes::{FileMachine, FileSurface};
 use crate::job::sections::{FileControl, length, within};
 use crate::job::{JobError, Reader, Surface};
+use crate::units::{Deg, Mm};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -32,7 +34,7 @@ struct FileProbe {
 struct FileSineTable {
     length: Spanned<f64>,
     phi: Spanned<f64>,
-    gauge_blocks: String,
+    gauge_blocks: Spanned<String>,
 }
 
 #[derive(Deserialize)]
@@ -65,21 +67,37 @@ pub(super) fn parse(text: &str) -> Result<Alignment, JobError> {
             "0.01 to 1000 mm",
             within(0.01, 1000.0),
         )?,
-        sine_table: SineTable {
-            length: length(reader, "sine_table.length", &file.sine_table.length)?,
-            // A sine bar loses its accuracy towards the upright.
-            phi: reader.number(
-                "sine_table.phi",
-                &file.sine_table.phi,
-                "0 to 45 degrees",
-                within(0.0, 45.0),
-            )?,
-            gauge_blocks: file.sine_table.gauge_blocks,
-        },
+        sine_table: file.sine_table.check(reader)?,
         chord: file.chord.check(reader, surface)?,
         runout: file.runout.check(reader, surface)?,
         surface,
     })
+}
+
+impl FileSineTable {
+    fn check(&self, reader: &Reader<'_>) -> Result<SineTable, JobError> {
+        let sets = GaugeSet::ALL.map(|set| (set.name, set));
+        let table = SineTable {
+            length: reader.number(
+                "sine_table.length",
+                &self.length,
+                "10 to 2000 mm",
+                within(10.0, 2000.0),
+            )?,
+            // A sine bar loses its accuracy towards the upright.
+            phi: reader.number("sine_table.phi", &self.phi, "0 to 45 degrees", within(0.0, 45.0))?,
+            gauge_blocks: reader.choice("sine_table.gauge_blocks", &self.gauge_blocks, &sets)?,
+        };
+        let (height, most) = (gauge::height(Mm(table.length), Deg(table.phi)).0, table.gauge_blocks.total());
+        if height > most.mm() {
+            let message = format!(
+                "key 'sine_table.gauge_blocks' is '{}': all its blocks together are {most} mm high, and L*sin(phi) is {height:.3} mm",
+                table.gauge_blocks.name
+            );
+            return Err(reader.error(&self.gauge_blocks, message));
+        }
+        Ok(table)
+    }
 }
 
 impl FileChord {
@@ -154,6 +172,7 @@ angles = [-25.0, 25.0, 11]
     fn everything_a_job_says_is_read() {
         let job = parse(JOB).unwrap();
         assert_eq!((job.probe_radius, job.surface.b, job.sine_table.phi), (3.0, 724.3, 38.5));
+        assert_eq!((job.sine_table.length, job.sine_table.gauge_blocks.name), (200.0, "metric-87"));
         assert_eq!((job.chord.e_radius, job.chord.candidates), (812.4, 10));
         assert_eq!((job.runout.heights, job.runout.readings), ([150.0, 420.0], 11));
         assert_eq!((job.runout.from, job.runout.to), (-25.0, 25.0));
@@ -166,6 +185,19 @@ angles = [-25.0, 25.0, 11]
             ("radius = 3.0", "radius = 0", "line 12: key 'probe.radius' is 0: 0.01 to 1000 mm"),
             ("radius = 3.0", "diameter = 6", "line 12: key 'probe.diameter' is not known; allowed: radius"),
             ("phi = 38.5", "phi = 46", "line 15: key 'sine_table.phi' is 46: 0 to 45 degrees"),
+            ("length = 200.0", "length = 5", "line 14: key 'sine_table.length' is 5: 10 to 2000 mm"),
+            (
+                "metric-87",
+                "metric-86",
+                "line 16: key 'sine_table.gauge_blocks' is 'metric-86': one of metric-32, metric-38, metric-46, metric-47, \
+                 metric-76, metric-83, metric-87, metric-88, metric-91, metric-103, metric-112",
+            ),
+            (
+                "length = 200.0\nphi = 38.5\ngauge_blocks = \"metric-87\"",
+                "length = 500.0\nphi = 45.0\ngauge_blocks = \"metric-32\"",
+                "line 16: key 'sine_table.gauge_blocks' is 'metric-32': all its blocks together are 188.955 mm high, \
+                 and L*sin(phi) is 353.553 mm",
+            ),
             ("candidates = 10", "candidates = 11", "line 21: key 'chord.candidates' is 11: 1 to 10"),
             (
                 "e_radius = 812.4",

@@ -2,6 +2,7 @@
 mod file;
 
 use super::{JobControl, JobError, PinMachine, Surface};
+use crate::gauge::GaugeSet;
 
 /// A part to be aligned; lengths in mm, angles in degrees.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,8 +36,7 @@ pub struct SineTable {
     /// Between the rollers.
     pub length: f64,
     pub phi: f64,
-    /// The name of a set of gauge blocks.
-    pub gauge_blocks: String,
+    pub gauge_blocks: GaugeSet,
 }
 
 /// The chord between two points E and F of the surface in the plane z = 0.
