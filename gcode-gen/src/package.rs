@@ -3,8 +3,8 @@
 /// The programs and the machine file of one job.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Package {
-    /// The main program's O-number.
-    pub main: u32,
+    /// The O-numbers of the main programs; most families have one.
+    pub mains: Vec<u32>,
     pub programs: Vec<Program>,
     /// The machine file's text.
     pub machine: String,
@@ -24,11 +24,24 @@ impl Package {
         programs.chain([("machine.toml".to_owned(), self.machine.as_str())]).collect()
     }
 
+    /// The main program, of a job that has just one.
+    pub fn main(&self) -> Option<&Program> {
+        match self.mains.as_slice() {
+            [main] => self.program(*main),
+            _ => None,
+        }
+    }
+
     pub fn program(&self, number: u32) -> Option<&Program> {
         self.programs.iter().find(|program| program.number == number)
     }
 }
 
 pub fn file_name(number: u32) -> String {
-    format!("O{number:04}.nc")
+    format!("{}.nc", stem(number))
+}
+
+/// What the names of a program's files begin with.
+pub fn stem(number: u32) -> String {
+    format!("O{number:04}")
 }

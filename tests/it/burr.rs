@@ -185,7 +185,7 @@ impl Library for Memory<'_> {
 }
 
 fn request(package: &Package) -> Request {
-    let main = package.program(package.main).unwrap();
+    let main = package.main().unwrap();
     let machine = Machine::parse(&package.machine).unwrap();
     Request::new(file_name(main.number), main.text.as_bytes(), machine)
 }
@@ -314,7 +314,7 @@ fn the_macro_refuses_what_can_not_be_ground() {
         ("G21", "G20", 96),
     ];
     let package = families::emit(&example().job());
-    let text = &package.program(package.main).unwrap().text;
+    let text = &package.main().unwrap().text;
     for (from, to, number) in cases.into_iter().chain([("S3000 M03", "G93", 96)]) {
         assert!(text.contains(from), "{from} isn't in\n{text}");
         let mut request = request(&package);
@@ -334,7 +334,7 @@ fn with(blocks: &str) -> FluteVerdict {
     let job = example().job();
     let Wanted::Flutes(wanted) = Wanted::of_job(&job).unwrap() else { panic!("a burr has flutes") };
     let mut package = families::emit(&job);
-    let main = package.programs.iter_mut().find(|program| program.number == package.main).unwrap();
+    let main = package.programs.iter_mut().find(|program| program.number == 8400).unwrap();
     assert!(main.text.contains(" G00 C0.\n"));
     main.text = main.text.replace(" G00 C0.\n", &format!(" G00 C0.\n{blocks}"));
     grind(&request(&package), &mut Memory(&package), &wanted).unwrap().verify()

@@ -70,7 +70,7 @@ fn verdict(text: &str, changes: &[(&str, &str)]) -> Verdict {
 }
 
 fn ran(package: &Package, sink: &mut impl Sink) -> Run {
-    let main = package.program(package.main).unwrap();
+    let main = package.main().unwrap();
     let machine = Machine::parse(&package.machine).unwrap();
     run(&Request::new("O8300.nc", main.text.as_bytes(), machine), &mut programs(package), sink).unwrap()
 }

@@ -88,7 +88,7 @@ fn r_changed_in_the_holes_calls_alone_sets_the_head_again() {
 }
 
 fn ran(package: &Package, change: impl Fn(&mut Request)) -> Run {
-    let main = package.program(package.main).unwrap();
+    let main = package.main().unwrap();
     let machine = Machine::parse(&package.machine).unwrap();
     let mut request = Request::new("O8100.nc", main.text.as_bytes(), machine);
     change(&mut request);
@@ -122,7 +122,7 @@ fn neither_the_machine_file_nor_the_range_of_atan_changes_the_verdict() {
     let text = melon();
     let reference = Wanted::of_job(&job(&text)).unwrap().into_holes().unwrap();
     let package = families::emit(&job(&text));
-    let main = package.program(package.main).unwrap();
+    let main = package.main().unwrap();
     for machine in [Machine::default(), Machine::parse(&package.machine).unwrap()] {
         for signed in [false, true] {
             let mut request = Request::new("O8100.nc", main.text.as_bytes(), machine.clone());

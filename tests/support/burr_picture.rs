@@ -12,7 +12,7 @@ use gcode_sim::session::{Request, grind};
 pub(super) fn scene(job: &str, view: &str) -> Scene {
     let job = Job::parse(job).unwrap();
     let package = families::emit(&job);
-    let main = package.program(package.main).unwrap();
+    let main = package.main().unwrap();
     let machine = Machine::parse(&package.machine).unwrap();
     let request = Request::new("O8400.nc", main.text.as_bytes(), machine);
     let Wanted::Flutes(wanted) = Wanted::of_job(&job).unwrap() else { panic!("the job is no burr") };

@@ -1,7 +1,8 @@
-//! Cases of kind `gen`: the main program and the machine file that `job.toml` becomes. The resident macros stand in
+//! Cases of kind `gen`: the main programs and the machine file that `job.toml` becomes. The resident macros stand in
 //! `macros/` and `examples/`, where they are held byte for byte.
 use std::fmt::Write;
 
+use gcode_gen::package::file_name;
 use gcode_sim::job::Job;
 
 use crate::Case;
@@ -11,9 +12,9 @@ pub(crate) fn run(case: &Case) {
     let job = Job::parse(&case.text("job.toml")).unwrap_or_else(|error| panic!("{}: {error}", case.name()));
     let mut shown = String::new();
     let package = gcode_gen::families::emit(&job);
-    let main = gcode_gen::package::file_name(package.main);
+    let mains: Vec<_> = package.mains.iter().map(|number| file_name(*number)).collect();
     for (name, text) in
-        package.files().into_iter().filter(|(name, _)| *name == main || name == "machine.toml")
+        package.files().into_iter().filter(|(name, _)| mains.contains(name) || name == "machine.toml")
     {
         let _ = write!(shown, "==== {name}\n{text}");
     }

@@ -8,7 +8,7 @@ use gcode_sim::session::{Request, grind};
 use gcode_sim::verify::Answer;
 
 use super::{CheckError, Checked, Judgement, Programs, main_program, told};
-use crate::package::{Package, file_name};
+use crate::package::{Package, file_name, stem};
 
 pub(super) fn check(package: &Package, wanted: &Flutes) -> Result<Checked, CheckError> {
     let machine = Machine::parse(&package.machine).map_err(|e| told("machine.toml", &e))?;
@@ -28,8 +28,11 @@ pub(super) fn check(package: &Package, wanted: &Flutes) -> Result<Checked, Check
         refusals,
         seconds: grinding.run.control.seconds().0,
         report: flute_table::table(&verdict),
-        picture: picture::side_view(&view),
-        more_pictures: vec![("tip", picture::tip_view(&view)), ("helix", picture::helix_graph(&view))],
+        pictures: vec![
+            (stem(main.number), picture::side_view(&view)),
+            (format!("{}-tip", stem(main.number)), picture::tip_view(&view)),
+            (format!("{}-helix", stem(main.number)), picture::helix_graph(&view)),
+        ],
         judgement: Judgement::Flutes(verdict),
     })
 }

@@ -11,7 +11,7 @@ use gcode_sim::session::{Request, Simulation, simulate};
 use gcode_sim::verify::{Answer, Tolerances, Verdict};
 
 use super::{CheckError, Checked, Judgement, Programs, main_program, told};
-use crate::package::{Package, file_name};
+use crate::package::{Package, file_name, stem};
 
 pub(super) fn check(job: &Job, package: &Package, reference: &Reference) -> Result<Checked, CheckError> {
     let machine = Machine::parse(&package.machine).map_err(|e| told("machine.toml", &e))?;
@@ -26,8 +26,7 @@ pub(super) fn check(job: &Job, package: &Package, reference: &Reference) -> Resu
         refusals: refusals(job, reference, &simulation, &verdict),
         seconds: simulation.run.control.seconds().0,
         report: table(&verdict, Layout::default()),
-        picture: picture::main_view(&top),
-        more_pictures: Vec::new(),
+        pictures: vec![(stem(main.number), picture::main_view(&top))],
         judgement: Judgement::Holes(verdict),
     })
 }

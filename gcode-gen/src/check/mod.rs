@@ -1,5 +1,6 @@
 //! Runs an emitted package as the control would and holds what it does against the job's geometry. What doesn't pass
 //! here is not written.
+mod alignment;
 mod flutes;
 mod holes;
 
@@ -32,9 +33,8 @@ pub struct Checked {
     pub seconds: f64,
     /// What `verify` prints.
     pub report: String,
-    pub picture: Scene,
-    /// Further views, by what is put behind the file's name.
-    pub more_pictures: Vec<(&'static str, Scene)>,
+    /// What is drawn of it, each with its file's name without `.png`.
+    pub pictures: Vec<(String, Scene)>,
     pub judgement: Judgement,
 }
 
@@ -43,6 +43,8 @@ pub struct Checked {
 pub enum Judgement {
     Holes(Verdict),
     Flutes(FluteVerdict),
+    /// Of a part that is measured and gets nothing.
+    Measured,
 }
 
 impl Judgement {
@@ -50,7 +52,7 @@ impl Judgement {
     pub fn into_holes(self) -> Option<Verdict> {
         match self {
             Self::Holes(verdict) => Some(verdict),
-            Self::Flutes(_) => None,
+            Self::Flutes(_) | Self::Measured => None,
         }
     }
 
@@ -58,13 +60,16 @@ impl Judgement {
     pub fn into_flutes(self) -> Option<FluteVerdict> {
         match self {
             Self::Flutes(verdict) => Some(verdict),
-            Self::Holes(_) => None,
+            Self::Holes(_) | Self::Measured => None,
         }
     }
 }
 
-/// Simulates the main program on the machine of the package's own machine file.
+/// Simulates the main programs on the machine of the package's own machine file.
 pub fn check(job: &Job, package: &Package) -> Result<Checked, CheckError> {
+    if let Job::Alignment(job) = job {
+        return alignment::check(job, package);
+    }
     match Wanted::of_job(job).map_err(|e| CheckError::Impossible(e.to_string()))? {
         Wanted::Holes(reference) => holes::check(job, package, &reference),
         Wanted::Flutes(wanted) => flutes::check(package, &wanted),
@@ -76,8 +81,7 @@ fn told(what: &str, error: &dyn std::fmt::Display) -> CheckError {
 }
 
 fn main_program(package: &Package) -> Result<&Program, CheckError> {
-    let missing = || CheckError::Broken(format!("the main program O{} was not emitted", package.main));
-    package.program(package.main).ok_or_else(missing)
+    package.main().ok_or_else(|| CheckError::Broken("the main program was not emitted".to_owned()))
 }
 
 /// The package's programs as the control's program memory.

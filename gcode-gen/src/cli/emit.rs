@@ -8,7 +8,6 @@ use gcode_sim::picture::{self, PictureError, Scene, Size};
 
 use crate::check::{CheckError, Checked, check};
 use crate::families;
-use crate::package::file_name;
 
 pub(super) fn run(path: &Path, out: &Path) -> Result<Status, Refusal> {
     let text = input::text(path)?;
@@ -28,7 +27,7 @@ pub(super) fn run(path: &Path, out: &Path) -> Result<Status, Refusal> {
         output::tell(&format!("{reasons}error: nothing is written, for the programs of {job} don't hold\n"));
         return Ok(Status::Fails);
     }
-    let pictures = pictures(&checked, package.main)?;
+    let pictures = pictures(&checked)?;
     make_folder(out)?;
     let mut files: Vec<(PathBuf, &[u8])> =
         package.files().into_iter().map(|(name, text)| (out.join(name), text.as_bytes())).collect();
@@ -45,16 +44,14 @@ pub(super) fn run(path: &Path, out: &Path) -> Result<Status, Refusal> {
     Ok(Status::Holds)
 }
 
-/// The views of what was simulated, as PNG: `O8100.png`, and where there are more `O8400-tip.png`.
-fn pictures(checked: &Checked, main: u32) -> Result<Vec<(String, Vec<u8>)>, Refusal> {
+/// What was drawn of it, as PNG by file name: `O8100.png`, and where there are more views `O8400-tip.png`.
+fn pictures(checked: &Checked) -> Result<Vec<(String, Vec<u8>)>, Refusal> {
     let refused = |error: PictureError| Refusal::new(error.to_string());
     let size = Size::new(1600, 1200).map_err(refused)?;
-    let program = file_name(main);
-    let stem = program.trim_end_matches(".nc");
-    let first = (format!("{stem}.png"), &checked.picture);
-    let more = checked.more_pictures.iter().map(|(view, scene)| (format!("{stem}-{view}.png"), scene));
-    let drawn = |(name, scene): (String, &Scene)| Ok((name, picture::draw(scene, size).map_err(refused)?));
-    std::iter::once(first).chain(more).map(drawn).collect()
+    let drawn = |(name, scene): &(String, Scene)| {
+        Ok((format!("{name}.png"), picture::draw(scene, size).map_err(refused)?))
+    };
+    checked.pictures.iter().map(drawn).collect()
 }
 
 /// The folder, and those it stands in.

@@ -1,4 +1,5 @@
 //! The part families: each turns its job into programs.
+pub mod alignment;
 pub mod burr;
 mod control;
 pub mod honeycomb;
@@ -19,7 +20,7 @@ pub struct Family {
 }
 
 /// Every family there is.
-pub const ALL: &[Family] = &[pin_holes::FAMILY, honeycomb::FAMILY, burr::FAMILY];
+pub const ALL: &[Family] = &[pin_holes::FAMILY, honeycomb::FAMILY, burr::FAMILY, alignment::FAMILY];
 
 /// The programs of a job.
 pub fn emit(job: &Job) -> Package {
@@ -27,5 +28,6 @@ pub fn emit(job: &Job) -> Package {
         Job::PinHoles(job) => pin_holes::emit(job),
         Job::Honeycomb(job) => honeycomb::emit(job),
         Job::Burr(job) => burr::emit(job),
+        Job::Alignment(job) => alignment::emit(job),
     }
 }

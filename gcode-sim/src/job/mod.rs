@@ -32,6 +32,7 @@ pub enum Job {
     PinHoles(PinHoles),
     Honeycomb(Honeycomb),
     Burr(Burr),
+    Alignment(Alignment),
 }
 
 /// The control a job is for.
@@ -53,7 +54,7 @@ struct Family {
     family: Spanned<String>,
 }
 
-pub const FAMILIES: [&str; 3] = ["pin-holes", "honeycomb", "burr"];
+pub const FAMILIES: [&str; 4] = ["pin-holes", "honeycomb", "burr", "alignment"];
 
 impl Job {
     /// Reads a job file's text.
@@ -71,6 +72,7 @@ impl Job {
             "pin-holes" => pin_holes::parse(&reader).map(Self::PinHoles),
             "honeycomb" => honeycomb::parse(&reader).map(Self::Honeycomb),
             "burr" => burr::parse(&reader).map(Self::Burr),
+            "alignment" => alignment::parse(&reader).map(Self::Alignment),
             other => Err(reader
                 .error(&family, format!("family '{other}' is not known: one of {}", FAMILIES.join(", ")))),
         }
@@ -82,6 +84,7 @@ impl Job {
             Self::PinHoles(job) => job.machine.clearance,
             Self::Honeycomb(job) => job.machine.clearance,
             Self::Burr(job) => job.grinder.clearance,
+            Self::Alignment(job) => job.machine.clearance,
         }
     }
 
@@ -90,6 +93,7 @@ impl Job {
             Self::PinHoles(job) => job.control,
             Self::Honeycomb(job) => job.control,
             Self::Burr(job) => job.control,
+            Self::Alignment(job) => job.control,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The machine that a job is for, from the job file itself: as exact as the program believes it to be.
 use nalgebra::{Point3, Unit, Vector3};
 
-use super::{Chain, Head, HeadKind, Link, Machine, Placement, Tool};
+use super::{Chain, Head, HeadKind, Link, Machine, Placement, Probe, Tool};
 use crate::job::{self, Job, Rotary};
 use crate::units::Deg;
 
@@ -45,6 +45,12 @@ impl Machine {
                 })
             }
             Job::Burr(_) => None,
+            // The programmed point is the centre of the ball; the head stays as it is.
+            Job::Alignment(job) => Some(Self {
+                table: nominal.table_of(job.machine.rotary, Vector3::y_axis(), Point3::origin())?,
+                probe: Some(Probe::new(job.probe_radius)),
+                ..nominal
+            }),
         }
     }
 

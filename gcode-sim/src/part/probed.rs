@@ -2,7 +2,7 @@
 use super::reference::ReferenceError;
 use super::surface::Surface;
 use super::wanted::Wanted;
-use crate::job::{Alignment, Job};
+use crate::job::Job;
 
 /// A surface that is there to be touched.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,12 +16,11 @@ impl Probed {
     /// Reads a job file's text.
     pub fn parse(text: &str) -> Result<Self, ReferenceError> {
         let told = |e: crate::job::JobError| ReferenceError { line: e.line, message: e.message };
-        if Alignment::is_meant(text) {
-            let job = Alignment::parse(text).map_err(told)?;
+        let job = Job::parse(text).map_err(told)?;
+        if let Job::Alignment(job) = job {
             let surface = Surface::Ellipsoid { a: job.surface.a, b: job.surface.b };
             return Ok(Self { surface, radius: Some(job.probe_radius) });
         }
-        let job = Job::parse(text).map_err(told)?;
         let surface = Wanted::of_job(&job)?.into_holes().and_then(|reference| reference.surface);
         let message = "this family's part has no surface that could be probed".to_owned();
         let surface = surface.ok_or(ReferenceError { line: None, message })?;

@@ -38,6 +38,12 @@ impl Wanted {
             Job::PinHoles(job) => super::pin_holes::reference(job).map(Self::Holes),
             Job::Honeycomb(job) => super::honeycomb::reference(job).map(Self::Holes),
             Job::Burr(job) => Ok(Self::Flutes(Flutes::of_job(job))),
+            Job::Alignment(_) => {
+                let message = "the family 'alignment' measures how a part stands and makes nothing, so that there is \
+                               nothing to hold a program against: run its programs with gcode-sim run --part JOB.toml"
+                    .to_owned();
+                Err(ReferenceError { line: None, message })
+            }
         }
     }
 

@@ -31,7 +31,7 @@ pub fn emit(job: &Burr) -> Package {
     if job.program.form == ProgramForm::Loop {
         programs.extend(Resident::of(job).programs());
     }
-    Package { main: MAIN, programs, machine: machine_file::machine_file(job) }
+    Package { mains: vec![MAIN], programs, machine: machine_file::machine_file(job) }
 }
 
 struct Main<'j> {

@@ -23,7 +23,7 @@ pub const FAMILY: Family =
 /// The main program, the resident macro and the machine file of a job.
 pub fn emit(job: &Honeycomb) -> Package {
     let programs = vec![Program { number: MAIN, text: main(job) }, Resident::of(job).program()];
-    Package { main: MAIN, programs, machine: machine_file::machine_file(job) }
+    Package { mains: vec![MAIN], programs, machine: machine_file::machine_file(job) }
 }
 
 fn main(job: &Honeycomb) -> String {

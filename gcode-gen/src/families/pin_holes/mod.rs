@@ -26,7 +26,7 @@ pub const FAMILY: Family =
 pub fn emit(job: &PinHoles) -> Package {
     let mut programs = vec![Program { number: MAIN, text: Main::new(job).text() }];
     programs.extend(Resident::of(job).programs());
-    Package { main: MAIN, programs, machine: machine_file::machine_file(job) }
+    Package { mains: vec![MAIN], programs, machine: machine_file::machine_file(job) }
 }
 
 struct Main<'j> {

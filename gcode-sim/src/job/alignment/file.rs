@@ -54,9 +54,8 @@ struct FileRunout {
 }
 
 /// Reads the text of a job of this family.
-pub(super) fn parse(text: &str) -> Result<Alignment, JobError> {
-    let reader = &Reader { text };
-    let file: File = toml::from_str(text).map_err(|e| reader.syntax(&e))?;
+pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<Alignment, JobError> {
+    let file: File = toml::from_str(reader.text).map_err(|e| reader.syntax(&e))?;
     let surface = file.surface.check(reader)?;
     Ok(Alignment {
         control: file.control.check(reader)?,
@@ -141,6 +140,7 @@ impl FileRunout {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::job::Job;
 
     const JOB: &str = r#"family = "alignment"
 [control]
@@ -170,7 +170,7 @@ angles = [-25.0, 25.0, 11]
 
     #[test]
     fn everything_a_job_says_is_read() {
-        let job = parse(JOB).unwrap();
+        let Ok(Job::Alignment(job)) = Job::parse(JOB) else { panic!("no alignment: {JOB}") };
         assert_eq!((job.probe_radius, job.surface.b, job.sine_table.phi), (3.0, 724.3, 38.5));
         assert_eq!((job.sine_table.length, job.sine_table.gauge_blocks.name), (200.0, "metric-87"));
         assert_eq!((job.chord.e_radius, job.chord.candidates), (812.4, 10));
@@ -217,7 +217,7 @@ angles = [-25.0, 25.0, 11]
         ] {
             let text = JOB.replacen(from, to, 1);
             assert_ne!(text, JOB, "{from}");
-            let told = parse(&text).unwrap_err().to_string();
+            let told = Job::parse(&text).unwrap_err().to_string();
             assert!(told.ends_with(message), "{told}\n{message}");
         }
     }

@@ -1,7 +1,9 @@
 //! The job file of the family `alignment`: what is known of the part that is to be set up, and what it is measured with.
 mod file;
 
-use super::{JobControl, JobError, PinMachine, Surface};
+pub(super) use file::parse;
+
+use super::{JobControl, PinMachine, Surface};
 use crate::gauge::GaugeSet;
 
 /// A part to be aligned; lengths in mm, angles in degrees.
@@ -15,19 +17,6 @@ pub struct Alignment {
     pub sine_table: SineTable,
     pub chord: Chord,
     pub runout: Runout,
-}
-
-impl Alignment {
-    /// Reads a job file's text.
-    pub fn parse(text: &str) -> Result<Self, JobError> {
-        file::parse(text)
-    }
-
-    /// Whether a job file's text is of this family.
-    pub fn is_meant(text: &str) -> bool {
-        let table = text.parse::<toml::Table>().unwrap_or_default();
-        table.get("family").and_then(toml::Value::as_str) == Some("alignment")
-    }
 }
 
 /// The table that sets the angle between the part's bottom face and its axis.

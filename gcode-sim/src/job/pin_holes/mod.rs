@@ -160,7 +160,7 @@ depth = 15.0
             (
                 "pin-holes",
                 "pinholes",
-                "line 1: family 'pinholes' is not known: one of pin-holes, honeycomb, burr",
+                "line 1: family 'pinholes' is not known: one of pin-holes, honeycomb, burr, alignment",
             ),
             (
                 "[control]\n",

@@ -1,0 +1,125 @@
+//! The chord program on candidates whose places are known: the best pair is searched for here as well, and E and F have
+//! to get their model coordinates.
+use gcode_sim::job::{Alignment, Surface};
+use gcode_sim::machine::{Machine, Placement};
+use gcode_sim::motion::Position;
+use gcode_sim::session::Run;
+use gcode_sim::units::Deg;
+
+use super::{Bench, CheckError, Tried, common};
+
+type Point = [f64; 3];
+
+/// The candidates that are E and F themselves, as numbers from 1.
+const TRUE_PAIR: [usize; 2] = [3, 8];
+
+/// How the part stands, as far as a chord can tell: shift in mm, turned about y in degrees.
+const STANDS: [(Point, f64); 2] = [([0.2, -0.3, 0.15], 0.25), ([-0.25, 0.1, -0.3], -0.2)];
+
+pub(super) fn tried(bench: &Bench<'_>) -> Result<Tried, CheckError> {
+    let job = bench.job;
+    let mut tried = Tried::default();
+    let (mut off, allowed) = (0.0_f64, allowed(job));
+    for (shift, turned) in STANDS {
+        let tilt = [Deg::ZERO, Deg(turned), Deg::ZERO];
+        let part = Placement { shift: shift.into(), tilt, ..Placement::default() };
+        let measured = candidates(job).map(|points| points.map(|p| moved(&part, p)));
+        let variables = [501, 531].into_iter().zip(&measured).flat_map(|(first, points)| {
+            (first..).zip(points.iter().take(job.chord.candidates as usize).flatten().copied())
+        });
+        let run = bench.run(part, variables.collect())?;
+        tried.refusals.extend(bench.stopped(&run));
+        tried.seconds = run.control.seconds().0;
+        let (pair, difference) = best(job, &measured);
+        let found = [570, 571, 572].map(|number| common(&run, number));
+        let wanted = [pair[0] as f64, pair[1] as f64, difference];
+        if found.iter().zip(wanted).any(|(found, wanted)| !((found - wanted).abs() < 1e-6)) {
+            let message =
+                format!("#570 to #572 are {found:?}, and a search through all pairs finds {wanted:?}");
+            tried.refusals.push(format!("{}: {message}\n", bench.name()));
+        }
+        for (end, name) in ends(job).into_iter().zip(["E", "F"]) {
+            let there = corrected(bench, &run, part, end)?;
+            let far = distance(there, end);
+            off = off.max(far);
+            if !(far <= allowed) {
+                let message =
+                    format!("{name} stands at {there:?} after the correction, {far} mm from {end:?}");
+                tried.refusals.push(format!("{}: {message}\n", bench.name()));
+            }
+        }
+    }
+    tried.report = format!(
+        "{}  of {} by {} candidates the pair that a search finds; after the correction E and F are {off:.4} mm from where the model has them\n",
+        bench.name(),
+        job.chord.candidates,
+        job.chord.candidates
+    );
+    Ok(tried)
+}
+
+/// Half an increment of each axis, and what half of one of the rotary is at the equator.
+fn allowed(job: &Alignment) -> f64 {
+    let increment = job.control.increment.size();
+    increment + job.surface.a * Deg(increment / 2.0).to_rad()
+}
+
+/// E and F as the model has them.
+fn ends(job: &Alignment) -> [Point; 2] {
+    let Surface { a, b } = job.surface;
+    [job.chord.e_radius, job.chord.f_radius].map(|x| [x, b * (1.0 - (x / a) * (x / a)).sqrt(), 0.0])
+}
+
+/// Ten points of the surface round each of E and F, one of them E or F itself; the others in no order that one could
+/// share with the other's.
+fn candidates(job: &Alignment) -> [[Point; 10]; 2] {
+    let Surface { a, b } = job.surface;
+    let count = job.chord.candidates as usize;
+    let mut all = ends(job).map(|end| [end; 10]);
+    for (points, (true_one, turn)) in all.iter_mut().zip(TRUE_PAIR.into_iter().zip([137.5, 71.3])) {
+        for (index, p) in points.iter_mut().enumerate().filter(|(index, _)| index + 1 != true_one.min(count))
+        {
+            let angle = Deg(turn * (index + 1) as f64);
+            let [along, aside] = [angle.cos(), angle.sin()].map(|part| part * job.chord.circle / 2.0);
+            let [x, y, z] = [p[0] + along, p[1] - along, aside];
+            // Back onto the surface, seen from its centre.
+            let beyond = ((x * x + z * z) / (a * a) + y * y / (b * b)).sqrt();
+            *p = [x, y, z].map(|c| c / beyond);
+        }
+    }
+    all
+}
+
+/// The pair whose distance is nearest to the model's, as numbers from 1, and how much longer it is.
+fn best(job: &Alignment, [e, f]: &[[Point; 10]; 2]) -> ([usize; 2], f64) {
+    let [model_e, model_f] = ends(job);
+    let model = distance(model_e, model_f);
+    let count = job.chord.candidates as usize;
+    let pairs = (1..=count).flat_map(|i| (1..=count).map(move |k| [i, k]));
+    let longer = |[i, k]: [usize; 2]| distance(e[i - 1], f[k - 1]) - model;
+    let found = pairs.min_by(|one, other| longer(*one).abs().total_cmp(&longer(*other).abs()));
+    let found = found.unwrap_or_default();
+    (found, longer(found))
+}
+
+/// Where a point of the misplaced part stands in the corrected work coordinates, with the rotary at its corrected 0.
+fn corrected(bench: &Bench<'_>, run: &Run, part: Placement, p: Point) -> Result<Point, CheckError> {
+    let machine = Machine { part, ..bench.machine()? };
+    let offset = |axis: usize| common(run, 5221 + axis as u32);
+    let letter = bench.job.machine.rotary.letter;
+    let rotary = machine.axes.find(letter as u8);
+    let rotary = rotary.ok_or_else(|| bench.broken(&format!("the machine has no axis {letter}")))?;
+    let mut at = Position::default();
+    at[rotary] = offset(rotary);
+    let [x, y, z]: Point = machine.part_frame(&at).transform_point(&p.into()).coords.into();
+    Ok([x - offset(0), y - offset(1), z - offset(2)])
+}
+
+fn moved(part: &Placement, p: Point) -> Point {
+    part.frame().transform_point(&p.into()).coords.into()
+}
+
+fn distance(p: Point, q: Point) -> f64 {
+    let [x, y, z] = [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
+    (x * x + y * y + z * z).sqrt()
+}

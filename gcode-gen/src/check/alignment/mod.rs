@@ -1,0 +1,102 @@
+//! Runs the programs of an alignment on simulated parts whose misplacement is known: a program that doesn't find it is
+//! not written.
+mod chord;
+
+use gcode_sim::diag::Severity;
+use gcode_sim::exec::{Outcome, Value};
+use gcode_sim::holes::Extractor;
+use gcode_sim::job::Alignment;
+use gcode_sim::machine::{Machine, Placement};
+use gcode_sim::part::surface::Surface;
+use gcode_sim::report::diagnostic;
+use gcode_sim::session::{Request, Run, run};
+
+use super::{CheckError, Checked, Judgement, Programs, told};
+use crate::families::alignment;
+use crate::package::{Package, file_name};
+
+/// What one program was found to do.
+#[derive(Default)]
+struct Tried {
+    /// A paragraph for the terminal.
+    report: String,
+    refusals: Vec<String>,
+    /// Of one run.
+    seconds: f64,
+}
+
+type Trial = fn(&Bench<'_>) -> Result<Tried, CheckError>;
+
+/// What each main program has to find.
+const TRIALS: &[(u32, Trial)] = &[(alignment::CHORD, chord::tried)];
+
+pub(super) fn check(job: &Alignment, package: &Package) -> Result<Checked, CheckError> {
+    let mut checked = Checked {
+        refusals: Vec::new(),
+        seconds: 0.0,
+        report: String::new(),
+        pictures: Vec::new(),
+        judgement: Judgement::Measured,
+    };
+    for main in &package.mains {
+        let trial = TRIALS.iter().find(|(number, _)| number == main);
+        let (_, trial) = trial.ok_or_else(|| told(&file_name(*main), &"nothing says what it has to find"))?;
+        let tried = trial(&Bench { job, package, main: *main })?;
+        checked.refusals.extend(tried.refusals);
+        checked.seconds += tried.seconds;
+        checked.report.push_str(&tried.report);
+    }
+    Ok(checked)
+}
+
+/// One main program of a package, to be run on parts that stand this way and that.
+struct Bench<'p> {
+    job: &'p Alignment,
+    package: &'p Package,
+    main: u32,
+}
+
+impl Bench<'_> {
+    fn name(&self) -> String {
+        file_name(self.main)
+    }
+
+    fn broken(&self, error: &dyn std::fmt::Display) -> CheckError {
+        told(&self.name(), error)
+    }
+
+    /// The machine of the package's own machine file.
+    fn machine(&self) -> Result<Machine, CheckError> {
+        Machine::parse(&self.package.machine).map_err(|e| told("machine.toml", &e))
+    }
+
+    /// A run on that machine with the part misplaced, variables set before.
+    fn run(&self, part: Placement, variables: Vec<(u32, f64)>) -> Result<Run, CheckError> {
+        let machine = Machine { part, ..self.machine()? };
+        let main = self.package.program(self.main).ok_or_else(|| self.broken(&"it was not emitted"))?;
+        let mut request = Request::new(self.name(), main.text.as_bytes(), machine);
+        request.variables = variables;
+        let surface = Surface::Ellipsoid { a: self.job.surface.a, b: self.job.surface.b };
+        let mut probe = Extractor::new(&request.machine).with_surface(Some(surface));
+        run(&request, &mut Programs(self.package), &mut probe).map_err(|e| self.broken(&e))
+    }
+
+    /// Why a run is none, as for a terminal: an alarm, a limit, or what the control did without a word.
+    fn stopped(&self, run: &Run) -> Vec<String> {
+        let sources = run.control.memory().sources();
+        let warned = run.notes().filter(|finding| Severity::Warning <= finding.severity);
+        let mut told: Vec<_> = warned.map(|finding| diagnostic::render(&finding, sources)).collect();
+        if !matches!(run.outcome, Outcome::End) {
+            told.extend(run.stopped().map(|finding| diagnostic::render(&finding, sources)));
+        }
+        told
+    }
+}
+
+/// A variable as a run left it; a vacant one is not a number.
+fn common(run: &Run, number: u32) -> f64 {
+    match run.control.variable(number) {
+        Ok(Value::Number(value)) => value,
+        Ok(Value::Vacant) | Err(_) => f64::NAN,
+    }
+}

@@ -1,0 +1,65 @@
+//! A part that is to be set up: programs that measure on the control how it stands, and what they call.
+//!
+//! The method is that of *Improved Processing Technology of Positioning Pin Hole on Melon Mold*; see
+//! `docs/methods/alignment.md`. Each measurement is a file here and a row in [`ALL`]; what its program has to find on a
+//! simulated part before it is written is a file and a row in `check/alignment`.
+mod chord;
+mod machine_file;
+mod resident;
+
+use gcode_sim::job::Alignment;
+
+use self::resident::{Macro, Resident};
+use super::{Family, control};
+use crate::nc::program::Program as Text;
+use crate::package::{Package, Program};
+
+pub use chord::MAIN as CHORD;
+
+pub const FAMILY: Family =
+    Family { name: "alignment", new_job: include_str!("new.toml"), resident: resident::of_the_defaults };
+
+/// One measurement.
+struct Measurement {
+    /// The main program's O-number.
+    main: u32,
+    title: &'static str,
+    /// Writes the main program below its title.
+    write: fn(&Alignment, &mut Text),
+    /// What it calls.
+    macros: &'static [Macro],
+}
+
+/// Every measurement there is.
+const ALL: &[Measurement] = &[chord::MEASUREMENT];
+
+/// The main programs, the resident macros and the machine file of a job.
+pub fn emit(job: &Alignment) -> Package {
+    let main = |measurement: &Measurement| {
+        let mut text = Text::new(measurement.main, measurement.title, job.control.dialect);
+        (measurement.write)(job, &mut text);
+        Program { number: measurement.main, text: text.finish() }
+    };
+    let mut programs: Vec<_> = ALL.iter().map(main).collect();
+    programs.extend(Resident::of(job).programs());
+    Package {
+        mains: ALL.iter().map(|measurement| measurement.main).collect(),
+        programs,
+        machine: machine_file::machine_file(job),
+    }
+}
+
+/// What the heads of all main programs say.
+fn common_remarks(job: &Alignment, text: &mut Text) {
+    let rotary = job.machine.rotary;
+    let sign = if rotary.sign < 0 { "-" } else { "" };
+    for line in [
+        "NUMBERS ARE MILLIMETRES AND DEGREES, FEEDS MM/MIN".to_owned(),
+        format!("CONTROL {}, MACHINE FILE MACHINE.TOML", control::remark(job.control)),
+        format!("WORK ZERO G54 X Z ON THE AXIS OF {}, Y AT THE CENTRE OF THE", rotary.letter),
+        "ELLIPSOID, FOR THE CENTRE OF THE STYLUS BALL. THE HEAD DOES NOT TURN".to_owned(),
+        format!("ROTARY {} = {sign}AZIMUTH, FROM X TOWARDS Z", rotary.letter),
+    ] {
+        text.remark(line);
+    }
+}

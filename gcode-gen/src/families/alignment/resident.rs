@@ -1,0 +1,78 @@
+//! The resident macros of the measurements: NC texts with marks for what differs between machines and controls.
+use gcode_sim::control::{Dialect, Increment};
+use gcode_sim::job::Alignment;
+
+use super::ALL;
+use crate::families::control::alarm_thousands;
+use crate::families::resident::fill;
+use crate::nc::number::number;
+use crate::nc::program::name;
+use crate::package::Program;
+
+/// A resident macro as it stands in its `.nc` file here.
+pub(super) struct Macro {
+    pub(super) number: u32,
+    /// Its file's name in `macros/`.
+    pub(super) file: &'static str,
+    pub(super) text: &'static str,
+}
+
+/// What the macros depend on. Everything else is an argument, so that one copy in a control serves all jobs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Resident {
+    dialect: Dialect,
+    increment: Increment,
+    rotary: char,
+}
+
+impl Resident {
+    pub(super) fn of(job: &Alignment) -> Self {
+        Self {
+            dialect: job.control.dialect,
+            increment: job.control.increment,
+            rotary: job.machine.rotary.letter,
+        }
+    }
+
+    pub(super) fn programs(&self) -> Vec<Program> {
+        macros().map(|one| Program { number: one.number, text: self.fill(one) }).collect()
+    }
+
+    fn fill(&self, one: &Macro) -> String {
+        let marks = [
+            ("{name}", name(one.number, self.dialect)),
+            ("{k}", alarm_thousands(self.dialect).to_owned()),
+            ("{rotary}", self.rotary.to_string()),
+            ("{per_unit}", number(self.increment.per_unit())),
+        ];
+        fill(one.text, &marks)
+    }
+}
+
+fn macros() -> impl Iterator<Item = &'static Macro> {
+    ALL.iter().flat_map(|measurement| measurement.macros)
+}
+
+/// As `macros/` has them.
+pub(super) fn of_the_defaults() -> Vec<(&'static str, Program)> {
+    let resident = Resident { dialect: Dialect::default(), increment: Increment::default(), rotary: 'B' };
+    macros().map(|one| one.file).zip(resident.programs()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::families::resident::hold;
+
+    #[test]
+    fn every_control_can_show_every_text() {
+        for (_, dialect) in Dialect::ALL {
+            for (_, increment) in Increment::ALL {
+                for rotary in ['A', 'B', 'C'] {
+                    let resident = Resident { dialect, increment, rotary };
+                    resident.programs().iter().for_each(|program| hold(&program.text));
+                }
+            }
+        }
+    }
+}
