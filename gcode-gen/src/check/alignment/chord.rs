@@ -33,7 +33,7 @@ pub(super) fn tried(bench: &Bench<'_>) -> Result<Tried, CheckError> {
         let (pair, difference) = best(job, &measured);
         let found = [570, 571, 572].map(|number| common(&run, number));
         let wanted = [pair[0] as f64, pair[1] as f64, difference];
-        if found.iter().zip(wanted).any(|(found, wanted)| !((found - wanted).abs() < 1e-6)) {
+        if !found.iter().zip(wanted).all(|(found, wanted)| (found - wanted).abs() < 1e-6) {
             let message =
                 format!("#570 to #572 are {found:?}, and a search through all pairs finds {wanted:?}");
             tried.refusals.push(format!("{}: {message}\n", bench.name()));
@@ -42,7 +42,7 @@ pub(super) fn tried(bench: &Bench<'_>) -> Result<Tried, CheckError> {
             let there = corrected(bench, &run, part, end)?;
             let far = distance(there, end);
             off = off.max(far);
-            if !(far <= allowed) {
+            if far.is_nan() || far > allowed {
                 let message =
                     format!("{name} stands at {there:?} after the correction, {far} mm from {end:?}");
                 tried.refusals.push(format!("{}: {message}\n", bench.name()));

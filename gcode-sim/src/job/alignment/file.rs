@@ -139,7 +139,6 @@ impl FileRunout {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::job::Job;
 
     const JOB: &str = r#"family = "alignment"
