@@ -73,6 +73,7 @@ struct PathCase {
 struct CylinderCase {
     radius: f64,
     length: f64,
+    rows: u32,
 }
 
 fn six() -> f64 {
@@ -109,6 +110,7 @@ fn draw(text: &str) -> (Picture, Sheet) {
             outer: cylinder.radius,
             radius: cylinder.radius,
             length: cylinder.length,
+            rows: cylinder.rows,
         }),
         tolerance: picture.tolerance,
         rotary: "B".to_owned(),

@@ -89,6 +89,11 @@ impl Dials {
         self.dots[index]
     }
 
+    /// Whether holes of such standings are drawn as they are, without a sign.
+    pub(super) fn are_plain(&self, scene: &Scene, of: impl Fn(Standing) -> bool) -> bool {
+        self.dots.iter().zip(&scene.marks).any(|(dot, mark)| *dot && of(mark.standing))
+    }
+
     /// Signs that lie on each other: a label beside them could belong to either.
     pub(super) fn is_crowded(&self, index: usize, text: f64) -> bool {
         self.gaps[index] < 2.0 * self.badge(index, text)

@@ -4,7 +4,7 @@ use super::ink::{Align, Ink, Px, Rect, px};
 use super::labels::{Field, Spot, Symbol, Way};
 use super::marks::Drawn;
 use super::palette;
-use super::scene::{Mark, Scene, Shape};
+use super::scene::{Mark, Scene, Shape, Stroke};
 use super::sheet::Frame;
 use super::symbol;
 use crate::units::Deg;
@@ -125,17 +125,18 @@ impl Lettering {
     }
 }
 
-/// Radii and the like, on their lines: somewhere round a circle, from the lower left on, or on a straight line. Gives
-/// back those that found no room.
+/// Radii and the like, on the lines that are `wanted`: somewhere round a circle, from the lower left on, or on a straight
+/// line. Gives back those that found no room.
 pub(super) fn caption_strokes(
     scene: &Scene,
+    wanted: impl Fn(&Stroke) -> bool,
     frame: &Frame,
     field: &mut Field,
     inks: &mut Vec<Ink>,
     labels: &mut Vec<(Rect, Vec<String>)>,
 ) -> Vec<String> {
     let mut left = Vec::new();
-    for stroke in &scene.strokes {
+    for stroke in scene.strokes.iter().filter(|stroke| wanted(stroke)) {
         let Some(caption) = &stroke.caption else { continue };
         let lines = vec![caption.clone()];
         let places: Vec<Px> = match &stroke.shape {

@@ -140,7 +140,8 @@ fn misfit_inks(
     (inks, beyond)
 }
 
-/// A hole without a dial: the sign itself marks the place. A surplus hole in the place of another moves aside.
+/// A hole without a dial: the sign itself marks the place. A surplus hole in the place of another moves aside. One of
+/// hundreds is drawn as the hole itself, as wide as it is and as flat as it is seen.
 fn draw_sign(
     mark: &Mark,
     index: usize,
@@ -153,11 +154,16 @@ fn draw_sign(
     let place = frame.scale.px(mark.at);
     let true_radius = mark.radius * frame.scale.factor;
     let badge = dials.badge(index, text);
-    let radius = true_radius.min(1.2 * text).max(badge);
+    let is_dot = dials.is_dot(index);
+    let radius = match is_dot {
+        true if 0.0 < true_radius => true_radius.max(symbol::LEAST_HOLE),
+        true => badge,
+        false => true_radius.min(1.2 * text).max(badge),
+    };
     let mut inks = Vec::new();
     let mut centre = place;
     if mark.standing == Standing::Extra
-        && !dials.is_dot(index)
+        && !is_dot
         && let Some(other) = before.iter().find(|d| d.centre.distance(place) < 0.3 * text)
     {
         let step = other.clear + radius + 0.3 * text;
@@ -177,8 +183,14 @@ fn draw_sign(
     if let Some(found) = far {
         inks.extend(line_astray(place, found, true_radius, text, field));
     }
-    inks.extend(symbol::standing(mark.standing, centre, radius));
-    let direction = across(mark).filter(|_| dials.detail != Detail::SignsWithoutAxes);
+    if is_dot {
+        let (along, projected) = across(mark).unwrap_or(([0.0, 1.0], 0.0));
+        let flat = (1.0 - projected * projected).max(0.0).sqrt();
+        inks.extend(symbol::hole(mark.standing, centre, radius, along, flat));
+    } else {
+        inks.extend(symbol::standing(mark.standing, centre, radius));
+    }
+    let direction = across(mark).filter(|_| dials.detail != Detail::SignsWithoutAxes && !is_dot);
     let directed = direction.is_some();
     if let Some((along, projected)) = direction {
         inks.extend(axis_arrow(centre, along, projected, radius * 1.15, text, field));

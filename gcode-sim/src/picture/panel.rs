@@ -43,7 +43,7 @@ impl Row {
             Self::Sample(Sample::Direction | Sample::Astray, _) => 2,
             Self::Text { important: false, .. } => 3,
             Self::Rule => 4,
-            Self::Sample(Sample::Misfit | Sample::Standing(_), _) => 5,
+            Self::Sample(Sample::Misfit | Sample::Standing(_) | Sample::Plain(_), _) => 5,
             Self::Text { important: true, .. } => 6,
             Self::Zone(_) => 7,
             Self::Verdict(..) => 8,
@@ -74,7 +74,13 @@ impl Panel {
         let column = Rect::new(0.0, 0.0, page.width() / 2.0 - 2.0 * space, 0.0);
         // Two lines are kept for notes, which are known only when everything has its place.
         let notes = vec!["n".to_owned(), "n".to_owned()];
-        let all = Shown { magnification: Some(1000.0), directions: true, astray: true };
+        let all = Shown {
+            magnification: Some(1000.0),
+            directions: true,
+            astray: true,
+            plain_good: false,
+            plain_rest: false,
+        };
         let (_, title) = flow(&title_rows(scene, text), column, font, text);
         let (_, legend) = flow(&legend_rows(scene, all, &notes, text), column, font, text);
         let height = title.max(legend) + 2.0 * space;
@@ -180,9 +186,16 @@ fn legend_rows(scene: &Scene, shown: Shown, notes: &[String], text: f64) -> Vec<
             Sample::Misfit => format!("{} ×{}", item.text, plain(shown.magnification?)),
             Sample::Direction if !shown.directions => return None,
             Sample::Astray if !shown.astray => return None,
-            Sample::Direction | Sample::Astray | Sample::Pen(_) | Sample::Standing(_) => item.text.clone(),
+            Sample::Direction | Sample::Astray | Sample::Pen(_) | Sample::Standing(_) | Sample::Plain(_) => {
+                item.text.clone()
+            }
         };
-        Some(Row::Sample(item.sample, words))
+        let sample = match item.sample {
+            Sample::Standing(standing) if shown.plain_good && standing.is_good() => Sample::Plain(standing),
+            Sample::Standing(standing) if shown.plain_rest && !standing.is_good() => Sample::Plain(standing),
+            sample => sample,
+        };
+        Some(Row::Sample(sample, words))
     };
     let mut rows: Vec<Row> = scene.legend.iter().filter_map(item).collect();
     if !notes.is_empty() {
@@ -277,6 +290,7 @@ fn sample_inks(sample: Sample, middle: Px, text: f64) -> Vec<Ink> {
     let (left, right) = (px(middle.x - half, middle.y), px(middle.x + half, middle.y));
     match sample {
         Sample::Standing(standing) => symbol::standing(standing, middle, 0.5 * text),
+        Sample::Plain(standing) => symbol::hole(standing, middle, 0.4 * text, [0.0, 1.0], 1.0),
         Sample::Pen(pen) => {
             let (color, width, dash) = palette::pen(pen, text);
             vec![Ink::Line { points: vec![left, right], closed: false, width: width.max(1.0), dash, color }]

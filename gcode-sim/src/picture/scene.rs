@@ -125,6 +125,8 @@ pub struct LegendItem {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sample {
     Standing(Standing),
+    /// The sheet puts it in the place of a standing whose holes it draws as they are, without a sign.
+    Plain(Standing),
     Pen(Pen),
     /// Left out by the sheet where no axis is drawn.
     Direction,

@@ -10,7 +10,7 @@ use super::lines::{axes, block_stroke, is_path, scale_bar, stroke_ink};
 use super::marks::draw_marks;
 use super::measure::Scale;
 use super::panel::Panel;
-use super::scene::{Point, Scene, Shape};
+use super::scene::{Point, Scene, Shape, Standing, Stroke};
 use super::size::Size;
 
 /// A picture, laid out: every ink has its place in pixels.
@@ -81,6 +81,10 @@ pub(super) struct Shown {
     pub(super) magnification: Option<f64>,
     pub(super) directions: bool,
     pub(super) astray: bool,
+    /// Good holes are drawn as they are, without a sign.
+    pub(super) plain_good: bool,
+    /// And those that aren't.
+    pub(super) plain_rest: bool,
 }
 
 /// The drawing with some of the detail there could be.
@@ -102,6 +106,10 @@ impl Plan {
             block_stroke(&mut field, stroke, frame);
         }
         inks.extend(axes(scene, frame, extent, drawing, &mut field));
+        // The number on a straight line has one place, a hole's label many, the number on a circle any.
+        let mut labels = Vec::new();
+        let is_line = |stroke: &Stroke| matches!(stroke.shape, Shape::Line(_));
+        let mut bare = caption_strokes(scene, is_line, frame, &mut field, &mut inks, &mut labels);
         let dials = Dials::choose(scene, frame, detail);
         let drawn = draw_marks(scene, frame, &dials, &mut field);
         // What isn't good comes last, on top.
@@ -110,8 +118,9 @@ impl Plan {
             inks.extend(holes.flat_map(|(_, hole)| hole.inks.iter().cloned()));
         }
         let mut lettering = Lettering::of(scene, &drawn, frame, &field);
-        let mut labels = lettering.write(scene, frame, &mut inks);
-        let bare = caption_strokes(scene, frame, &mut lettering.field, &mut inks, &mut labels);
+        labels.extend(lettering.write(scene, frame, &mut inks));
+        let is_circle = |stroke: &Stroke| !is_line(stroke);
+        bare.extend(caption_strokes(scene, is_circle, frame, &mut lettering.field, &mut inks, &mut labels));
         let mut notes: Vec<String> = dials.note(scene).into_iter().collect();
         if drawn.iter().any(|d| d.cut) {
             notes.push("Misfit with an arrow: longer than drawn.".to_owned());
@@ -125,6 +134,8 @@ impl Plan {
             magnification: dials.magnification(),
             directions: drawn.iter().any(|d| d.directed),
             astray: drawn.iter().any(|d| d.strayed),
+            plain_good: dials.are_plain(scene, Standing::is_good),
+            plain_rest: dials.are_plain(scene, |standing| !standing.is_good()),
         };
         if detail == Detail::SignsWithoutAxes {
             notes.push("Axes of the holes not drawn: no room.".to_owned());
@@ -190,7 +201,7 @@ fn extent(scene: &Scene) -> (Point, Point) {
 mod tests {
     use super::*;
     use crate::picture::ink::Align;
-    use crate::picture::scene::{Axis, LegendItem, Mark, Misfit, Pen, Sample, Standing, Stroke, Title};
+    use crate::picture::scene::{Axis, LegendItem, Mark, Misfit, Pen, Sample, Title};
     use proptest::prelude::*;
 
     fn scene(marks: Vec<Mark>) -> Scene {

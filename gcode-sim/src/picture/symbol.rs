@@ -10,17 +10,7 @@ pub(super) fn standing(standing: Standing, at: Px, radius: f64) -> Vec<Ink> {
     let color = palette::standing(standing);
     let stroke = (radius * 0.3).max(1.2);
     match standing {
-        // A dot has no room for a mark: a disc, a square, a ring, a triangle.
-        Standing::Good if radius < DOT => vec![Ink::Disc { centre: at, radius, color }],
-        Standing::Bad if radius < DOT => {
-            vec![area(at, radius, &[[-0.95, -0.95], [0.95, -0.95], [0.95, 0.95], [-0.95, 0.95]], color)]
-        }
-        Standing::Missing if radius < DOT => {
-            vec![Ink::Ring { centre: at, radius, width: 1.0, dash: Dash::Solid, color }]
-        }
-        Standing::Extra if radius < DOT => {
-            vec![area(at, radius, &[[0.0, -1.4], [1.4, 1.0], [-1.4, 1.0]], color)]
-        }
+        _ if radius < DOT => hole(standing, at, radius, [0.0, 1.0], 1.0),
         Standing::Good => vec![
             Ink::Disc { centre: at, radius, color },
             path(at, radius, &[[-0.5, 0.02], [-0.14, 0.42], [0.52, -0.4]], stroke, palette::PAPER),
@@ -77,10 +67,30 @@ pub(super) fn standing(standing: Standing, at: Px, radius: f64) -> Vec<Ink> {
 /// Smaller signs are dots, pixels.
 const DOT: f64 = 2.5;
 
-fn area(at: Px, radius: f64, corners: &[[f64; 2]], color: Rgb) -> Ink {
-    Ink::Area {
-        points: corners.iter().map(|[x, y]| px(at.x + x * radius, at.y + y * radius)).collect(),
-        color,
+/// A hole smaller than this could not be seen, pixels.
+pub(super) const LEAST_HOLE: f64 = 1.2;
+
+/// A hole as it is, without a mark in it: a disc, a square, a ring, a triangle. Seen from aside it is `flat` as high
+/// along `along` as it is wide.
+pub(super) fn hole(standing: Standing, at: Px, radius: f64, along: [f64; 2], flat: f64) -> Vec<Ink> {
+    let low = (flat * radius).max(0.4 * LEAST_HOLE);
+    let seen = |[x, y]: [f64; 2]| at.toward(along, low * y).toward([along[1], -along[0]], radius * x);
+    let round = || (0..24u8).map(|n| Deg(15.0 * f64::from(n))).map(|turn| [turn.cos(), turn.sin()]).map(seen);
+    let color = palette::standing(standing);
+    match standing {
+        Standing::Good => vec![Ink::Area { points: round().collect(), color }],
+        Standing::Bad => {
+            let corners = [[-0.95, -0.95], [0.95, -0.95], [0.95, 0.95], [-0.95, 0.95]];
+            vec![Ink::Area { points: corners.map(seen).to_vec(), color }]
+        }
+        Standing::Extra => {
+            let corners = [[0.0, -1.4], [1.3, 0.9], [-1.3, 0.9]];
+            vec![Ink::Area { points: corners.map(seen).to_vec(), color }]
+        }
+        Standing::Missing | Standing::Unjudged => {
+            let points = round().collect();
+            vec![Ink::Line { points, closed: true, width: 1.0, dash: Dash::Solid, color }]
+        }
     }
 }
 

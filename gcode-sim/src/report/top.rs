@@ -28,6 +28,7 @@ pub fn of_holes(name: &str, simulation: &Simulation, machine: &Machine) -> TopVi
         name: name.to_owned(),
         side: side(machine),
         rotary: rotary.letter(),
+        backwards: rotary.backwards(),
         holes: drawn.collect(),
         ..TopView::default()
     }
@@ -89,6 +90,7 @@ pub fn of_verdict(
             .collect(),
         tolerance: Some(verdict.tolerance),
         rotary: rotary.letter(),
+        backwards: rotary.backwards(),
         holes: judged.chain(missing).chain(extra).collect(),
         ..TopView::default()
     }
@@ -140,7 +142,8 @@ fn side(machine: &Machine) -> Side {
 fn cylinder(reference: &Reference) -> Option<Cylinder> {
     match (reference.surface, reference.pattern) {
         (Some(Surface::Cylinder { radius }), Some(pattern)) => {
-            Some(Cylinder { outer: radius, radius: pattern.diameter / 2.0, length: pattern.length })
+            let Pattern { diameter, length, rows, .. } = pattern;
+            Some(Cylinder { outer: radius, radius: diameter / 2.0, length, rows })
         }
         _ => None,
     }
@@ -164,20 +167,29 @@ fn nowhere(_: crate::source::Span) -> (String, u32) {
 }
 
 /// The axis that turns the part: the one whose angle an operator looks for.
-struct Rotary(Option<(Axis, char)>);
+struct Rotary(Option<(Axis, char, bool)>);
 
 impl Rotary {
     fn of(machine: &Machine) -> Self {
         let turns = |link: &&Link| matches!(link.motion, LinkMotion::Turn { .. });
         let link = machine.table.0.iter().find(turns);
-        Self(link.map(|link| (link.axis, machine.axes.letter(link.axis))))
+        Self(link.map(|link| (link.axis, machine.axes.letter(link.axis), turns_backwards(link))))
     }
 
     fn letter(&self) -> String {
-        self.0.map_or_else(String::new, |(_, letter)| letter.to_string())
+        self.0.map_or_else(String::new, |(_, letter, _)| letter.to_string())
+    }
+
+    fn backwards(&self) -> bool {
+        self.0.is_some_and(|(_, _, backwards)| backwards)
     }
 
     fn turn(&self, found: &Found) -> Option<f64> {
-        self.0.map(|(axis, _)| found.at[axis])
+        self.0.map(|(axis, ..)| found.at[axis])
     }
+}
+
+/// About x, the one direction a cylinder lies along.
+fn turns_backwards(link: &Link) -> bool {
+    matches!(link.motion, LinkMotion::Turn { about, .. } if link.sign * about.x < 0.0)
 }

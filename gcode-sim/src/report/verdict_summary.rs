@@ -66,7 +66,7 @@ fn say_neighbours(text: &mut String, neighbours: &Neighbours) {
     put(
         text,
         &format!(
-            "neighbours wanted {wanted:.4} mm apart ({metric}); {with_six} of {with_six_wanted} holes have all six"
+            "neighbours wanted {wanted:.4} mm apart ({metric}); {with_six} of {with_six_wanted} inner holes have all six"
         ),
     );
     for (what, extreme) in [("nearest", min), ("farthest", max)] {

@@ -22,6 +22,8 @@ pub struct TopView {
     pub tolerance: Option<f64>,
     /// The letter of the axis that `DrawnHole::turn` is about.
     pub rotary: String,
+    /// That axis' angle grows while the azimuth it brings up (from z towards y) falls.
+    pub backwards: bool,
     pub holes: Vec<DrawnHole>,
     /// What the holes are held against.
     pub question: Question,
@@ -39,6 +41,8 @@ pub struct Cylinder {
     pub radius: f64,
     /// Holes stand at 0 ≤ x ≤ length.
     pub length: f64,
+    /// Round it.
+    pub rows: u32,
 }
 
 /// One hole: as wanted, as made, and what was said about it.
@@ -63,13 +67,19 @@ pub struct PathPiece {
     pub rapid: bool,
 }
 
+/// Of more holes on a cylinder those that are as wanted have neither number nor dial: they would hide each other.
+pub(super) const NUMBERED: usize = 60;
+
 /// More circles than this would hide the holes.
 const MOST_CIRCLES: usize = 12;
 
 /// The scene of a top view.
 pub fn top_view(view: &TopView) -> Scene {
     let (near, far): (Vec<_>, Vec<_>) = view.holes.iter().partition(|hole| faces_reader(hole, view));
-    let marks: Vec<Mark> = near.into_iter().filter_map(|hole| mark(hole, view)).collect();
+    let mut marks: Vec<Mark> = near.into_iter().filter_map(|hole| mark(hole, view)).collect();
+    if view.cylinder.is_some() {
+        number_few(&mut marks);
+    }
     let mut strokes: Vec<Stroke> = view.path.iter().map(|piece| path(piece, view.side)).collect();
     let circles = if view.side == Side::Y { circles(&view.holes) } else { Vec::new() };
     let has_circles = !circles.is_empty();
@@ -97,6 +107,24 @@ pub fn top_view(view: &TopView) -> Scene {
     };
     let legend = legend(view, &marks, has_circles);
     Scene { title, axes: view.side.axes(), strokes, marks, zone: view.tolerance, legend, graph: None }
+}
+
+/// Leaves out the numbers and dials that would hide the holes of a dense pattern.
+pub(super) fn number_few(marks: &mut [Mark]) {
+    if NUMBERED < marks.len() {
+        for mark in marks.iter_mut().filter(|mark| mark.standing.is_good()) {
+            mark.label.clear();
+            mark.misfit = None;
+        }
+    }
+    if NUMBERED < marks.iter().filter(|mark| !mark.label.is_empty()).count() {
+        marks.iter_mut().for_each(|mark| mark.label.clear());
+    }
+}
+
+/// The azimuth as the rotary axis counts it.
+pub(super) fn turn_name(view: &TopView) -> String {
+    if view.backwards { format!("−{}", view.rotary) } else { view.rotary.clone() }
 }
 
 /// Of a cylinder only the holes on this side are seen.
