@@ -13,7 +13,11 @@ pub type Axis = usize;
 
 /// The letters of a control's axes, axis 1 first: `#5001` is the first, `#5002` the second.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Axes(Vec<u8>);
+pub struct Axes {
+    letters: Vec<u8>,
+    /// The same as bits, A the lowest.
+    mask: u32,
+}
 
 impl Axes {
     /// At most [`MAX_AXES`] letters; more are an error of the machine file and refused there.
@@ -21,15 +25,20 @@ impl Axes {
         let bytes = letters.as_bytes();
         let fits = bytes.len() <= MAX_AXES && bytes.iter().all(|b| b"XYZABCUVW".contains(b));
         let once = bytes.iter().enumerate().all(|(i, b)| !bytes[..i].contains(b));
-        (fits && once).then(|| Self(bytes.to_vec()))
+        (fits && once).then(|| Self::of(bytes))
+    }
+
+    fn of(letters: &[u8]) -> Self {
+        let mask = letters.iter().fold(0, |mask, letter| mask | 1 << (letter - b'A'));
+        Self { letters: letters.to_vec(), mask }
     }
 
     pub fn find(&self, letter: u8) -> Option<Axis> {
-        self.0.iter().position(|l| *l == letter)
+        self.letters.iter().position(|l| *l == letter)
     }
 
     pub fn letter(&self, axis: Axis) -> char {
-        self.0.get(axis).map_or('?', |l| char::from(*l))
+        self.letters.get(axis).map_or('?', |l| char::from(*l))
     }
 
     /// A B C turn; all others slide.
@@ -38,22 +47,27 @@ impl Axes {
     }
 
     pub fn len(&self) -> usize {
-        self.0.len()
+        self.letters.len()
     }
 
     pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        self.letters.is_empty()
+    }
+
+    /// The letters as bits, A the lowest.
+    pub fn mask(&self) -> u32 {
+        self.mask
     }
 
     pub fn iter(&self) -> impl Iterator<Item = (Axis, char)> + '_ {
-        self.0.iter().map(|l| char::from(*l)).enumerate()
+        self.letters.iter().map(|l| char::from(*l)).enumerate()
     }
 }
 
 impl Default for Axes {
     /// X Y Z A B C: axis 1 to 6 of the default control.
     fn default() -> Self {
-        Self(b"XYZABC".to_vec())
+        Self::of(b"XYZABC")
     }
 }
 

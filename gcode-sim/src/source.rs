@@ -1,5 +1,5 @@
 //! Program texts as bytes, and places in them: every token, operation, event and finding carries a [`Span`].
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Which text a place belongs to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -38,19 +38,20 @@ pub struct LineColumn {
 pub struct Source {
     pub name: String,
     pub bytes: Arc<[u8]>,
-    lines: Vec<u32>,
+    /// Found when a place is asked for.
+    lines: OnceLock<Vec<u32>>,
 }
 
 impl Source {
     fn new(name: String, bytes: Arc<[u8]>) -> Self {
-        let lines = line_starts(&bytes);
-        Self { name, bytes, lines }
+        Self { name, bytes, lines: OnceLock::new() }
     }
 
     /// The line and column of the byte at `offset`.
     pub fn place(&self, offset: u32) -> LineColumn {
-        let index = self.lines.partition_point(|start| *start <= offset).saturating_sub(1);
-        let start = self.lines.get(index).copied().unwrap_or(0);
+        let lines = self.lines.get_or_init(|| line_starts(&self.bytes));
+        let index = lines.partition_point(|start| *start <= offset).saturating_sub(1);
+        let start = lines.get(index).copied().unwrap_or(0);
         LineColumn { line: index as u32 + 1, column: offset - start + 1 }
     }
 }
@@ -60,7 +61,7 @@ impl Source {
 fn line_starts(bytes: &[u8]) -> Vec<u32> {
     let mut starts = vec![0];
     let mut at = 0;
-    while let Some(found) = bytes[at..].iter().position(|b| matches!(b, b'\n' | b'\r')) {
+    while let Some(found) = bytes[at..].iter().position(|b| *b <= b'\r' && matches!(b, b'\n' | b'\r')) {
         at += found;
         at += end_of_line(&bytes[at..]);
         starts.push(at as u32);

@@ -48,7 +48,7 @@ pub(super) fn targets(program: &Program, settings: &Settings) -> Vec<CalledAs> {
 /// Every call of a program.
 pub(super) fn sites(program: &Program, settings: &Settings) -> Vec<CallSite> {
     let mut found = Vec::new();
-    for (block, op) in program.ops.iter().enumerate() {
+    for (block, op) in program.ops().iter().enumerate() {
         if let OpKind::Words(words) = &op.kind {
             found.extend(site(block, words, settings));
         }

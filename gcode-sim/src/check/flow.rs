@@ -37,7 +37,7 @@ pub(crate) struct Flow {
 impl Flow {
     pub(super) fn new(program: &Program) -> Self {
         let mut flow = Self { ways: Vec::new(), jumps: Vec::new(), numbered: Vec::new() };
-        for (block, op) in program.ops.iter().enumerate() {
+        for (block, op) in program.ops().iter().enumerate() {
             if op.number.is_some() {
                 flow.numbered.push(block);
             }

@@ -6,7 +6,7 @@ use super::literal;
 /// Whether each block is such a one; G10 itself and G11 are not.
 pub(crate) fn inside(program: &Program) -> Vec<bool> {
     let mut parameters = false;
-    let blocks = program.ops.iter().map(|op| {
+    let blocks = program.ops().iter().map(|op| {
         let before = parameters;
         if let OpKind::Words(words) = &op.kind {
             parameters = if parameters { !has_g(words, 110) } else { enters(words) };

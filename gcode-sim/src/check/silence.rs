@@ -19,7 +19,7 @@ impl Silence {
     pub(super) fn new(unit: &Unit<'_>) -> Self {
         let mut off = Vec::new();
         let mut head = true;
-        for (index, (block, op)) in unit.blocks.iter().zip(&unit.program.ops).enumerate() {
+        for (index, (block, op)) in unit.blocks.iter().zip(unit.program.ops()).enumerate() {
             head &= matches!(op.kind, OpKind::Empty) && op.number.is_none();
             for comment in &block.comments {
                 let text = String::from_utf8_lossy(&comment.text).to_ascii_uppercase();

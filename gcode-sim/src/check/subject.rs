@@ -146,11 +146,11 @@ impl Unit<'_> {
         if !self.callers.is_empty() {
             return Role::Called;
         }
-        let returns = self.program.ops.iter().any(|op| match &op.kind {
+        let returns = self.program.ops().iter().any(|op| match &op.kind {
             OpKind::Words(words) => words.call.as_ref().is_some_and(|call| call.kind == Calling::Return),
             _ => false,
         });
-        let ends = self.flow.ways.iter().zip(&self.program.ops).any(|(ways, op)| {
+        let ends = self.flow.ways.iter().zip(self.program.ops()).any(|(ways, op)| {
             let returns = matches!(&op.kind, OpKind::Words(words) if words.call.is_some());
             ways.leaves && matches!(op.kind, OpKind::Words(_)) && !returns
         });
@@ -158,7 +158,7 @@ impl Unit<'_> {
     }
 
     pub(crate) fn op(&self, block: OpIndex) -> &Op {
-        &self.program.ops[block]
+        &self.program.ops()[block]
     }
 
     /// The call that a block makes; a block has one at most, and they are kept in the order of their blocks.

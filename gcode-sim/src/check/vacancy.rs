@@ -48,7 +48,7 @@ pub(crate) type States = Vec<Option<Locals>>;
 
 /// Follows a program from its first block with what its locals are there.
 pub(crate) fn states(unit: &Unit<'_>, entry: Locals) -> States {
-    let mut states: States = vec![None; unit.program.ops.len() + 1];
+    let mut states: States = vec![None; unit.program.ops().len() + 1];
     let mut open = unit.starts.clone();
     // A call that starts elsewhere brings its own locals.
     for (place, start) in unit.starts.iter().enumerate() {
@@ -75,7 +75,7 @@ pub(crate) fn states(unit: &Unit<'_>, entry: Locals) -> States {
 
 /// Where a block leads and with which state.
 fn steps(unit: &Unit<'_>, block: OpIndex, state: &Locals) -> Vec<(OpIndex, Locals)> {
-    let Some(op) = unit.program.ops.get(block) else { return Vec::new() };
+    let Some(op) = unit.program.ops().get(block) else { return Vec::new() };
     let mut after = *state;
     let to = unit.flow.after(block);
     let both = |state: Locals| to.iter().map(|to| (*to, state)).collect::<Vec<_>>();

@@ -27,8 +27,9 @@ pub(super) fn tell(arguments: &ProgramArguments, request: &Request) {
     output::tell(&format!("note: {what}\n"));
 }
 
-/// As the header of an emitted program does.
+/// As the header of an emitted program does, which stands at the top of it.
 fn names_one(program: &[u8]) -> bool {
     const WORDS: &[u8] = b"MACHINE FILE";
-    program.windows(WORDS.len()).any(|part| part.eq_ignore_ascii_case(WORDS))
+    const TOP: usize = 65_536;
+    program[..program.len().min(TOP)].windows(WORDS.len()).any(|part| part.eq_ignore_ascii_case(WORDS))
 }

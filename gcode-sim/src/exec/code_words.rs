@@ -74,8 +74,8 @@ impl Core {
         }
         let dwells = given.g_codes().any(|row| row.effect == Effect::OneShot(OneShot::Dwell));
         for letter in [b'A', b'B', b'C', b'U', b'V', b'W', b'X', b'Y', b'Z'] {
-            let known = self.settings.axes.find(letter).is_some() || (letter == b'U' && dwells);
-            if given.has(letter) && !known {
+            let known = || self.settings.axes.find(letter).is_some() || (letter == b'U' && dwells);
+            if given.has(letter) && !known() {
                 return Err(Alarm::ImproperAddress { letter: char::from(letter) }.at(given.span(letter)));
             }
         }

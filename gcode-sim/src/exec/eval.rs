@@ -7,6 +7,7 @@ use crate::alarm::Alarm;
 use crate::program::{Code, Instruction, Operand, Operation, Program};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{BinaryOp, Function};
+use crate::units::round;
 
 /// As many as [`crate::program`] lets an expression need.
 const STACK: usize = crate::program::STACK;
@@ -134,7 +135,7 @@ impl Core {
                 let right = stack.pop().number();
                 Value::Number(power(stack.pop().number(), right)?)
             }
-            Operation::RoundTo(_) if rounds == RoundsTo::Whole => Value::Number(stack.pop().number().round()),
+            Operation::RoundTo(_) if rounds == RoundsTo::Whole => Value::Number(round(stack.pop().number())),
             Operation::RoundTo(letter) => Value::Number(self.round_to(letter, stack.pop().number())),
             Operation::Compare(relation) => {
                 let right = stack.pop();
@@ -188,7 +189,7 @@ impl Core {
 
 /// A variable's number by an expression: rounded, never negative; vacant is #0.
 pub(super) fn index(value: Value) -> Result<u32, Alarm> {
-    let number = value.number().round();
+    let number = round(value.number());
     if (0.0..=f64::from(u32::MAX)).contains(&number) {
         return Ok(number as u32);
     }
@@ -197,7 +198,7 @@ pub(super) fn index(value: Value) -> Result<u32, Alarm> {
 
 /// A value as the integer that an index, a code or a count is: the nearest one.
 pub(super) fn integer(value: f64) -> Result<i64, Alarm> {
-    let rounded = value.round();
+    let rounded = round(value);
     if rounded.abs() <= 999_999_999_999.0 { Ok(rounded as i64) } else { Err(Alarm::IntegerOverflow) }
 }
 

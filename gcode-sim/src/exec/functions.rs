@@ -3,7 +3,7 @@ use super::vars::Value;
 use crate::alarm::Alarm;
 use crate::control::{Settings, Unsure};
 use crate::syntax::ast::{BinaryOp, Function, Relation};
-use crate::units::Deg;
+use crate::units::{Deg, round};
 
 /// Results beyond what a double holds are PS0111.
 fn finite(value: f64) -> Result<f64, Alarm> {
@@ -19,7 +19,7 @@ pub(super) fn binary(op: BinaryOp, left: f64, right: f64, unsure: &Unsure) -> Re
         BinaryOp::Div if right == 0.0 => return Err(Alarm::DivideByZero),
         BinaryOp::Div => left / right,
         BinaryOp::Mod => {
-            let (left, right) = (left.round(), right.round());
+            let (left, right) = (round(left), round(right));
             if right == 0.0 {
                 return Err(Alarm::DivideByZero);
             }
@@ -34,7 +34,7 @@ pub(super) fn binary(op: BinaryOp, left: f64, right: f64, unsure: &Unsure) -> Re
 
 /// AND, OR and XOR work on 32-bit integers.
 fn bits(value: f64, unsure: &Unsure) -> Result<i32, Alarm> {
-    let value = value.round();
+    let value = round(value);
     if value < 0.0 && unsure.negative_bits_alarm {
         return Err(Alarm::OutOfRange { function: "AND, OR, XOR".into(), value });
     }
@@ -87,7 +87,7 @@ pub(super) fn function(name: Function, x: f64, settings: &Settings) -> Result<f6
             x.sqrt()
         }
         Function::Abs => x.abs(),
-        Function::Round => x.round(),
+        Function::Round => round(x),
         Function::Fix => x.trunc(),
         Function::Fup => {
             if x < 0.0 {
@@ -106,12 +106,12 @@ pub(super) fn function(name: Function, x: f64, settings: &Settings) -> Result<f6
             y
         }
         Function::Bcd => {
-            domain((0.0..=99_999_999.0).contains(&x.round()))?;
-            f64::from(to_bcd(x.round() as u32))
+            domain((0.0..=99_999_999.0).contains(&round(x)))?;
+            f64::from(to_bcd(round(x) as u32))
         }
         Function::Bin => {
-            domain((0.0..=f64::from(u32::MAX)).contains(&x.round()))?;
-            let number = from_bcd(x.round() as u32);
+            domain((0.0..=f64::from(u32::MAX)).contains(&round(x)))?;
+            let number = from_bcd(round(x) as u32);
             domain(number.is_some())?;
             f64::from(number.unwrap_or_default())
         }

@@ -6,6 +6,7 @@ use crate::alarm::Alarm;
 use crate::motion::{Axis, MAX_AXES, Position};
 use crate::program::modes::{Length, Unit, WorkSystem};
 use crate::units::nearest;
+use crate::units::round;
 
 /// Tool offset memory C: H and D, geometry and wear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -153,7 +154,7 @@ impl Core {
     /// A coordinate without the residues of adding: a hundredth of the increment carries both mm and inches exactly.
     pub(super) fn clean(&self, value: f64) -> f64 {
         let grid = self.settings.increment.per_unit() * 100.0;
-        (value * grid).round() / grid
+        round(value * grid) / grid
     }
 
     /// A work coordinate from 0 to 360 on an axis that rolls over.

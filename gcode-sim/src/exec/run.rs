@@ -62,8 +62,8 @@ impl Control {
         }
         let frame = core.frame();
         let (id, place, main) = (frame.program, frame.next, frame.kind == FrameKind::Main);
-        let program = memory.get(id);
-        let Some(op) = program.ops.get(place) else {
+        let Some((program, op)) = memory.ready(id, place) else {
+            let program = memory.get(id);
             core.block = Span { start: program.span.end, ..program.span };
             // A text may just stop; running into `%` or another program is running off the tape.
             if main && !program.closed {

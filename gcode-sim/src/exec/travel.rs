@@ -20,7 +20,7 @@ pub(super) struct Goal {
 impl Core {
     /// Whether a block names an axis.
     pub(super) fn names_axis(&self, given: &Given) -> bool {
-        self.settings.axes.iter().any(|(_, letter)| given.has(letter as u8))
+        given.has_of(self.settings.axes.mask())
     }
 
     /// The two axes of the plane, first axis first.

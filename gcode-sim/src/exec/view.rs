@@ -89,8 +89,8 @@ impl Control {
     /// The first and the last block of the loop that was found never to end, where that ended the run.
     pub fn endless_loop(&self) -> Option<(Span, Span)> {
         let found = self.endless.as_ref()?;
-        let first = self.memory.get(found.program).ops.get(found.to)?;
-        Some((first.span, found.from))
+        let first = self.memory.place_of(found.program, found.to)?;
+        Some((first, found.from))
     }
 
     /// Operator stops in order; the first ten thousand.

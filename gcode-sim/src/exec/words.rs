@@ -12,6 +12,7 @@ use crate::program::m_codes;
 use crate::program::{Coded, Input, Program, Words};
 use crate::source::Span;
 use crate::syntax::ast::Decimal;
+use crate::units::round;
 
 /// The value of a word before anything is made of it.
 #[derive(Clone, Copy, Debug)]
@@ -111,6 +112,11 @@ impl Given {
 
     pub(super) fn has(&self, letter: u8) -> bool {
         self.present >> (letter - b'A') & 1 == 1
+    }
+
+    /// Whether it has one of some letters, given as bits.
+    pub(super) fn has_of(&self, mask: u32) -> bool {
+        self.present & mask != 0
     }
 
     pub(super) fn has_any(&self, letters: &[u8]) -> bool {
@@ -247,7 +253,7 @@ fn g_row(input: &Input, raw: Raw, set: CodeSet) -> Result<&'static Row, Alarm> {
         (Input::G(code, found), _) => (*code, *found),
         (_, Raw::Computed(value)) => {
             // A computed code keeps one decimal.
-            let tenths = (value * 10.0).round();
+            let tenths = round(value * 10.0);
             if !(0.0..=9999.0).contains(&tenths) {
                 return Err(Alarm::ImproperGCode { code: value.to_string() });
             }

@@ -262,8 +262,7 @@ impl Lowering {
             if name.index.is_some() {
                 return Err(Alarm::Suffix { name: text() }.at(span));
             }
-            let next = self.names.len() as u32;
-            let place = *self.names.entry(text()).or_insert(next);
+            let place = self.name(&name.text);
             self.emit(Operation::NameNumber(place), span);
             return Ok(1);
         }

@@ -2,66 +2,54 @@
 use std::collections::BTreeMap;
 
 use super::expr::{Context, Instruction};
-use super::{Form, Op, OpKind, PrintPart, Program, Statement, flow};
+use super::{Form, Op, OpKind, PrintPart, Statement};
 use crate::alarm::Alarm;
-use crate::source::{SourceId, Span, Spanned};
-use crate::syntax::ast::ProgramName;
-use crate::syntax::{self, Parts, ast};
+use crate::source::{Span, Spanned};
+use crate::syntax::ast;
 
 /// Skips inside one block: as many as there are switches.
 const MOST_SKIPS: usize = 9;
 
-/// What grows while a program is lowered.
-#[derive(Default)]
+/// What grows while blocks are lowered.
+#[derive(Debug, Default)]
 pub(super) struct Lowering {
+    /// The postfix code of all expressions; a [`super::Code`] is a range of it.
     pub(super) instructions: Vec<Instruction>,
-    /// Variables called by names that SETVN gives, each with its place.
-    pub(super) names: BTreeMap<String, u32>,
+    /// The names that [`super::Operation::NameNumber`] counts: of variables that SETVN names.
+    pub(super) names: Vec<String>,
+    /// Their places.
+    named: BTreeMap<String, u32>,
     /// What the block at hand has that not every control takes.
     forms: Vec<Spanned<Form>>,
-}
-
-/// Reads and lowers the programs of a file, line by line.
-pub(super) fn lower(source: SourceId, bytes: &[u8]) -> Vec<Program> {
-    let programs =
-        syntax::parse_with(source, bytes, |lowering: &mut Lowering, block| lowering.block(&block, bytes));
-    programs.into_iter().map(finish).collect()
-}
-
-/// What takes the whole program: the partners of loops, and the order of sequence numbers.
-fn finish(Parts { name, span, context, blocks: mut ops, closed }: Parts<Lowering, Op>) -> Program {
-    flow::pair_loops(&mut ops);
-    ops.shrink_to_fit();
-    let number = match name {
-        ProgramName::Number(number) => Some(number),
-        ProgramName::Name(_) => None,
-        ProgramName::Unnamed => ops.iter().filter_map(|op| op.number).find(|number| *number > 0),
-    };
-    let mut names = vec![String::new(); context.names.len()];
-    context.names.into_iter().for_each(|(name, place)| names[place as usize] = name);
-    let end = ops.last().map_or(span.end, |op| op.span.end.max(span.end));
-    Program {
-        name,
-        number,
-        span: Span { end, ..span },
-        numbers: flow::numbers(&ops),
-        loops: flow::loops(&ops),
-        ops,
-        instructions: context.instructions,
-        names,
-        closed,
-    }
 }
 
 type Lowered<T> = Result<T, Spanned<Alarm>>;
 
 impl Lowering {
+    /// Gives up what was written for the blocks so far.
+    pub(super) fn forget(&mut self) {
+        self.instructions.clear();
+        self.names.clear();
+        self.named.clear();
+    }
+
+    /// The place of a name.
+    pub(super) fn name(&mut self, text: &str) -> u32 {
+        if let Some(place) = self.named.get(text) {
+            return *place;
+        }
+        let place = self.names.len() as u32;
+        self.names.push(text.to_owned());
+        self.named.insert(text.to_owned(), place);
+        place
+    }
+
     /// Notes a way of writing for the block at hand.
     pub(super) fn note(&mut self, form: Form, span: Span) {
         self.forms.push(Spanned::new(form, span));
     }
 
-    fn block(&mut self, block: &ast::Block, bytes: &[u8]) -> Op {
+    pub(super) fn block(&mut self, block: &ast::Block, bytes: &[u8]) -> Op {
         if let Some(span) = lower_case(block, bytes) {
             self.note(Form::LowerCase, span);
         }
@@ -94,13 +82,13 @@ impl Lowering {
         if let Some(several) = self.several(block)? {
             return Ok(OpKind::Statement(several));
         }
-        let mut words = Vec::new();
+        let mut words = 0;
         let mut skips = Vec::new();
         let mut statement = None;
-        for item in &block.items {
+        for (place, item) in block.items.iter().enumerate() {
             match item {
-                ast::Item::Word(word) => words.push(word.clone()),
-                ast::Item::Skip(switch) => skips.push((switch.node, words.len())),
+                ast::Item::Word(_) => words += 1,
+                ast::Item::Skip(switch) => skips.push((switch.node, place)),
                 ast::Item::Unreadable(unreadable) => return Err(unreadable.alarm.clone()),
                 ast::Item::Statement(_) if statement.is_some() => {
                     let what = "two statements in one block".into();
@@ -109,7 +97,7 @@ impl Lowering {
                 ast::Item::Statement(found) => statement = Some(found),
             }
         }
-        match (statement, words.is_empty()) {
+        match (statement, words == 0) {
             (Some(_), false) => Err(Alarm::MixedStatements.at(block.span)),
             // What a control does with a /n behind a statement is not known; it must not be read over.
             (Some(_), true) if !skips.is_empty() => Err(Alarm::MixedStatements.at(block.span)),
@@ -120,16 +108,7 @@ impl Lowering {
                 Err(Alarm::NotSimulated { what }.at(block.span))
             }
             (None, false) => {
-                let first = skips.first().map_or(words.len(), |(_, at)| *at);
-                let tails: Vec<_> = skips
-                    .iter()
-                    .enumerate()
-                    .map(|(i, (switch, from))| {
-                        let to = skips.get(i + 1).map_or(words.len(), |(_, at)| *at);
-                        (*switch, &words[*from..to])
-                    })
-                    .collect();
-                let mut lowered = self.words(&words[..first], &tails)?;
+                let mut lowered = self.words(&block.items, &skips)?;
                 lowered.punched = block.comments.first().and_then(|comment| sixteen_digits(&comment.text));
                 Ok(lowered.into())
             }
@@ -243,6 +222,11 @@ fn sixteen_digits(text: &[u8]) -> Option<u64> {
 /// The first letter in lower case outside comments, and what follows it. What can't be read has an alarm of its own.
 fn lower_case(block: &ast::Block, bytes: &[u8]) -> Option<Span> {
     if matches!(block.items.last(), Some(ast::Item::Unreadable(_))) {
+        return None;
+    }
+    let written = bytes.get(block.span.start as usize..block.span.end as usize)?;
+    // Most blocks have none at all.
+    if !written.iter().fold(false, |any, byte| any | byte.is_ascii_lowercase()) {
         return None;
     }
     let mut from = block.span.start as usize;

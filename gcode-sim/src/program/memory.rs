@@ -2,7 +2,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::{Program, lower};
+use super::{Op, OpIndex, Program, outline};
 use crate::source::{SourceId, Sources, Span};
 use crate::syntax::ast::ProgramName;
 
@@ -62,12 +62,12 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// Reads and lowers a file. Of two programs with one number the first stays, as on a control, which refuses
+    /// Reads the outline of a file. Of two programs with one number the first stays, as on a control, which refuses
     /// the second: see [`Memory::refused`].
     pub fn load(&mut self, name: impl Into<String>, bytes: impl Into<Arc<[u8]>>) -> SourceId {
         let source = self.sources.add(name, bytes);
         let bytes = &self.sources.get(source).bytes;
-        for program in lower::lower(source, bytes) {
+        for program in outline::programs(source, bytes) {
             let id = ProgramId(self.programs.len() as u32);
             match &program.name {
                 ProgramName::Number(number) => {
@@ -107,6 +107,29 @@ impl Memory {
 
     pub(crate) fn get(&self, id: ProgramId) -> &Program {
         &self.programs[id.0 as usize]
+    }
+
+    /// Lowers one block of a program, so that it can be executed; `None` behind the last.
+    pub(crate) fn ready(&mut self, id: ProgramId, place: OpIndex) -> Option<(&Program, &Op)> {
+        let Self { sources, programs, .. } = self;
+        let Program { blocks, span, loops, .. } = &mut programs[id.0 as usize];
+        blocks.ready(place, span.source, &sources.get(span.source).bytes, loops);
+        let program = self.get(id);
+        program.op(place).map(|op| (program, op))
+    }
+
+    /// Lowers all blocks of a program: [`Program::ops`].
+    pub(crate) fn lower_all(&mut self, id: ProgramId) {
+        let Self { sources, programs, .. } = self;
+        let Program { blocks, span, loops, .. } = &mut programs[id.0 as usize];
+        blocks.lower_all(span.source, &sources.get(span.source).bytes, loops);
+    }
+
+    /// The place of a block, read anew.
+    pub(crate) fn place_of(&self, id: ProgramId, place: OpIndex) -> Option<Span> {
+        let Program { blocks, span, .. } = self.get(id);
+        let tree = blocks.tree(place, span.source, &self.sources.get(span.source).bytes)?;
+        Some(tree.span)
     }
 
     /// The program with this O number.

@@ -1,17 +1,21 @@
 //! Tree to operations: codes looked up, loops paired, sequence numbers found, expressions in postfix order.
 //!
-//! A [`Program`] is what will run. Nothing here depends on a control's settings, so a program is lowered once.
+//! A [`Program`] is what will run. Nothing here depends on a control's settings. When a file is loaded only the places of
+//! its blocks, its sequence numbers and its loops are found (`outline`); a block is lowered when the run gets there
+//! (`blocks`), so that a long file takes little more memory than its text.
 mod arguments;
+mod blocks;
 pub mod codes;
 pub mod cycles;
 mod expr;
-mod flow;
 mod forms;
+mod loops;
 mod lower;
 pub mod m_codes;
 mod memory;
 pub mod modes;
 pub mod names;
+mod outline;
 mod words;
 
 pub use arguments::{ArgumentLocals, argument_letter};
@@ -20,6 +24,8 @@ pub use forms::Form;
 pub use memory::{Library, Memory, NoLibrary, ProgramId};
 pub use words::{CallOp, CallTarget, Calling, Coded, Input, Words};
 
+use self::blocks::Blocks;
+use self::loops::Loops;
 use crate::alarm::Alarm;
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{PrintKind, ProgramName};
@@ -27,22 +33,19 @@ use crate::syntax::ast::{PrintKind, ProgramName};
 /// The place of an operation in its program.
 pub type OpIndex = usize;
 
-/// One O-program, ready to run.
+/// One O-program: where its blocks are, and the operations of those that were asked for (see [`Blocks`]).
 #[derive(Debug)]
 pub struct Program {
     pub name: ProgramName,
     number: Option<u32>,
+    /// The first sequence number that isn't 0.
+    first_number: Option<u32>,
     /// From the O word, or the first block, to the end of the last block.
     pub span: Span,
-    pub ops: Vec<Op>,
-    /// The postfix code of all expressions; a [`Code`] is a range of it.
-    instructions: Vec<Instruction>,
-    /// Sequence numbers with their operations, by number, then by place.
-    numbers: Vec<(u32, OpIndex)>,
-    /// DO, or WHILE, and END of each loop, with its number.
-    loops: Vec<(OpIndex, OpIndex, u8)>,
-    /// The names that [`Operation::NameNumber`] counts.
-    names: Vec<String>,
+    blocks: Blocks,
+    /// Sequence numbers with their blocks, by number, then by place.
+    numbers: Vec<(u32, u32)>,
+    loops: Loops,
     /// Whether `%` or another program stands behind its last block.
     pub(crate) closed: bool,
 }
@@ -142,9 +145,7 @@ impl Program {
         match self.name {
             ProgramName::Number(number) => number,
             ProgramName::Name(_) => 0,
-            ProgramName::Unnamed => {
-                self.ops.iter().filter_map(|op| op.number).find(|number| *number > 0).unwrap_or(0)
-            }
+            ProgramName::Unnamed => self.first_number.unwrap_or(0),
         }
     }
 
@@ -157,12 +158,22 @@ impl Program {
         }
     }
 
+    /// Its operations in order; none before [`Memory::lower_all`] has lowered them.
+    pub fn ops(&self) -> &[Op] {
+        self.blocks.all()
+    }
+
+    /// An operation that was made ready: see [`Memory::ready`].
+    pub(crate) fn op(&self, place: OpIndex) -> Option<&Op> {
+        self.blocks.op(place)
+    }
+
     pub fn code(&self, code: Code) -> &[Instruction] {
-        &self.instructions[code.start as usize..code.end as usize]
+        self.blocks.code(code)
     }
 
     pub(crate) fn variable_name(&self, index: u32) -> &str {
-        self.names.get(index as usize).map_or("", String::as_str)
+        self.blocks.variable_name(index)
     }
 
     /// Whether several blocks have this sequence number.
@@ -173,23 +184,20 @@ impl Program {
 
     /// The number of a loop that `to` lies in and that isn't among those open.
     pub(crate) fn loop_entered(&self, to: OpIndex, open: &[Option<(OpIndex, OpIndex)>]) -> Option<u8> {
-        let entered = |(first, last, _): &&(OpIndex, OpIndex, u8)| {
-            *first < to && to <= *last && !open.contains(&Some((*first, *last)))
-        };
-        self.loops.iter().find(entered).map(|(.., number)| *number)
+        self.loops.entered(to, open)
     }
 
     /// The last block with this sequence number before `from`.
     pub fn find_number_above(&self, number: u32, from: OpIndex) -> Option<OpIndex> {
-        let next = self.numbers.partition_point(|entry| *entry < (number, from));
-        self.numbers.get(next.checked_sub(1)?).filter(|(n, _)| *n == number).map(|(_, op)| *op)
+        let next = self.numbers.partition_point(|entry| *entry < (number, from as u32));
+        self.numbers.get(next.checked_sub(1)?).filter(|(n, _)| *n == number).map(|(_, op)| *op as OpIndex)
     }
 
     /// The block with this sequence number: the next one from `from` on, else the first of the program.
     pub fn find_number(&self, number: u32, from: OpIndex) -> Option<OpIndex> {
         let first = self.numbers.partition_point(|entry| *entry < (number, 0));
-        let next = self.numbers.partition_point(|entry| *entry < (number, from));
-        let is_it = |index: usize| self.numbers.get(index).filter(|(n, _)| *n == number).map(|(_, op)| *op);
-        is_it(next).or_else(|| is_it(first))
+        let next = self.numbers.partition_point(|entry| *entry < (number, from as u32));
+        let is_it = |index: usize| self.numbers.get(index).filter(|(n, _)| *n == number);
+        is_it(next).or_else(|| is_it(first)).map(|(_, op)| *op as OpIndex)
     }
 }

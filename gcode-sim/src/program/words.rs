@@ -6,7 +6,7 @@ use super::lower::Lowering;
 use super::{OpKind, Operand};
 use crate::alarm::Alarm;
 use crate::source::{Span, Spanned};
-use crate::syntax::ast::{AX, Decimal, Word, WordValue};
+use crate::syntax::ast::{AX, Decimal, Item, Word, WordValue};
 
 /// The words of one block.
 #[derive(Debug)]
@@ -82,20 +82,20 @@ pub struct CallOp {
 }
 
 impl Lowering {
-    /// A block of words; `rest` is what follows a `/n` inside it.
-    pub(super) fn words(&mut self, words: &[Word], rest: &[(u8, &[Word])]) -> Result<Words, Spanned<Alarm>> {
-        let Some(((switch, _), before)) = rest.split_last() else { return self.plain_words(words) };
-        let short = self.words(words, before)?;
-        let whole: Vec<Word> =
-            words.iter().chain(rest.iter().flat_map(|(_, tail)| tail.iter())).cloned().collect();
-        let mut whole = self.plain_words(&whole)?;
+    /// A block of words; `skips` are the switches inside it with their places among the items.
+    pub(super) fn words(&mut self, items: &[Item], skips: &[(u8, usize)]) -> Result<Words, Spanned<Alarm>> {
+        let Some(((switch, place), before)) = skips.split_last() else { return self.plain_words(items) };
+        let short = self.words(&items[..*place], before)?;
+        let mut whole = self.plain_words(items)?;
         whole.short = Some((*switch, Box::new(short)));
         Ok(whole)
     }
 
-    fn plain_words(&mut self, words: &[Word]) -> Result<Words, Spanned<Alarm>> {
-        let mut list = Vec::with_capacity(words.len());
-        for word in words {
+    fn plain_words(&mut self, items: &[Item]) -> Result<Words, Spanned<Alarm>> {
+        let words =
+            items.iter().filter_map(|item| if let Item::Word(word) = item { Some(word) } else { None });
+        let mut list = Vec::with_capacity(items.len());
+        for word in words.clone() {
             list.push(self.word(word)?);
         }
         let is = |coded: &Coded, code: u32| matches!(coded.value, Input::G(c, _) if c == code);
@@ -166,11 +166,11 @@ fn g_code(number: Decimal) -> Option<u32> {
 }
 
 /// G65, G66, G66.1: everything behind the code is for the macro.
-fn macro_call(
+fn macro_call<'a>(
     mut list: Vec<Coded>,
     at: usize,
     kind: Calling,
-    words: &[Word],
+    words: impl Iterator<Item = &'a Word>,
 ) -> Result<Words, Spanned<Alarm>> {
     let span = list[at].span;
     if at > 0 {
@@ -180,7 +180,7 @@ fn macro_call(
     list.remove(0);
     let mut call =
         CallOp { kind, target: CallTarget::None, repeats: None, start: None, arguments: Vec::new(), span };
-    for (coded, word) in list.into_iter().zip(&words[1..]) {
+    for (coded, word) in list.into_iter().zip(words.skip(1)) {
         match (coded.letter, &word.value) {
             (b'P', WordValue::Name(name)) => call.target = CallTarget::Name(name.clone()),
             (b'P', _) => call.target = CallTarget::Number(coded),
@@ -202,7 +202,10 @@ fn macro_call(
 }
 
 /// M97 P, M98, M99 and M198 with their P, L and Q; the other words act first.
-fn subprogram(list: Vec<Coded>, words: &[Word]) -> Result<Words, Spanned<Alarm>> {
+fn subprogram<'a>(
+    list: Vec<Coded>,
+    words: impl Iterator<Item = &'a Word> + Clone,
+) -> Result<Words, Spanned<Alarm>> {
     let code = |word: &Word| match word.value {
         WordValue::Literal(Decimal { negative: false, digits, places: None })
             if word.address.letter == b'M' =>
@@ -211,7 +214,7 @@ fn subprogram(list: Vec<Coded>, words: &[Word]) -> Result<Words, Spanned<Alarm>>
         }
         _ => None,
     };
-    let has = |letter: u8| words.iter().any(|word| word.address.letter == letter);
+    let has = |letter: u8| words.clone().any(|word| word.address.letter == letter);
     let kind = |word: &Word| match code(word)? {
         // Without P it ends a macro interrupt.
         97 if has(b'P') => Some(Calling::Local),
@@ -220,9 +223,9 @@ fn subprogram(list: Vec<Coded>, words: &[Word]) -> Result<Words, Spanned<Alarm>>
         198 => Some(Calling::File),
         _ => None,
     };
-    let mut calls = words.iter().filter_map(|word| Some((word, kind(word)?)));
+    let mut calls = words.clone().filter_map(|word| Some((word, kind(word)?)));
     let Some((call, calling)) = calls.next() else {
-        if let Some(word) = words.iter().find(|w| matches!(w.value, WordValue::Name(_))) {
+        if let Some(word) = words.clone().find(|w| matches!(w.value, WordValue::Name(_))) {
             return Err(Alarm::NotAWord { text: "a name without M98 or G65".into() }.at(word.span));
         }
         return Ok(Words { list: list.into(), call: None, short: None, punched: None });
@@ -239,7 +242,7 @@ fn subprogram(list: Vec<Coded>, words: &[Word]) -> Result<Words, Spanned<Alarm>>
         span: call.span,
     };
     let mut left = Vec::with_capacity(list.len());
-    for (coded, word) in list.into_iter().zip(words) {
+    for (coded, word) in list.into_iter().zip(words.clone()) {
         match (coded.letter, &word.value) {
             (b'M', _) if kind(word).is_some() => {}
             (b'P', WordValue::Name(name)) => op.target = CallTarget::Name(name.clone()),

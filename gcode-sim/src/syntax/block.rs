@@ -120,7 +120,8 @@ fn skip(line: Line, at: Input<'_>) -> Read<'_, Spanned<u8>> {
     }
 }
 
-fn sequence_number(line: Line, at: Input<'_>) -> Read<'_, Spanned<u32>> {
+/// `N10`. The input begins with the letter.
+pub(super) fn sequence_number(line: Line, at: Input<'_>) -> Read<'_, Spanned<u32>> {
     let start = spaces(&at[1..]);
     let (rest, number) = match integer(start) {
         Err(Err::Error(_)) => match start.first() {

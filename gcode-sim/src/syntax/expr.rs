@@ -8,7 +8,7 @@ use nom::combinator::value;
 
 use super::ast::{BinaryOp, Condition, Expr, ExprKind, Relation, Written};
 use super::function::{call, is_name, named};
-use super::number::{EXPRESSION_DIGITS, decimal};
+use super::number::{EXPRESSION_LIMIT, decimal};
 use super::token::{
     Input, Line, Read, comment_before, fail, must, next, no_expression, other, round_brackets, sign, spaces,
     word,
@@ -166,7 +166,7 @@ fn primary(line: Line, input: Input<'_>, depth: u8) -> Read<'_, Mixed> {
     let start = spaces(input);
     let (rest, expr) = match start.first() {
         Some(b'0'..=b'9' | b'.') => {
-            let (rest, number) = decimal(start, false, EXPRESSION_DIGITS)?;
+            let (rest, number) = decimal(start, false, EXPRESSION_LIMIT)?;
             (rest, Expr { kind: ExprKind::Literal(number), span: line.span(start, rest) })
         }
         Some(b'#') => numbered(line, start, depth)?,

@@ -1,9 +1,9 @@
 //! A whole file: the programs in it.
-use super::ast::{Block, Program, ProgramName};
+use super::ast::{Program, ProgramName};
 use super::pieces::{Piece, Pieces, says_nothing};
 use crate::source::{SourceId, Span};
 
-/// One program of [`parse_with`].
+/// One program, its blocks in the form that was asked for.
 #[derive(Debug)]
 pub struct Parts<C, B> {
     pub name: ProgramName,
@@ -17,20 +17,21 @@ pub struct Parts<C, B> {
 /// All programs of a file. Blocks before the first O word of a section are a program without a name; where nothing in
 /// it can be read and the file has other programs, it is the text around a tape and left out.
 pub fn parse(source: SourceId, bytes: &[u8]) -> Vec<Program> {
-    let programs = parse_with(source, bytes, |(), block| block);
+    let programs = programs(Pieces::new(source, bytes), says_nothing, |block| block.span, |(), block| block);
     programs.into_iter().map(|Parts { name, span, blocks, .. }| Program { name, span, blocks }).collect()
 }
 
-/// As [`parse`], but each block becomes at once what `each` makes of it, so that the tree of a long file is never
-/// held. Every program has a context of its own.
-pub fn parse_with<C: Default, B>(
-    source: SourceId,
-    bytes: &[u8],
-    mut each: impl FnMut(&mut C, Block) -> B,
+/// The programs that pieces make up. Each block becomes at once what `each` makes of it, so that the tree of a long
+/// file is never held. Every program has a context of its own.
+pub(super) fn programs<C: Default, P, B>(
+    pieces: impl Iterator<Item = Piece<P>>,
+    is_silent: impl Fn(&P) -> bool,
+    span_of: impl Fn(&P) -> Span,
+    mut each: impl FnMut(&mut C, P) -> B,
 ) -> Vec<Parts<C, B>> {
     let mut programs: Vec<(Parts<C, B>, bool)> = Vec::new();
     let mut open = false;
-    for piece in Pieces::new(source, bytes) {
+    for piece in pieces {
         let (name, span, block) = match piece {
             Piece::Section => {
                 close(&mut programs);
@@ -38,7 +39,7 @@ pub fn parse_with<C: Default, B>(
                 continue;
             }
             Piece::Program { name, span } => (Some(name), span, None),
-            Piece::Block(block) => ((!open).then_some(ProgramName::Unnamed), block.span, Some(block)),
+            Piece::Block(block) => ((!open).then_some(ProgramName::Unnamed), span_of(&block), Some(block)),
         };
         if let Some(name) = name {
             let silent = name == ProgramName::Unnamed;
@@ -48,7 +49,7 @@ pub fn parse_with<C: Default, B>(
             open = true;
         }
         if let (Some(block), Some((program, silent))) = (block, programs.last_mut()) {
-            *silent &= says_nothing(&block);
+            *silent &= is_silent(&block);
             program.blocks.push(each(&mut program.context, block));
         }
     }

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use proptest::sample::select;
 
 use super::ast::*;
-use super::{parse, print};
+use super::{Outlined, block_at, outline, parse, print, written};
 use crate::source::{SourceId, Span, Spanned};
 
 const NOWHERE: Span = Span { source: SourceId(0), start: 0, end: 0 };
@@ -276,6 +276,29 @@ proptest! {
     }
 
     #[test]
+    fn an_outline_has_the_programs_and_blocks_of_the_tree(
+        lines in vec("([A-Zxg#\\[\\]()/;,.=+*<>%:&|O0-9 -]|N1|WH|EN|IF|DO|M99|M30|O7|//|\\t|\\x1a|\u{feff}|é){0,12}", 1..6),
+        end in select(vec!["\n", "\r\n", "\r", "\n\r\r"]),
+    ) {
+        let text = lines.join(end);
+        let whole = written(text.as_bytes());
+        let tree = parse(SourceId(0), text.as_bytes());
+        let outlined = outline(SourceId(0), text.as_bytes(), |(), block| match block {
+            Outlined::Words { span, number } => (number, block_at(span.source, whole, span.start)),
+            Outlined::Read(block) => {
+                (block.number.as_ref().map(|n| n.node), block_at(block.span.source, whole, block.span.start))
+            }
+            Outlined::Apart(block) => (block.number.as_ref().map(|n| n.node), Some(block)),
+        });
+        prop_assert_eq!(tree.len(), outlined.len());
+        for (tree, outlined) in tree.into_iter().zip(outlined) {
+            prop_assert_eq!((tree.name, tree.span), (outlined.name, outlined.span));
+            let blocks = tree.blocks.into_iter().map(|b| (b.number.as_ref().map(|n| n.node), Some(b)));
+            prop_assert_eq!(blocks.collect::<Vec<_>>(), outlined.blocks);
+        }
+    }
+
+    #[test]
     fn every_text_gives_a_tree_with_places_inside_it(bytes in vec(any::<u8>(), 0..200)) {
         for program in parse(SourceId(0), &bytes) {
             for block in &program.blocks {
@@ -294,6 +317,7 @@ fn long_lines_are_read_in_linear_time() {
     ] {
         let text = piece.repeat(300_000 / piece.len());
         parse(SourceId(0), text.as_bytes());
+        outline(SourceId(0), text.as_bytes(), |(), _| ());
         let text = format!("#1=1{}", piece.repeat(300_000 / piece.len()));
         parse(SourceId(0), text.as_bytes());
     }

@@ -12,6 +12,7 @@ mod function;
 #[cfg(test)]
 mod laws;
 mod number;
+mod outline;
 mod output;
 mod pieces;
 pub mod print;
@@ -19,6 +20,7 @@ mod statement;
 mod token;
 mod word;
 
-pub use file::{Parts, parse, parse_with};
-pub use pieces::{Piece, Pieces};
+pub use file::{Parts, parse};
+pub use outline::{Outlined, block_at, outline};
+pub use pieces::{Piece, Pieces, written};
 pub use print::print;

@@ -3,30 +3,33 @@ use super::ast::Decimal;
 use super::token::{Input, Read, fail, is_space, other};
 use crate::alarm::Alarm;
 
-/// Digits a literal may have in a macro expression, and after an address.
-pub(super) const EXPRESSION_DIGITS: u32 = 12;
-pub(super) const WORD_DIGITS: u32 = 9;
+/// A literal in a macro expression has twelve digits at most, and nine after an address: what has more.
+pub(super) const EXPRESSION_LIMIT: u64 = 1_000_000_000_000;
+pub(super) const WORD_LIMIT: u64 = 1_000_000_000;
 /// Zeros behind the point don't count as digits; beyond this many no control has a use for them.
-const MOST_PLACES: u32 = 18;
+const MOST_PLACES: usize = 18;
 
-/// An unsigned literal of at most `most` digits, leading zeros not counted.
-pub(super) fn decimal(input: Input<'_>, negative: bool, most: u32) -> Read<'_, Decimal> {
-    let limit = 10u64.pow(most);
-    let (mut digits, mut count, mut used) = (0u64, 0u32, 0);
+/// An unsigned literal below `limit`, were its point left out.
+pub(super) fn decimal(input: Input<'_>, negative: bool, limit: u64) -> Read<'_, Decimal> {
+    let (mut digits, mut count, mut used) = (0u64, 0, 0);
     let mut before_point = None;
     for (at, byte) in input.iter().enumerate() {
-        match byte {
-            b'0'..=b'9' => {
-                digits = digits * 10 + u64::from(byte - b'0');
-                count += 1;
-                if digits >= limit {
-                    return fail(input, Alarm::TooManyDigits);
-                }
+        let digit = byte.wrapping_sub(b'0');
+        if digit <= 9 {
+            digits = digits * 10 + u64::from(digit);
+            count += 1;
+            if digits >= limit {
+                return fail(input, Alarm::TooManyDigits);
             }
-            b'.' if before_point.is_some() => return fail(input, Alarm::IllegalPoint { letter: None }),
-            b'.' => before_point = Some(count),
-            byte if is_space(*byte) => continue,
-            _ => break,
+        } else if *byte == b'.' {
+            if before_point.is_some() {
+                return fail(input, Alarm::IllegalPoint { letter: None });
+            }
+            before_point = Some(count);
+        } else if is_space(*byte) {
+            continue;
+        } else {
+            break;
         }
         used = at + 1;
     }
@@ -40,7 +43,7 @@ pub(super) fn decimal(input: Input<'_>, negative: bool, most: u32) -> Read<'_, D
 
 /// A whole number without a point, as after N, O, DO and `/`.
 pub(super) fn integer(input: Input<'_>) -> Read<'_, u64> {
-    let (rest, number) = decimal(input, false, EXPRESSION_DIGITS)?;
+    let (rest, number) = decimal(input, false, EXPRESSION_LIMIT)?;
     match number.places {
         None => Ok((rest, number.digits)),
         Some(_) => fail(input, Alarm::IllegalPoint { letter: None }),
@@ -52,7 +55,7 @@ mod tests {
     use super::*;
 
     fn read(text: &str) -> Option<(u64, Option<u8>, usize)> {
-        let (rest, number) = decimal(text.as_bytes(), false, WORD_DIGITS).ok()?;
+        let (rest, number) = decimal(text.as_bytes(), false, WORD_LIMIT).ok()?;
         Some((number.digits, number.places, rest.len()))
     }
 

@@ -2,7 +2,7 @@
 use super::ast::{PrintKind, PrintPart, Statement};
 use super::expr::{close, single};
 use super::function::is_name;
-use super::number::{EXPRESSION_DIGITS, decimal};
+use super::number::{EXPRESSION_LIMIT, decimal};
 use super::token::{COMMENT, Input, Line, Read, fail, is_space, must, next, sign, spaces};
 use crate::alarm::Alarm;
 use crate::syntax::ast::{Expr, ExprKind};
@@ -15,7 +15,7 @@ pub(super) fn set_names(line: Line, input: Input<'_>) -> Read<'_, Statement> {
     let at = spaces(input);
     let (rest, first) = match at.first() {
         Some(b'0'..=b'9') => {
-            let (rest, number) = decimal(at, false, EXPRESSION_DIGITS)?;
+            let (rest, number) = decimal(at, false, EXPRESSION_LIMIT)?;
             (rest, Expr { kind: ExprKind::Literal(number), span: line.span(at, rest) })
         }
         _ => must(|input| single(line, input), || Alarm::SetNamesFormat)(at)?,

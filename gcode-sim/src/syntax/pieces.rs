@@ -12,7 +12,7 @@ use crate::source::{SourceId, Span, end_of_line};
 
 /// What a file is made of, line by line, so that nobody has to hold all of it.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Piece {
+pub enum Piece<B = Block> {
     /// `%`: what follows belongs to no program yet.
     Section,
     /// `O0001`, `:0007`, `<NAME>`; words on its line are the next piece.
@@ -20,8 +20,30 @@ pub enum Piece {
         name: ProgramName,
         span: Span,
     },
-    Block(Block),
+    Block(B),
 }
+
+/// What bytes mean to who looks for the parts of a line, as bits.
+const LINE_END: u8 = 1;
+/// May begin a comment or a remark.
+const REMARK: u8 = 2;
+/// May end a block before its line does (`%`, `O`, `:`, `<`), or be of DO, END or EN, or of a folder line.
+const DIVIDES: u8 = 4;
+
+const MEANINGS: [u8; 256] = {
+    let mut all = [0; 256];
+    let mut byte = 0;
+    while byte < all.len() {
+        all[byte] = match byte as u8 {
+            b'\n' | b'\r' => LINE_END,
+            b'(' | b';' | b'/' => REMARK,
+            b'%' | b'O' | b'o' | b':' | b'<' | b'D' | b'd' | b'E' | b'e' | b'&' => DIVIDES,
+            _ => 0,
+        };
+        byte += 1;
+    }
+    all
+};
 
 /// Reads the pieces of a file in order. Lines without anything in them are left out.
 #[derive(Debug)]
@@ -30,10 +52,13 @@ pub struct Pieces<'a> {
     bytes: &'a [u8],
     /// Where the next line begins.
     next: usize,
-    /// The line in hand: what is left to read, and where the line itself and its code end.
+    /// The line in hand: where it begins, what is left to read, and where the line itself and its code end.
+    begin: usize,
     at: usize,
     end: usize,
     code_end: usize,
+    /// All that the line's bytes may mean.
+    meanings: u8,
     /// The line's code where comments had to be blanked, and where it begins.
     blanked: Option<usize>,
     code: Vec<u8>,
@@ -43,17 +68,30 @@ pub struct Pieces<'a> {
 
 impl<'a> Pieces<'a> {
     pub fn new(source: SourceId, bytes: &'a [u8]) -> Self {
-        // Senders end a file with 0x1A or with blank tape.
-        let kept = bytes.iter().rposition(|b| !matches!(b, 0 | 0x1a | b' ' | b'\t' | b'\r' | b'\n'));
-        let bytes = &bytes[..kept.map_or(0, |last| last + 1)];
-        // An editor that doesn't know the byte order mark puts another before it.
-        let next = 3 * bytes.chunks(3).take_while(|mark| mark == b"\xef\xbb\xbf").count();
-        Self::starting(source, bytes, next).behind_leader()
+        let bytes = written(bytes);
+        Self::starting(source, bytes, byte_order_marks(bytes)).behind_leader()
+    }
+
+    /// The pieces from a place on where a line begins, spaces before it left out; of a text as [`written`].
+    pub(super) fn from(source: SourceId, bytes: &'a [u8], place: u32) -> Self {
+        Self::starting(source, bytes, place as usize)
     }
 
     fn starting(source: SourceId, bytes: &'a [u8], next: usize) -> Self {
         let (code, comments) = (Vec::new(), VecDeque::new());
-        Self { source, bytes, next, at: 0, end: 0, code_end: 0, blanked: None, code, comments }
+        Self {
+            source,
+            bytes,
+            next,
+            begin: 0,
+            at: 0,
+            end: 0,
+            code_end: 0,
+            meanings: 0,
+            blanked: None,
+            code,
+            comments,
+        }
     }
 
     /// What stands before the first `%` is a leader, which a control ignores, if nothing in it can be read.
@@ -73,29 +111,29 @@ impl<'a> Pieces<'a> {
     }
 
     /// Takes the next line in hand. Folder lines of memory dumps, `&F=//CNC_MEM/…`, say nothing to the control.
-    fn next_line(&mut self) -> Option<()> {
+    pub(super) fn next_line(&mut self) -> Option<()> {
         loop {
             let text = self.bytes.get(self.next..).filter(|text| !text.is_empty())?;
-            let mut plain = true;
+            self.meanings = 0;
             let mut length = 0;
             for byte in text {
-                match byte {
-                    b'\n' | b'\r' => break,
-                    b'(' | b';' | b'/' => plain = false,
-                    _ => {}
+                let meaning = MEANINGS[usize::from(*byte)];
+                if meaning == LINE_END {
+                    break;
                 }
+                self.meanings |= meaning;
                 length += 1;
             }
-            self.at = self.next;
+            (self.begin, self.at) = (self.next, self.next);
             self.end = self.next + length;
             self.code_end = self.end;
             self.blanked = None;
             self.next = self.end + end_of_line(&text[length..]);
             let line = &text[..length];
-            if unspaced(line).starts_with(b"&F=") {
+            if self.meanings & DIVIDES != 0 && unspaced(line).starts_with(b"&F=") {
                 continue;
             }
-            if !plain {
+            if self.meanings & REMARK != 0 {
                 self.blank_comments(line);
             }
             return Some(());
@@ -113,7 +151,7 @@ impl<'a> Pieces<'a> {
     }
 
     /// Reads the next piece of the line in hand; `None` at its end.
-    fn piece(&mut self) -> Option<Piece> {
+    pub(super) fn piece(&mut self) -> Option<Piece> {
         let text = match self.blanked {
             Some(begin) => &self.code[self.at - begin..],
             None => &self.bytes[self.at..self.code_end],
@@ -147,6 +185,22 @@ impl<'a> Pieces<'a> {
         Some(Piece::Block(block))
     }
 
+    /// The line in hand without spaces around it, where it is one block whatever stands in it: nothing divides it and
+    /// nothing in it is a remark. It counts as read then.
+    pub(super) fn plain_line(&mut self) -> Option<(Span, &'a [u8])> {
+        if self.meanings != 0 || self.at == self.end {
+            return None;
+        }
+        let span = trimmed(self.source, self.bytes, self.at, self.end);
+        self.at = self.end;
+        Some((span, &self.bytes[span.start as usize..span.end as usize]))
+    }
+
+    /// Whether nothing of the line in hand has been read.
+    pub(super) fn begins_line(&self) -> bool {
+        self.at == self.begin
+    }
+
     /// Gives the block its comments and its place, and what can't be read its text as written.
     fn finish(&mut self, block: &mut Block, from: usize, to: usize) {
         let last = to == self.code_end;
@@ -177,6 +231,17 @@ impl Iterator for Pieces<'_> {
             self.next_line()?;
         }
     }
+}
+
+/// The text without what senders end a file with: 0x1A or blank tape.
+pub fn written(bytes: &[u8]) -> &[u8] {
+    let kept = bytes.iter().rposition(|b| !matches!(b, 0 | 0x1a | b' ' | b'\t' | b'\r' | b'\n'));
+    &bytes[..kept.map_or(0, |last| last + 1)]
+}
+
+/// The length of the byte order mark; an editor that doesn't know it puts another before it.
+fn byte_order_marks(bytes: &[u8]) -> usize {
+    3 * bytes.chunks(3).take_while(|mark| mark == b"\xef\xbb\xbf").count()
 }
 
 /// The place of what stands between two offsets, spaces around it left out.

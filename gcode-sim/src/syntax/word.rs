@@ -1,7 +1,7 @@
 //! Words: an address and its value.
 use super::ast::{AX, Address, Expr, ExprKind, Word, WordValue};
 use super::expr::{close, expr, single, wanted};
-use super::number::{WORD_DIGITS, decimal};
+use super::number::{WORD_LIMIT, decimal};
 use super::token::{Input, Line, Read, comment_before, fail, letters, next, other, round_brackets, spaces};
 use crate::alarm::Alarm;
 
@@ -14,7 +14,8 @@ pub(super) fn word(line: Line, input: Input<'_>) -> Read<'_, Word> {
         [b',', rest @ ..] => (true, spaces(rest)),
         _ => (false, input),
     };
-    if let (rest, 2) = letters(from, "AX")
+    if let [b'A' | b'a', ..] = from
+        && let (rest, 2) = letters(from, "AX")
         && !comma
         && let Some((b'[', inside)) = next(rest)
     {
@@ -56,7 +57,7 @@ fn word_value<'a>(line: Line, input: Input<'a>, behind: Input<'a>, letter: u8) -
         letter => fail(input, Alarm::NoDataAfterAddress { letter }),
     };
     match unsigned.first() {
-        Some(b'0'..=b'9' | b'.') => match decimal(unsigned, negative, WORD_DIGITS) {
+        Some(b'0'..=b'9' | b'.') => match decimal(unsigned, negative, WORD_LIMIT) {
             Ok((rest, number)) => Ok((rest, WordValue::Literal(number))),
             Err(nom::Err::Error(_)) => nothing(behind),
             Err(error) => Err(error),

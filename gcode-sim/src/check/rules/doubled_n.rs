@@ -12,7 +12,7 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     let mut first: BTreeMap<u32, (Span, bool)> = BTreeMap::new();
     let mut found = Vec::new();
     let parameters = parameters::inside(unit.program);
-    for (block, op) in unit.program.ops.iter().enumerate().filter(|(block, _)| !parameters[*block]) {
+    for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| !parameters[*block]) {
         let Some(number) = op.number.filter(|number| *number > 0) else { continue };
         match first.get_mut(&number) {
             None => {

@@ -5,7 +5,7 @@ pub(super) const NAME: &str = "doubled-program";
 
 pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     let refused = subject.memory.refused().any(|program| std::ptr::eq(program, unit.program));
-    if !refused || unit.program.ops.is_empty() {
+    if !refused || unit.program.ops().is_empty() {
         return Vec::new();
     }
     let label = unit.program.label();

@@ -17,8 +17,8 @@ const FIRST_SYSTEM: u32 = 1000;
 
 pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     let mut found = Vec::new();
-    let mut told = vec![false; unit.program.ops.len()];
-    for (block, op) in unit.program.ops.iter().enumerate().filter(|(block, _)| unit.reached[*block]) {
+    let mut told = vec![false; unit.program.ops().len()];
+    for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.reached[*block]) {
         use crate::program::Statement::{Do, While};
         let OpKind::Statement(While { end, .. } | Do { end, .. }) = op.kind else { continue };
         let inside: Vec<OpIndex> = (block..=end).filter(|b| unit.reached[*b]).collect();

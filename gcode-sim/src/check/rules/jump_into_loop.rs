@@ -22,8 +22,8 @@ pub(super) fn find(_: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
 
 /// For each block the first and the last block of the loops it stands in, the outer ones first; at most three.
 fn around(unit: &Unit<'_>) -> Vec<Vec<(OpIndex, OpIndex)>> {
-    let mut around = vec![Vec::new(); unit.program.ops.len()];
-    for (first, op) in unit.program.ops.iter().enumerate() {
+    let mut around = vec![Vec::new(); unit.program.ops().len()];
+    for (first, op) in unit.program.ops().iter().enumerate() {
         if let OpKind::Statement(Statement::While { end, .. } | Statement::Do { end, .. }) = op.kind {
             around[first + 1..=end].iter_mut().for_each(|loops: &mut Vec<_>| loops.push((first, end)));
         }

@@ -50,7 +50,7 @@ const HELP: &str = "put a block before it that waits for the move, as G53 or M00
 
 /// For each block a move that may still be under way before it, where there is one.
 fn moving(settings: &Settings, unit: &Unit<'_>) -> Vec<Option<OpIndex>> {
-    let count = unit.program.ops.len();
+    let count = unit.program.ops().len();
     let mut moving = vec![None; count];
     let mut seen = vec![false; count];
     let mut open = vec![(0, None)];

@@ -82,7 +82,7 @@ fn lacking(subject: &Subject<'_>, called: &Unit<'_>, entry: Locals, modal: bool)
 
 /// The alarm that every way through a program ends in; `None` where it can end otherwise.
 fn refusal(subject: &Subject<'_>, unit: &Unit<'_>, states: &States) -> Option<String> {
-    let ops = &unit.program.ops;
+    let ops = unit.program.ops();
     let mut first = None;
     // One past the last block is the program's end.
     if states[ops.len()].is_some() {

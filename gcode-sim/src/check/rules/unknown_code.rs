@@ -19,7 +19,7 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     let improper = all.filter(|(_, alarm)| matches!(alarm.node, Alarm::ImproperGCode { .. }));
     let mut found: Vec<_> = improper.map(|(block, alarm)| finding(unit, NAME, block, &alarm)).collect();
     let mut told = BTreeSet::new();
-    for (block, op) in unit.program.ops.iter().enumerate().filter(|(block, _)| unit.reached[*block]) {
+    for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.reached[*block]) {
         let OpKind::Words(words) = &op.kind else { continue };
         for word in &words.list {
             let Some((name, message, certain)) = about(subject, word) else { continue };

@@ -7,7 +7,7 @@ pub(super) const NAME: &str = "unreachable";
 
 pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     let mut found: Vec<Finding> = Vec::new();
-    let ops = &unit.program.ops;
+    let ops = unit.program.ops();
     let mut block = 0;
     while block < ops.len() {
         if unit.reached[block] {

@@ -20,7 +20,7 @@ pub(super) fn refused<'a>(
     subject: &'a Subject<'_>,
     unit: &'a Unit<'_>,
 ) -> impl Iterator<Item = (usize, Spanned<Alarm>)> + 'a {
-    let ops = unit.program.ops.iter().enumerate().filter(|(block, _)| unit.reached[*block]);
+    let ops = unit.program.ops().iter().enumerate().filter(|(block, _)| unit.reached[*block]);
     ops.filter_map(|(block, op)| {
         let form = op.forms.iter().find(|form| !form.node.is_taken(subject.settings))?;
         Some((block, form.node.alarm().at(form.span)))
@@ -29,16 +29,16 @@ pub(super) fn refused<'a>(
 
 /// The blocks that raise an alarm as they are read and that something reaches.
 pub(super) fn alarms<'a>(unit: &'a Unit<'_>) -> impl Iterator<Item = (usize, &'a Spanned<Alarm>)> {
-    unit.program.ops.iter().enumerate().filter(|(block, _)| unit.reached[*block]).filter_map(|(block, op)| {
-        match &op.kind {
+    unit.program.ops().iter().enumerate().filter(|(block, _)| unit.reached[*block]).filter_map(
+        |(block, op)| match &op.kind {
             OpKind::Alarm(alarm) => Some((block, &**alarm)),
             OpKind::Statement(Statement::IfThen { then, .. }) => match &**then {
                 Statement::Alarm(alarm) => Some((block, &**alarm)),
                 _ => None,
             },
             _ => None,
-        }
-    })
+        },
+    )
 }
 
 fn has_own_rule(alarm: &Alarm) -> bool {

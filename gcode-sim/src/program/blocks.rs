@@ -1,0 +1,132 @@
+//! The blocks of a program, lowered when they are asked for and kept for a while: a loop lowers its blocks once, and a
+//! long file never has all of its blocks lowered at a time.
+use std::collections::BTreeMap;
+
+use super::loops::Loops;
+use super::lower::Lowering;
+use super::{Code, Instruction, Op, OpIndex, OpKind, Statement};
+use crate::alarm::Alarm;
+use crate::source::SourceId;
+use crate::syntax::{ast, block_at};
+
+/// As many operations are kept. Loops are shorter; some megabytes at most.
+const KEPT: usize = 8192;
+
+/// Stands for a block that isn't lowered.
+const UNREAD: u32 = u32::MAX;
+
+/// Where a block begins, and where its operation is.
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    start: u32,
+    op: u32,
+}
+
+/// All blocks of a program, and the operations of some.
+#[derive(Debug)]
+pub(super) struct Blocks {
+    entries: Vec<Entry>,
+    /// The trees of blocks that don't begin their line.
+    apart: BTreeMap<u32, ast::Block>,
+    /// How much of the text is written on.
+    length: u32,
+    /// Operations with the places of their blocks.
+    ops: Vec<Op>,
+    places: Vec<u32>,
+    lowering: Lowering,
+}
+
+impl Blocks {
+    pub(super) fn new(starts: Vec<u32>, apart: BTreeMap<u32, ast::Block>, length: u32) -> Self {
+        let entries = starts.into_iter().map(|start| Entry { start, op: UNREAD }).collect();
+        Self { entries, apart, length, ops: Vec::new(), places: Vec::new(), lowering: Lowering::default() }
+    }
+
+    /// The tree of a block, read anew.
+    pub(super) fn tree(&self, place: OpIndex, source: SourceId, bytes: &[u8]) -> Option<ast::Block> {
+        let start = self.entries.get(place)?.start;
+        if !self.apart.is_empty()
+            && let Some(block) = self.apart.get(&(place as u32))
+        {
+            return Some(block.clone());
+        }
+        block_at(source, bytes.get(..self.length as usize)?, start)
+    }
+
+    pub(super) fn op(&self, place: OpIndex) -> Option<&Op> {
+        self.ops.get(self.entries.get(place)?.op as usize)
+    }
+
+    /// All operations; none unless all are lowered, in order.
+    pub(super) fn all(&self) -> &[Op] {
+        if self.ops.len() == self.entries.len() { &self.ops } else { &[] }
+    }
+
+    pub(super) fn code(&self, code: Code) -> &[Instruction] {
+        &self.lowering.instructions[code.start as usize..code.end as usize]
+    }
+
+    pub(super) fn variable_name(&self, index: u32) -> &str {
+        self.lowering.names.get(index as usize).map_or("", String::as_str)
+    }
+
+    /// Lowers a block if it isn't. Where too many are, the others are forgotten.
+    pub(super) fn ready(&mut self, place: OpIndex, source: SourceId, bytes: &[u8], loops: &Loops) {
+        let unread = self.entries.get(place).is_some_and(|entry| entry.op == UNREAD);
+        if unread {
+            if self.ops.len() >= KEPT {
+                self.forget();
+            }
+            self.lower(place, source, bytes, loops);
+        }
+    }
+
+    /// Lowers all blocks, in order.
+    pub(super) fn lower_all(&mut self, source: SourceId, bytes: &[u8], loops: &Loops) {
+        self.forget();
+        for place in 0..self.entries.len() {
+            self.lower(place, source, bytes, loops);
+        }
+    }
+
+    fn forget(&mut self) {
+        for place in self.places.drain(..) {
+            self.entries[place as usize].op = UNREAD;
+        }
+        self.ops.clear();
+        self.lowering.forget();
+    }
+
+    fn lower(&mut self, place: OpIndex, source: SourceId, bytes: &[u8], loops: &Loops) {
+        let Some(tree) = self.tree(place, source, bytes) else { return };
+        let mut op = self.lowering.block(&tree, bytes);
+        join(&mut op, place, loops);
+        self.entries[place].op = self.ops.len() as u32;
+        self.places.push(place as u32);
+        self.ops.push(op);
+    }
+}
+
+/// Writes into a WHILE, DO or END where its partner stands. What has none becomes the alarm that a control raises when
+/// it gets there.
+fn join(op: &mut Op, place: OpIndex, loops: &Loops) {
+    let OpKind::Statement(statement) = &mut op.kind else { return };
+    let alarm = match statement {
+        Statement::While { number, end, .. } | Statement::Do { number, end } => match loops.end_of(place) {
+            Some(found) => {
+                *end = found;
+                return;
+            }
+            None => Alarm::MissingEnd { number: *number },
+        },
+        Statement::End { number, start } => match loops.begin_of(place) {
+            Some(found) => {
+                *start = found;
+                return;
+            }
+            None => Alarm::MissingDo { number: *number },
+        },
+        _ => return,
+    };
+    op.kind = OpKind::Alarm(Box::new(alarm.at(op.span)));
+}
