@@ -1,0 +1,173 @@
+//! How long whole runs take, as ratios: a long file of single moves and a macro loop, against the same arithmetic in Rust
+//! and, where they are installed, against LinuxCNC's stand-alone interpreter, and in instructions as valgrind counts them.
+//!
+//! `cargo bench -p gcode-sim --bench speed`. The programs are written to a temporary folder and go with it.
+#![allow(clippy::print_stdout, reason = "a bench prints its table")]
+#![allow(clippy::disallowed_methods, reason = "a bench writes the programs that it runs")]
+use std::fmt::Write as _;
+use std::hint::black_box;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// Blocks or turns that are timed, and the two sizes whose difference is counted in instructions.
+const MANY: u32 = 1_000_000;
+const COUNTED: [u32; 2] = [2_000, 12_000];
+/// The least of so many runs counts: what else the machine does only adds to it.
+const RUNS: usize = 3;
+
+/// One program in two dialects.
+struct Workload {
+    name: &'static str,
+    ours: fn(u32) -> String,
+    linuxcnc: fn(u32) -> String,
+    native: Option<fn(u32) -> f64>,
+}
+
+const WORKLOADS: [Workload; 2] = [
+    Workload {
+        name: "flat file",
+        ours: |lines| format!("O1\n{}", flat(lines)),
+        linuxcnc: |lines| format!("%\n{}%\n", flat(lines)),
+        native: None,
+    },
+    Workload { name: "macro loop", ours: macro_loop, linuxcnc: o_word_loop, native: Some(native_loop) },
+];
+
+fn main() {
+    let folder = tempfile::tempdir().expect("a temporary folder can be made");
+    for workload in &WORKLOADS {
+        println!("{}, {MANY} blocks or turns:", workload.name);
+        let ours = write(folder.path(), "ours.nc", &(workload.ours)(MANY));
+        let took = time(|| run(&mut ours_on(&ours)));
+        println!("  gcode-sim run            {:8.3} s", took.as_secs_f64());
+        if let Some(native) = workload.native {
+            let once = time(|| _ = black_box(native(black_box(MANY))));
+            println!(
+                "  the same in Rust         {:8.3} s  {:6.1} times",
+                once.as_secs_f64(),
+                ratio(took, once)
+            );
+        }
+        if is_there("rs274") {
+            let theirs = write(folder.path(), "theirs.ngc", &(workload.linuxcnc)(MANY));
+            let other = time(|| run(&mut linuxcnc_on(folder.path(), &theirs)));
+            println!(
+                "  LinuxCNC's rs274         {:8.3} s  {:6.1} times ours",
+                other.as_secs_f64(),
+                ratio(other, took)
+            );
+        } else {
+            println!("  LinuxCNC's rs274         isn't installed (Debian's linuxcnc-uspace has it)");
+        }
+        if is_there("valgrind") {
+            let [few, more] = COUNTED.map(|size| {
+                let program = write(folder.path(), "counted.nc", &(workload.ours)(size));
+                instructions(&program, folder.path())
+            });
+            let each = (more - few) / u64::from(COUNTED[1] - COUNTED[0]);
+            println!("  instructions for each    {each:8}");
+        } else {
+            println!("  instructions for each    not counted: valgrind isn't installed");
+        }
+    }
+}
+
+/// Moves along a circle, each with its sequence number.
+fn flat(lines: u32) -> String {
+    let mut text = "G21 G17 G40 G49 G80 G90 G94 F500.\n".to_owned();
+    for line in 0..lines {
+        let (sine, cosine) = (f64::from(line) * 0.01).sin_cos();
+        let depth = f64::from(line % 1000) * 0.001;
+        writeln!(text, "N10 G1 X{:.3} Y{:.3} Z-{depth:.3}", 100.0 * cosine, 100.0 * sine)
+            .expect("a text takes all");
+    }
+    text + "M30\n"
+}
+
+fn macro_loop(turns: u32) -> String {
+    format!(
+        "O1\nG21 G17 G40 G49 G80 G90 G94 F500.\n#1=0\nWHILE[#1LT{turns}]DO1\n#2=#1*0.001\n#3=SQRT[#2*#2+1.]\n\
+         #4=ATAN[#2]/[#3]\n#5=#3*COS[#4]\n#6=#5+#2\n#1=#1+1\nG1 X#5 Y#6 Z#4\nEND1\nM30\n"
+    )
+}
+
+fn o_word_loop(turns: u32) -> String {
+    format!(
+        "%\nG21 G17 G40 G49 G80 G90 G94 F500.\n#1=0\no1 while [#1 LT {turns}]\n#2=[#1*0.001]\n#3=SQRT[#2*#2+1.]\n\
+         #4=ATAN[#2]/[#3]\n#5=[#3*COS[#4]]\n#6=[#5+#2]\n#1=[#1+1]\nG1 X#5 Y#6 Z#4\no1 endwhile\nM30\n%\n"
+    )
+}
+
+/// What the loop computes, with the same functions and to the same grid.
+fn native_loop(turns: u32) -> f64 {
+    let mut way = 0.0;
+    let mut from = [0.0_f64; 3];
+    for turn in 0..turns {
+        let x = f64::from(turn) * 0.001;
+        let root = (x * x + 1.0).sqrt();
+        let angle = libm::atan2(x, root).to_degrees();
+        let first = root * libm::cos(angle.to_radians());
+        let to = [first, first + x, angle].map(|value| (value * 1000.0).round() / 1000.0);
+        let square: f64 = (0..3).map(|axis| (to[axis] - from[axis]) * (to[axis] - from[axis])).sum();
+        way += square.sqrt();
+        from = to;
+    }
+    way
+}
+
+fn write(folder: &Path, name: &str, text: &str) -> PathBuf {
+    let path = folder.join(name);
+    std::fs::write(&path, text).expect("the folder takes files");
+    path
+}
+
+fn ours_on(program: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_gcode-sim"));
+    command.arg("run").arg(program).args(["--max-blocks", "1000000000"]);
+    command
+}
+
+/// It keeps its variables in a file of the folder it runs in.
+fn linuxcnc_on(folder: &Path, program: &Path) -> Command {
+    let mut command = Command::new("rs274");
+    command.current_dir(folder).arg("-g").arg(program).arg("/dev/null");
+    command
+}
+
+fn run(command: &mut Command) {
+    let status =
+        command.stdout(Stdio::null()).stderr(Stdio::null()).status().expect("the program can be started");
+    assert!(status.success(), "{command:?} ends with {status}");
+}
+
+fn time(work: impl Fn()) -> Duration {
+    let once = || {
+        let start = Instant::now();
+        work();
+        start.elapsed()
+    };
+    (0..RUNS).map(|_| once()).min().unwrap_or_default()
+}
+
+fn ratio(a: Duration, b: Duration) -> f64 {
+    a.as_secs_f64() / b.as_secs_f64()
+}
+
+fn is_there(program: &str) -> bool {
+    Command::new(program).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok()
+}
+
+/// Instructions of a whole run of ours.
+fn instructions(program: &Path, folder: &Path) -> u64 {
+    let mut command = Command::new("valgrind");
+    let file = folder.join("callgrind.out");
+    command.args(["--tool=callgrind", &format!("--callgrind-out-file={}", file.display())]);
+    let ours = ours_on(program);
+    command.arg(ours.get_program()).args(ours.get_args());
+    run(&mut command);
+    let profile = std::fs::read_to_string(&file).expect("valgrind has written its profile");
+    let total =
+        profile.lines().find_map(|line| line.strip_prefix("summary: ").or(line.strip_prefix("totals: ")));
+    total.and_then(|total| total.trim().parse().ok()).expect("the profile has a sum")
+}
