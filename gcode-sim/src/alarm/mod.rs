@@ -1,9 +1,12 @@
 //! What stops a control: each alarm a fact, its number and wording in one table (`table.rs`).
 //!
 //! Numbers and triggers follow the alarm list of the 30i / 0i-F class; the wording is ours.
+mod slips;
 mod table;
 
 use crate::source::{Span, Spanned};
+
+pub use slips::remedy;
 
 /// The control's own name for an alarm: `PS0112`, `MC3001`, `OT0500`; `SIM…` where the simulator, not the
 /// control, cannot go on.
@@ -73,6 +76,13 @@ pub enum Alarm {
         code: String,
     },
     FeedZero,
+    /// F is per revolution, and S is 0.
+    NoSpeedForFeed,
+    /// R of an arc against half the distance of its ends, mm.
+    RadiusTooSmall {
+        radius: f64,
+        half: f64,
+    },
     RadiusTolerance {
         start: f64,
         end: f64,

@@ -29,6 +29,30 @@ pub fn bytes(path: &Path) -> Result<Vec<u8>, Refusal> {
     std::fs::read(path).map_err(unreadable)
 }
 
+/// How files begin that are no programs, and what they are.
+const OTHERS: [(&[u8], &str); 5] = [
+    (b"\x89PNG", "a picture"),
+    (b"\xff\xd8\xff", "a picture"),
+    (b"%PDF-", "a PDF document"),
+    (b"PK\x03\x04", "an archive or an office document"),
+    (b"{\\rtf", "a word processor's document"),
+];
+
+/// A program's bytes; refuses what is plainly something else.
+pub fn program(path: &Path) -> Result<Vec<u8>, Refusal> {
+    let bytes = bytes(path)?;
+    let name = path.display();
+    if let Some((_, what)) = OTHERS.iter().find(|(start, _)| bytes.starts_with(start)) {
+        return Err(Refusal::new(format!("{name} is {what}, not a program")));
+    }
+    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) {
+        return Err(Refusal::new(format!(
+            "{name} is a job or a machine file, not a program: --reference and --machine take those"
+        )));
+    }
+    Ok(bytes)
+}
+
 /// What is in a folder, by name.
 pub fn folder(path: &Path) -> Result<Vec<PathBuf>, Refusal> {
     let unreadable =

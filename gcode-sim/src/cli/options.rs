@@ -21,7 +21,7 @@ pub(super) fn request(program: &ProgramArguments) -> Result<(Request, Folders), 
     let folders = Folders::new(program, &arguments.libraries)?;
     let piped = program == Path::new("-");
     let name = if piped { "standard input".to_owned() } else { program.display().to_string() };
-    let mut request = Request::new(name, input::bytes(program)?, machine);
+    let mut request = Request::new(name, input::program(program)?, machine);
     if let Some(path) = &arguments.control_file {
         let refused = |error| Refusal::new(format!("{}, {error}", path.display()));
         control_file::apply(&input::text(path)?, &mut request.settings).map_err(refused)?;

@@ -57,8 +57,10 @@ pub fn write_all(files: &[(&Path, &[u8])]) -> Result<(), Refusal> {
         if !folder.is_dir() {
             return Err(unwritable(&format!("there is no folder {}", folder.display())));
         }
-        let mut file =
-            tempfile::Builder::new().prefix(".writing-").tempfile_in(folder).map_err(|e| unwritable(&e))?;
+        let mut file = tempfile::Builder::new()
+            .prefix(".writing-")
+            .tempfile_in(folder)
+            .map_err(|e| unwritable(&plain(&e)))?;
         file.write_all(bytes).map_err(|e| unwritable(&e))?;
         allow_reading(file.as_file()).map_err(|e| unwritable(&e))?;
         waiting.push((place, file));
@@ -68,6 +70,12 @@ pub fn write_all(files: &[(&Path, &[u8])]) -> Result<(), Refusal> {
             .map_err(|e| Refusal::new(format!("{} can't be written: {}", place.display(), e.error)))?;
     }
     Ok(())
+}
+
+/// The error without the name of a temporary file, which nobody asked for.
+fn plain(error: &std::io::Error) -> String {
+    let text = error.to_string();
+    text.split(" at path ").next().unwrap_or_default().to_owned()
 }
 
 /// What stands there is no file: a device such as `/dev/null`, or a pipe. A file renamed onto it would take its place
@@ -112,6 +120,12 @@ mod tests {
         write(&link, b"new").unwrap();
         assert!(link.is_symlink());
         assert_eq!(super::super::input::bytes(&file).unwrap(), b"new");
+    }
+
+    #[test]
+    fn an_error_does_not_name_the_temporary_file() {
+        let error = std::io::Error::other("no room at path \"/part/.writing-XYZ\"");
+        assert_eq!(plain(&error), "no room");
     }
 
     #[test]

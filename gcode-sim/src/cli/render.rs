@@ -126,6 +126,15 @@ pub(super) fn view(
 
 /// Draws a scene to a file of exactly the size asked for.
 pub(super) fn write(scene: &Scene, size: &str, path: &Path) -> Result<(), Refusal> {
+    let is_other = |extension: &std::ffi::OsStr| !extension.eq_ignore_ascii_case("png");
+    if path.extension().is_some_and(is_other) {
+        let png = path.with_extension("png");
+        return Err(Refusal::new(format!(
+            "{}: a picture is a PNG file: name it {}",
+            path.display(),
+            png.display()
+        )));
+    }
     let refused = |error: picture::PictureError| Refusal::new(error.to_string());
     let size: Size = size.parse().map_err(refused)?;
     let png = picture::draw(scene, size).map_err(refused)?;

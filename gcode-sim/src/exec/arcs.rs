@@ -108,7 +108,7 @@ impl Core {
         // F is along the arc; all other axes follow (1403#5 HTG = 0).
         let timed = self.time_along(state, length, length, 0.0, given.has(b'F'));
         let (rate, seconds) = timed.map_err(|alarm| match alarm {
-            Alarm::FeedZero => Alarm::ArcFeedZero.at(span),
+            Alarm::FeedZero | Alarm::NoSpeedForFeed => Alarm::ArcFeedZero.at(span),
             other => other.at(span),
         })?;
         let arc = Arc2 { plane, centre, sweep: Deg(sweep) };
@@ -130,8 +130,7 @@ impl Core {
         let short = chord / 2.0 - radius.abs();
         if radius == 0.0 || (short > self.settings.arc_tolerance && self.settings.unsure.small_radius_alarms)
         {
-            let allowed = self.settings.arc_tolerance;
-            return Err(Alarm::RadiusTolerance { start: radius.abs(), end: chord / 2.0, allowed });
+            return Err(Alarm::RadiusTooSmall { radius: radius.abs(), half: chord / 2.0 });
         }
         let height = (radius * radius - chord * chord / 4.0).max(0.0).sqrt();
         // The centre of a short counterclockwise arc lies to the left of the way from start to end.

@@ -202,7 +202,8 @@ impl Core {
             FeedMode::PerMinute | FeedMode::InverseTime => f,
         };
         if per_minute <= 0.0 {
-            return Err(Alarm::FeedZero);
+            let no_speed = state.modal.feed_mode == FeedMode::PerRevolution && f > 0.0;
+            return Err(if no_speed { Alarm::NoSpeedForFeed } else { Alarm::FeedZero });
         }
         // In inches the composite is of inches and degrees.
         let counted = match state.modal.unit {

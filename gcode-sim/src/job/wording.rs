@@ -6,7 +6,13 @@ pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> S
     // What the root lacks is reported at no byte at all.
     let place = span.filter(|s| !s.is_empty()).map(|s| Place::of(text, s.start)).unwrap_or_default();
     if let Some(field) = quoted(message, "missing field ") {
-        return format!("key '{}' is missing", place.inside(field));
+        let name = place.inside(field);
+        // The one list of tables that a job can't do without.
+        return if name == "hole" {
+            "no table [[hole]]: one for each hole".to_owned()
+        } else {
+            format!("key '{name}' is missing")
+        };
     }
     if let Some(field) = quoted(message, "unknown field ") {
         let allowed = message.split_once("expected ").map_or("no keys", |(_, rest)| rest);

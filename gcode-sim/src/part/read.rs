@@ -33,6 +33,13 @@ pub(super) fn is_csv(text: &str) -> bool {
     first.contains(',') && !first.contains('=') && !first.trim_start().starts_with('#')
 }
 
+/// A list as spreadsheets write it where the comma is the decimal point.
+pub(super) fn has_semicolons(text: &str) -> bool {
+    let first = text.lines().find(|line| !line.trim().is_empty()).unwrap_or_default();
+    let columns: Vec<_> = first.split(';').map(|name| name.trim().trim_matches('"')).collect();
+    1 < columns.len() && columns.iter().any(|name| COLUMNS.contains(name))
+}
+
 pub(super) fn csv(text: &str) -> Result<HoleList, ReferenceError> {
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
     let header = reader.headers().map_err(|e| csv_error(&e))?.clone();
@@ -68,6 +75,9 @@ pub(super) fn csv(text: &str) -> Result<HoleList, ReferenceError> {
         });
         let last = holes.len() - 1;
         check(&holes[last], last).map_err(|message| error(line, message))?;
+    }
+    if holes.is_empty() {
+        return Err(error(None, "behind the header there is no hole: a line for each"));
     }
     Ok(HoleList { unit: Unit::Mm, holes })
 }

@@ -24,6 +24,11 @@ impl Wanted {
         if read::is_csv(text) {
             return Reference::of_list(read::csv(text)?).map(Self::Holes);
         }
+        if read::has_semicolons(text) {
+            let message =
+                "the columns are separated by ';': write ',' between them, and points in the numbers";
+            return Err(ReferenceError { line: Some(1), message: message.to_owned() });
+        }
         if !text.contains("family") {
             let message = "neither a hole list (JSON or CSV) nor a job file with its key 'family'".to_owned();
             return Err(ReferenceError { line: None, message });

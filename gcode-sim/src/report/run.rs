@@ -4,6 +4,7 @@ use std::fmt::Write;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
+use crate::alarm::remedy;
 use crate::changes::Where;
 use crate::exec::{Outcome, Value, printable};
 use crate::motion::{Axes, Event, EventKind, Position, Sink, StopKind};
@@ -281,7 +282,7 @@ fn alarm(run: &Run) -> Option<AlarmReport> {
         line: at.line,
         column: at.column,
         block,
-        help: row.help,
+        help: remedy(&stopped.alarm, stopped.span, sources),
         calls,
     })
 }

@@ -3,7 +3,7 @@ mod still;
 
 use std::sync::Arc;
 
-use crate::alarm::{Alarm, Code};
+use crate::alarm::{Alarm, Code, remedy};
 use crate::control::Settings;
 use crate::diag::{Diagnostic, Severity};
 use crate::exec::{Control, Limits, Note, Outcome};
@@ -227,11 +227,13 @@ impl Run {
                 let mut finding = Diagnostic::new(Severity::Alarm, row.code.to_string(), row.message);
                 finding.place = Some(stopped.place.clone());
                 finding.span = Some(stopped.span);
-                finding.help = row.help.or_else(|| match row.code {
-                    // The program's own words are all there is to say.
-                    Code::Mc(_) => None,
-                    code => Some(format!("gcode-sim explain {code} shows what to write instead")),
-                });
+                finding.help = remedy(&stopped.alarm, stopped.span, self.control.memory().sources()).or_else(
+                    || match row.code {
+                        // The program's own words are all there is to say.
+                        Code::Mc(_) => None,
+                        code => Some(format!("gcode-sim explain {code} shows what to write instead")),
+                    },
+                );
                 Some(finding)
             }
             Outcome::Limit => Some(self.unended()),

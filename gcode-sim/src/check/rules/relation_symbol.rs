@@ -10,7 +10,7 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     let of_all = alarms(unit).map(|(block, alarm)| (block, alarm.clone()));
     let all = of_all.chain(refused(subject, unit));
     let signs = all.filter(|(_, alarm)| matches!(alarm.node, Alarm::RelationSymbol));
-    signs.map(|(block, alarm)| finding(unit, NAME, block, &alarm)).collect()
+    signs.map(|(block, alarm)| finding(subject, unit, NAME, block, &alarm)).collect()
 }
 
 #[cfg(test)]

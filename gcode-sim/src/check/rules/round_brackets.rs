@@ -6,9 +6,9 @@ use super::unreadable::{alarms, finding};
 
 pub(super) const NAME: &str = "round-brackets";
 
-pub(super) fn find(_: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
+pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     let alarms = alarms(unit).filter(|(_, alarm)| matches!(alarm.node, Alarm::RoundBrackets { .. }));
-    alarms.map(|(block, alarm)| finding(unit, NAME, block, alarm)).collect()
+    alarms.map(|(block, alarm)| finding(subject, unit, NAME, block, alarm)).collect()
 }
 
 #[cfg(test)]

@@ -17,7 +17,8 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     let written = alarms(unit).map(|(block, alarm)| (block, alarm.clone()));
     let all = written.chain(refused(subject, unit));
     let improper = all.filter(|(_, alarm)| matches!(alarm.node, Alarm::ImproperGCode { .. }));
-    let mut found: Vec<_> = improper.map(|(block, alarm)| finding(unit, NAME, block, &alarm)).collect();
+    let mut found: Vec<_> =
+        improper.map(|(block, alarm)| finding(subject, unit, NAME, block, &alarm)).collect();
     let mut told = BTreeSet::new();
     for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.reached[*block]) {
         let OpKind::Words(words) = &op.kind else { continue };

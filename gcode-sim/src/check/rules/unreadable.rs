@@ -1,5 +1,5 @@
 //! Blocks that stop the control as soon as it reads them: text it can't read, words that can't stand together.
-use crate::alarm::Alarm;
+use crate::alarm::{Alarm, remedy};
 use crate::check::flow::is_loop_alarm;
 use crate::check::subject::{Finding, Subject, Unit};
 use crate::program::{OpKind, Statement};
@@ -9,9 +9,9 @@ pub(super) const NAME: &str = "unreadable";
 
 pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     let alarms = alarms(unit).filter(|(_, alarm)| !has_own_rule(&alarm.node));
-    let mut found: Vec<_> = alarms.map(|(block, alarm)| finding(unit, NAME, block, alarm)).collect();
+    let mut found: Vec<_> = alarms.map(|(block, alarm)| finding(subject, unit, NAME, block, alarm)).collect();
     let refused = refused(subject, unit).filter(|(_, alarm)| !has_own_rule(&alarm.node));
-    found.extend(refused.map(|(block, alarm)| finding(unit, NAME, block, &alarm)));
+    found.extend(refused.map(|(block, alarm)| finding(subject, unit, NAME, block, &alarm)));
     found
 }
 
@@ -47,10 +47,16 @@ fn has_own_rule(alarm: &Alarm) -> bool {
 }
 
 /// An alarm as a finding: its number, its sentence, its remedy.
-pub(super) fn finding(unit: &Unit<'_>, name: &'static str, block: usize, alarm: &Spanned<Alarm>) -> Finding {
+pub(super) fn finding(
+    subject: &Subject<'_>,
+    unit: &Unit<'_>,
+    name: &'static str,
+    block: usize,
+    alarm: &Spanned<Alarm>,
+) -> Finding {
     let row = alarm.node.row();
     let found = unit.error(name, block, format!("{}: {}", row.code, row.message)).on(alarm.span);
-    match row.help {
+    match remedy(&alarm.node, alarm.span, subject.memory.sources()) {
         Some(help) => found.help(help),
         None => found,
     }

@@ -134,7 +134,9 @@ impl Case {
             None => Tested::New,
             Some(path) => {
                 let unusable = |error| Refusal::new(format!("{}: {error}", path.display()));
-                let accepted = Record::from_json(&input::text(&path)?).map_err(unusable)?;
+                let accepted = Record::from_json(&input::text(&path)?).map_err(|error| {
+                    unusable(format!("{error}; delete it, run with --accept, and look at what was accepted"))
+                })?;
                 let found = changes(&accepted, &revision.record, tolerance);
                 if found.is_empty() { Tested::Same } else { Tested::Changed(found) }
             }
