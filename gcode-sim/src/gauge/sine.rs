@@ -18,8 +18,7 @@ pub fn height(length: Mm, angle: Deg) -> Mm {
     length * angle.sin()
 }
 
-/// The nearest stack for an angle of 0° to 45°. The stack must not be as high as the table is long; where the set reaches the
-/// height it is at most twice as high as that, so any table of more than a few millimetres will do.
+/// The nearest stack for an angle of 0° to 45°, on a table of 10 mm or more, as jobs have them.
 pub fn setting(length: Mm, angle: Deg, set: &GaugeSet) -> SineSetting {
     let height = height(length, angle);
     let stack = set.nearest(height);

@@ -6,6 +6,7 @@ pub mod distance;
 pub mod flutes;
 pub mod hole;
 pub mod honeycomb;
+pub mod indicator;
 pub mod overlap;
 mod pin_holes;
 pub mod probed;
