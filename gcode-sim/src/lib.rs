@@ -37,6 +37,8 @@ pub mod holes;
 
 pub mod flutes;
 
+pub mod stylus;
+
 pub mod verify;
 
 pub mod budget;

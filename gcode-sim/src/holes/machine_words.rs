@@ -1,6 +1,7 @@
 //! What a program asks of the machine that the machine file doesn't have: axes, tools, a head set by hand.
 use super::Extractor;
 use crate::diag::Diagnostic;
+use crate::machine::Head;
 use crate::motion::{Event, Position};
 use crate::units::Deg;
 
@@ -42,8 +43,7 @@ impl Extractor<'_> {
         text: &str,
         named: &[(u32, f64)],
     ) -> Option<Deg> {
-        let mut words = text.split(|c: char| !c.is_ascii_alphanumeric());
-        if !words.any(|word| word.eq_ignore_ascii_case("HEAD")) {
+        if !Head::is_meant(text) {
             return None;
         }
         if !self.machine.head.is_set_by_hand() {

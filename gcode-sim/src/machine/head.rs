@@ -47,6 +47,12 @@ impl Head {
         Unit::new_unchecked(Vector3::new(angle.cos(), angle.sin(), 0.0))
     }
 
+    /// Whether a message to the operator is about the head: it has the word HEAD.
+    pub fn is_meant(text: &str) -> bool {
+        let mut words = text.split(|c: char| !c.is_ascii_alphanumeric());
+        words.any(|word| word.eq_ignore_ascii_case("HEAD"))
+    }
+
     /// Whether the operator can set its angle: a head about which nothing is known might well be such a one.
     pub fn is_set_by_hand(&self) -> bool {
         matches!(self.kind, HeadKind::Free | HeadKind::Manual { .. })

@@ -67,7 +67,7 @@ impl Machine {
     /// A path p(t) strays from its chord by at most |p''|·Δt²/8. With the table and the head turning by γ in all,
     /// the slides going b, and levers no longer than ρ, |p''| is at most γ²·ρ + 2·γ·b; an arc of sweep s and
     /// radius R adds s²·R, and the error of an axis its own bend.
-    pub(super) fn steps(&self, travel: &Travel<'_>, setup: &Setup, tolerance: f64) -> u32 {
+    pub(crate) fn steps(&self, travel: &Travel<'_>, setup: &Setup, tolerance: f64) -> u32 {
         let turn = self.turn(travel).to_rad();
         let sweep = travel.arc.map_or(0.0, |arc| arc.sweep.to_rad());
         let waves = self.waves(travel, setup);

@@ -67,12 +67,12 @@ fn closes(surface: &Surface, radius: f64, from: &Point3<f64>, to: &Point3<f64>) 
     let along = to - from;
     let nearest = |t: f64| surface.nearest(&(from + along * t));
     let open = |t: f64| nearest(t).distance > radius;
-    let leaving = |t: f64| nearest(t).normal.dot(&along) >= 0.0;
     // The gap can't close by more than the way gone.
-    if leaving(0.0) || nearest(0.0).distance + nearest(1.0).distance > 2.0 * radius + along.norm() {
+    let leaves = nearest(0.0).normal.dot(&along) >= 0.0;
+    if leaves || nearest(0.0).distance + nearest(1.0).distance > 2.0 * radius + along.norm() {
         return None;
     }
-    let innermost = if leaving(1.0) { bisect(0.0, 1.0, leaving) } else { 1.0 };
+    let innermost = surface.nearest_between(from, to);
     match (open(0.0), open(innermost)) {
         (false, _) => Some(0.0),
         (true, true) => None,

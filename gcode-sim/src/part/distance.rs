@@ -23,6 +23,18 @@ impl Surface {
             }
         }
     }
+
+    /// Where on a straight way, 0 to 1, the surface is nearest: along a line the distance from a convex body is a convex
+    /// function, which falls until there and rises from there on.
+    pub fn nearest_between(&self, from: &Point3<f64>, to: &Point3<f64>) -> f64 {
+        let along = to - from;
+        let leaving = |t: f64| self.nearest(&(from + along * t)).normal.dot(&along) >= 0.0;
+        match (leaving(0.0), leaving(1.0)) {
+            (true, _) => 0.0,
+            (false, true) => bisect(0.0, 1.0, leaving),
+            (false, false) => 1.0,
+        }
+    }
 }
 
 /// The foot q of the perpendicular has p − q = t·(q.x/a², q.y/b², q.z/a²), so q.x = p.x·a²/(a² + t) and so on. That q
@@ -100,6 +112,15 @@ mod tests {
         let cylinder = Surface::Cylinder { radius: 50.0 };
         let found = cylinder.nearest(&Point3::new(7.0, 30.0, -40.5));
         assert!((found.distance - (libm::hypot(30.0, 40.5) - 50.0)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_way_past_the_body_is_nearest_abeam() {
+        let sphere = Surface::Ellipsoid { a: 10.0, b: 10.0 };
+        let nearest = |from: [f64; 3], to: [f64; 3]| sphere.nearest_between(&from.into(), &to.into());
+        assert!((nearest([-20.0, 12.0, 0.0], [30.0, 12.0, 0.0]) - 0.4).abs() < 1e-12);
+        assert_eq!(nearest([1.0, 12.0, 0.0], [30.0, 12.0, 0.0]), 0.0);
+        assert_eq!(nearest([-20.0, 12.0, 0.0], [-1.0, 12.0, 0.0]), 1.0);
     }
 
     proptest! {

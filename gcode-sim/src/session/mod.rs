@@ -17,6 +17,7 @@ use crate::part::reference::Reference;
 use crate::part::surface::Surface;
 use crate::program::{Library, Memory};
 use crate::source::Span;
+use crate::stylus::{Followed, Stylus};
 use crate::verify::flutes::{FluteVerdict, verify_flutes};
 use crate::verify::{Tolerances, Verdict, verify};
 
@@ -149,6 +150,30 @@ impl Grinding {
     pub fn verify(&self) -> FluteVerdict {
         verify_flutes(&self.wanted, &self.ground, &|span| self.run.locate(span))
     }
+}
+
+/// A run with what an edge finder showed.
+#[derive(Debug)]
+pub struct Following {
+    pub run: Run,
+    pub followed: Followed,
+}
+
+/// Runs a program and reads the ball of an edge finder, of so many mm of radius, along the part's surface; where the
+/// program probes, a probe touches it.
+pub fn follow(
+    request: &Request,
+    library: &mut impl Library,
+    surface: Surface,
+    radius: f64,
+) -> Result<Following, SessionError> {
+    let mut stylus = Stylus::new(&request.machine, surface, radius);
+    let mut extractor = Extractor::new(&request.machine).with_surface(Some(surface));
+    let run = run(request, library, &mut (&mut stylus, &mut extractor))?;
+    let mut followed = stylus.finish();
+    followed.findings.extend(run.notes());
+    followed.findings.extend(run.stopped());
+    Ok(Following { run, followed })
 }
 
 /// A run with the holes it made.

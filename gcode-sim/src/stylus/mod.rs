@@ -1,0 +1,208 @@
+//! Motion → readings: what an edge finder shows whose ball is fed along the part's surface.
+//!
+//! Feeds along the surface are a pass; approach and retract cross it, and whatever is farther away than [`REACH`] follows
+//! something else.
+#[cfg(test)]
+mod tests;
+
+use nalgebra::{Point3, Unit};
+
+use crate::diag::{Diagnostic, Severity};
+use crate::machine::path::Travel;
+use crate::machine::{Head, Machine, Placement, Setup};
+use crate::motion::{Arc2, Event, EventKind, Place, Position, Sink, StopKind};
+use crate::part::surface::Surface;
+use crate::units::Deg;
+
+/// From how far the ball may stand off the surface, mm: more than any part is misplaced after a coarse alignment.
+pub const REACH: f64 = 5.0;
+/// A curved way is taken as chords that stray from it by no more than this, mm.
+const STRAY: f64 = 1e-5;
+/// So many points of each chord are kept, besides the nearest.
+const PARTS: u32 = 4;
+/// More points than this aren't kept: no path has so many, but a loop that never ends makes them.
+const KEPT: usize = 500_000;
+/// The sine of the angle to the surface up to which a feed goes along it: 30°.
+const ALONG: f64 = 0.5;
+
+/// One point of a pass; lengths in mm.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reading {
+    /// The way from where the pass begins.
+    pub along: f64,
+    /// The ball's centre, in the frame of the part as the program believes it to stand.
+    pub at: Point3<f64>,
+    /// From the ball to the surface: above 0 there is a gap, below 0 the ball is pushed in.
+    pub value: f64,
+    /// Which of [`Pass::places`] moved here.
+    pub place: usize,
+}
+
+/// A way along the surface.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Pass {
+    pub readings: Vec<Reading>,
+    /// The blocks that moved, one for each move.
+    pub places: Vec<Place>,
+}
+
+impl Pass {
+    /// The least and the greatest reading; `None` of a pass without any.
+    pub fn extremes(&self) -> Option<(Reading, Reading)> {
+        let order = |one: &&Reading, other: &&Reading| one.value.total_cmp(&other.value);
+        Some((*self.readings.iter().min_by(order)?, *self.readings.iter().max_by(order)?))
+    }
+
+    /// How long the way is.
+    pub fn length(&self) -> f64 {
+        self.readings.last().map_or(0.0, |last| last.along)
+    }
+}
+
+/// What a program makes an edge finder show.
+#[derive(Clone, Debug, Default)]
+pub struct Followed {
+    pub passes: Vec<Pass>,
+    pub findings: Vec<Diagnostic>,
+}
+
+/// Listens to a run and reads the ball.
+#[derive(Debug)]
+pub struct Stylus<'m> {
+    machine: &'m Machine,
+    /// The same machine with the part where the program believes it to stand.
+    believed: Machine,
+    surface: Surface,
+    /// Of the ball, mm.
+    radius: f64,
+    at: Position,
+    setup: Setup,
+    open: Option<Pass>,
+    followed: Followed,
+    kept: usize,
+}
+
+impl<'m> Stylus<'m> {
+    /// Starts with every axis at machine zero.
+    pub fn new(machine: &'m Machine, surface: Surface, radius: f64) -> Self {
+        let part = Placement { origin: machine.part.origin, ..Placement::default() };
+        Self {
+            machine,
+            believed: Machine { part, ..machine.clone() },
+            surface,
+            radius,
+            at: Position::default(),
+            setup: Setup::default(),
+            open: None,
+            followed: Followed::default(),
+            kept: 0,
+        }
+    }
+
+    pub fn finish(mut self) -> Followed {
+        self.close();
+        self.followed
+    }
+
+    fn close(&mut self) {
+        self.followed.passes.extend(self.open.take());
+    }
+
+    fn motion(&mut self, event: &Event<'_>, feed: bool, to: &Position, arc: Option<&Arc2>) {
+        let from = self.at;
+        self.at = *to;
+        if self.kept > KEPT || (from == *to && arc.is_none()) {
+            return;
+        }
+        let travel = Travel { from: &from, to, arc };
+        if !feed || !self.goes_along(&travel) {
+            return self.close();
+        }
+        let mut pass = self.open.take().unwrap_or_default();
+        pass.places.push(event.place());
+        for t in self.stations(&travel) {
+            let reading = self.read(&travel, t, &pass);
+            pass.readings.push(reading);
+        }
+        self.kept += pass.readings.len();
+        self.open = Some(pass);
+        if self.kept > KEPT {
+            let message = format!("more than {KEPT} points along the surface: from here on none is read");
+            let finding = Diagnostic::new(Severity::Alarm, "limit", message).at(event.place());
+            let finding = finding.help("does a loop never end? else split the program");
+            self.followed.findings.push(finding);
+        }
+    }
+
+    /// Whether the ball goes along the surface, near to it, all the way.
+    fn goes_along(&self, travel: &Travel<'_>) -> bool {
+        let tip = |t: f64| self.machine.forward(&travel.position(t), &self.setup).tip;
+        [0.0, 0.5, 1.0].into_iter().all(|t| {
+            let (near, here) = (1e-3, tip(t));
+            let back = if t < 1.0 { tip(t + near) - here } else { here - tip(t - near) };
+            let nearest = self.surface.nearest(&here);
+            let direction = Unit::try_new(back, 1e-12);
+            (nearest.distance - self.radius).abs() <= REACH
+                && direction.is_some_and(|direction| direction.dot(&nearest.normal).abs() <= ALONG)
+        })
+    }
+
+    /// Where along a motion the ball is read: 0 to 1, the first only where a pass begins.
+    fn stations(&self, travel: &Travel<'_>) -> Vec<f64> {
+        let steps = self.machine.steps(travel, &self.setup, STRAY);
+        let tip = |t: f64| self.machine.forward(&travel.position(t), &self.setup).tip;
+        let mut stations = Vec::new();
+        if self.open.is_none() {
+            stations.push(0.0);
+        }
+        for step in 0..steps {
+            let part = |t: f64| (f64::from(step) + t) / f64::from(steps);
+            let nearest = self.surface.nearest_between(&tip(part(0.0)), &tip(part(1.0)));
+            let mut inside: Vec<f64> = (1..=PARTS).map(|n| f64::from(n) / f64::from(PARTS)).collect();
+            inside.extend((0.0 < nearest && nearest < 1.0).then_some(nearest));
+            inside.sort_by(f64::total_cmp);
+            stations.extend(inside.into_iter().map(part));
+        }
+        stations
+    }
+
+    fn read(&self, travel: &Travel<'_>, t: f64, pass: &Pass) -> Reading {
+        let position = travel.position(t);
+        let tip = self.machine.forward(&position, &self.setup).tip;
+        let at = self.believed.forward(&position, &self.setup).tip;
+        let along = pass.readings.last().map_or(0.0, |last| last.along + (at - last.at).norm());
+        let value = self.surface.nearest(&tip).distance - self.radius;
+        Reading { along, at, value, place: pass.places.len() - 1 }
+    }
+}
+
+impl Sink for Stylus<'_> {
+    fn event(&mut self, event: &Event<'_>) {
+        match &event.kind {
+            EventKind::Rapid { to } | EventKind::Skip { to, .. } => self.motion(event, false, to, None),
+            EventKind::Feed { to, .. } => self.motion(event, true, to, None),
+            EventKind::Arc { to, arc, .. } => self.motion(event, true, to, Some(arc)),
+            EventKind::Tool { number } => {
+                self.close();
+                self.setup.tool = Some(*number);
+            }
+            EventKind::ToolLength { offset } => {
+                self.close();
+                self.setup.offset = *offset;
+            }
+            EventKind::Stop { kind: StopKind::Message, text, named } => {
+                let named =
+                    named.first().filter(|_| self.machine.head.is_set_by_hand() && Head::is_meant(text));
+                if let Some((_, angle)) = named {
+                    self.close();
+                    self.setup.head_angle = Some(Deg(*angle));
+                }
+            }
+            EventKind::Stop { .. }
+            | EventKind::Dwell { .. }
+            | EventKind::Spindle { .. }
+            | EventKind::Coolant { .. }
+            | EventKind::Auxiliary { .. } => {}
+        }
+    }
+}
