@@ -11,6 +11,7 @@ use super::diff::DiffArguments;
 use super::explain::ExplainArguments;
 use super::front::Colours;
 use super::holes::HolesArguments;
+use super::readings::ReadingsArguments;
 use super::reference::ReferenceArguments;
 use super::render::RenderArguments;
 use super::run::RunArguments;
@@ -78,6 +79,17 @@ Examples:
   gcode-sim render O8100.nc -o top.png
   gcode-sim render O8100.nc --reference job.toml -o top.png --size 1600x1200")]
     Render(RenderArguments),
+
+    /// Tell what an edge finder shows whose ball the program feeds along the part's surface
+    #[command(after_help = "\
+Examples:
+  gcode-sim readings O8220.nc --part job.toml --machine machine.toml --picture readings.png
+  gcode-sim readings O8220.nc --part job.toml --machine machine.toml --tolerance 0.03
+  gcode-sim readings O8220.nc --part job.toml --machine machine.toml --format csv > readings.csv
+
+Above 0 there is a gap between ball and surface, below 0 the ball is pushed in. How the part really stands says [part]
+in the machine file.")]
+    Readings(ReadingsArguments),
 
     /// Find faults without running: jumps to nowhere, lost points, variables never set, and more
     #[command(after_help = "\

@@ -12,6 +12,7 @@ pub mod library;
 mod options;
 pub mod output;
 mod progress;
+mod readings;
 mod reference;
 mod render;
 mod run;
@@ -76,6 +77,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Status {
         Command::Holes(arguments) => holes::run(&arguments),
         Command::Reference(arguments) => reference::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),
+        Command::Readings(arguments) => readings::run(&arguments),
         Command::Render(arguments) => render::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Diff(arguments) => diff::run(&arguments),

@@ -1,0 +1,72 @@
+//! `gcode-sim readings`: what an edge finder shows whose ball a program feeds along the part's surface.
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::args::{ListFormat, ProgramArguments};
+use super::{Refusal, Status, options, output, render, unused_machine};
+use crate::picture::Size;
+use crate::report::readings::ReadingsReport;
+use crate::session;
+use crate::verify::Answer;
+
+#[derive(Debug, Args)]
+pub(super) struct ReadingsArguments {
+    #[command(flatten)]
+    program: ProgramArguments,
+
+    /// How far a reading may be from 0, mm [default: nothing is judged]
+    #[arg(long, value_name = "MM", allow_negative_numbers = true)]
+    tolerance: Option<f64>,
+
+    /// Also draw the readings over the way to this file
+    #[arg(long, value_name = "OUT.png")]
+    picture: Option<PathBuf>,
+
+    /// Width and height of the picture in pixels
+    #[arg(long, value_name = "WxH", default_value = "1600x900")]
+    size: String,
+
+    /// How the result is written
+    #[arg(long, value_enum, default_value_t = ListFormat::Text)]
+    format: ListFormat,
+}
+
+pub(super) fn run(arguments: &ReadingsArguments) -> Result<Status, Refusal> {
+    let (request, mut folders) = options::request(&arguments.program)?;
+    unused_machine::tell(&arguments.program, &request);
+    let tolerance = options::tolerance("--tolerance", arguments.tolerance)?;
+    let (Some(surface), Some(probe)) = (request.part, &request.machine.probe) else {
+        return Err(Refusal::new("readings are of a part: --part JOB.toml says which"));
+    };
+    let following = session::follow(&request, &mut folders, surface, probe.radius)
+        .map_err(|e| Refusal::new(e.to_string()))?;
+    let report = ReadingsReport::new(&render::name(&request), &following, probe.radius, tolerance);
+    match arguments.format {
+        ListFormat::Text => output::print(&report.text())?,
+        ListFormat::Json => output::json(&report)?,
+        ListFormat::Csv => output::print(&report.csv())?,
+    }
+    if let Some(path) = &arguments.picture {
+        let refused = |error: crate::picture::PictureError| Refusal::new(error.to_string());
+        let size: Size = arguments.size.parse().map_err(refused)?;
+        output::write(path, &report.plot().draw(size).map_err(refused)?)?;
+        if arguments.format == ListFormat::Text {
+            output::print(&format!("picture: {}\n", path.display()))?;
+        }
+    }
+    let found = super::findings(&following.followed.findings, &following.run);
+    if found != Status::Holds {
+        return Ok(found);
+    }
+    if report.is_empty() {
+        output::tell(
+            "error: no feed of the program goes along the part's surface, at most 5 mm away from it\n",
+        );
+        return Ok(Status::Fails);
+    }
+    Ok(match report.verdict() {
+        Some(Answer::Fail) => Status::Fails,
+        Some(Answer::Pass) | None => Status::Holds,
+    })
+}

@@ -1,0 +1,189 @@
+//! What an edge finder shows along the surface: as JSON, as a table, as CSV, and as a curve.
+use std::fmt::Write;
+
+use serde::Serialize;
+
+use crate::picture::Plot;
+use crate::session::Following;
+use crate::stylus::{Pass, Reading};
+use crate::verify::Answer;
+
+/// Lengths in mm.
+#[derive(Debug, Serialize)]
+pub struct ReadingsReport {
+    basis: &'static str,
+    /// Of the ball.
+    radius: f64,
+    /// How far a reading may be from 0, where that was asked.
+    tolerance: Option<f64>,
+    verdict: Option<Answer>,
+    least: Option<f64>,
+    greatest: Option<f64>,
+    passes: Vec<PassRow>,
+    #[serde(skip)]
+    name: String,
+}
+
+#[derive(Debug, Serialize)]
+struct PassRow {
+    moves: usize,
+    length: f64,
+    least: f64,
+    greatest: f64,
+    readings: Vec<Row>,
+}
+
+#[derive(Debug, Serialize)]
+struct Row {
+    along: f64,
+    x: f64,
+    y: f64,
+    z: f64,
+    reading: f64,
+    program: String,
+    line: u32,
+}
+
+impl ReadingsReport {
+    /// Of the program `name`, for a ball of this radius.
+    pub fn new(name: &str, following: &Following, radius: f64, tolerance: Option<f64>) -> Self {
+        let row = |pass: &Pass, reading: &Reading| {
+            let (program, line) = following.run.locate(pass.places[reading.place].block);
+            let [x, y, z] = reading.at.coords.into();
+            Row { along: reading.along, x, y, z, reading: reading.value, program, line }
+        };
+        let passes: Vec<_> = following
+            .followed
+            .passes
+            .iter()
+            .filter_map(|pass| {
+                let (least, greatest) = pass.extremes()?;
+                Some(PassRow {
+                    moves: pass.places.len(),
+                    length: pass.length(),
+                    least: least.value,
+                    greatest: greatest.value,
+                    readings: pass.readings.iter().map(|reading| row(pass, reading)).collect(),
+                })
+            })
+            .collect();
+        let least = passes.iter().map(|pass| pass.least).reduce(f64::min);
+        let greatest = passes.iter().map(|pass| pass.greatest).reduce(f64::max);
+        let worst = least.zip(greatest).map(|(least, greatest)| greatest.max(-least));
+        let within = |tolerance: f64| worst.is_some_and(|worst| worst <= tolerance);
+        let verdict = tolerance.map(|t| if within(t) { Answer::Pass } else { Answer::Fail });
+        Self {
+            basis: "predicted by simulation, not measured",
+            radius,
+            tolerance,
+            verdict,
+            least,
+            greatest,
+            passes,
+            name: name.to_owned(),
+        }
+    }
+
+    /// Whether every reading is as near to 0 as was asked; `None` where nothing was asked.
+    pub fn verdict(&self) -> Option<Answer> {
+        self.verdict
+    }
+
+    /// Whether no feed of the program goes along the surface.
+    pub fn is_empty(&self) -> bool {
+        self.passes.is_empty()
+    }
+
+    /// For a terminal: every tenth of each pass.
+    pub fn text(&self) -> String {
+        let mut text = format!(
+            "Readings of an edge finder, ball of radius {}: {}\n\
+             mm; above 0 a gap between ball and surface, below 0 the ball is pushed in; x y z: its centre\n",
+            self.radius, self.basis
+        );
+        for (index, pass) in self.passes.iter().enumerate() {
+            let _ = writeln!(text, "\npass {}: {} moves along {:.3} mm", index + 1, pass.moves, pass.length);
+            let _ = writeln!(text, "{:>10}{:>11}{:>11}{:>11}{:>10}", "along", "x", "y", "z", "reading");
+            for tenth in 0..=10 {
+                let along = pass.length * f64::from(tenth) / 10.0;
+                let distance = |row: &&Row| (row.along - along).abs();
+                let nearest = |one: &&Row, other: &&Row| distance(one).total_cmp(&distance(other));
+                let Some(row) = pass.readings.iter().min_by(nearest) else { continue };
+                let [x, y, z, reading] = [row.x, row.y, row.z, row.reading].map(|v| plain(v, 5e-5));
+                let _ = writeln!(text, "{:>10.3}{x:>11.4}{y:>11.4}{z:>11.4}{reading:>10.4}", row.along);
+            }
+        }
+        let _ = writeln!(text, "\n{}", self.sentence());
+        text
+    }
+
+    /// `reading -0.0012 to 0.0500, spread 0.0512`, and what was asked about it.
+    fn sentence(&self) -> String {
+        let Some((least, greatest)) = self.least.zip(self.greatest) else {
+            return "no feed goes along the surface".to_owned();
+        };
+        let range = format!(
+            "reading {:.4} to {:.4}, spread {:.4}",
+            plain(least, 5e-5),
+            plain(greatest, 5e-5),
+            greatest - least
+        );
+        match (self.verdict, self.tolerance) {
+            (Some(Answer::Pass), Some(t)) => format!("PASS: {range}, all within {t} of 0"),
+            (Some(Answer::Fail), Some(t)) => format!("FAIL: {range}, not all within {t} of 0"),
+            _ => range,
+        }
+    }
+
+    /// One line a reading.
+    pub fn csv(&self) -> String {
+        let mut text = String::from("pass,along,x,y,z,reading,program,line\n");
+        for (index, pass) in self.passes.iter().enumerate() {
+            for row in &pass.readings {
+                let numbers =
+                    [row.along, row.x, row.y, row.z, row.reading].map(|v| plain(v, 5e-13).to_string());
+                let _ = writeln!(text, "{},{},{},{}", index + 1, numbers.join(","), row.program, row.line);
+            }
+        }
+        text
+    }
+
+    /// The readings over the way, one pass behind the other.
+    pub fn plot(&self) -> Plot {
+        let mut begun = 0.0;
+        let curve = |pass: &PassRow| {
+            let points = pass.readings.iter().map(|row| [begun + row.along, row.reading]).collect();
+            begun += pass.length;
+            points
+        };
+        let curves = self.passes.iter().map(curve).collect();
+        let end = |row: Option<&Row>| {
+            row.map(|row| format!("x {:.3}, y {:.3}, z {:.3}", row.x, row.y, plain(row.z, 5e-4)))
+        };
+        let first = self.passes.first().and_then(|pass| end(pass.readings.first()));
+        let last = self.passes.last().and_then(|pass| end(pass.readings.last()));
+        let ends = first.zip(last).map(|(first, last)| {
+            format!("Ball of radius {}, its centre from {first} to {last}", self.radius)
+        });
+        Plot {
+            title: format!("Edge finder along the surface, {}", self.name),
+            notes: [
+                Some(self.sentence()),
+                ends,
+                Some(format!("{}; below 0 the ball is pushed in", self.basis)),
+            ]
+            .into_iter()
+            .flatten()
+            .collect(),
+            across: "Way of the ball's centre, mm".to_owned(),
+            up: "Reading: distance of the ball from the surface, mm".to_owned(),
+            curves,
+            limit: self.tolerance,
+        }
+    }
+}
+
+/// Nobody wants to read −0, nor a residue as one.
+fn plain(value: f64, residue: f64) -> f64 {
+    if value.abs() < residue { 0.0 } else { value }
+}
