@@ -11,6 +11,7 @@ mod control;
 mod control_page;
 mod corpus;
 mod docs;
+mod ellipse;
 mod emitted;
 mod explain;
 mod honeycomb;

@@ -13,7 +13,7 @@ mod wording;
 use serde::Deserialize;
 use toml::Spanned;
 
-pub use alignment::{Alignment, Chord, Runout, SineTable};
+pub use alignment::{Alignment, Chord, EllipsePath, Runout, SineTable};
 pub use burr::{
     AxisSigns, Burr, BurrProgram, BurrShape, BurrTolerance, FluteLaw, Grinder, Nose, ProgramForm,
 };

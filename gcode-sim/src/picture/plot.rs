@@ -40,10 +40,12 @@ impl Plot {
         let mut words = Words { font: &font, text, inks: Vec::new(), labels: Vec::new() };
         let mut y = page.top + 1.4 * text;
         words.write(px(page.left, y), Align::Left, 1.4 * text, &self.title, page.width());
-        for note in self.notes.iter().chain([&self.up]) {
+        for note in &self.notes {
             y += 1.6 * text;
             words.write(px(page.left, y), Align::Left, text, note, page.width());
         }
+        y += 2.4 * text;
+        words.write(px(page.left, y), Align::Left, text, &self.up, page.width());
         let all = || self.curves.iter().flatten();
         let (right, left) = spread(all().map(|p| p[0]), 1.0);
         let (high, low) =

@@ -170,7 +170,7 @@ impl ReadingsReport {
             notes: [
                 Some(self.sentence()),
                 ends,
-                Some(format!("{}; below 0 the ball is pushed in", self.basis)),
+                Some("Predicted by simulation, not measured; below 0 the ball is pushed in".to_owned()),
             ]
             .into_iter()
             .flatten()

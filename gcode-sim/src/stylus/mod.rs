@@ -119,12 +119,15 @@ impl<'m> Stylus<'m> {
             return self.close();
         }
         let mut pass = self.open.take().unwrap_or_default();
+        let before = pass.readings.len();
         pass.places.push(event.place());
-        for t in self.stations(&travel) {
+        let first = pass.readings.is_empty().then_some(0.0);
+        for t in first.into_iter().chain(self.stations(&travel)) {
             let reading = self.read(&travel, t, &pass);
             pass.readings.push(reading);
         }
-        self.kept += pass.readings.len();
+        let added = pass.readings.len() - before;
+        self.kept += added;
         self.open = Some(pass);
         if self.kept > KEPT {
             let message = format!("more than {KEPT} points along the surface: from here on none is read");
@@ -147,14 +150,11 @@ impl<'m> Stylus<'m> {
         })
     }
 
-    /// Where along a motion the ball is read: 0 to 1, the first only where a pass begins.
+    /// Where along a motion the ball is read: beyond 0, up to 1.
     fn stations(&self, travel: &Travel<'_>) -> Vec<f64> {
         let steps = self.machine.steps(travel, &self.setup, STRAY);
         let tip = |t: f64| self.machine.forward(&travel.position(t), &self.setup).tip;
         let mut stations = Vec::new();
-        if self.open.is_none() {
-            stations.push(0.0);
-        }
         for step in 0..steps {
             let part = |t: f64| (f64::from(step) + t) / f64::from(steps);
             let nearest = self.surface.nearest_between(&tip(part(0.0)), &tip(part(1.0)));

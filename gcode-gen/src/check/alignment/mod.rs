@@ -1,6 +1,7 @@
 //! Runs the programs of an alignment on simulated parts whose misplacement is known: a program that doesn't find it is
 //! not written.
 mod chord;
+mod ellipse;
 
 use gcode_sim::diag::Severity;
 use gcode_sim::exec::{Outcome, Value};
@@ -28,7 +29,7 @@ struct Tried {
 type Trial = fn(&Bench<'_>) -> Result<Tried, CheckError>;
 
 /// What each main program has to find.
-const TRIALS: &[(u32, Trial)] = &[(alignment::CHORD, chord::tried)];
+const TRIALS: &[(u32, Trial)] = &[(alignment::CHORD, chord::tried), (alignment::ELLIPSE, ellipse::tried)];
 
 pub(super) fn check(job: &Alignment, package: &Package) -> Result<Checked, CheckError> {
     let mut checked = Checked {
@@ -70,15 +71,24 @@ impl Bench<'_> {
         Machine::parse(&self.package.machine).map_err(|e| told("machine.toml", &e))
     }
 
-    /// A run on that machine with the part misplaced, variables set before.
-    fn run(&self, part: Placement, variables: Vec<(u32, f64)>) -> Result<Run, CheckError> {
+    /// The program, to be run on that machine with the part misplaced.
+    fn request(&self, part: Placement) -> Result<Request, CheckError> {
         let machine = Machine { part, ..self.machine()? };
         let main = self.package.program(self.main).ok_or_else(|| self.broken(&"it was not emitted"))?;
-        let mut request = Request::new(self.name(), main.text.as_bytes(), machine);
+        Ok(Request::new(self.name(), main.text.as_bytes(), machine))
+    }
+
+    fn programs(&self) -> Programs<'_> {
+        Programs(self.package)
+    }
+
+    /// A run with variables set before.
+    fn run(&self, part: Placement, variables: Vec<(u32, f64)>) -> Result<Run, CheckError> {
+        let mut request = self.request(part)?;
         request.variables = variables;
         let surface = Surface::Ellipsoid { a: self.job.surface.a, b: self.job.surface.b };
         let mut probe = Extractor::new(&request.machine).with_surface(Some(surface));
-        run(&request, &mut Programs(self.package), &mut probe).map_err(|e| self.broken(&e))
+        run(&request, &mut self.programs(), &mut probe).map_err(|e| self.broken(&e))
     }
 
     /// Why a run is none, as for a terminal: an alarm, a limit, or what the control did without a word.

@@ -4,6 +4,7 @@
 //! `docs/methods/alignment.md`. Each measurement is a file here and a row in [`ALL`]; what its program has to find on a
 //! simulated part before it is written is a file and a row in `check/alignment`.
 mod chord;
+mod ellipse;
 mod machine_file;
 mod resident;
 
@@ -15,6 +16,7 @@ use crate::nc::program::Program as Text;
 use crate::package::{Package, Program};
 
 pub use chord::MAIN as CHORD;
+pub use ellipse::MAIN as ELLIPSE;
 
 pub const FAMILY: Family =
     Family { name: "alignment", new_job: include_str!("new.toml"), resident: resident::of_the_defaults };
@@ -31,7 +33,7 @@ struct Measurement {
 }
 
 /// Every measurement there is.
-const ALL: &[Measurement] = &[chord::MEASUREMENT];
+const ALL: &[Measurement] = &[chord::MEASUREMENT, ellipse::MEASUREMENT];
 
 /// The main programs, the resident macros and the machine file of a job.
 pub fn emit(job: &Alignment) -> Package {

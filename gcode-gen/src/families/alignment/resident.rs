@@ -43,6 +43,9 @@ impl Resident {
             ("{name}", name(one.number, self.dialect)),
             ("{k}", alarm_thousands(self.dialect).to_owned()),
             ("{rotary}", self.rotary.to_string()),
+            ("{increment}", number(self.increment.size())),
+            // Half an increment in x and y each is 0.707 of one.
+            ("{rounding}", number(0.75 * self.increment.size())),
             ("{per_unit}", number(self.increment.per_unit())),
         ];
         fill(one.text, &marks)

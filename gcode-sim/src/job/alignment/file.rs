@@ -2,6 +2,7 @@
 use serde::Deserialize;
 use toml::Spanned;
 
+use super::ellipse::FileEllipse;
 use super::{Alignment, Chord, Runout, SineTable};
 use crate::gauge::{self, GaugeSet};
 use crate::job::pin_holes::{FileMachine, FileSurface};
@@ -21,6 +22,8 @@ struct File {
     sine_table: FileSineTable,
     chord: FileChord,
     runout: FileRunout,
+    #[serde(default)]
+    ellipse: FileEllipse,
 }
 
 #[derive(Deserialize)]
@@ -57,8 +60,10 @@ struct FileRunout {
 pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<Alignment, JobError> {
     let file: File = toml::from_str(reader.text).map_err(|e| reader.syntax(&e))?;
     let surface = file.surface.check(reader)?;
+    let control = file.control.check(reader)?;
+    let chord = file.chord.check(reader, surface)?;
     Ok(Alignment {
-        control: file.control.check(reader)?,
+        control,
         machine: file.machine.check(reader)?,
         probe_radius: reader.number(
             "probe.radius",
@@ -67,8 +72,9 @@ pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<Alignment, JobError> 
             within(0.01, 1000.0),
         )?,
         sine_table: file.sine_table.check(reader)?,
-        chord: file.chord.check(reader, surface)?,
+        chord,
         runout: file.runout.check(reader, surface)?,
+        ellipse: file.ellipse.check(reader, control, surface, chord)?,
         surface,
     })
 }

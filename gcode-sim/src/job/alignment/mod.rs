@@ -1,4 +1,5 @@
 //! The job file of the family `alignment`: what is known of the part that is to be set up, and what it is measured with.
+mod ellipse;
 mod file;
 
 pub(super) use file::parse;
@@ -17,6 +18,7 @@ pub struct Alignment {
     pub sine_table: SineTable,
     pub chord: Chord,
     pub runout: Runout,
+    pub ellipse: EllipsePath,
 }
 
 /// The table that sets the angle between the part's bottom face and its axis.
@@ -37,6 +39,18 @@ pub struct Chord {
     /// Radius of the circle on which the candidates lie round each.
     pub circle: f64,
     pub candidates: u32,
+}
+
+/// The ellipse in the plane z = 0 along which the ball of an edge finder is fed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EllipsePath {
+    /// x of the surface where it begins and where it ends.
+    pub from: f64,
+    pub to: f64,
+    /// How far the ball may be off its distance from the surface, rounding included.
+    pub chord_error: f64,
+    /// mm/min.
+    pub feed: f64,
 }
 
 /// An indicator held against the part while the table turns.
