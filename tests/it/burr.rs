@@ -13,7 +13,6 @@ use gcode_sim::units::{Deg, ln};
 use gcode_sim::verify::Answer;
 use gcode_sim::verify::flutes::FluteVerdict;
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
 /// The keys of a job that differ from test to test.
 #[derive(Clone, Debug)]
@@ -87,6 +86,11 @@ fn example() -> Wish {
     }
 }
 
+/// The same with two flutes, where their number is nothing to the test.
+fn two_flutes() -> Wish {
+    Wish { flutes: 2, ..example() }
+}
+
 /// What is emitted must pass; its verdict.
 fn passed(wish: &Wish) -> FluteVerdict {
     let job = wish.job();
@@ -142,8 +146,7 @@ fn wishes() -> impl Strategy<Value = Wish> {
 }
 
 proptest! {
-    // The same burrs every time: of small ones ground by the published law some are refused near the tip.
-    #![proptest_config(ProptestConfig { rng_seed: RngSeed::Fixed(9217), ..ProptestConfig::with_cases(8) })]
+    #![proptest_config(ProptestConfig::with_cases(8))]
 
     #[test]
     fn a_random_burr_is_ground_as_wanted(wish in wishes()) {
@@ -201,9 +204,11 @@ fn path(wish: &Wish) -> Path {
 /// The control computes the very points that the generator writes out, and as fast.
 #[test]
 fn both_forms_make_the_same_moves() {
-    let arcs = Wish { profile: Some((14.0 / 6.0, 4.0 / 6.0)), ..example() };
+    let arcs = Wish { profile: Some((14.0 / 6.0, 4.0 / 6.0)), ..two_flutes() };
     let published = Wish { law: "published", signs: [-1, 1, -1, 1, -1], flutes: 3, ..arcs.clone() };
-    for wish in [example(), arcs, published] {
+    // Where the speed along the flute is what keeps moves short.
+    let steady = Wish { offset: [-69.4, 34.9], diameter: 4.5, chord_error: 0.009, ..arcs.clone() };
+    for wish in [two_flutes(), arcs, published, steady] {
         let (computed, written) = (path(&wish), path(&Wish { form: "moves", ..wish.clone() }));
         assert_eq!(computed.0.len(), written.0.len());
         for (one, other) in computed.0.iter().zip(&written.0) {
@@ -255,7 +260,7 @@ fn there_are_as_few_moves_as_hold_the_chord_error() {
         c = longest(c, 85.0, 0.0015);
         fewest += 1;
     }
-    let found = passed(&example()).moves / 16;
+    let found = passed(&two_flutes()).moves / 2;
     assert!(
         fewest <= found + 1 && found <= fewest + fewest / 20 + 2,
         "{found} moves where {fewest} would do"
@@ -265,7 +270,7 @@ fn there_are_as_few_moves_as_hold_the_chord_error() {
 /// Forward kinematics decides: the same programs on a machine with one axis turned round grind no such burr.
 #[test]
 fn each_axis_sign_counts() {
-    let job = example().job();
+    let job = two_flutes().job();
     let package = families::emit(&job);
     let Wanted::Flutes(wanted) = Wanted::of_job(&job).unwrap() else { panic!("a burr has flutes") };
     for letter in ["X", "Y", "A", "B", "C"] {
@@ -329,9 +334,9 @@ fn the_macro_refuses_what_can_not_be_ground() {
     assert!(passed(&Wish { profile: Some((14.0 / 6.0, 4.0 / 6.0)), ..example() }).flutes == 16);
 }
 
-/// The verdict on the example's program with more blocks before its end, at C 0 with the wheel clear of the burr.
+/// The verdict on a program with more blocks before its end, at C 0 with the wheel clear of the burr.
 fn with(blocks: &str) -> FluteVerdict {
-    let job = example().job();
+    let job = two_flutes().job();
     let Wanted::Flutes(wanted) = Wanted::of_job(&job).unwrap() else { panic!("a burr has flutes") };
     let mut package = families::emit(&job);
     let main = package.programs.iter_mut().find(|program| program.number == 8400).unwrap();
@@ -405,6 +410,31 @@ fn where_the_axes_stand_at_the_start_is_told_as_not_checked() {
     let verdict = passed(&example());
     let told = "rapid motion up to where the wheel first stands off the blank (1 move)";
     assert!(verdict.not_checked.iter().any(|line| line.starts_with(told)), "{:?}", verdict.not_checked);
+}
+
+/// Straying by the whole chord error leans too much where a flute narrows: the moves are made for less of it.
+#[test]
+fn near_the_tip_moves_are_shorter_for_the_helix_angle() {
+    let control = ("haas-ngc", "IS-C");
+    let ball = Wish { control, diameter: 9.434, cylinder: 0.0, helix: 23.5, form: "moves", ..two_flutes() };
+    let ball = Wish { tip_angle: 10.69, chord_error: 0.009_486, offset: [-12.242, 51.782], ..ball };
+    let published = Wish { law: "published", diameter: 4.0, helix: 11.18, tip_angle: 8.0, ..ball.clone() };
+    let small =
+        Wish { control: ("fanuc-31i", "IS-C"), chord_error: 0.002, flutes: 1, form: "loop", ..published };
+    for wish in [ball, Wish { offset: [5.968_188_615_992_388, 66.869_309_878_016_95], ..small }] {
+        assert!(passed(&wish).helix_error.unwrap() <= 0.3);
+    }
+}
+
+/// With an increment of 0.001 mm the least chord error leaves 0.0005 mm to stray by, which over 0.5 mm is 0.057°.
+#[test]
+fn a_control_too_coarse_for_the_helix_angle_is_told() {
+    let text = format!("{}[tolerance]\nhelix = 0.05\n", two_flutes().text());
+    let job = Job::parse(&text).unwrap();
+    let Err(error) = check(&job, &families::emit(&job)) else { panic!("nothing is refused") };
+    let error = error.to_string();
+    assert!(error.starts_with("the helix angle can't be kept within 0.05°"), "{error}");
+    assert!(error.contains("control.increment = \"IS-C\", if the control has it"), "{error}");
 }
 
 /// A length that is the nose's but for the last bit leaves no cylinder: no move of no length, at a feed without end.

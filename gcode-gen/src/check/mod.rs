@@ -70,6 +70,11 @@ pub fn check(job: &Job, package: &Package) -> Result<Checked, CheckError> {
     if let Job::Alignment(job) = job {
         return alignment::check(job, package);
     }
+    if let Job::Burr(burr) = job
+        && let Some(why) = crate::families::burr::refusal(burr)
+    {
+        return Err(CheckError::Impossible(why));
+    }
     match Wanted::of_job(job).map_err(|e| CheckError::Impossible(e.to_string()))? {
         Wanted::Holes(reference) => holes::check(job, package, &reference),
         Wanted::Flutes(wanted) => flutes::check(package, &wanted),

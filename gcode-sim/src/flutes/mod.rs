@@ -8,7 +8,7 @@ use nalgebra::Point3;
 
 use dives::Dives;
 pub use dives::{Dive, Kind};
-pub use trace::{Sample, Trace, Window, gauge};
+pub use trace::{Sample, Trace, Window};
 
 use crate::diag::{Diagnostic, Severity};
 use crate::machine::path::Travel;
@@ -146,7 +146,14 @@ impl<'m> Follower<'m> {
         }
         let travel = Travel { from: &from, to, arc };
         let grinds = !rapid && from[self.burr] != to[self.burr];
-        let Some(path) = self.path(&travel, if grinds { APART } else { APART_BETWEEN }) else {
+        let apart = if grinds { APART } else { APART_BETWEEN };
+        let Some(steps) = self.steps(&travel, apart) else {
+            return self.stop(event, format!("more than {COMPUTED} points of the wheel's path"));
+        };
+        if grinds && (KEPT - self.kept) as f64 <= steps {
+            return self.stop(event, format!("more than {KEPT} points of passes, one every {APART} mm"));
+        }
+        let Some(path) = self.points(&travel, steps) else {
             return self.stop(event, format!("more than {COMPUTED} points of the wheel's path"));
         };
         if !grinds {
@@ -154,10 +161,7 @@ impl<'m> Follower<'m> {
             self.dives.look(&self.flutes, event.place(), rapid, &path);
             return;
         }
-        self.kept += path.len();
-        if self.kept > KEPT {
-            return self.stop(event, format!("more than {KEPT} points of passes, one every {APART} mm"));
-        }
+        self.kept = KEPT.min(self.kept + path.len());
         self.dives.ground();
         let head = self.wheel.angle(&from).zip(self.wheel.angle(to));
         let pass = self.open.get_or_insert_with(|| Pass {
@@ -175,18 +179,19 @@ impl<'m> Follower<'m> {
         }
     }
 
-    /// The contact on the burr along a motion, no two points farther apart than about `apart` mm; `None` where that
-    /// would make too many of them in all.
-    fn path(&mut self, travel: &Travel<'_>, apart: f64) -> Option<Vec<Point3<f64>>> {
+    /// In how many steps a motion is looked at, so that no two points are farther apart than about `apart` mm; `None`
+    /// where telling that takes too many of them.
+    fn steps(&mut self, travel: &Travel<'_>, apart: f64) -> Option<f64> {
         // The length is measured first: by points a twelfth of a turn apart, for after whole turns all are in one place.
         let sweep = travel.arc.map_or(Deg::ZERO, |arc| arc.sweep.abs());
         let turn = self.machine.table.turned(travel.from, travel.to) + sweep;
         let first = self.points(travel, (turn.0 / 30.0).ceil().max(16.0))?;
         let length: f64 = first.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
-        self.points(travel, (length / apart).ceil().max(4.0))
+        Some((length / apart).ceil().max(4.0))
     }
 
-    /// So many steps along a motion, one more if that is odd.
+    /// The contact on the burr in so many steps along a motion, one more if that is odd; `None` where that makes too
+    /// many of them in all.
     fn points(&mut self, travel: &Travel<'_>, steps: f64) -> Option<Vec<Point3<f64>>> {
         if (COMPUTED - self.computed) as f64 <= steps + 2.0 {
             return None;

@@ -49,22 +49,14 @@ pub struct Window<'t> {
     pub other: Deg,
 }
 
-/// Over how long a stretch a helix angle is measured.
-///
-/// A path that may stray from the flute by the chord error has no direction at a point: it has one over lengths
-/// against which that error is small. 0.5 mm, or 250 chord errors where that is more, keep what straying alone can
-/// make of the angle below 0.23°.
-pub fn gauge(flutes: &Flutes) -> f64 {
-    (250.0 * flutes.chord_error).max(0.5)
-}
-
 /// The angle about the axis in the sense of `around`.
 fn azimuth(p: &Point3<f64>) -> Deg {
     Deg::atan2(-p.z, p.y)
 }
 
 impl Trace {
-    /// Goes on along `path`, whose first point is where the trace has come to.
+    /// Goes on along `path`, whose first point is where the trace has come to. Ways are those of the surface's points below
+    /// the path: how far the path is off says nothing of its direction.
     pub(super) fn follow(&mut self, flutes: &Flutes, path: &[Point3<f64>], place: impl Fn() -> Place) {
         let profile = &flutes.profile;
         let index = self.places.len();
@@ -73,6 +65,8 @@ impl Trace {
             FluteLaw::ConstantHelix => FluteLaw::Published,
             FluteLaw::Published => FluteLaw::ConstantHelix,
         };
+        let foot = |at: &Point3<f64>| profile.foot(at);
+        let mut before = self.samples.last().map(|last| foot(&last.at));
         for at in path {
             let mut sample = Sample {
                 at: *at,
@@ -86,12 +80,13 @@ impl Trace {
                 begun: azimuth(at),
                 place: index,
             };
-            if let Some(last) = self.samples.last() {
-                let by = at - last.at;
-                if by.norm() == 0.0 {
+            let here = foot(at);
+            if let Some((last, before)) = self.samples.last().zip(before) {
+                if *at == last.at {
                     continue;
                 }
-                let middle = nalgebra::center(at, &last.at);
+                let by = here - before;
+                let middle = nalgebra::center(&here, &before);
                 let (meridian, around) = profile.directions(&middle);
                 let along = by.dot(&meridian);
                 sample.along = last.along + along;
@@ -102,6 +97,7 @@ impl Trace {
                 sample.begun = last.begun;
             }
             self.samples.push(sample);
+            before = Some(here);
         }
     }
 

@@ -21,6 +21,8 @@ pub struct Flutes {
     pub tooth_depth: f64,
     /// How far the contact's path may be from the flute it follows.
     pub chord_error: f64,
+    /// Over how long a stretch of a flute its helix angle is measured.
+    pub gauge: f64,
     /// How far it may be from the surface.
     pub surface_tolerance: f64,
     /// Of the helix angle, either way.
@@ -41,6 +43,7 @@ impl Flutes {
             tip_angle: Deg(job.shape.tip_angle),
             tooth_depth: job.shape.tooth_depth,
             chord_error: job.chord_error,
+            gauge: job.gauge(),
             surface_tolerance: job.chord_error,
             helix_tolerance: Deg(job.tolerance.helix),
             index_tolerance: Deg(job.tolerance.index),

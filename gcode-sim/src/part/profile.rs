@@ -71,6 +71,11 @@ impl Profile {
         (at - circle.centre).norm() - circle.radius
     }
 
+    /// The surface's point next to `p`.
+    pub fn foot(&self, p: &Point3<f64>) -> Point3<f64> {
+        p - self.normal(p).into_inner() * self.distance(p)
+    }
+
     /// The unit normal out of the body at the surface's point next to `p`.
     pub fn normal(&self, p: &Point3<f64>) -> Unit<Vector3<f64>> {
         let at = half_plane(p);

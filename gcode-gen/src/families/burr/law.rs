@@ -4,6 +4,9 @@ use gcode_sim::units::{Deg, ln};
 
 use super::nose::Arc;
 
+/// How much faster or slower than it should be the contact may go along the flute within a move: a quarter.
+const SWING: f64 = 0.25;
+
 /// A flute on one arc of the nose.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Flute {
@@ -45,6 +48,11 @@ impl Flute {
         }
     }
 
+    /// The tangent of the helix angle at C.
+    pub(super) fn slope(&self, c: Deg) -> f64 {
+        self.bend(c).slope
+    }
+
     fn bend(&self, c: Deg) -> Bend {
         let (arc, tan) = (&self.arc, self.helix.tan());
         let r = arc.station(c).radius;
@@ -77,17 +85,27 @@ impl Flute {
         (normal * normal + across * across).sqrt()
     }
 
-    /// The longest move from C on that stays within `error` mm of the flute, shortened so that moves of its length
-    /// fill the rest of the arc. The bending is taken where the move begins and where it would end by that, whichever
-    /// is more; 10° is the most.
+    /// The longest move from C in which the contact's speed along the flute swings by [`SWING`] at most.
+    ///
+    /// What a move strays by along the flute leaves it on it, but from end to end the contact gets slower or faster by
+    /// half the move times that bending, and would even go back.
+    fn steady(&self, c: Deg) -> Deg {
+        let [meridian, _] = self.arc.carried(c);
+        let Bend { slope, around } = self.bend(c);
+        let along = (meridian + around * slope).abs();
+        Deg::from_rad(2.0 * SWING * self.arc.radius * (1.0 + slope * slope) / along)
+    }
+
+    /// The longest move from C on that stays within `error` mm of the flute at a steady speed, shortened so that moves of its length
+    /// fill the rest of the arc. Both are taken where the move begins and where it would end by that, whichever lets it
+    /// be shorter; 10° is the most.
     pub(super) fn step(&self, c: Deg, error: f64) -> Deg {
-        let longest = Deg(10.0).to_rad();
-        let least = 8.0 * error / (longest * longest);
-        let by = |bending: f64| Deg::from_rad((8.0 * error / bending).sqrt());
-        let start = self.bending(c).max(least);
-        let there = Deg(c.0 + by(start).0.min(self.arc.to.0 - c.0));
-        let step = by(start.max(self.bending(there)));
-        let rest = self.arc.to - c;
-        Deg(rest.0 / (rest.0 / step.0).ceil())
+        let by = |c: Deg| {
+            let straight = Deg::from_rad((8.0 * error / self.bending(c)).sqrt());
+            straight.0.min(self.steady(c).0).min(10.0)
+        };
+        let (rest, step) = (self.arc.to - c, by(c));
+        let step = step.min(by(Deg(c.0 + step.min(rest.0))));
+        Deg(rest.0 / (rest.0 / step).ceil())
     }
 }

@@ -3,6 +3,7 @@
 //!
 //! The method is that of *Machining Rotary Burrs on 5-Axis Grinding Machine*; see `docs/methods/burr.md`.
 mod law;
+mod lean;
 mod machine_file;
 pub mod macros;
 mod nose;
@@ -34,14 +35,22 @@ pub fn emit(job: &Burr) -> Package {
     Package { mains: vec![MAIN], programs, machine: machine_file::machine_file(job) }
 }
 
+/// Why no program grinds the job's burr within its tolerances, and what would do.
+pub fn refusal(job: &Burr) -> Option<String> {
+    lean::refusal(job)
+}
+
 struct Main<'j> {
     job: &'j Burr,
+    /// What the moves are made for: the job's, or less where the helix angle asks for it.
+    chord_error: f64,
     text: Text,
 }
 
 impl<'j> Main<'j> {
     fn new(job: &'j Burr) -> Self {
-        Self { job, text: Text::new(MAIN, "BALL-END ROTARY BURR", job.control.dialect) }
+        let chord_error = lean::chord_error(job).unwrap_or(job.chord_error);
+        Self { job, chord_error, text: Text::new(MAIN, "BALL-END ROTARY BURR", job.control.dialect) }
     }
 
     fn text(mut self) -> String {
@@ -102,6 +111,10 @@ impl<'j> Main<'j> {
         for line in lines {
             self.text.remark(line);
         }
+        if self.chord_error < job.chord_error {
+            let least = number(self.chord_error);
+            self.text.remark(format!("MOVES FOR A CHORD ERROR OF {least}, SO THAT THE HELIX ANGLE HOLDS"));
+        }
     }
 
     /// One call a flute, counted by the control.
@@ -117,7 +130,7 @@ impl<'j> Main<'j> {
             .word('A', format!("[#1*360./{flutes}]"))
             .word('B', number(job.helix))
             .word('C', number(90.0 - shape.tip_angle))
-            .word('D', number(job.chord_error))
+            .word('D', number(self.chord_error))
             .word('E', number(job.program.plunge))
             .word('F', number(job.program.speed))
             .word('H', if job.law == FluteLaw::Published { "1." } else { "0." })
@@ -138,7 +151,7 @@ impl<'j> Main<'j> {
     /// Every flute point by point.
     fn moves(&mut self) {
         let job = self.job;
-        let points = points(job);
+        let points = points(job, self.chord_error);
         let (signs, clear, stand_off) = (job.grinder.signs, clear(job), stand_off(job));
         // Rounded here: a control cuts off what a number in the program has beyond the increment.
         let increment = job.control.increment;

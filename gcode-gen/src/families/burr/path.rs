@@ -17,14 +17,14 @@ pub(super) struct Point {
     pub(super) way: f64,
 }
 
-/// The part of the chord error that rounding doesn't take: Y is rounded by up to half an increment; C is on its grid
+/// The part of a chord error that rounding doesn't take: Y is rounded by up to half an increment; C is on its grid
 /// before X, Y and A are computed.
-pub(super) fn error(job: &Burr) -> f64 {
-    job.chord_error - job.control.increment.size() / 2.0
+fn left(chord_error: f64, job: &Burr) -> f64 {
+    chord_error - job.control.increment.size() / 2.0
 }
 
-/// The first point is where the wheel plunges; A counts from there.
-pub(super) fn points(job: &Burr) -> Vec<Point> {
+/// Moves as long as a chord error lets them be. The first point is where the wheel plunges; A counts from there.
+pub(super) fn points(job: &Burr, chord_error: f64) -> Vec<Point> {
     let shape = &job.shape;
     let [offset_x, offset_y] = job.grinder.c_offset;
     let helix = Deg(job.helix);
@@ -39,7 +39,7 @@ pub(super) fn points(job: &Burr) -> Vec<Point> {
         let flute = Flute { law: job.law, helix, arc };
         let (mut c, mut a) = (arc.from, begun);
         while c < arc.to {
-            let step = flute.step(c, error(job));
+            let step = flute.step(c, left(chord_error, job));
             // A step below the grid would be none.
             let next = Deg(job.control.increment.round(c.0 + step.0).max(c.0 + job.control.increment.size()));
             let turn = begun + flute.turn(next);

@@ -9,7 +9,7 @@ pub use round::Round;
 pub use verdict::{Angles, FluteVerdict, Law, WantedFlutes};
 
 use crate::diag::Diagnostic;
-use crate::flutes::{Ground, Trace, gauge};
+use crate::flutes::{Ground, Trace};
 use crate::motion::Place;
 use crate::part::flutes::Flutes;
 use crate::source::Span;
@@ -71,7 +71,7 @@ impl WorstHelix {
 
 impl HelixRange {
     fn of(wanted: &Flutes, ground: &Ground) -> Option<Self> {
-        let gauge = gauge(wanted);
+        let gauge = wanted.gauge;
         let mut range: Option<Self> = None;
         for (pass, ground) in ground.passes.iter().enumerate() {
             for window in ground.trace.windows(gauge) {

@@ -3,7 +3,7 @@ use serde::Serialize;
 
 use super::Inspection;
 use crate::diag::{Diagnostic, Severity};
-use crate::flutes::{Window, gauge};
+use crate::flutes::Window;
 use crate::job::FluteLaw;
 use crate::part::flutes::Flutes;
 use crate::part::hole::Origin;
@@ -151,7 +151,7 @@ pub(super) fn verdict(
     let (wanted, ground, helix) = (inspection.wanted, inspection.ground, &inspection.helix);
     let samples = ground.passes.iter().flat_map(|pass| &pass.trace.samples);
     let fails = findings.iter().any(|finding| Severity::Error <= finding.severity);
-    let gauge = gauge(wanted);
+    let gauge = wanted.gauge;
     let worst_pass = helix.worst.map_or(0, |worst| worst.pass);
     let along: Vec<Angles> = ground.passes.get(worst_pass).map_or(Vec::new(), |pass| {
         let angles = |window: Window<'_>| Angles { polar: window.middle.polar, helix: window.helix };

@@ -1,7 +1,7 @@
 //! The helix angle along every flute is that of the law asked for.
 use super::super::{Inspection, WorstHelix};
 use crate::diag::Diagnostic;
-use crate::flutes::{Window, gauge};
+use crate::flutes::Window;
 use crate::job::FluteLaw;
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
@@ -12,7 +12,7 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
         "the helix angle is {:.2}° at polar angle {:.1}° where {:.2}° is wanted: {}° either way is allowed",
         worst.found.0, worst.polar.0, worst.wanted.0, tolerance.0
     );
-    let place = worst.place(&pass.trace, gauge(inspection.wanted)).unwrap_or(&pass.place);
+    let place = worst.place(&pass.trace, inspection.wanted.gauge).unwrap_or(&pass.place);
     let finding = Diagnostic::error("flute-helix", message).at(place.clone());
     findings.push(finding.help(help(inspection, &worst)));
 }
@@ -24,7 +24,7 @@ fn help(inspection: &Inspection<'_>, worst: &WorstHelix) -> String {
         FluteLaw::ConstantHelix => FluteLaw::Published,
         FluteLaw::Published => FluteLaw::ConstantHelix,
     };
-    let gauge = gauge(inspection.wanted);
+    let gauge = inspection.wanted.gauge;
     let allowed = inspection.wanted.helix_tolerance * 2.0;
     let all_along = |fits: &dyn Fn(&Window<'_>) -> bool| {
         inspection.ground.passes[worst.pass].trace.windows(gauge).all(|window| fits(&window))
