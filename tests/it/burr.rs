@@ -216,7 +216,8 @@ fn both_forms_make_the_same_moves() {
             let apart = one.1.0.iter().zip(&other.1.0).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             // A C that falls halfway between two increments may go either way, and A after it.
             assert!(apart < 0.005, "{one:?} {other:?}");
-            assert!((one.2 - other.2).abs() < 1e-4, "{one:?} {other:?}");
+            // An F that is written out has three places.
+            assert!((one.2 - other.2).abs() < 1e-3, "{one:?} {other:?}");
         }
     }
 }

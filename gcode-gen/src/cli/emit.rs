@@ -8,6 +8,7 @@ use gcode_sim::picture::{self, PictureError, Scene, Size};
 
 use crate::check::{CheckError, Checked, check};
 use crate::families;
+use crate::package::{Package, file_name};
 
 pub(super) fn run(path: &Path, out: &Path) -> Result<Status, Refusal> {
     let text = input::text(path)?;
@@ -41,7 +42,21 @@ pub(super) fn run(path: &Path, out: &Path) -> Result<Status, Refusal> {
         let _ = writeln!(text, "written: {}", path.display());
     }
     output::print(&text)?;
+    for path in left_over(&job, &package, out) {
+        output::tell(&format!(
+            "warning: {} is from an earlier job and isn't called by the programs just written: if no other program in the \
+             folder calls it, remove it, so that nobody loads it with them\n",
+            path.display()
+        ));
+    }
     Ok(Status::Holds)
+}
+
+/// Resident macros of the job's family that stand in the folder and aren't of this package.
+fn left_over(job: &Job, package: &Package, out: &Path) -> Vec<PathBuf> {
+    let resident = (families::of(job).resident)();
+    let others = resident.iter().filter(|(_, macros)| package.program(macros.number).is_none());
+    others.map(|(_, macros)| out.join(file_name(macros.number))).filter(|path| path.exists()).collect()
 }
 
 /// What was drawn of it, as PNG by file name: `O8100.png`, and where there are more views `O8400-tip.png`.

@@ -22,6 +22,16 @@ pub struct Family {
 /// Every family there is.
 pub const ALL: &[Family] = &[pin_holes::FAMILY, honeycomb::FAMILY, burr::FAMILY, alignment::FAMILY];
 
+/// The family of a job.
+pub fn of(job: &Job) -> &'static Family {
+    match job {
+        Job::PinHoles(_) => &pin_holes::FAMILY,
+        Job::Honeycomb(_) => &honeycomb::FAMILY,
+        Job::Burr(_) => &burr::FAMILY,
+        Job::Alignment(_) => &alignment::FAMILY,
+    }
+}
+
 /// The programs of a job.
 pub fn emit(job: &Job) -> Package {
     match job {

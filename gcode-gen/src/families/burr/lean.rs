@@ -63,7 +63,7 @@ pub(super) fn refusal(job: &Burr) -> Option<String> {
             .map(|(name, _)| format!("control.increment = \"{name}\", if the control has it")),
     );
     let grown = |from: f64, most: f64| {
-        std::iter::successors(Some(from * 1.25), |value| Some(value * 1.25)).take_while(move |v| *v <= most)
+        std::iter::successors(Some(from * 1.5), |value| Some(value * 1.5)).take_while(move |v| *v <= most)
     };
     would.extend(
         grown(job.shape.tip_angle, 85.0)

@@ -182,11 +182,16 @@ impl<'j> Main<'j> {
             self.block(format!("G01 Y0. F{}", number(job.program.plunge)));
             self.block("G93");
             for point in rest {
-                self.block(format!("{} F{}", axes(point), number(job.program.speed / point.way)));
+                self.block(format!("{} F{}", axes(point), number(rate(job.program.speed, point.way))));
             }
             self.block(format!("G94 G00 {}", along('Y', signs.y, clear)));
         }
     }
+}
+
+/// Of a move, in 1/min. Controls take three places of an F in inverse time.
+fn rate(speed: f64, way: f64) -> f64 {
+    (1000.0 * speed / way).round().max(1.0) / 1000.0
 }
 
 /// Which axes run against the formulas.

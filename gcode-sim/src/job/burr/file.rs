@@ -37,7 +37,7 @@ struct FileBurr {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct FileMachine {
-    c_offset: [Spanned<f64>; 2],
+    c_offset: Spanned<Vec<Spanned<f64>>>,
     signs: Option<FileSigns>,
     clearance: Option<Spanned<f64>>,
     profile: Option<Spanned<FileProfile>>,
@@ -179,10 +179,14 @@ impl FileBurr {
         let most = (round / (4.0 * chord_error)).floor().clamp(1.0, 360.0);
         let flutes = *self.flutes.as_ref();
         u32::try_from(flutes).ok().filter(|n| 1 <= *n && f64::from(*n) <= most).ok_or_else(|| {
-            let message = format!(
-                "key 'burr.flutes' is {flutes}: 1 to {most:.0}, for at the tip angle {round:.3} mm are there for all of \
-                 them"
-            );
+            let message = match most < 360.0 {
+                _ if flutes < 1 => format!("key 'burr.flutes' is {flutes}: a burr has at least 1"),
+                true => format!(
+                    "key 'burr.flutes' is {flutes}: {most:.0} at most, for they end on a circle {round:.3} mm round, and \
+                     each takes up to four chord errors of it: fewer flutes, a larger tip_angle or a smaller chord_error"
+                ),
+                false => format!("key 'burr.flutes' is {flutes}: 360 at most"),
+            };
             reader.error(&self.flutes, message)
         })
     }
@@ -219,7 +223,13 @@ impl FileProfile {
 
 impl FileMachine {
     fn check(&self, reader: &Reader<'_>) -> Result<Grinder, JobError> {
-        let [x, y] = &self.c_offset;
+        let [x, y] = self.c_offset.as_ref().as_slice() else {
+            let count = self.c_offset.as_ref().len();
+            let message = format!(
+                "key 'machine.c_offset' has {count} numbers: two, X and Y from the C axis to the end of the cylinder, mm"
+            );
+            return Err(reader.error(&self.c_offset, message));
+        };
         let offset = |value: &Spanned<f64>| {
             reader.number("machine.c_offset", value, "-2000 to 2000 mm", within(-2000.0, 2000.0))
         };
