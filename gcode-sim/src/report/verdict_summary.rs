@@ -48,6 +48,13 @@ pub(super) fn summary(text: &mut String, verdict: &Verdict) {
         let share = rounding / verdict.tolerance * 100.0;
         let said = "rounding alone, to the control's least increment, can use up";
         put(text, &format!("{said} Φ{rounding:.4}: {share:.1} % of the zone"));
+        if verdict.tolerance < rounding {
+            let why = "a finer increment or a wider tolerance is needed";
+            put(
+                text,
+                &format!("WARNING  this control can't be trusted to hold Φ{}: {why}", verdict.tolerance),
+            );
+        }
     }
     for what in &verdict.not_checked {
         put(text, &format!("not checked: {what}"));

@@ -235,4 +235,13 @@ rounding alone, to the control's least increment, can use up Φ0.0211: 21.1 % of
 missing  3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, … and 3 more
 ");
     }
+
+    /// Φ0.0211 by rounding alone is more than a zone of 0.02, and less than one of 0.0212.
+    #[test]
+    fn a_zone_smaller_than_rounding_is_warned_of() {
+        let told = |tolerance: f64| table(&Verdict { tolerance, ..verdict() }, Layout::default());
+        let warning = "WARNING  this control can't be trusted to hold Φ0.02: a finer increment or a wider tolerance is needed";
+        assert!(told(0.02).contains(warning));
+        assert!(!told(0.0212).contains("WARNING"));
+    }
 }
