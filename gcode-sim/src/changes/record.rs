@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::steps::{Recorder, Step};
 use crate::diag::{Diagnostic, Severity};
-use crate::exec::{Outcome, RemainderKind};
+use crate::exec::{Outcome, RemainderKind, Watcher};
 use crate::holes::Found;
 use crate::motion::{Axes, MAX_AXES, Place, Position};
 use crate::part::surface::Surface;
@@ -93,8 +93,18 @@ impl Revision {
         library: &mut impl Library,
         surface: Option<Surface>,
     ) -> Result<Self, SessionError> {
+        Self::watched(request, library, surface, &mut ())
+    }
+
+    /// As [`Revision::of`], with somebody who looks on from block to block.
+    pub fn watched(
+        request: &Request,
+        library: &mut impl Library,
+        surface: Option<Surface>,
+        watcher: &mut impl Watcher,
+    ) -> Result<Self, SessionError> {
         let mut recorder = Recorder::default();
-        let mut simulation = session::simulate_beside(request, library, surface, &mut recorder)?;
+        let mut simulation = session::simulate_beside(request, library, surface, &mut recorder, watcher)?;
         if recorder.too_many {
             let message = format!("more than {MOST_STEPS} moves: those behind them aren't compared");
             simulation.extracted.findings.push(Diagnostic::new(Severity::Alarm, "limit", message));

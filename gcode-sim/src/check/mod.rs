@@ -25,6 +25,7 @@ use crate::program::{Library, Memory, Program, ProgramId};
 use crate::source::Span;
 use calls::CalledAs;
 use subject::Subject;
+pub(crate) use variables::variables_read;
 
 /// What was found, and the texts it was found in.
 #[derive(Debug)]

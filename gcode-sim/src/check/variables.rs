@@ -54,6 +54,17 @@ pub(super) fn of_block(block: &Block) -> Uses {
     uses
 }
 
+/// The numbers of the variables that a block reads by number or by name, each once.
+pub(crate) fn variables_read(block: &Block) -> Vec<u32> {
+    let mut numbers = Vec::new();
+    for read in of_block(block).reads {
+        if !numbers.contains(&read.number) {
+            numbers.push(read.number);
+        }
+    }
+    numbers
+}
+
 /// G65, G66, G66.1: the other words are arguments.
 fn is_macro_call(item: &Item) -> bool {
     let Item::Word(word) = item else { return false };

@@ -45,6 +45,7 @@ mod transform_order;
 mod travel;
 mod vars;
 mod view;
+mod watch;
 mod words;
 
 use std::cell::Cell;
@@ -57,6 +58,7 @@ pub use outcome::{Limits, Outcome, Stop, Stopped};
 pub use print::printable;
 pub use state::{Codes, State};
 pub use vars::{Value, Vars};
+pub use watch::Watcher;
 
 use self::ahead::Ahead;
 use self::endless::{Endless, Watch};

@@ -3,7 +3,7 @@ use super::eval::Checked;
 use super::frames::FrameKind;
 use super::notes::Note;
 use super::plan::Flow;
-use super::{Control, Core, Limits, Outcome, Stopped};
+use super::{Control, Core, Limits, Outcome, Stopped, Watcher};
 use crate::alarm::Alarm;
 use crate::motion::{Place, Sink};
 use crate::program::{Form, Library, Op, OpKind};
@@ -17,9 +17,23 @@ const MOVES_PER_BLOCK: u64 = 20;
 impl Control {
     /// Runs to the end, to an alarm, or to a limit.
     pub fn run<S: Sink>(&mut self, limits: Limits, library: &mut impl Library, sink: &mut S) -> Outcome {
+        self.run_watched(limits, library, sink, &mut ())
+    }
+
+    /// As [`Control::run`], with somebody who looks on from block to block.
+    pub fn run_watched<S: Sink>(
+        &mut self,
+        limits: Limits,
+        library: &mut impl Library,
+        sink: &mut S,
+        watcher: &mut impl Watcher,
+    ) -> Outcome {
         let moves = limits.blocks.saturating_mul(MOVES_PER_BLOCK).max(MOVES);
         while self.core.blocks < limits.blocks && self.core.moves <= moves {
-            if let Some(outcome) = self.step(library, sink) {
+            watcher.before(self);
+            let outcome = self.step(library, sink);
+            watcher.after(self);
+            if let Some(outcome) = outcome {
                 return outcome;
             }
         }

@@ -75,7 +75,7 @@ impl Core {
         Ok(None)
     }
 
-    fn target(&self, program: &Program, target: Operand) -> Result<u32, Alarm> {
+    pub(super) fn target(&self, program: &Program, target: Operand) -> Result<u32, Alarm> {
         let value = self.operand(program, target).map_err(|alarm| alarm.node)?;
         index(value)
     }

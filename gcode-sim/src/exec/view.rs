@@ -2,7 +2,7 @@
 use std::collections::BTreeMap;
 
 use super::state::State;
-use super::vars::Value;
+use super::vars::{Value, Vars};
 use super::{Control, Outcome, Stop};
 use crate::alarm::Alarm;
 use crate::control::Settings;
@@ -33,6 +33,11 @@ impl Control {
     /// A variable of any kind by its number, as a program would read it now.
     pub fn variable(&self, number: u32) -> Result<Value, Alarm> {
         self.core.read(number)
+    }
+
+    /// Local and common variables as they stand.
+    pub fn vars(&self) -> &Vars {
+        &self.core.vars
     }
 
     /// The coordinate of an axis in the active work coordinate system, as #5001… show it.

@@ -1,12 +1,15 @@
 //! One program through the whole chain: what the command line, the generator and tests call.
 mod still;
+mod trace;
 
 use std::sync::Arc;
+
+pub use trace::{Executed, Role, Trace, Values};
 
 use crate::alarm::{Alarm, Code, remedy};
 use crate::control::Settings;
 use crate::diag::{Diagnostic, Severity};
-use crate::exec::{Control, Limits, Note, Outcome};
+use crate::exec::{Control, Limits, Note, Outcome, Watcher};
 use crate::flutes::{Follower, Ground, NoGrinder};
 use crate::holes::{Extracted, Extractor};
 use crate::machine::Machine;
@@ -80,6 +83,16 @@ pub fn run<S: Sink>(
     library: &mut impl Library,
     sink: &mut S,
 ) -> Result<Run, SessionError> {
+    run_watched(request, library, sink, &mut ())
+}
+
+/// As [`run`], with somebody who looks on from block to block.
+pub fn run_watched<S: Sink>(
+    request: &Request,
+    library: &mut impl Library,
+    sink: &mut S,
+    watcher: &mut impl Watcher,
+) -> Result<Run, SessionError> {
     let mut memory = Memory::default();
     memory.load(request.name.clone(), request.bytes.clone());
     if memory.programs().is_empty() {
@@ -95,7 +108,7 @@ pub fn run<S: Sink>(
     {
         control.set(number, value).map_err(|alarm| SessionError::Variable { number, alarm })?;
     }
-    let outcome = control.run(request.limits, library, sink);
+    let outcome = control.run_watched(request.limits, library, sink, watcher);
     Ok(Run { control, outcome })
 }
 
@@ -190,18 +203,20 @@ pub fn simulate(
     library: &mut impl Library,
     surface: Option<Surface>,
 ) -> Result<Simulation, SessionError> {
-    simulate_beside(request, library, surface, &mut ())
+    simulate_beside(request, library, surface, &mut (), &mut ())
 }
 
-/// As [`simulate`], with another listener beside the one that follows the tool.
+/// As [`simulate`], with another listener beside the one that follows the tool, and somebody who looks on from block to
+/// block.
 pub fn simulate_beside<S: Sink>(
     request: &Request,
     library: &mut impl Library,
     surface: Option<Surface>,
     listener: &mut S,
+    watcher: &mut impl Watcher,
 ) -> Result<Simulation, SessionError> {
     let mut extractor = Extractor::new(&request.machine).with_surface(surface.or(request.part));
-    let run = run(request, library, &mut (&mut extractor, listener))?;
+    let run = run_watched(request, library, &mut (&mut extractor, listener), watcher)?;
     let mut extracted = extractor.finish();
     extracted.findings.extend(run.notes());
     extracted.findings.extend(run.stopped());

@@ -1,0 +1,123 @@
+//! Looking on while a control runs: at what stands in it before and after every block.
+use super::{Control, Core};
+use crate::program::{OpKind, Program, Statement};
+use crate::source::Span;
+
+/// Looks at a control between its blocks.
+pub trait Watcher {
+    /// A block is about to be done: [`Control::next_block`].
+    fn before(&mut self, control: &Control);
+
+    /// It has been done, or an alarm has stopped it.
+    fn after(&mut self, control: &Control);
+}
+
+/// Nobody looks on.
+impl Watcher for () {
+    fn before(&mut self, _: &Control) {}
+
+    fn after(&mut self, _: &Control) {}
+}
+
+impl<W: Watcher> Watcher for &mut W {
+    fn before(&mut self, control: &Control) {
+        (**self).before(control);
+    }
+
+    fn after(&mut self, control: &Control) {
+        (**self).after(control);
+    }
+}
+
+impl Control {
+    /// The block that a step would do now; `None` where the program has no more.
+    pub fn next_block(&self) -> Option<Span> {
+        let frame = self.core.frames.last()?;
+        let program = self.memory.programs().get(frame.program.0 as usize)?;
+        program.ops.get(frame.next).map(|op| op.span)
+    }
+
+    /// The variables that the next block will assign as things stand; those whose numbers are computed as well.
+    pub fn will_assign(&self) -> Vec<u32> {
+        let mut numbers = Vec::new();
+        let Some(frame) = self.core.frames.last() else { return numbers };
+        let Some(program) = self.memory.programs().get(frame.program.0 as usize) else { return numbers };
+        let Some(op) = program.ops.get(frame.next) else { return numbers };
+        // To look is no part of the run: what a function has to tell is told when the block is done.
+        let told = self.core.told.take();
+        if !op.skip.is_some_and(|switch| self.core.skips(switch)) {
+            self.core.targets(program, &op.kind, &mut numbers);
+        }
+        self.core.told.set(told);
+        numbers
+    }
+}
+
+impl Core {
+    fn targets(&self, program: &Program, kind: &OpKind, numbers: &mut Vec<u32>) {
+        match kind {
+            OpKind::If { condition, then } if self.holds(program, *condition).unwrap_or(false) => {
+                self.targets(program, then, numbers);
+            }
+            OpKind::Statement(statement) => self.assigned(program, statement, numbers),
+            OpKind::Empty | OpKind::Words(_) | OpKind::If { .. } | OpKind::Alarm(_) => {}
+        }
+    }
+
+    fn assigned(&self, program: &Program, statement: &Statement, numbers: &mut Vec<u32>) {
+        match statement {
+            Statement::Assign { target, .. } => numbers.extend(self.target(program, *target)),
+            Statement::Several(all) => all.iter().for_each(|one| self.assigned(program, one, numbers)),
+            Statement::IfThen { condition, then } if self.holds(program, *condition).unwrap_or(false) => {
+                self.assigned(program, then, numbers);
+            }
+            _ => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exec::{Limits, Value};
+    use crate::program::{Memory, NoLibrary};
+
+    /// `#n=value` of every assignment, as it stands behind its block.
+    #[derive(Default)]
+    struct Assigned {
+        numbers: Vec<u32>,
+        seen: Vec<(u32, Value)>,
+    }
+
+    impl Watcher for Assigned {
+        fn before(&mut self, control: &Control) {
+            self.numbers = control.will_assign();
+        }
+
+        fn after(&mut self, control: &Control) {
+            let values = self.numbers.iter().map(|n| (*n, control.variable(*n).unwrap()));
+            self.seen.extend(values);
+        }
+    }
+
+    fn seen(text: &str) -> Vec<(u32, Value)> {
+        let mut memory = Memory::default();
+        memory.load("O1.nc", text.as_bytes().to_vec());
+        let mut control = Control::new(memory, crate::control::Settings::default());
+        let mut watcher = Assigned::default();
+        control.run_watched(Limits::default(), &mut NoLibrary, &mut (), &mut watcher);
+        watcher.seen
+    }
+
+    #[test]
+    fn assignments_are_seen_with_the_numbers_they_compute() {
+        let text = "O1\n#1=500\n#[#1+2]=7.5\nIF[#1 EQ 500]THEN #2=#0\nIF[#1 EQ 1]THEN #3=1\nM30\n";
+        let expected = [(1, Value::Number(500.0)), (502, Value::Number(7.5)), (2, Value::Vacant)];
+        assert_eq!(seen(text), expected, "#3 is not assigned: its condition doesn't hold");
+    }
+
+    #[test]
+    fn a_block_that_is_skipped_assigns_nothing() {
+        assert_eq!(seen("O1\n#1=1\nGOTO 5\n#1=2\nN5 M30\n"), [(1, Value::Number(1.0))]);
+    }
+}
