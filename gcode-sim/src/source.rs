@@ -47,6 +47,16 @@ impl Source {
         Self { name, bytes, lines: OnceLock::new() }
     }
 
+    /// The lines without their ends, bytes that aren't UTF-8 replaced.
+    pub fn lines(&self) -> impl Iterator<Item = String> + '_ {
+        let ends = self.lines.iter().skip(1).map(|end| *end as usize).chain([self.bytes.len()]);
+        self.lines.iter().zip(ends).map(|(start, end)| {
+            let line = &self.bytes[*start as usize..end];
+            let ended = line.iter().rposition(|b| !matches!(b, b'\n' | b'\r')).map_or(0, |last| last + 1);
+            String::from_utf8_lossy(&line[..ended]).into_owned()
+        })
+    }
+
     /// The line and column of the byte at `offset`.
     pub fn place(&self, offset: u32) -> LineColumn {
         let lines = self.lines.get_or_init(|| line_starts(&self.bytes));
@@ -96,6 +106,11 @@ impl Sources {
         let id = SourceId(self.0.len() as u32);
         self.0.push(Arc::new(Source::new(name.into(), bytes.into())));
         id
+    }
+
+    /// All texts with their ids, in the order they were read.
+    pub fn iter(&self) -> impl Iterator<Item = (SourceId, &Arc<Source>)> {
+        self.0.iter().enumerate().map(|(id, source)| (SourceId(id as u32), source))
     }
 
     /// The text with this id; ids come only from [`Sources::add`] of the same collection.

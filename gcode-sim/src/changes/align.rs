@@ -142,7 +142,7 @@ fn apart(a: &Step, b: &Step) -> Option<f64> {
 
 /// The longest common sequence of two lists of these lengths, as pairs of places; where that takes more than
 /// [`MOST_EDITS`], what is common at their beginnings and ends.
-fn common(old: usize, new: usize, same: impl Fn(usize, usize) -> bool) -> Vec<(usize, usize)> {
+pub(super) fn common(old: usize, new: usize, same: impl Fn(usize, usize) -> bool) -> Vec<(usize, usize)> {
     let shorter = old.min(new);
     let before = (0..shorter).take_while(|k| same(*k, *k)).count();
     let after = (0..shorter - before).take_while(|k| same(old - 1 - k, new - 1 - k)).count();

@@ -12,10 +12,24 @@ use crate::source::Span;
 use crate::units::Deg;
 use crate::verify::{Comparison, Tolerances};
 
-/// The changes of holes, and what of the motion they explain.
+/// The changes of holes, which is which, and what of the motion they explain.
 pub(super) struct Compared {
     pub changes: Vec<Change>,
+    pub pairs: Vec<Paired>,
     pub moved: Explained,
+}
+
+/// A hole of one revision and what has become of it in the other; both are counted from 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Paired {
+    pub old: Option<usize>,
+    pub new: Option<usize>,
+    /// How far it is moved where it begins, mm; 0 for one that is there once only, as are the others.
+    pub moved: f64,
+    /// Between the axes.
+    pub tilted: Deg,
+    /// mm.
+    pub deeper: f64,
 }
 
 /// Steps that are different because a hole is: its feeds, by their numbers in either run.
@@ -42,7 +56,34 @@ pub(super) fn compare(old: &Record, new: &Record, links: &[Link], tolerance: f64
     let mut changes = told.pairs(&partner);
     changes.extend(told.order(&partner));
     changes.extend(told.lost_and_added(&partner));
-    Compared { changes, moved: told.moved }
+    Compared { changes, pairs: paired(&partner, (old, new)), moved: told.moved }
+}
+
+/// All holes, those that are there before first.
+fn paired(partner: &[Option<usize>], (old, new): (&Record, &Record)) -> Vec<Paired> {
+    let alone = Paired { old: None, new: None, moved: 0.0, tilted: Deg::ZERO, deeper: 0.0 };
+    let known: BTreeSet<usize> = partner.iter().flatten().copied().collect();
+    let before = partner.iter().enumerate().map(|(hole, other)| match other {
+        None => Paired { old: Some(hole), ..alone },
+        Some(other) => {
+            let (was, is) = (&old.holes[hole], &new.holes[*other]);
+            let apart = Apart::new(was, is);
+            Paired {
+                old: Some(hole),
+                new: Some(*other),
+                moved: apart.entry.norm(),
+                tilted: tilt(was, is),
+                deeper: apart.deeper,
+            }
+        }
+    });
+    let added = (0..new.holes.len()).filter(|hole| !known.contains(hole));
+    before.chain(added.map(|hole| Paired { new: Some(hole), ..alone })).collect()
+}
+
+/// The angle between their axes.
+fn tilt(old: &Found, new: &Found) -> Deg {
+    Deg::atan2(old.axis.cross(&new.axis).norm(), old.axis.dot(&new.axis))
 }
 
 fn nowhere(_: Span) -> (String, u32) {
@@ -122,8 +163,7 @@ impl Told<'_> {
             aspects.push(("hole-moved", format!("moved by {x:+.4} {y:+.4} {z:+.4} mm")));
         }
         if (apart.bottom - apart.entry).norm() > self.tolerance {
-            let tilt = Deg::atan2(old.axis.cross(&new.axis).norm(), old.axis.dot(&new.axis));
-            aspects.push(("hole-tilted", format!("tilted by {:.4}°", tilt.0)));
+            aspects.push(("hole-tilted", format!("tilted by {:.4}°", tilt(old, new).0)));
         }
         if apart.deeper.abs() > self.tolerance {
             let word = if apart.deeper > 0.0 { "deeper" } else { "less deep" };

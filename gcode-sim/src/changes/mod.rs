@@ -6,16 +6,19 @@ mod align;
 mod holes;
 mod left;
 mod motion;
+mod path;
 mod record;
 mod steps;
 mod store;
 
 use serde::Serialize;
 
+pub use holes::Paired;
+pub use path::Leg;
 pub use record::{MOST_STEPS, Record, Revision, Totals, Where};
 pub use store::StoreError;
 
-use self::align::align;
+use self::align::{Link, align};
 
 /// One difference that matters.
 #[derive(Clone, Debug, Serialize)]
@@ -48,13 +51,40 @@ impl Change {
 ///
 /// `tolerance` is in mm, and in degrees for axes that turn: what differs by less is the same.
 pub fn changes(old: &Record, new: &Record, tolerance: f64) -> Vec<Change> {
-    let links = align(&old.steps, &new.steps, tolerance);
-    let holes = holes::compare(old, new, &links, tolerance);
-    let mut all: Vec<Change> = left::outcome(old, new).into_iter().collect();
-    all.extend(holes.changes);
-    all.extend(motion::compare(old, new, &links, &holes.moved, tolerance));
-    all.extend(left::compare(old, new, tolerance));
-    all
+    Compared::new(old, new, tolerance).changes
+}
+
+/// Two revisions held against each other: what is different, and which hole and which step is which.
+#[derive(Clone, Debug)]
+pub struct Compared {
+    /// As [`changes`] has them.
+    pub changes: Vec<Change>,
+    /// All holes of both.
+    pub holes: Vec<Paired>,
+    /// The steps that the other one doesn't do in the same way, old and new.
+    pub steps: [Vec<usize>; 2],
+}
+
+impl Compared {
+    /// `tolerance` as for [`changes`].
+    pub fn new(old: &Record, new: &Record, tolerance: f64) -> Self {
+        let links = align(&old.steps, &new.steps, tolerance);
+        let holes = holes::compare(old, new, &links, tolerance);
+        let mut changes: Vec<Change> = left::outcome(old, new).into_iter().collect();
+        changes.extend(holes.changes);
+        changes.extend(motion::compare(old, new, &links, &holes.moved, tolerance));
+        changes.extend(left::compare(old, new, tolerance));
+        let different = links.iter().filter(|link| !matches!(link, Link::Same(..)));
+        let (was, is): (Vec<_>, Vec<_>) = different.map(|link| link.sides()).unzip();
+        let steps = [was.into_iter().flatten().collect(), is.into_iter().flatten().collect()];
+        Self { changes, holes: holes.pairs, steps }
+    }
+}
+
+/// Pairs of equal lines of two texts, by their places from 0: the longest common sequence, or, of texts that differ in
+/// too much for that, what is common at their beginnings and ends.
+pub fn common_lines(old: &[String], new: &[String]) -> Vec<(usize, usize)> {
+    align::common(old.len(), new.len(), |i, j| old[i] == new[j])
 }
 
 /// `1, 2, 5`; long lists are cut.

@@ -1,7 +1,7 @@
 //! What a program asks of the machine that the machine file doesn't have: axes, tools, a head set by hand.
 use super::Extractor;
 use crate::diag::Diagnostic;
-use crate::machine::Head;
+use crate::machine::HeadMessage;
 use crate::motion::{Event, Position};
 use crate::units::Deg;
 
@@ -43,7 +43,8 @@ impl Extractor<'_> {
         text: &str,
         named: &[(u32, f64)],
     ) -> Option<Deg> {
-        if !Head::is_meant(text) {
+        let asked = HeadMessage::of(text, named);
+        if asked == HeadMessage::Other {
             return None;
         }
         if !self.machine.head.is_set_by_hand() {
@@ -58,9 +59,9 @@ impl Extractor<'_> {
             });
             return None;
         }
-        match named {
-            [(_, angle)] if angle.is_finite() => Some(Deg(*angle)),
-            _ => {
+        match asked {
+            HeadMessage::Angle(angle) => Some(angle),
+            HeadMessage::Other | HeadMessage::Unclear => {
                 self.findings.add("head-message-unclear", &event.place(), 0, || {
                     Diagnostic::warning(
                         "head-message-unclear",

@@ -27,6 +27,30 @@ pub enum HeadKind {
     Axis { axis: Axis, sign: f64, zero: Deg },
 }
 
+/// What a message to the operator asks of the head.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum HeadMessage {
+    /// It is about something else.
+    Other,
+    /// `SET HEAD TO #140` with one variable that has a value.
+    Angle(Deg),
+    /// It is about the head, and no angle can be read from it.
+    Unclear,
+}
+
+impl HeadMessage {
+    /// `named` are the variables that the text names, with their values.
+    pub fn of(text: &str, named: &[(u32, f64)]) -> Self {
+        if !Head::is_meant(text) {
+            return Self::Other;
+        }
+        match named {
+            [(_, angle)] if angle.is_finite() => Self::Angle(Deg(*angle)),
+            _ => Self::Unclear,
+        }
+    }
+}
+
 impl Head {
     pub fn new(kind: HeadKind, pivot: f64) -> Self {
         Self { kind, pivot, error: Wave::default() }
