@@ -17,6 +17,7 @@ mod explain;
 mod honeycomb;
 mod limits;
 mod misplaced;
+mod page;
 mod pin_holes;
 mod real_files;
 mod round_trip;

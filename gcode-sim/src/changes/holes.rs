@@ -24,6 +24,8 @@ pub(super) struct Compared {
 pub struct Paired {
     pub old: Option<usize>,
     pub new: Option<usize>,
+    /// Something about it is different.
+    pub changed: bool,
     /// How far it is moved where it begins, mm; 0 for one that is there once only, as are the others.
     pub moved: f64,
     /// Between the axes.
@@ -56,29 +58,7 @@ pub(super) fn compare(old: &Record, new: &Record, links: &[Link], tolerance: f64
     let mut changes = told.pairs(&partner);
     changes.extend(told.order(&partner));
     changes.extend(told.lost_and_added(&partner));
-    Compared { changes, pairs: paired(&partner, (old, new)), moved: told.moved }
-}
-
-/// All holes, those that are there before first.
-fn paired(partner: &[Option<usize>], (old, new): (&Record, &Record)) -> Vec<Paired> {
-    let alone = Paired { old: None, new: None, moved: 0.0, tilted: Deg::ZERO, deeper: 0.0 };
-    let known: BTreeSet<usize> = partner.iter().flatten().copied().collect();
-    let before = partner.iter().enumerate().map(|(hole, other)| match other {
-        None => Paired { old: Some(hole), ..alone },
-        Some(other) => {
-            let (was, is) = (&old.holes[hole], &new.holes[*other]);
-            let apart = Apart::new(was, is);
-            Paired {
-                old: Some(hole),
-                new: Some(*other),
-                moved: apart.entry.norm(),
-                tilted: tilt(was, is),
-                deeper: apart.deeper,
-            }
-        }
-    });
-    let added = (0..new.holes.len()).filter(|hole| !known.contains(hole));
-    before.chain(added.map(|hole| Paired { new: Some(hole), ..alone })).collect()
+    Compared { changes, pairs: told.all(&partner), moved: told.moved }
 }
 
 /// The angle between their axes.
@@ -153,6 +133,34 @@ impl Told<'_> {
             }
         };
         groups.into_iter().map(change).collect()
+    }
+
+    /// Every hole with its partner; those that are there before first.
+    fn all(&mut self, partner: &[Option<usize>]) -> Vec<Paired> {
+        let alone =
+            Paired { old: None, new: None, changed: true, moved: 0.0, tilted: Deg::ZERO, deeper: 0.0 };
+        let (old, new) = (self.old, self.new);
+        let known: BTreeSet<usize> = partner.iter().flatten().copied().collect();
+        let mut pairs = Vec::with_capacity(partner.len());
+        for (hole, other) in partner.iter().enumerate() {
+            let Some(other) = *other else {
+                pairs.push(Paired { old: Some(hole), ..alone });
+                continue;
+            };
+            let (was, is) = (&old.holes[hole], &new.holes[other]);
+            let apart = Apart::new(was, is);
+            pairs.push(Paired {
+                old: Some(hole),
+                new: Some(other),
+                changed: !self.aspects(was, is, &apart).is_empty(),
+                moved: apart.entry.norm(),
+                tilted: tilt(was, is),
+                deeper: apart.deeper,
+            });
+        }
+        let added = (0..new.holes.len()).filter(|hole| !known.contains(hole));
+        pairs.extend(added.map(|hole| Paired { new: Some(hole), ..alone }));
+        pairs
     }
 
     /// All that is different about one hole.

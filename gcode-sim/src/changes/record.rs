@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::steps::{Recorder, Step};
+use super::steps::{Kind, Recorder, Step};
 use crate::diag::{Diagnostic, Severity};
 use crate::exec::{Outcome, RemainderKind, Watcher};
 use crate::holes::Found;
@@ -178,6 +178,12 @@ fn resolve(run: &Run, places: &[Place], steps: &mut [Step]) -> Vec<Where> {
 }
 
 impl Record {
+    /// The blocks at which the program waited for the operator, in order.
+    pub fn stops(&self) -> impl Iterator<Item = &Where> {
+        let stops = self.steps.iter().filter(|step| matches!(step.kind, Kind::Stop(..)));
+        stops.map(|step| &self.places[step.place])
+    }
+
     /// `end`, `alarm` or `limit`.
     pub fn outcome(&self) -> &str {
         &self.ending.outcome

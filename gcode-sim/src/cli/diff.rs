@@ -1,14 +1,19 @@
 //! `gcode-sim diff`: what two revisions of a program do differently.
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::args::{RunConditions, TextFormat};
-use super::{Refusal, Status, options, output, render, unused_machine};
-use crate::changes::{Revision, changes};
+use super::{Refusal, Status, options, output, page, render, unused_machine};
+use crate::changes::{Compared, Revision};
+use crate::part::reference::Reference;
+use crate::part::wanted::Wanted;
 use crate::picture;
 use crate::report::changes::ChangesReport;
+use crate::report::page::{Difference, Page, Seen};
 use crate::report::{diagnostic, top};
+use crate::session::Trace;
+use crate::verify::Tolerances;
 
 #[derive(Debug, Args)]
 pub(super) struct DiffArguments {
@@ -31,6 +36,15 @@ pub(super) struct DiffArguments {
     #[arg(long, value_name = "OUT.png")]
     picture: Option<PathBuf>,
 
+    /// Also write a page for the review to this file: both programs side by side, their holes, paths, blocks and
+    /// variables; needs nothing but a browser
+    #[arg(long, value_name = "OUT.html")]
+    page: Option<PathBuf>,
+
+    /// What the part should get, for the page: a hole list (JSON or CSV) or a job file (TOML)
+    #[arg(long, value_name = "REF", requires = "page")]
+    reference: Option<PathBuf>,
+
     /// How the result is written
     #[arg(long, value_enum, default_value_t = TextFormat::Text)]
     format: TextFormat,
@@ -41,14 +55,18 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
     let (old_request, mut old_folders) = options::request(&arguments.run.of(&arguments.old))?;
     let (new_request, mut new_folders) = options::request(&arguments.run.of(&arguments.new))?;
     unused_machine::tell(&arguments.run.of(&arguments.new), &new_request);
+    let reference = arguments.reference.as_deref().map(wanted_holes).transpose()?;
+    let surface = reference.as_ref().and_then(|reference| reference.surface);
     let refused = |error: crate::session::SessionError| Refusal::new(error.to_string());
-    let old = Revision::of(&old_request, &mut old_folders, None).map_err(refused)?;
-    let new = Revision::of(&new_request, &mut new_folders, None).map_err(refused)?;
-    let found = changes(&old.record, &new.record, tolerance);
+    let trace = || arguments.page.as_ref().map(|_| Trace::default());
+    let (mut old_trace, mut new_trace) = (trace(), trace());
+    let old = Revision::watched(&old_request, &mut old_folders, surface, &mut old_trace).map_err(refused)?;
+    let new = Revision::watched(&new_request, &mut new_folders, surface, &mut new_trace).map_err(refused)?;
+    let compared = Compared::new(&old.record, &new.record, tolerance);
     let report = ChangesReport::new(
         (&old_request.name, &old.record),
         (&new_request.name, &new.record),
-        &found,
+        &compared.changes,
         tolerance,
     );
     match arguments.format {
@@ -64,7 +82,31 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
             output::print(&format!("picture: {}\n", path.display()))?;
         }
     }
-    let mut status = if found.is_empty() { Status::Holds } else { Status::Fails };
+    if let (Some(path), Some(old_trace), Some(new_trace)) = (&arguments.page, &old_trace, &new_trace) {
+        let judged = |revision: &Revision| {
+            let verify = |reference| {
+                let tolerances = Tolerances::of(reference, None);
+                revision.simulation.verify(reference, tolerances, &new_request.machine)
+            };
+            reference.as_ref().map(verify)
+        };
+        let (old_verdict, new_verdict) = (judged(&old), judged(&new));
+        let seen = |request, revision, trace, verdict| Seen { request, revision, trace, verdict };
+        let difference = Difference { compared: &compared, tolerance };
+        let review = Page {
+            old: Some((seen(&old_request, &old, old_trace, old_verdict.as_ref()), difference)),
+            new: seen(&new_request, &new, new_trace, new_verdict.as_ref()),
+            machine: &new_request.machine,
+            reference: reference.as_ref(),
+            conditions: &page::flags(&arguments.run),
+            documents: &page::documents(&arguments.run, arguments.reference.as_deref())?,
+        };
+        page::write(&review, path)?;
+        if arguments.format == TextFormat::Text {
+            output::print(&format!("page: {}\n", path.display()))?;
+        }
+    }
+    let mut status = if compared.changes.is_empty() { Status::Holds } else { Status::Fails };
     for revision in [&old, &new] {
         let sources = revision.simulation.run.control.memory().sources();
         for finding in revision.stopped() {
@@ -73,4 +115,15 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
         }
     }
     Ok(status)
+}
+
+/// The page's reference.
+fn wanted_holes(path: &Path) -> Result<Reference, Refusal> {
+    match options::wanted(path)? {
+        Wanted::Holes(reference) => Ok(reference),
+        Wanted::Flutes(_) => Err(Refusal::new(format!(
+            "--reference {}: a page has verdicts on holes, and this is a burr: leave the reference out",
+            path.display()
+        ))),
+    }
 }

@@ -11,6 +11,7 @@ pub mod input;
 pub mod library;
 mod options;
 pub mod output;
+mod page;
 mod progress;
 mod readings;
 mod reference;

@@ -29,6 +29,17 @@ impl<W: Watcher> Watcher for &mut W {
     }
 }
 
+/// Somebody who may be there.
+impl<W: Watcher> Watcher for Option<W> {
+    fn before(&mut self, control: &Control) {
+        self.iter_mut().for_each(|watcher| watcher.before(control));
+    }
+
+    fn after(&mut self, control: &Control) {
+        self.iter_mut().for_each(|watcher| watcher.after(control));
+    }
+}
+
 impl Control {
     /// The block that a step would do now; `None` where the program has no more.
     pub fn next_block(&self) -> Option<Span> {

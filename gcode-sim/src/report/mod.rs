@@ -8,6 +8,7 @@ mod figures;
 pub mod flute_table;
 pub mod flute_view;
 pub mod holes;
+pub mod page;
 pub mod readings;
 pub mod run;
 pub mod tested;

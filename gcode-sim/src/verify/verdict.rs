@@ -92,6 +92,9 @@ pub struct Extra {
     #[serde(flatten)]
     pub hole: Hole,
     pub why: String,
+    /// Which of the holes that the program makes it is, counted from 0.
+    #[serde(skip)]
+    pub found: usize,
 }
 
 /// A finding as data.
@@ -247,7 +250,7 @@ fn hole_verdict(
 
 fn extra(comparison: &Comparison<'_>, index: usize, locate: &dyn Fn(Span) -> (String, u32)) -> Extra {
     let found = &comparison.found[index];
-    Extra { hole: found.hole(locate), why: super::checks::surplus::why(comparison, index) }
+    Extra { hole: found.hole(locate), why: super::checks::surplus::why(comparison, index), found: index }
 }
 
 /// In one line: which end, how far, and how much of it rounding is to blame for.

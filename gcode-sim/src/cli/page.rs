@@ -1,0 +1,66 @@
+//! Writes the review page, with everything that the result depends on named in it.
+use std::path::Path;
+
+use super::args::RunConditions;
+use super::{Refusal, input, output};
+use crate::report::page::{Document, Page};
+
+/// Writes a page to its file.
+pub(super) fn write(page: &Page<'_>, path: &Path) -> Result<(), Refusal> {
+    let html = page.html().map_err(|error| Refusal::new(format!("the page can't be written: {error}")))?;
+    output::write(path, html.as_bytes())
+}
+
+/// The files besides the programs.
+pub(super) fn documents(
+    conditions: &RunConditions,
+    reference: Option<&Path>,
+) -> Result<Vec<Document>, Refusal> {
+    let RunConditions { machine, control_file, part, .. } = conditions;
+    let files = [
+        ("machine file", machine.as_deref()),
+        ("settings of the control", control_file.as_deref()),
+        ("part to be probed", part.as_deref()),
+        ("reference", reference),
+    ];
+    let named = files.into_iter().filter_map(|(role, path)| Some((role, path?)));
+    named
+        .map(|(role, path)| {
+            Ok(Document { role, name: path.display().to_string(), bytes: input::bytes(path)? })
+        })
+        .collect()
+}
+
+/// The flags that the run depends on.
+pub(super) fn flags(conditions: &RunConditions) -> Vec<String> {
+    let RunConditions {
+        libraries,
+        set,
+        dialect,
+        max_blocks,
+        control,
+        control_file,
+        input,
+        machine,
+        code,
+        skip,
+        part,
+        cycles,
+    } = conditions;
+    let path = |path: &Path| path.display().to_string();
+    let mut flags: Vec<String> = Vec::new();
+    let mut add = |flag: &str, value: &str| flags.push(format!("{flag} {value}"));
+    machine.iter().for_each(|file| add("--machine", &path(file)));
+    libraries.iter().for_each(|folder| add("--lib", &path(folder)));
+    dialect.iter().for_each(|name| add("--dialect", name));
+    control_file.iter().for_each(|file| add("--control-file", &path(file)));
+    control.iter().for_each(|setting| add("--control", setting));
+    code.iter().for_each(|call| add("--code", call));
+    set.iter().for_each(|variable| add("--set", variable));
+    input.iter().for_each(|signal| add("--input", signal));
+    skip.iter().for_each(|part| add("--skip", &part.to_string()));
+    part.iter().for_each(|file| add("--part", &path(file)));
+    cycles.iter().for_each(|count| add("--cycles", &count.to_string()));
+    add("--max-blocks", &max_blocks.to_string());
+    flags
+}

@@ -1,0 +1,54 @@
+//! What two revisions do differently, each change with its blocks and the calls that led to them.
+use maud::{Markup, html};
+
+use super::lines::Lines;
+use super::words::shown;
+use super::{Difference, MOST_CHANGES, Side, listed};
+use crate::changes::Where;
+
+pub(super) fn changes(difference: &Difference<'_>, sides: &[Side<'_>]) -> Markup {
+    let all = &difference.compared.changes;
+    let of = |word: &str| sides.iter().find(|side| side.word == word).map(|side| side.lines);
+    html! {
+        @if all.is_empty() {
+            p { "Nothing changes on the part, nor in what the control is left with." }
+        }
+        @if MOST_CHANGES < all.len() {
+            p.note {
+                "The first " (MOST_CHANGES) " of " (all.len()) " changes are listed; "
+                code { "gcode-sim diff --format json" } " has them all."
+            }
+        }
+        ol.changes {
+            @for change in listed(all) {
+                li {
+                    code.code { (change.code) } " " (shown(&change.message))
+                    @for (word, place) in [("old", &change.old), ("new", &change.new)] {
+                        @if let (Some(place), Some(lines)) = (place, of(word)) {
+                            div.place { span.word { (word) } " " (chain(place, lines)) }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A block and the calls that led to it, each a link to its line.
+pub(super) fn chain(place: &Where, lines: &Lines) -> Markup {
+    html! {
+        (block(place, lines))
+        @for call in &place.calls { div.call { "called from " (block(call, lines)) } }
+    }
+}
+
+fn block(place: &Where, lines: &Lines) -> Markup {
+    let name = format!("{}:{}", shown(&place.program), place.line);
+    html! {
+        @match lines.of_place(place) {
+            Some((source, line)) => a href={ "#" (lines.anchor(source, line)) } { (name) },
+            None => (name),
+        }
+        " " code { (shown(&place.block)) }
+    }
+}

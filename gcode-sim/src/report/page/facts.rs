@@ -1,0 +1,92 @@
+//! What the page says first: the answer, and both runs in numbers.
+use maud::{Markup, html};
+
+use super::words::{count, duration, shown};
+use super::{Page, Side, heading};
+use crate::report::figures;
+use crate::verify::Answer;
+
+/// The answer in one or two lines.
+pub(super) fn answer(page: &Page<'_>, sides: &[Side<'_>]) -> Markup {
+    let difference = page.old.map(|(_, difference)| difference);
+    html! {
+        @if let Some(difference) = difference {
+            @let changes = difference.compared.changes.len();
+            p.answer.yes[changes == 0].no[changes != 0] {
+                @if changes == 0 { "Nothing changes on the part" } @else { (figures::count(changes, "change")) }
+            }
+        }
+        @for side in sides {
+            @let stopped = side.seen.revision.record.outcome() != "end";
+            @if let Some(verdict) = side.seen.verdict {
+                @let good = verdict.holes.iter().filter(|hole| hole.ok).count();
+                @let wanted = verdict.holes.len() + verdict.missing.len();
+                p.answer.yes[verdict.verdict == Answer::Pass].no[verdict.verdict == Answer::Fail] {
+                    @if sides.len() == 2 { (heading(side, sides)) ": " }
+                    @match verdict.verdict { Answer::Pass => "PASS", Answer::Fail => "FAIL" }
+                    ", " (good) " of " (figures::count(wanted, "wanted hole")) " good"
+                    @if !verdict.missing.is_empty() { ", " (verdict.missing.len()) " missing" }
+                    @if !verdict.extra.is_empty() { ", " (verdict.extra.len()) " too many" }
+                }
+            }
+            @if stopped {
+                p.answer.no {
+                    @if sides.len() == 2 { (heading(side, sides)) ": " }
+                    "stopped, " (shown(side.seen.revision.record.words()))
+                }
+            }
+        }
+    }
+}
+
+/// Both runs in numbers.
+pub(super) fn summary(page: &Page<'_>, sides: &[Side<'_>]) -> Markup {
+    let row = |name: &str, value: &dyn Fn(&Side<'_>) -> String| {
+        html! {
+            tr {
+                th scope="row" { (name) }
+                @for side in sides { td { (value(side)) } }
+            }
+        }
+    };
+    let totals = |side: &Side<'_>| side.seen.revision.record.totals.clone();
+    html! {
+        div.scroll {
+            table.facts {
+                @if sides.len() == 2 {
+                    thead { tr { td {} @for side in sides { th scope="col" { (heading(side, sides)) } } } }
+                }
+                tbody {
+                    (row("Program", &|side| shown(&side.seen.request.name)))
+                    (row("Run", &|side| shown(side.seen.revision.record.words())))
+                    (row("Holes", &|side| count(totals(side).holes as u64)))
+                    (row("Moves", &|side| count(totals(side).moves)))
+                    (row("Blocks executed", &|side| count(totals(side).blocks)))
+                    (row("Time, without acceleration", &|side| duration(totals(side).seconds)))
+                    (row("Operator stops", &|side| count(side.seen.revision.simulation.run.control.stops().len() as u64)))
+                    @if sides.iter().any(|side| side.seen.verdict.is_some()) {
+                        (row("Worst position", &worst))
+                        @if sides.iter().any(|side| side.seen.verdict.is_some_and(|v| !v.not_checked.is_empty())) {
+                            (row("Not checked", &|side| side.seen.verdict.map_or_else(String::new, |v| v.not_checked.join("; "))))
+                        }
+                    }
+                }
+            }
+        }
+        @if let Some((_, difference)) = page.old {
+            p.note {
+                "What differs by no more than " (difference.tolerance)
+                " (mm, and degrees for axes that turn) counts as the same. Sequence numbers, spaces, comments and the way "
+                "numbers are written don't count."
+            }
+        }
+    }
+}
+
+/// `Φ0.0012 of Φ0.1, hole 3`.
+fn worst(side: &Side<'_>) -> String {
+    let Some(verdict) = side.seen.verdict else { return String::new() };
+    let Some(worst) = verdict.worst else { return "no hole found".to_owned() };
+    let from = verdict.worst_from.as_deref().unwrap_or_default();
+    format!("Φ{} of Φ{}: {}", figures::near(worst, 4), verdict.tolerance, shown(from))
+}

@@ -1,0 +1,114 @@
+//! The table of holes: each with its deviations where there is a reference, else with what has become of it.
+use std::collections::BTreeMap;
+
+use maud::{Markup, html};
+
+use super::rows::{Row, State, found_rows, judged_rows, paired_rows};
+use super::words::count;
+use super::{Page, Side};
+
+/// So many rows of holes that are as they should be are shown at first, and printed; the others at a button.
+const SHOWN: usize = 200;
+/// More rows than this aren't on the page.
+const MOST_ROWS: usize = 5_000;
+
+/// The table, and what the drawing says of each hole.
+#[derive(Debug)]
+pub(super) struct HoleTable {
+    columns: Vec<String>,
+    rows: Vec<Row>,
+    /// Rows that aren't on the page.
+    cut: usize,
+}
+
+impl HoleTable {
+    pub(super) fn new(page: &Page<'_>, sides: &[Side<'_>]) -> Self {
+        let verdicts: Option<Vec<_>> =
+            sides.iter().map(|side| side.seen.verdict.map(|verdict| (*side, verdict))).collect();
+        let (columns, mut rows) = match (page.reference, verdicts, page.old) {
+            (Some(reference), Some(judged), _) => judged_rows(reference, &judged, sides),
+            (_, _, Some((_, difference))) => paired_rows(&difference.compared.holes, sides),
+            _ => found_rows(sides),
+        };
+        let cut = rows.len().saturating_sub(MOST_ROWS);
+        if cut > 0 {
+            // Those worth a look first, else in their order.
+            rows.sort_by_key(|row| !row.state.is_worth_a_look());
+            rows.truncate(MOST_ROWS);
+        }
+        Self { columns, rows, cut }
+    }
+
+    /// Which row a hole of a side stands in, its name and its state.
+    pub(super) fn of_side(&self, place: usize) -> BTreeMap<usize, (usize, &str, State)> {
+        let rows = self.rows.iter().enumerate();
+        rows.filter_map(|(number, row)| Some((row.holes[place]?, (number, row.id.as_str(), row.state))))
+            .collect()
+    }
+
+    pub(super) fn markup(&self, page: &Page<'_>) -> Markup {
+        let calm = |row: &&Row| !row.state.is_worth_a_look();
+        let hidden = self.rows.iter().filter(calm).count().saturating_sub(SHOWN);
+        let mut shown_calm = 0;
+        html! {
+            @if self.rows.is_empty() { p { "No hole is made." } } @else {
+                p.note {
+                    "Lengths in mm, in the part's frame. "
+                    @if page.reference.is_some() {
+                        "φ is twice the largest distance between the actual and the nominal axis over the hole's depth (ISO 1101). "
+                    } @else {
+                        "Without a reference a hole begins where the cutting feed begins, and its depth counts from there. "
+                    }
+                    "A row leads to the block that made the hole; column heads sort."
+                }
+                @if self.cut > 0 {
+                    p.note { (count(self.cut as u64)) " rows are left out: a page holds " (MOST_ROWS) ", those worth a look first." }
+                }
+                div.scroll {
+                    table.holes {
+                        thead { tr {
+                            @for (place, name) in ["Hole".to_owned()].iter().chain(&self.columns).chain([&"State".to_owned()]).enumerate() {
+                                th scope="col" aria-sort="none" data-column=(place) { button type="button" { (name) } }
+                            }
+                        } }
+                        tbody {
+                            @for (number, row) in self.rows.iter().enumerate() {
+                                @let more = !row.state.is_worth_a_look() && { shown_calm += 1; SHOWN < shown_calm };
+                                (row.markup(number, more))
+                            }
+                        }
+                    }
+                }
+                @if hidden > 0 {
+                    p.note #hidden-rows {
+                        (count(hidden as u64)) " holes that are as they should be aren't shown, nor printed. "
+                        button type="button" #show-rows { "Show all" }
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl Row {
+    fn markup(&self, number: usize, more: bool) -> Markup {
+        let to = self.cells.iter().rev().find_map(|cell| cell.links.first()).map(|(anchor, _)| anchor);
+        html! {
+            tr id={ "hole-" (number) } class=(self.state.class()) data-row=(number) hidden[more] {
+                th scope="row" data-value=(self.id) {
+                    @match to { Some(to) => a.go href={ "#" (to) } { (self.id) }, None => (self.id) }
+                }
+                @for cell in &self.cells {
+                    td.number[cell.value.is_some()] data-value=[cell.value] {
+                        (cell.text)
+                        @for (place, (anchor, name)) in cell.links.iter().enumerate() {
+                            @if place > 0 { " ← " }
+                            a href={ "#" (anchor) } { (name) }
+                        }
+                    }
+                }
+                td.state { (self.words) }
+            }
+        }
+    }
+}

@@ -1,0 +1,67 @@
+//! The texts of one run by line, and what a link to a line is called.
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::words::shown;
+use crate::changes::Where;
+use crate::session::Run;
+use crate::source::{SourceId, Span};
+
+/// One text.
+#[derive(Clone, Debug)]
+pub(super) struct Text {
+    pub source: SourceId,
+    pub name: String,
+    /// The programs in it.
+    pub programs: Vec<String>,
+    pub lines: Vec<String>,
+}
+
+/// The texts of one side.
+#[derive(Debug)]
+pub(super) struct Lines {
+    word: &'static str,
+    pub texts: Vec<Text>,
+    by_program: BTreeMap<String, BTreeSet<SourceId>>,
+}
+
+impl Lines {
+    pub(super) fn new(word: &'static str, run: &Run) -> Self {
+        let memory = run.control.memory();
+        let mut by_program: BTreeMap<String, BTreeSet<SourceId>> = BTreeMap::new();
+        for program in memory.programs() {
+            by_program.entry(program.label()).or_default().insert(program.span.source);
+        }
+        let texts = memory.sources().iter().map(|(source, text)| Text {
+            source,
+            name: shown(&text.name),
+            programs: memory
+                .programs()
+                .iter()
+                .filter(|program| program.span.source == source)
+                .map(|program| shown(&program.label()))
+                .collect(),
+            lines: text.lines().map(|line| shown(&line)).collect(),
+        });
+        Self { word, texts: texts.collect(), by_program }
+    }
+
+    /// The name of a line as a place to go to: `new-1-51`. Lines count from 1.
+    pub(super) fn anchor(&self, source: SourceId, line: u32) -> String {
+        format!("{}-{}-{line}", self.word, source.0)
+    }
+
+    pub(super) fn of_span(&self, run: &Run, span: Span) -> String {
+        self.anchor(span.source, run.control.memory().sources().place(span).line)
+    }
+
+    /// The line that a place means, and whose text holds the block: two files without an O number are both `MAIN`.
+    pub(super) fn of_place(&self, place: &Where) -> Option<(SourceId, u32)> {
+        let block = shown(&place.block);
+        let holds = |source: &&SourceId| {
+            let text = self.texts.iter().find(|text| text.source == **source);
+            let written = text.and_then(|text| text.lines.get(place.line.checked_sub(1)? as usize));
+            written.is_some_and(|written| written.contains(&block))
+        };
+        self.by_program.get(&place.program)?.iter().find(holds).map(|source| (*source, place.line))
+    }
+}

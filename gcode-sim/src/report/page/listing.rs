@@ -1,0 +1,226 @@
+//! The programs, line by line, those of two revisions side by side: which blocks were executed, how often, and what the
+//! variables in them were.
+use std::collections::{BTreeMap, BTreeSet};
+
+use maud::{Markup, html};
+
+use super::lines::Text;
+use super::words::{count, value};
+use super::{Side, heading};
+use crate::changes::common_lines;
+use crate::exec::Value;
+use crate::session::{Executed, Role, Values};
+use crate::source::SourceId;
+
+/// So many rows of all programs together; of longer ones those lines as well that something on the page leads to.
+const MOST_ROWS: usize = 5_000;
+
+/// What was executed of one side, by text and line.
+struct Done<'a> {
+    blocks: BTreeMap<(SourceId, u32), Vec<&'a Executed>>,
+    /// Lines that holes, changes and findings lead to.
+    wanted: BTreeSet<(SourceId, u32)>,
+}
+
+/// One text of each side, where it is there.
+type Pair<'a> = Vec<Option<&'a Text>>;
+
+/// One line of each side, by its place from 0.
+type Line = Vec<Option<usize>>;
+
+pub(super) fn listing(sides: &[Side<'_>]) -> Markup {
+    let done: Vec<Done<'_>> = sides.iter().map(executed).collect();
+    let mut left = MOST_ROWS;
+    html! {
+        p.note {
+            "Executed blocks have a bar and the number of times they were executed. "
+            code { "#1 5" } " is what a variable was before the block, " code { "#1 ← 5" } " what the block made of it, "
+            code { "→ #1 5" } " an argument of the program it calls; "
+            code { "5 … 9 (3×)" } " are the first and the last of several."
+            span.paper { " Lines that weren't executed in either program are left out of the print." }
+        }
+        @for pair in pairs(sides) {
+            (program(&pair, sides, &done, &mut left))
+        }
+    }
+}
+
+fn executed<'a>(side: &Side<'a>) -> Done<'a> {
+    let run = &side.seen.revision.simulation.run;
+    let sources = run.control.memory().sources();
+    let mut blocks: BTreeMap<(SourceId, u32), Vec<&Executed>> = BTreeMap::new();
+    for executed in side.seen.trace.blocks() {
+        let line = sources.place(executed.block).line;
+        blocks.entry((executed.block.source, line)).or_default().push(executed);
+    }
+    let holes = side.seen.revision.simulation.extracted.holes.iter().map(|hole| &hole.place);
+    let findings = &side.seen.revision.simulation.extracted.findings;
+    let places = holes.chain(findings.iter().filter_map(|finding| finding.place.as_ref()));
+    let spans = places
+        .flat_map(|place| std::iter::once(place.block).chain(place.calls.as_ref().map(|call| call.from)));
+    let wanted = spans.map(|span| (span.source, sources.place(span).line)).collect();
+    Done { blocks, wanted }
+}
+
+/// The texts that belong together: those with the same programs in them, the main programs in any case.
+fn pairs<'a>(sides: &[Side<'a>]) -> Vec<Pair<'a>> {
+    let [old, new] = sides else {
+        return sides.iter().flat_map(|side| side.lines.texts.iter().map(|text| vec![Some(text)])).collect();
+    };
+    let mut free: Vec<&Text> = old.lines.texts.iter().collect();
+    let mut pairs: Vec<Pair<'a>> = Vec::new();
+    for (place, text) in new.lines.texts.iter().enumerate() {
+        let same = |other: &&Text| {
+            let main = other.source == SourceId::default();
+            if place == 0 { main } else { !main && other.programs == text.programs }
+        };
+        let partner = free.iter().position(same).map(|at| free.remove(at));
+        pairs.push(vec![partner, Some(text)]);
+    }
+    pairs.extend(free.into_iter().map(|text| vec![Some(text), None]));
+    pairs
+}
+
+fn program(pair: &Pair<'_>, sides: &[Side<'_>], done: &[Done<'_>], left: &mut usize) -> Markup {
+    let lines = lines(pair);
+    let Some(text) = pair.iter().rev().flatten().next() else { return html! {} };
+    let mut gap = 0;
+    html! {
+        h3.program { (text.programs.join(", ")) }
+        div.listing.two[sides.len() == 2] {
+            div.row.names {
+                @for (side, text) in sides.iter().zip(pair) {
+                    div.half { @if sides.len() == 2 { (heading(side, sides)) " " } @match text { Some(text) => (text.name), None => "not there" } }
+                }
+            }
+            @for line in &lines {
+                @let wanted = line.iter().zip(pair).zip(done).any(|((at, text), done)| is_wanted(*at, *text, done));
+                @if *left > 0 || wanted {
+                    @if gap > 0 { (gap_of(std::mem::take(&mut gap))) }
+                    @let _ = *left = left.saturating_sub(1);
+                    (row(line, pair, sides, done))
+                } @else {
+                    @let _ = gap += 1;
+                }
+            }
+            @if gap > 0 { (gap_of(gap)) }
+        }
+    }
+}
+
+fn gap_of(lines: u64) -> Markup {
+    html! { div.gap { (count(lines)) " lines are left out here: a page holds " (MOST_ROWS) " and those that a hole or a finding leads to" } }
+}
+
+fn is_wanted(at: Option<usize>, text: Option<&Text>, done: &Done<'_>) -> bool {
+    at.zip(text).is_some_and(|(at, text)| done.wanted.contains(&(text.source, at as u32 + 1)))
+}
+
+/// The lines of both texts so that equal ones stand side by side, and between them those that changed.
+fn lines(pair: &Pair<'_>) -> Vec<Line> {
+    let [Some(old), Some(new)] = pair.as_slice() else {
+        let most = pair.iter().flatten().map(|text| text.lines.len()).max().unwrap_or(0);
+        let is_there =
+            |at: usize, text: &Option<&Text>| text.filter(|text| at < text.lines.len()).map(|_| at);
+        return (0..most).map(|at| pair.iter().map(|text| is_there(at, text)).collect()).collect();
+    };
+    let mut all = Vec::new();
+    let (mut i, mut j) = (0, 0);
+    let ends = [(old.lines.len(), new.lines.len())];
+    for (to_i, to_j) in common_lines(&old.lines, &new.lines).into_iter().chain(ends) {
+        while i < to_i || j < to_j {
+            all.push(vec![(i < to_i).then_some(i), (j < to_j).then_some(j)]);
+            (i, j) = ((i + 1).min(to_i), (j + 1).min(to_j));
+        }
+        if to_i < old.lines.len() && to_j < new.lines.len() {
+            all.push(vec![Some(to_i), Some(to_j)]);
+        }
+        (i, j) = (to_i + 1, to_j + 1);
+    }
+    all
+}
+
+/// What stands in one half of a row.
+struct Half<'a> {
+    text: &'a str,
+    times: u64,
+    values: Vec<String>,
+}
+
+fn half<'a>(at: usize, text: &'a Text, done: &Done<'_>) -> Half<'a> {
+    let executed = done.blocks.get(&(text.source, at as u32 + 1));
+    let blocks = executed.into_iter().flatten();
+    let mut values: Vec<String> =
+        blocks.clone().flat_map(|block| in_order(&block.values)).map(|values| said(&values)).collect();
+    values.extend(blocks.clone().any(|block| block.cut).then(|| "and more variables".to_owned()));
+    Half { text: &text.lines[at], times: blocks.map(|block| block.times).max().unwrap_or(0), values }
+}
+
+/// What is read, what is assigned, what is passed.
+fn in_order(values: &[Values]) -> Vec<Values> {
+    let mut values = values.to_vec();
+    values.sort_by_key(|values| values.role);
+    values
+}
+
+fn said(values: &Values) -> String {
+    let (before, sign) = match values.role {
+        Role::Read => ("", ""),
+        Role::Assigned => ("", "← "),
+        Role::Passed => ("→ ", ""),
+    };
+    let word = |one: Value| one.given().map_or_else(|| "vacant".to_owned(), value);
+    let (first, last) = (word(values.first), word(values.last));
+    let mut text = format!("{before}#{} {sign}{first}", values.number);
+    let constant = first == last && values.range.is_none_or(|(low, high)| low == high);
+    if !constant {
+        text.push_str(&format!(" … {last} ({}×", values.times));
+        if let Some((low, high)) = values.range {
+            let outside = |bound: f64| bound != values.first.number() && bound != values.last.number();
+            if outside(low) || outside(high) {
+                text.push_str(&format!(", from {} to {}", value(low), value(high)));
+            }
+        }
+        text.push(')');
+    }
+    text
+}
+
+fn row(line: &Line, pair: &Pair<'_>, sides: &[Side<'_>], done: &[Done<'_>]) -> Markup {
+    let halves: Vec<Option<Half<'_>>> = line
+        .iter()
+        .zip(pair)
+        .zip(done)
+        .map(|((at, text), done)| at.zip(*text).map(|(at, text)| half(at, text, done)))
+        .collect();
+    let class = match halves.as_slice() {
+        [Some(old), Some(new)] if old.text != new.text => "edited",
+        [Some(old), Some(new)] if old.times != new.times || old.values != new.values => "differs",
+        [None, _] | [_, None] => "edited",
+        _ => "same",
+    };
+    let idle = halves.iter().flatten().all(|half| half.times == 0);
+    html! {
+        div.row.(class).idle[idle] {
+            @for (place, half) in halves.iter().enumerate() {
+                @match (half, line[place], pair[place]) {
+                    (Some(half), Some(at), Some(text)) => (half_of(half, at as u32 + 1, text, &sides[place])),
+                    _ => div.half.nothing {},
+                }
+            }
+        }
+    }
+}
+
+fn half_of(half: &Half<'_>, line: u32, text: &Text, side: &Side<'_>) -> Markup {
+    html! {
+        div.half.(side.word).done[half.times > 0] id=(side.lines.anchor(text.source, line)) tabindex="-1" {
+            span.line { (line) }
+            span.times { @if half.times > 0 { (count(half.times)) "×" } }
+            code { (half.text) }
+            @if !half.values.is_empty() {
+                span.values { @for one in &half.values { span { (one) } " " } }
+            }
+        }
+    }
+}

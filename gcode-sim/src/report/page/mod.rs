@@ -1,0 +1,170 @@
+//! The review page: one HTML file that shows what a program does, or two revisions of it side by side, and needs nothing
+//! but itself: no network, no library.
+mod changed;
+mod document;
+mod facts;
+mod holes;
+mod lines;
+mod listing;
+mod path;
+mod proof;
+mod rows;
+mod told;
+mod words;
+
+use maud::{Markup, html};
+
+use crate::changes::{Change, Compared, Revision};
+use crate::machine::Machine;
+use crate::part::reference::Reference;
+use crate::session::{Request, Trace};
+use crate::verify::Verdict;
+use document::document;
+use holes::HoleTable;
+use lines::Lines;
+
+/// More changes than this aren't listed; `--format json` has them all.
+const MOST_CHANGES: usize = 500;
+
+/// One program with all that was seen of its run.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen<'a> {
+    pub request: &'a Request,
+    pub revision: &'a Revision,
+    pub trace: &'a Trace,
+    /// Where there is a reference.
+    pub verdict: Option<&'a Verdict>,
+}
+
+/// A file that the result depends on, besides the programs.
+#[derive(Clone, Debug)]
+pub struct Document {
+    /// What it is: `machine file`.
+    pub role: &'static str,
+    pub name: String,
+    pub bytes: Vec<u8>,
+}
+
+/// What two revisions do differently, and what counts as the same, mm or degrees.
+#[derive(Clone, Copy, Debug)]
+pub struct Difference<'a> {
+    pub compared: &'a Compared,
+    pub tolerance: f64,
+}
+
+/// All that stands on a page.
+#[derive(Clone, Copy, Debug)]
+pub struct Page<'a> {
+    /// The old revision, where two are compared.
+    pub old: Option<(Seen<'a>, Difference<'a>)>,
+    pub new: Seen<'a>,
+    pub machine: &'a Machine,
+    pub reference: Option<&'a Reference>,
+    /// The flags that the run depends on, as they were given.
+    pub conditions: &'a [String],
+    pub documents: &'a [Document],
+}
+
+/// One side of the page.
+#[derive(Clone, Copy, Debug)]
+struct Side<'a> {
+    /// `old` and `new`; a program alone is `new`.
+    word: &'static str,
+    seen: Seen<'a>,
+    lines: &'a Lines,
+}
+
+impl Page<'_> {
+    /// The page as a text.
+    ///
+    /// # Errors
+    /// Data that can't be written as JSON.
+    pub fn html(&self) -> Result<String, serde_json::Error> {
+        let mut lines: Vec<Lines> = Vec::new();
+        for (word, seen) in self.seen() {
+            lines.push(Lines::new(word, &seen.revision.simulation.run));
+        }
+        let sides: Vec<Side<'_>> = self
+            .seen()
+            .into_iter()
+            .zip(&lines)
+            .map(|((word, seen), lines)| Side { word, seen, lines })
+            .collect();
+        let difference = self.old.map(|(_, difference)| difference);
+        let table = HoleTable::new(self, &sides);
+        let data = path::data(self, &sides, &table);
+        let body = html! {
+            header {
+                h1 { (self.title()) }
+                p.basis { "Predicted by simulation, not measured" }
+                (facts::answer(self, &sides))
+                nav aria-label="Sections" {
+                    @for (id, name) in self.sections() { a href={ "#" (id) } { (name) } }
+                }
+            }
+            main {
+                (section("summary", "Summary", facts::summary(self, &sides)))
+                @if let Some(difference) = difference {
+                    (section("changes", "What changes", changed::changes(&difference, &sides)))
+                }
+                (section("holes", "Holes", table.markup(self)))
+                (section("path", "Path and program", html! {
+                    (path::viewer(&sides, &data))
+                    (listing::listing(&sides))
+                }))
+                (section("told", "Stops, alarms and findings", told::told(&sides)))
+                (section("proof", "What this rests on", proof::proof(self, &sides)))
+                (section("signatures", "Signatures", proof::signatures()))
+            }
+        };
+        document(&self.title(), &body, &data)
+    }
+
+    fn seen(&self) -> Vec<(&'static str, Seen<'_>)> {
+        let old = self.old.map(|(seen, _)| ("old", seen));
+        old.into_iter().chain([("new", self.new)]).collect()
+    }
+
+    fn title(&self) -> String {
+        let name = |seen: &Seen<'_>| words::shown(&seen.request.name);
+        match &self.old {
+            Some((old, _)) => format!("Review of {} against {}", name(&self.new), name(old)),
+            None => format!("Review of {}", name(&self.new)),
+        }
+    }
+
+    fn sections(&self) -> Vec<(&'static str, &'static str)> {
+        let changes = self.old.map(|_| ("changes", "Changes"));
+        let others = [
+            ("holes", "Holes"),
+            ("path", "Path and program"),
+            ("told", "Stops and alarms"),
+            ("proof", "SHA-256"),
+            ("signatures", "Signatures"),
+        ];
+        [("summary", "Summary")].into_iter().chain(changes).chain(others).collect()
+    }
+}
+
+fn section(id: &str, name: &str, inside: Markup) -> Markup {
+    html! {
+        section id=(id) aria-labelledby={ (id) "-name" } {
+            h2 id={ (id) "-name" } { (name) }
+            (inside)
+        }
+    }
+}
+
+/// What the columns of two sides are called.
+fn heading(side: &Side<'_>, sides: &[Side<'_>]) -> &'static str {
+    match (sides.len(), side.word) {
+        (1, _) => "Program",
+        (_, "old") => "Old",
+        _ => "New",
+    }
+}
+
+/// The changes that are listed.
+fn listed(changes: &[Change]) -> &[Change] {
+    &changes[..changes.len().min(MOST_CHANGES)]
+}

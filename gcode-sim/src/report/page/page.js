@@ -1,0 +1,215 @@
+// Brings the parts of the page together: what is picked in one is shown in the others.
+(function () {
+  const data = JSON.parse(document.getElementById("data").textContent);
+  const sides = data.sides.map((side) => new Side(side, document.getElementById(`canvas-${side.word}`)));
+  const viewer = new Viewer(data, sides);
+  const picked = document.getElementById("picked");
+  const table = holeTable((row) => pickRow(row));
+
+  // A place in the listing: the line that a link leads to, with the lines that called it.
+  function mark(anchor, callers = []) {
+    document.querySelectorAll(".half.at, .half.from").forEach((half) => half.classList.remove("at", "from"));
+    document.getElementById(anchor)?.classList.add("at");
+    callers.forEach((caller) => document.getElementById(caller)?.classList.add("from"));
+  }
+
+  function land(anchor) {
+    if (!document.getElementById(anchor)) return;
+    if (location.hash === `#${anchor}`) document.getElementById(anchor).scrollIntoView();
+    else location.hash = anchor;
+  }
+
+  const lineOf = (side, number) => {
+    const [anchor, name, text] = side.lines[number];
+    const [span, code] = [document.createElement("span"), document.createElement("code")];
+    const there = anchor !== null && document.getElementById(anchor) !== null;
+    const link = document.createElement(there ? "a" : "span");
+    if (there) link.href = `#${anchor}`;
+    link.textContent = name;
+    code.textContent = text;
+    span.append(link, " ", code);
+    return span;
+  };
+
+  function tell(text, side, lines) {
+    picked.replaceChildren(text);
+    lines.forEach((number, place) => picked.append(place === 0 ? ". " : " called from ", lineOf(side, number)));
+  }
+
+  const name = (side) => (sides.length === 2 ? `${side.word[0].toUpperCase()}${side.word.slice(1)}, ` : "");
+  const linesOf = (choice) => (choice.hole ? choice.hole.lines : choice.side.places[choice.side.at[choice.move]]);
+  const anchorsOf = (choice) => linesOf(choice).map((number) => choice.side.lines[number][0]);
+
+  function pickMove(side, move) {
+    viewer.pick = { side, move };
+    const kind = { r: "rapid", f: "feed", a: "arc", p: "probing move" }[side.kinds[move]];
+    const point = (at) => [0, 1, 2].map((axis) => `${"XYZ"[axis]} ${side.xyz[3 * at + axis].toFixed(3)}`).join(" ");
+    const [from, to] = [point(side.starts[move]), point(side.starts[move + 1] - 1)];
+    const feed = side.feeds[move] ? ` F${Number(side.feeds[move].toFixed(3))}` : "";
+    tell(`${name(side)}move ${move + 1} of ${side.moves}, ${kind}${feed} from ${from} to ${to}`, side, linesOf(viewer.pick));
+    const [anchor, ...callers] = anchorsOf(viewer.pick);
+    mark(anchor, callers);
+    viewer.ask();
+  }
+
+  function pickHole(side, hole) {
+    viewer.pick = { side, hole, row: hole.row ?? undefined };
+    table.show(hole.row);
+    const depth = Math.hypot(...hole.entry.map((value, axis) => value - hole.bottom[axis]));
+    const at = hole.entry.map((value, axis) => `${"XYZ"[axis]} ${value.toFixed(3)}`).join(" ");
+    tell(`${name(side)}hole ${hole.id} at ${at}, depth ${depth.toFixed(3)}`, side, hole.lines);
+    const [anchor, ...callers] = anchorsOf(viewer.pick);
+    mark(anchor, callers);
+    viewer.ask();
+  }
+
+  function pickRow(row) {
+    for (const side of [...sides].reverse()) {
+      const hole = side.holes.find((one) => one.row === row);
+      if (hole) return pickHole(side, hole);
+    }
+  }
+
+  // A line that a link led to: its moves are shown, unless it is the block of what is picked already.
+  function arrived() {
+    const anchor = decodeURIComponent(location.hash.slice(1));
+    const half = document.getElementById(anchor);
+    if (!half?.classList.contains("half")) return;
+    half.focus({ preventScroll: true });
+    if (viewer.pick.side && anchorsOf(viewer.pick).includes(anchor)) {
+      mark(anchor, anchorsOf(viewer.pick).filter((other) => other !== anchor));
+      return;
+    }
+    mark(anchor);
+    for (const side of sides) {
+      const number = side.lines.findIndex(([name]) => name === anchor);
+      if (number < 0) continue;
+      viewer.pick = { line: { side, number } };
+      const moves = side.at.filter((place) => side.places[place].includes(number)).length;
+      tell(`${name(side)}${moves} move${moves === 1 ? "" : "s"}`, side, [number]);
+    }
+    viewer.ask();
+  }
+
+  function step(side, by) {
+    const shown = (move) =>
+      (viewer.options.rapids || side.kinds[move] !== "r") && (!viewer.options.changedOnly || side.isChanged.has(move));
+    let move = viewer.pick.side === side && viewer.pick.move !== undefined ? viewer.pick.move + by : by > 0 ? 0 : side.counts.length - 1;
+    while (move >= 0 && move < side.counts.length && !shown(move)) move += by;
+    if (move >= 0 && move < side.counts.length) pickMove(side, move);
+  }
+
+  const follow = () => viewer.pick.side && land(anchorsOf(viewer.pick)[0]);
+
+  function key(side, event) {
+    const { camera } = viewer;
+    const turns = { ArrowLeft: [-6, 0], ArrowRight: [6, 0], ArrowUp: [0, 6], ArrowDown: [0, -6] }[event.key];
+    if (event.ctrlKey || event.altKey || event.metaKey) return;
+    if (turns && event.shiftKey) {
+      camera.panX += 4 * turns[0];
+      camera.panY -= 4 * turns[1];
+    } else if (turns) camera.turn(...turns);
+    else if (event.key === "+" || event.key === "=") camera.magnify(1.2);
+    else if (event.key === "-") camera.magnify(1 / 1.2);
+    else if (event.key === "0") look("reset");
+    else if (event.key === "n" || event.key === "N") step(side, 1);
+    else if (event.key === "p" || event.key === "P") step(side, -1);
+    else if (event.key === "Enter") follow();
+    else return;
+    event.preventDefault();
+    viewer.ask();
+  }
+
+  function look(view) {
+    viewer.camera.look(view);
+    viewer.fit();
+  }
+
+  // One finger or the mouse turns, two fingers zoom and move; what hardly moves is a click.
+  function pointers(side) {
+    const { canvas } = side;
+    const down = new Map();
+    let far = 0;
+    const spread = () => {
+      const [a, b] = [...down.values()];
+      return Math.hypot(a[0] - b[0], a[1] - b[1]);
+    };
+    canvas.addEventListener("pointerdown", (event) => {
+      if (down.size === 0) far = 0;
+      down.set(event.pointerId, [event.clientX, event.clientY]);
+      canvas.setPointerCapture(event.pointerId);
+      canvas.focus({ preventScroll: true });
+    });
+    canvas.addEventListener("pointermove", (event) => {
+      const last = down.get(event.pointerId);
+      if (!last) return;
+      const [dx, dy] = [event.clientX - last[0], event.clientY - last[1]];
+      far += Math.hypot(dx, dy);
+      const before = down.size === 2 ? spread() : 0;
+      down.set(event.pointerId, [event.clientX, event.clientY]);
+      if (down.size === 2) viewer.camera.magnify(spread() / (before || 1));
+      if (down.size === 2 || event.shiftKey) {
+        viewer.camera.panX += dx / down.size;
+        viewer.camera.panY += dy / down.size;
+      } else if (far > 4) viewer.camera.turn(-0.4 * dx, 0.4 * dy);
+      viewer.ask();
+    });
+    const up = (event) => {
+      const wasClick = down.size === 1 && far <= 4 && event.type === "pointerup";
+      down.delete(event.pointerId);
+      if (!wasClick) return;
+      const box = canvas.getBoundingClientRect();
+      const choice = side.nearest(event.clientX - box.left - canvas.clientLeft, event.clientY - box.top - canvas.clientTop, viewer.options);
+      if (choice?.hole) {
+        pickHole(side, choice.hole);
+        follow();
+      } else if (choice) pickMove(side, choice.move);
+    };
+    canvas.addEventListener("pointerup", up);
+    canvas.addEventListener("pointercancel", up);
+    canvas.addEventListener("dblclick", follow);
+    canvas.addEventListener("keydown", (event) => key(side, event));
+    const wheel = (event) => {
+      event.preventDefault();
+      viewer.camera.magnify(Math.exp(-0.0015 * event.deltaY));
+      viewer.ask();
+    };
+    canvas.addEventListener("wheel", wheel, { passive: false });
+  }
+
+  sides.forEach(pointers);
+  document.querySelectorAll("[data-view]").forEach((button) =>
+    button.addEventListener("click", () => {
+      const factor = { in: 1.2, out: 1 / 1.2 }[button.dataset.view];
+      if (!factor) return look(button.dataset.view);
+      viewer.camera.magnify(factor);
+      viewer.ask();
+    }),
+  );
+  const box = (id, option) =>
+    document.getElementById(id)?.addEventListener("change", (event) => {
+      viewer.options[option] = event.target.checked;
+      viewer.ask();
+    });
+  box("rapids", "rapids");
+  box("changed-only", "changedOnly");
+
+  // A drawing that stays in sight covers lines: what is landed on stands below it.
+  function measure() {
+    const element = document.getElementById("viewer");
+    const sticks = getComputedStyle(element).position === "sticky";
+    document.documentElement.style.setProperty("--viewer", sticks ? `${element.offsetHeight}px` : "0px");
+    viewer.fit();
+  }
+  new ResizeObserver(measure).observe(document.getElementById("viewer"));
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => viewer.ask());
+  const paper = (on) => {
+    document.documentElement.classList.toggle("paper", on);
+    viewer.draw();
+  };
+  addEventListener("beforeprint", () => paper(true));
+  addEventListener("afterprint", () => paper(false));
+  addEventListener("hashchange", arrived);
+  measure();
+  arrived();
+})();

@@ -1,0 +1,252 @@
+//! The drawing: canvases, their controls, and the data that the page's script draws and links from.
+use std::collections::BTreeMap;
+
+use maud::{Markup, html};
+use serde::Serialize;
+
+use super::holes::HoleTable;
+use super::lines::Lines;
+use super::rows::State;
+use super::words::{count, shown};
+use super::{Page, Side, heading};
+use crate::changes::Where;
+use crate::machine::HeadKind;
+use crate::part::hole::Hole;
+
+/// More moves than this aren't drawn, nor more points: the page must turn without a wait.
+const MOST_MOVES: usize = 40_000;
+const MOST_POINTS: usize = 160_000;
+/// More holes than this aren't drawn.
+const MOST_HOLES: usize = 10_000;
+
+/// What the script reads.
+#[derive(Debug, Serialize)]
+pub(super) struct Data {
+    /// Which axis of the part points up.
+    up: char,
+    sides: Vec<Drawn>,
+}
+
+/// One side. Lists of moves have one entry a move.
+#[derive(Debug, Serialize)]
+struct Drawn {
+    word: &'static str,
+    /// `r`apid, `f`eed, `a`rc, `p`robing move.
+    kinds: String,
+    /// How many points a move has.
+    counts: Vec<u32>,
+    /// x y z of all points, in thousandths of a millimetre.
+    points: Vec<i64>,
+    /// mm/min; 0 for a rapid.
+    feeds: Vec<f64>,
+    /// Which of `places`.
+    at: Vec<usize>,
+    /// The moves that the other side doesn't make.
+    changed: Vec<usize>,
+    /// Anchor, name and text of every line that a move comes from or is called from.
+    lines: Vec<(Option<String>, String, String)>,
+    /// The block and the calls, innermost first, as places in `lines`.
+    places: Vec<Vec<usize>>,
+    holes: Vec<DrawnHole>,
+    /// How many moves and holes there are in all.
+    moves: usize,
+    all_holes: usize,
+}
+
+#[derive(Debug, Serialize)]
+struct DrawnHole {
+    entry: [f64; 3],
+    bottom: [f64; 3],
+    diameter: f64,
+    id: String,
+    state: &'static str,
+    /// The row of the table.
+    row: Option<usize>,
+    /// As in [`Drawn::lines`], the block and the call.
+    lines: Vec<usize>,
+}
+
+pub(super) fn data(page: &Page<'_>, sides: &[Side<'_>], table: &HoleTable) -> Data {
+    let up = match page.machine.head.kind {
+        HeadKind::Fixed(out) if out.z > 0.99 => 'z',
+        _ => 'y',
+    };
+    let drawn = sides.iter().enumerate().map(|(place, side)| drawn(page, place, side, table, sides.len()));
+    Data { up, sides: drawn.collect() }
+}
+
+/// Lines by what they are, each once.
+#[derive(Default)]
+struct Known {
+    lines: Vec<(Option<String>, String, String)>,
+    numbers: BTreeMap<(String, u32, String), usize>,
+}
+
+impl Known {
+    fn number(&mut self, place: &Where, lines: &Lines) -> usize {
+        let key = (place.program.clone(), place.line, place.block.clone());
+        *self.numbers.entry(key).or_insert_with(|| {
+            let anchor = lines.of_place(place).map(|(source, line)| lines.anchor(source, line));
+            let name = format!("{}:{}", shown(&place.program), place.line);
+            self.lines.push((anchor, name, shown(&place.block)));
+            self.lines.len() - 1
+        })
+    }
+
+    fn numbers(&mut self, place: &Where, lines: &Lines) -> Vec<usize> {
+        std::iter::once(place).chain(&place.calls).map(|place| self.number(place, lines)).collect()
+    }
+}
+
+fn drawn(page: &Page<'_>, place: usize, side: &Side<'_>, table: &HoleTable, sides: usize) -> Drawn {
+    let record = &side.seen.revision.record;
+    let legs = record.path(page.machine, MOST_MOVES, MOST_POINTS);
+    let mut known = Known::default();
+    let holes = holes(page, place, side, table, &mut known);
+    let mut numbers: BTreeMap<usize, usize> = BTreeMap::new();
+    let mut places = Vec::new();
+    let mut at = Vec::with_capacity(legs.len());
+    for leg in &legs {
+        at.push(*numbers.entry(leg.place).or_insert_with(|| {
+            places.push(known.numbers(&record.places()[leg.place], side.lines));
+            places.len() - 1
+        }));
+    }
+    let different = match (page.old, sides) {
+        (Some((_, difference)), 2) => difference.compared.steps[place].as_slice(),
+        _ => &[],
+    };
+    let is_different = |step: &usize| different.binary_search(step).is_ok();
+    let coordinates = legs.iter().flat_map(|leg| &leg.points).flat_map(|p| [p.x, p.y, p.z]);
+    Drawn {
+        word: side.word,
+        kinds: legs.iter().filter_map(|leg| leg.kind.chars().next()).collect(),
+        counts: legs.iter().map(|leg| leg.points.len() as u32).collect(),
+        points: coordinates.map(|mm| (mm * 1000.0).round() as i64).collect(),
+        feeds: legs.iter().map(|leg| leg.feed.unwrap_or(0.0)).collect(),
+        at,
+        changed: (0..legs.len()).filter(|leg| is_different(&legs[*leg].step)).collect(),
+        lines: known.lines,
+        places,
+        holes,
+        moves: record.moves(),
+        all_holes: side.seen.revision.simulation.extracted.holes.len(),
+    }
+}
+
+fn holes(
+    page: &Page<'_>,
+    place: usize,
+    side: &Side<'_>,
+    table: &HoleTable,
+    known: &mut Known,
+) -> Vec<DrawnHole> {
+    let simulation = &side.seen.revision.simulation;
+    let rows = table.of_side(place);
+    let mut all = Vec::new();
+    for (number, found) in simulation.extracted.holes.iter().enumerate().take(MOST_HOLES) {
+        let row = rows.get(&number);
+        let lines = known.numbers(&Where::of(&simulation.run, &found.place), side.lines);
+        let hole = found.hole(|_| (String::new(), 0));
+        let id = row.map_or_else(|| (number + 1).to_string(), |(_, id, _)| (*id).to_owned());
+        let state = row.map_or(State::Unjudged, |(_, _, state)| *state);
+        all.push(DrawnHole { lines, row: row.map(|(row, ..)| *row), ..hole_of(&hole, id, state) });
+    }
+    let missing = side.seen.verdict.iter().flat_map(|verdict| &verdict.missing);
+    let wanted = page.reference.iter().flat_map(|reference| &reference.holes);
+    let wanted: BTreeMap<_, _> = wanted.map(|hole| (hole.id.as_deref().unwrap_or_default(), hole)).collect();
+    all.extend(missing.filter_map(|id| Some(hole_of(wanted.get(id.as_str())?, shown(id), State::Missing))));
+    all
+}
+
+fn hole_of(hole: &Hole, id: String, state: State) -> DrawnHole {
+    let bottom = std::array::from_fn(|i| hole.entry[i] - hole.axis[i] * hole.depth);
+    let round = |point: [f64; 3]| point.map(|mm| (mm * 1000.0).round() / 1000.0);
+    DrawnHole {
+        entry: round(hole.entry),
+        bottom: round(bottom),
+        diameter: hole.diameter.unwrap_or(0.0),
+        id,
+        state: state.class(),
+        row: None,
+        lines: Vec::new(),
+    }
+}
+
+pub(super) fn viewer(sides: &[Side<'_>], data: &Data) -> Markup {
+    let tools = [
+        ("top", "Top"),
+        ("front", "Front"),
+        ("side", "Side"),
+        ("reset", "Reset"),
+        ("in", "+"),
+        ("out", "\u{2212}"),
+    ];
+    html! {
+        div #viewer {
+            div.tools role="toolbar" aria-label="View" {
+                @for (action, name) in tools {
+                    button type="button" data-view=(action) aria-label=[label(action)] { (name) }
+                }
+                label { input #rapids type="checkbox" checked; " Rapids" }
+                @if sides.len() == 2 { label { input #changed-only type="checkbox"; " What changes only" } }
+            }
+            div.canvases {
+                @for side in sides {
+                    figure {
+                        @if sides.len() == 2 { figcaption { (heading(side, sides)) } }
+                        canvas id={ "canvas-" (side.word) } tabindex="0" role="img"
+                            aria-label={ "Path and holes of the " @if sides.len() == 2 { (side.word) " " } "program on the part" }
+                            aria-describedby="keys" {}
+                    }
+                }
+            }
+            p #picked aria-live="polite" { "Click a move or a hole to see its block and its calls." }
+            ul.legend {
+                li.rapid { "rapid" }
+                li.feed { "feed, arc" }
+                li.probe { "probing move" }
+                @if sides.len() == 2 { li.changed { "different from the other program" } }
+                li.hole { "hole" }
+                li.wrong { "hole that differs, or is wrong" }
+                li.absent { "missing hole" }
+            }
+            p.note #keys {
+                "Drag, or the arrow keys, turn; the wheel, two fingers, + and − zoom; Shift and drag moves. "
+                "N and P go from move to move, Enter to the block of what is picked, 0 is the first view."
+            }
+            @for (side, drawn) in sides.iter().zip(&data.sides) { (left_out(side, sides, drawn)) }
+            noscript { p { "The drawing needs scripts; all else on this page doesn't." } }
+        }
+    }
+}
+
+fn label(action: &str) -> Option<&'static str> {
+    match action {
+        "in" => Some("Zoom in"),
+        "out" => Some("Zoom out"),
+        "top" => Some("Seen from above"),
+        "front" => Some("Seen from the front"),
+        "side" => Some("Seen from the side"),
+        _ => None,
+    }
+}
+
+/// What isn't in the drawing.
+fn left_out(side: &Side<'_>, sides: &[Side<'_>], drawn: &Drawn) -> Markup {
+    let shown = drawn.counts.len();
+    html! {
+        @if shown < drawn.moves {
+            p.note {
+                (heading(side, sides)) ": the first " (count(shown as u64)) " of " (count(drawn.moves as u64))
+                " moves are drawn."
+            }
+        }
+        @if MOST_HOLES < drawn.all_holes {
+            p.note {
+                (heading(side, sides)) ": the first " (count(MOST_HOLES as u64)) " of " (count(drawn.all_holes as u64))
+                " holes are drawn."
+            }
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! What the result rests on: the conditions of the run, the digests of all files, and who answers for it.
+use maud::{Markup, html};
+
+use super::document::sha256;
+use super::words::{count, shown};
+use super::{Page, Side};
+use crate::control::{Dialect, Increment};
+
+pub(super) fn proof(page: &Page<'_>, sides: &[Side<'_>]) -> Markup {
+    let settings = &page.new.request.settings;
+    let dialect =
+        Dialect::ALL.iter().find(|(_, known)| *known == settings.dialect).map_or("", |(name, _)| name);
+    let increment =
+        Increment::ALL.iter().find(|(_, known)| *known == settings.increment).map_or("", |(name, _)| name);
+    html! {
+        p {
+            "gcode-sim " (env!("CARGO_PKG_VERSION")) ", control " (dialect)
+            ", increment " (increment) ". "
+            @if page.conditions.is_empty() {
+                "Everything else as it is by default: the machine of the paper, no set variables, no settings."
+            } @else {
+                "Given: "
+                @for (place, flag) in page.conditions.iter().enumerate() {
+                    @if place > 0 { ", " }
+                    code { (shown(flag)) }
+                }
+                "."
+            }
+        }
+        div.scroll {
+            table.digests {
+                thead { tr { th scope="col" { "File" } th scope="col" { "Is" } th scope="col" { "Bytes" } th scope="col" { "SHA-256" } } }
+                tbody {
+                    @for (name, role, bytes) in files(page, sides) {
+                        tr {
+                            th scope="row" { (name) }
+                            td { (role) }
+                            td.number { (count(bytes.len() as u64)) }
+                            td { code.digest { (sha256(bytes)) } }
+                        }
+                    }
+                }
+            }
+        }
+        p.note { "Every number on this page is a prediction of what the programs make a control do. No part was measured." }
+    }
+}
+
+/// Every file that was read, once for each side.
+fn files<'a>(page: &'a Page<'_>, sides: &'a [Side<'_>]) -> Vec<(String, String, &'a [u8])> {
+    let mut files = Vec::new();
+    for side in sides {
+        let word = if sides.len() == 2 { format!("{} ", side.word) } else { String::new() };
+        let memory = side.seen.revision.simulation.run.control.memory();
+        for (place, (_, source)) in memory.sources().iter().enumerate() {
+            let role = if place == 0 { "program" } else { "called program" };
+            files.push((shown(&source.name), format!("{word}{role}"), &*source.bytes));
+        }
+    }
+    let others = page.documents.iter();
+    files.extend(others.map(|file| (shown(&file.name), file.role.to_owned(), &*file.bytes)));
+    files
+}
+
+/// Lines to sign on paper.
+pub(super) fn signatures() -> Markup {
+    html! {
+        table.signatures {
+            thead { tr { td {} th scope="col" { "Name" } th scope="col" { "Date" } th scope="col" { "Signature" } } }
+            tbody {
+                @for who in ["Reviewed by", "Set-up checked by", "Released by"] {
+                    tr { th scope="row" { (who) } td {} td {} td {} }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,227 @@
+//! The rows of the table of holes: of a reference, of two revisions, or of what one program makes.
+use std::collections::BTreeMap;
+
+use super::words::shown;
+use super::{Side, heading};
+use crate::changes::Paired;
+use crate::holes::Found;
+use crate::part::reference::Reference;
+use crate::report::figures::{near, signed};
+use crate::verify::{Extra, HoleVerdict, Verdict};
+
+/// What is to be said of a hole.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum State {
+    Bad,
+    Missing,
+    Extra,
+    Changed,
+    Good,
+    Same,
+    Unjudged,
+}
+
+impl State {
+    /// As a class of the page's style and a word of its data.
+    pub(super) fn class(self) -> &'static str {
+        match self {
+            Self::Bad => "bad",
+            Self::Missing => "missing",
+            Self::Extra => "extra",
+            Self::Changed => "changed",
+            Self::Good => "good",
+            Self::Same => "same",
+            Self::Unjudged => "unjudged",
+        }
+    }
+
+    pub(super) fn is_worth_a_look(self) -> bool {
+        !matches!(self, Self::Good | Self::Same | Self::Unjudged)
+    }
+}
+
+/// One cell: a text, what it is sorted by, and where it leads.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Cell {
+    pub text: String,
+    pub value: Option<f64>,
+    /// Anchor and name.
+    pub links: Vec<(String, String)>,
+}
+
+impl Cell {
+    fn number(value: f64, decimals: usize) -> Self {
+        Self { text: near(value, decimals), value: Some(value), links: Vec::new() }
+    }
+
+    fn maybe(value: Option<f64>, decimals: usize) -> Self {
+        value.map_or_else(Self::default, |value| Self::number(value, decimals))
+    }
+
+    fn signed(value: Option<f64>) -> Self {
+        value.map_or_else(Self::default, |value| Self { text: signed(value), ..Self::number(value, 4) })
+    }
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct Row {
+    pub id: String,
+    pub state: State,
+    pub words: String,
+    pub cells: Vec<Cell>,
+    /// The hole of each side, counted from 0.
+    pub holes: Vec<Option<usize>>,
+}
+
+/// The block that finished a hole and the one that called its program.
+fn made_by(side: &Side<'_>, found: &Found) -> Cell {
+    let run = &side.seen.revision.simulation.run;
+    let mut links = Vec::new();
+    let calls = found.place.calls.as_ref().map(|call| call.from);
+    for span in std::iter::once(found.place.block).chain(calls) {
+        let (program, line) = run.locate(span);
+        links.push((side.lines.of_span(run, span), format!("{}:{line}", shown(&program))));
+    }
+    let text = String::new();
+    Cell { text, value: None, links }
+}
+
+fn found<'a>(side: &Side<'a>, hole: usize) -> &'a Found {
+    &side.seen.revision.simulation.extracted.holes[hole]
+}
+
+/// `Block`, or `Old block` and `New block`.
+fn titled(name: &str, side: &Side<'_>, sides: &[Side<'_>]) -> String {
+    if sides.len() == 1 {
+        name.to_owned()
+    } else {
+        format!("{} {}", heading(side, sides), name.to_lowercase())
+    }
+}
+
+/// What a hole is: where, how deep, how wide, by which tool.
+fn described(found: Option<&Found>) -> Vec<Cell> {
+    let entry = |axis: usize| Cell::maybe(found.map(|found| found.entry[axis]), 3);
+    let tool = found.and_then(|found| found.tool);
+    vec![
+        entry(0),
+        entry(1),
+        entry(2),
+        Cell::maybe(found.map(|found| found.depth), 3),
+        Cell::maybe(found.and_then(|found| found.diameter), 2),
+        Cell {
+            text: tool.map_or_else(String::new, |t| format!("T{t}")),
+            value: tool.map(f64::from),
+            links: Vec::new(),
+        },
+    ]
+}
+
+const DESCRIBED: [&str; 6] = ["X", "Y", "Z", "Depth", "Φ", "Tool"];
+
+pub(super) fn found_rows(sides: &[Side<'_>]) -> (Vec<String>, Vec<Row>) {
+    let Some(side) = sides.last() else { return (Vec::new(), Vec::new()) };
+    let holes = side.seen.revision.simulation.extracted.holes.iter().enumerate();
+    let rows = holes.map(|(number, hole)| {
+        let mut cells = described(Some(hole));
+        cells.push(made_by(side, hole));
+        let words = "not judged".to_owned();
+        Row { id: (number + 1).to_string(), state: State::Unjudged, words, cells, holes: vec![Some(number)] }
+    });
+    (DESCRIBED.map(str::to_owned).into_iter().chain(["Block".to_owned()]).collect(), rows.collect())
+}
+
+/// Two revisions against one another.
+pub(super) fn paired_rows(pairs: &[Paired], sides: &[Side<'_>]) -> (Vec<String>, Vec<Row>) {
+    let [old, new] = sides else { return (Vec::new(), Vec::new()) };
+    let mut columns = DESCRIBED.map(str::to_owned).to_vec();
+    columns.extend(["Moved", "Tilted °", "Deeper"].map(str::to_owned));
+    columns.extend([titled("Block", old, sides), titled("Block", new, sides)]);
+    let row = |pair: &Paired| {
+        let (was, is) = (pair.old.map(|hole| found(old, hole)), pair.new.map(|hole| found(new, hole)));
+        let both = pair.old.is_some() && pair.new.is_some();
+        let mut cells = described(is.or(was));
+        cells.extend([
+            Cell::maybe(both.then_some(pair.moved), 4),
+            Cell::maybe(both.then_some(pair.tilted.0), 4),
+            Cell::signed(both.then_some(pair.deeper)),
+            was.map_or_else(Cell::default, |hole| made_by(old, hole)),
+            is.map_or_else(Cell::default, |hole| made_by(new, hole)),
+        ]);
+        let (id, state, words) = match (pair.old, pair.new) {
+            (Some(hole), None) => (format!("{}", hole + 1), State::Missing, "lost"),
+            (None, Some(hole)) => (format!("new {}", hole + 1), State::Extra, "added"),
+            (Some(hole), Some(_)) if pair.changed => (format!("{}", hole + 1), State::Changed, "changed"),
+            (hole, _) => (hole.map_or_else(String::new, |hole| (hole + 1).to_string()), State::Same, "same"),
+        };
+        Row { id, state, words: words.to_owned(), cells, holes: vec![pair.old, pair.new] }
+    };
+    (columns, pairs.iter().map(row).collect())
+}
+
+/// Each wanted hole with the deviations on each side, and the holes nobody asked for.
+pub(super) fn judged_rows(
+    reference: &Reference,
+    judged: &[(Side<'_>, &Verdict)],
+    sides: &[Side<'_>],
+) -> (Vec<String>, Vec<Row>) {
+    let by_id: Vec<BTreeMap<&str, &HoleVerdict>> =
+        judged.iter().map(|(_, v)| v.holes.iter().map(|hole| (hole.id.as_str(), hole)).collect()).collect();
+    let mut columns: Vec<String> = sides.iter().map(|side| titled("φ", side, sides)).collect();
+    columns.extend((sides.len() == 2).then(|| "Change of φ".to_owned()));
+    columns.extend(["Off at entry", "Off at bottom", "Depth error", "Tilt °"].map(str::to_owned));
+    columns.extend(sides.iter().map(|side| titled("Block", side, sides)));
+    let wanted = reference.holes.iter().map(|hole| {
+        let id = hole.id.as_deref().unwrap_or_default();
+        let found_by: Vec<Option<&HoleVerdict>> = by_id.iter().map(|holes| holes.get(id).copied()).collect();
+        let is = found_by.last().copied().flatten();
+        let mut cells: Vec<Cell> =
+            found_by.iter().map(|hole| Cell::maybe(hole.map(|hole| hole.phi), 4)).collect();
+        if let [was, is] = found_by.as_slice() {
+            cells.push(Cell::signed(was.zip(*is).map(|(was, is)| is.phi - was.phi)));
+        }
+        cells.extend([
+            Cell::maybe(is.map(|hole| hole.at_entry), 4),
+            Cell::maybe(is.map(|hole| hole.at_bottom), 4),
+            Cell::signed(is.map(|hole| hole.depth_error)),
+            Cell::maybe(is.map(|hole| hole.tilt), 4),
+        ]);
+        cells.extend(judged.iter().zip(&found_by).map(|((side, _), hole)| {
+            hole.map_or_else(Cell::default, |hole| made_by(side, found(side, hole.found)))
+        }));
+        let (state, words) = match is {
+            None => (State::Missing, "missing".to_owned()),
+            Some(hole) if hole.ok => (State::Good, "in tolerance".to_owned()),
+            Some(hole) => (State::Bad, hole.objections.join(", ")),
+        };
+        let holes = found_by.iter().map(|hole| hole.map(|hole| hole.found)).collect();
+        Row { id: shown(id), state, words, cells, holes }
+    });
+    let mut rows: Vec<Row> = wanted.collect();
+    for (place, (side, verdict)) in judged.iter().enumerate() {
+        rows.extend(extra_rows(place, side, verdict, columns.len(), sides));
+    }
+    (columns, rows)
+}
+
+/// The holes nobody asked for.
+fn extra_rows(
+    place: usize,
+    side: &Side<'_>,
+    verdict: &Verdict,
+    columns: usize,
+    sides: &[Side<'_>],
+) -> Vec<Row> {
+    let of_old = sides.len() == 2 && place == 0;
+    let row = |(number, extra): (usize, &Extra)| {
+        let mut cells = vec![Cell::default(); columns - sides.len()];
+        let block = made_by(side, found(side, extra.found));
+        cells.extend((0..sides.len()).map(|at| if at == place { block.clone() } else { Cell::default() }));
+        let mut holes = vec![None; sides.len()];
+        holes[place] = Some(extra.found);
+        let (of, words) = if of_old { ("old ", "extra in the old") } else { ("", "extra") };
+        let id = format!("{of}extra {}", number + 1);
+        Row { id, state: State::Extra, words: format!("{words}: {}", shown(&extra.why)), cells, holes }
+    };
+    verdict.extra.iter().enumerate().map(row).collect()
+}

@@ -1,0 +1,260 @@
+// The drawing: one camera for all canvases, which shows the part straight, without perspective.
+const RAD = Math.PI / 180;
+
+class Camera {
+  constructor(up) {
+    this.up = up;
+    this.look("reset");
+  }
+
+  // Up is z as it is, or y: then x goes to the right, and -z away from who looks.
+  look(name) {
+    const [yaw, pitch] = { top: [0, 90], front: [0, 0], side: [90, 0], reset: [-30, 28] }[name];
+    Object.assign(this, { yaw, pitch, zoom: 1, panX: 0, panY: 0 });
+  }
+
+  turn(yaw, pitch) {
+    this.yaw = (this.yaw + yaw) % 360;
+    this.pitch = Math.max(-90, Math.min(90, this.pitch + pitch));
+  }
+
+  magnify(factor) {
+    this.zoom = Math.max(0.2, Math.min(500, this.zoom * factor));
+  }
+
+  // Rows: to the right, up, towards who looks.
+  axes() {
+    const [cy, sy, cp, sp] = [Math.cos(this.yaw * RAD), Math.sin(this.yaw * RAD), Math.cos(this.pitch * RAD), Math.sin(this.pitch * RAD)];
+    const rows = [[cy, sy, 0], [-sy * sp, cy * sp, cp], [sy * cp, -cy * cp, sp]];
+    return this.up === "z" ? rows : rows.map(([a, b, c]) => [a, c, -b]);
+  }
+}
+
+class Side {
+  constructor(data, canvas) {
+    Object.assign(this, data, { canvas, context: canvas.getContext("2d") });
+    this.starts = new Uint32Array(this.counts.length + 1);
+    this.counts.forEach((count, move) => (this.starts[move + 1] = this.starts[move] + count));
+    this.xyz = Float64Array.from(this.points, (thousandths) => thousandths / 1000);
+    this.isChanged = new Set(this.changed);
+    this.screen = new Float32Array(2 * this.starts[this.counts.length]);
+  }
+
+  // What has to be seen: cuts and holes; where there are none, every move.
+  extent() {
+    const points = this.holes.flatMap((hole) => [...hole.entry, ...hole.bottom]);
+    const take = (wanted) => {
+      for (let move = 0; move < this.counts.length; move++) {
+        if (!wanted(this.kinds[move])) continue;
+        for (let at = 3 * this.starts[move]; at < 3 * this.starts[move + 1]; at++) points.push(this.xyz[at]);
+      }
+    };
+    take((kind) => kind !== "r");
+    if (points.length === 0) take(() => true);
+    return points;
+  }
+
+  // Where a point of the part is on the canvas.
+  point([x, y, z]) {
+    const [right, up] = this.view.rows;
+    const { middle, scale, cx, cy } = this.view;
+    const [a, b, c] = [x - middle[0], y - middle[1], z - middle[2]];
+    return [cx + scale * (right[0] * a + right[1] * b + right[2] * c), cy - scale * (up[0] * a + up[1] * b + up[2] * c)];
+  }
+
+  project(view) {
+    this.view = view;
+    const [r, u] = view.rows;
+    const [mx, my, mz] = view.middle;
+    for (let i = 0, j = 0; j < this.screen.length; i += 3, j += 2) {
+      const [a, b, c] = [this.xyz[i] - mx, this.xyz[i + 1] - my, this.xyz[i + 2] - mz];
+      this.screen[j] = view.cx + view.scale * (r[0] * a + r[1] * b + r[2] * c);
+      this.screen[j + 1] = view.cy - view.scale * (u[0] * a + u[1] * b + u[2] * c);
+    }
+  }
+
+  strokeMoves(colour, width, dash, wanted) {
+    const context = this.context;
+    Object.assign(context, { strokeStyle: colour, lineWidth: width });
+    context.setLineDash(dash);
+    let drawn = 0;
+    context.beginPath();
+    for (let move = 0; move < this.counts.length; move++) {
+      if (!wanted(move)) continue;
+      let at = 2 * this.starts[move];
+      context.moveTo(this.screen[at], this.screen[at + 1]);
+      for (at += 2; at < 2 * this.starts[move + 1]; at += 2) context.lineTo(this.screen[at], this.screen[at + 1]);
+      // Long paths are slow to stroke.
+      if (++drawn % 1000 === 0) {
+        context.stroke();
+        context.beginPath();
+      }
+    }
+    context.stroke();
+    context.setLineDash([]);
+  }
+
+  draw(colours, options, pick) {
+    const context = this.context;
+    context.clearRect(0, 0, this.canvas.width, this.canvas.height);
+    const few = this.counts.length < 5000;
+    const shown = (move) => !options.changedOnly || this.isChanged.has(move);
+    const plain = (kinds) => (move) => shown(move) && kinds.includes(this.kinds[move]) && !this.isChanged.has(move);
+    if (options.rapids) this.strokeMoves(colours.rapid, 1, few ? [5, 4] : [], plain("r"));
+    this.strokeMoves(colours.feed, 1.6, [], plain("fa"));
+    this.strokeMoves(colours.probe, 2, [2, 3], plain("p"));
+    const rapid = (move) => this.kinds[move] === "r";
+    if (options.rapids) this.strokeMoves(colours.changed, 2, few ? [5, 4] : [], (move) => this.isChanged.has(move) && rapid(move));
+    this.strokeMoves(colours.changed, 3.5, [], (move) => this.isChanged.has(move) && !rapid(move));
+    const line = pick.line?.side === this ? pick.line.number : null;
+    if (line !== null) this.strokeMoves(colours.pick, 4, [], (move) => shown(move) && this.places[this.at[move]].includes(line));
+    if (pick.side === this && pick.move !== undefined) {
+      this.strokeMoves(colours.pick, 5, [], (move) => move === pick.move);
+    }
+    this.drawHoles(colours, pick);
+    this.drawAxes(colours);
+  }
+
+  drawHoles(colours, pick) {
+    const context = this.context;
+    const named = this.holes.length <= 60;
+    context.font = "12px system-ui, sans-serif";
+    for (const hole of this.holes) {
+      const isPicked = hole === pick.hole || (hole.row !== null && hole.row === pick.row);
+      const wrong = ["bad", "extra", "changed", "missing"].includes(hole.state);
+      const colour = isPicked ? colours.pick : wrong ? colours.wrong : colours.hole;
+      const [x, y] = this.point(hole.entry);
+      const [bx, by] = this.point(hole.bottom);
+      const radius = Math.max(3, (hole.diameter / 2) * this.view.scale);
+      Object.assign(context, { strokeStyle: colour, fillStyle: colour, lineWidth: isPicked ? 3 : 1.5 });
+      context.beginPath();
+      context.moveTo(x, y);
+      context.lineTo(bx, by);
+      context.stroke();
+      context.setLineDash(hole.state === "missing" ? [3, 3] : []);
+      for (const more of wrong ? [0, 4] : [0]) {
+        context.beginPath();
+        context.arc(x, y, radius + more, 0, 2 * Math.PI);
+        context.stroke();
+      }
+      context.setLineDash([]);
+      if (named || isPicked) context.fillText(hole.id, x + radius + 7, y - radius - 3);
+    }
+  }
+
+  // The part's axes, and a length to compare with.
+  drawAxes(colours) {
+    const context = this.context;
+    const { width, height, rows, scale } = this.view;
+    const [ox, oy] = [42, height - 42];
+    Object.assign(context, { strokeStyle: colours.ink, fillStyle: colours.ink, lineWidth: 1.5, font: "12px system-ui, sans-serif" });
+    ["X", "Y", "Z"].forEach((name, axis) => {
+      const [dx, dy] = [28 * rows[0][axis], -28 * rows[1][axis]];
+      context.beginPath();
+      context.moveTo(ox, oy);
+      context.lineTo(ox + dx, oy + dy);
+      context.stroke();
+      if (Math.hypot(dx, dy) > 6) context.fillText(name, ox + 1.3 * dx - 4, oy + 1.3 * dy + 4);
+    });
+    const decade = 10 ** Math.floor(Math.log10(120 / scale));
+    const length = [5, 2, 1].map((step) => step * decade).find((mm) => mm * scale <= 120) ?? decade;
+    const [right, bottom] = [width - 12, height - 12];
+    context.beginPath();
+    context.moveTo(right - length * scale, bottom - 5);
+    context.lineTo(right - length * scale, bottom);
+    context.lineTo(right, bottom);
+    context.lineTo(right, bottom - 5);
+    context.stroke();
+    context.textAlign = "right";
+    context.fillText(`${Number(length.toPrecision(3))} mm`, right, bottom - 8);
+    context.textAlign = "left";
+  }
+
+  // The hole or else the move under a point of the canvas.
+  nearest(x, y, options) {
+    const reach = 12;
+    let best = null;
+    for (const hole of this.holes) {
+      const far = toSegment(x, y, ...this.point(hole.entry), ...this.point(hole.bottom));
+      if (far < Math.max(reach, (hole.diameter / 2) * this.view.scale) && (!best || far < best.far)) best = { far, hole, side: this };
+    }
+    if (best) return best;
+    for (let move = 0; move < this.counts.length; move++) {
+      if ((!options.rapids && this.kinds[move] === "r") || (options.changedOnly && !this.isChanged.has(move))) continue;
+      for (let at = 2 * this.starts[move]; at < 2 * (this.starts[move + 1] - 1); at += 2) {
+        const far = toSegment(x, y, this.screen[at], this.screen[at + 1], this.screen[at + 2], this.screen[at + 3]);
+        // Of two that lie on one another the later is seen.
+        if (far < reach && (!best || far <= best.far)) best = { far, move, side: this };
+      }
+    }
+    return best;
+  }
+}
+
+function toSegment(x, y, ax, ay, bx, by) {
+  const [dx, dy] = [bx - ax, by - ay];
+  const part = Math.max(0, Math.min(1, ((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy || 1)));
+  return Math.hypot(x - ax - part * dx, y - ay - part * dy);
+}
+
+// Fits what has to be seen into the canvases, and draws when something is different.
+class Viewer {
+  constructor(data, sides) {
+    Object.assign(this, { sides, camera: new Camera(data.up), pick: {}, options: { rapids: true, changedOnly: false } });
+    this.extents = sides.flatMap((side) => side.extent());
+    this.middle = [0, 1, 2].map((axis) => {
+      let [low, high] = [Infinity, -Infinity];
+      for (let at = axis; at < this.extents.length; at += 3) {
+        low = Math.min(low, this.extents[at]);
+        high = Math.max(high, this.extents[at]);
+      }
+      return low <= high ? (low + high) / 2 : 0;
+    });
+    this.waiting = false;
+  }
+
+  // Pixels for a millimetre so that all is in sight as the camera stands.
+  fitting(rows, width, height) {
+    let [wide, high] = [1e-3, 1e-3];
+    for (let at = 0; at < this.extents.length; at += 3) {
+      const [a, b, c] = [0, 1, 2].map((axis) => this.extents[at + axis] - this.middle[axis]);
+      wide = Math.max(wide, Math.abs(rows[0][0] * a + rows[0][1] * b + rows[0][2] * c));
+      high = Math.max(high, Math.abs(rows[1][0] * a + rows[1][1] * b + rows[1][2] * c));
+    }
+    return Math.min((0.44 * width) / wide, (0.4 * height) / high);
+  }
+
+  fit() {
+    this.scales = null;
+    this.ask();
+  }
+
+  ask() {
+    if (this.waiting) return;
+    this.waiting = true;
+    requestAnimationFrame(() => this.draw());
+  }
+
+  draw() {
+    this.waiting = false;
+    const style = getComputedStyle(document.documentElement);
+    const names = ["ink", "rapid", "feed", "probe", "changed", "hole", "wrong", "pick"];
+    const colours = Object.fromEntries(names.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
+    const rows = this.camera.axes();
+    this.scales ??= this.sides.map(({ canvas }) => this.fitting(rows, canvas.clientWidth, canvas.clientHeight));
+    const fitting = Math.min(...this.scales);
+    const dots = window.devicePixelRatio || 1;
+    for (const side of this.sides) {
+      const { clientWidth: width, clientHeight: height } = side.canvas;
+      if (!width || !height) continue;
+      if (side.canvas.width !== Math.round(width * dots) || side.canvas.height !== Math.round(height * dots)) {
+        side.canvas.width = Math.round(width * dots);
+        side.canvas.height = Math.round(height * dots);
+      }
+      side.context.setTransform(dots, 0, 0, dots, 0, 0);
+      const scale = fitting * this.camera.zoom;
+      side.project({ rows, middle: this.middle, scale, width, height, cx: width / 2 + this.camera.panX, cy: height / 2 + this.camera.panY });
+      side.draw(colours, this.options, this.pick);
+    }
+  }
+}

@@ -1,0 +1,68 @@
+//! Numbers and texts as the page writes them.
+use crate::report::figures::near;
+
+/// A text from a program or a file name: what isn't to be seen, or turns the reading direction, becomes a mark.
+pub(super) fn shown(text: &str) -> String {
+    let hidden = |c: char| matches!(c, '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{feff}');
+    text.chars()
+        .map(|c| match c {
+            '\t' => ' ',
+            c if c.is_control() || hidden(c) => '\u{fffd}',
+            c => c,
+        })
+        .collect()
+}
+
+/// A variable's value: up to six decimals, as many as it has.
+pub(super) fn value(value: f64) -> String {
+    if value != 0.0 && value.abs() < 1e-6 || 1e12 <= value.abs() {
+        return format!("{value:e}");
+    }
+    let text = near(value, 6);
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// `1 h 18 min 3 s`, `18.2 s`.
+pub(super) fn duration(seconds: f64) -> String {
+    if seconds < 60.0 {
+        return format!("{seconds:.1} s");
+    }
+    let whole = seconds.round() as u64;
+    let (hours, minutes, rest) = (whole / 3600, whole / 60 % 60, whole % 60);
+    if hours == 0 { format!("{minutes} min {rest} s") } else { format!("{hours} h {minutes} min {rest} s") }
+}
+
+/// `12 345`, with spaces that don't break.
+pub(super) fn count(number: u64) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (place, digit) in digits.chars().enumerate() {
+        if place > 0 && (digits.len() - place) % 3 == 0 && digits.len() > 4 {
+            text.push('\u{a0}');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_read_as_people_write_them() {
+        assert_eq!([value(1158.8), value(-0.5), value(0.0), value(7.0)], ["1158.8", "-0.5", "0", "7"]);
+        assert_eq!(value(2.5e-9), "2.5e-9");
+        assert_eq!(count(1_234_567), "1\u{a0}234\u{a0}567");
+        assert_eq!(count(5460), "5460");
+        assert_eq!(
+            [duration(18.2), duration(1093.3), duration(4683.0)],
+            ["18.2 s", "18 min 13 s", "1 h 18 min 3 s"]
+        );
+    }
+
+    #[test]
+    fn a_text_keeps_nothing_that_hides_or_turns_it() {
+        assert_eq!(shown("A\u{202e}B\u{0}C\tD"), "A\u{fffd}B\u{fffd}C D");
+    }
+}

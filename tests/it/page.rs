@@ -1,0 +1,263 @@
+//! The review page in a browser: what a person does with it, on a screen, on a telephone and on paper.
+use std::path::{Path, PathBuf};
+
+use gcode_tests::browser::{Browser, key};
+use gcode_tests::programs;
+use serde_json::{Value, json};
+
+fn workspace() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
+}
+
+/// Runs `gcode-sim` in `dir` and gives the page that it wrote there.
+fn page(dir: &Path, command: &str) -> PathBuf {
+    let done = programs::run_line(&format!("gcode-sim {command} --page review.html"), dir);
+    assert!(done.status.code().is_some_and(|code| code != 2), "{}", String::from_utf8_lossy(&done.stderr));
+    dir.join("review.html")
+}
+
+/// The page of the example with one wrong digit, and the folder it is in.
+fn one_digit_wrong(more: &str) -> (tempfile::TempDir, PathBuf) {
+    let place = tempfile::tempdir().unwrap();
+    let example = |name: &str| workspace().join("examples").join(name).display().to_string();
+    let (old, new) = (example("melon-mould"), example("one-digit-wrong"));
+    let command = format!(
+        "diff {old}/O8100.nc {new}/O8100.nc --lib {old} --machine {old}/machine.toml {}",
+        more.replace("JOB", &format!("{old}/job.toml"))
+    );
+    let page = page(place.path(), &command);
+    (place, page)
+}
+
+/// The page of a program and what became of it.
+fn of_texts(old: &[u8], new: &[u8]) -> (tempfile::TempDir, PathBuf) {
+    let place = tempfile::tempdir().unwrap();
+    std::fs::write(place.path().join("OLD.nc"), old).unwrap();
+    std::fs::write(place.path().join("NEW.nc"), new).unwrap();
+    let page = page(place.path(), "diff OLD.nc NEW.nc");
+    (place, page)
+}
+
+fn column(browser: &Browser, number: u32) -> Vec<String> {
+    let cells = format!("tbody tr:not([hidden]) > :nth-child({number})");
+    let texts = browser.run(&format!(
+        "return [...document.querySelector('table.holes').querySelectorAll('{cells}')].map((cell) => cell.textContent)"
+    ));
+    texts.as_array().unwrap().iter().map(|text| text.as_str().unwrap().trim().to_owned()).collect()
+}
+
+/// The text of the line that the page has landed on.
+fn landed(browser: &Browser) -> String {
+    let text = browser.run(
+        "const half = document.querySelector('.half.at'); \
+         return half && `${half.id} ${half.querySelector('code').textContent}`",
+    );
+    text.as_str().unwrap_or("nowhere").to_owned()
+}
+
+fn picture(browser: &Browser, side: &str) -> String {
+    let drawn = browser.run(&format!(
+        "return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => \
+         done(document.getElementById('canvas-{side}').toDataURL()))))"
+    ));
+    drawn.as_str().unwrap().to_owned()
+}
+
+fn picked(browser: &Browser) -> String {
+    browser.run("return document.getElementById('picked').textContent").as_str().unwrap().to_owned()
+}
+
+/// Nothing in the console, and nothing asked of any network.
+fn is_quiet(browser: &Browser) {
+    let console = browser.log("browser");
+    assert!(console.is_empty(), "{console:?}");
+    for entry in browser.log("performance") {
+        let message: Value = serde_json::from_str(entry["message"].as_str().unwrap()).unwrap();
+        let asked = &message["message"]["params"];
+        let is_ours = asked["documentURL"].as_str().is_some_and(|page| page.starts_with("file:"));
+        if message["message"]["method"] == "Network.requestWillBeSent" && is_ours {
+            let url = asked["request"]["url"].as_str().unwrap();
+            assert!(url.starts_with("file:") || url.starts_with("data:"), "the page asks for {url}");
+        }
+    }
+}
+
+#[test]
+fn a_person_sorts_the_holes_and_goes_to_a_block() {
+    let (_place, page) = one_digit_wrong("--reference JOB");
+    let Some(browser) = Browser::start(1400, 1000) else { return };
+    browser.open(&page);
+    assert_eq!(column(&browser, 1), ["1", "2", "3", "4", "5"]);
+
+    // By the new φ, downwards: the hole that the wrong digit moved by 0.95 mm is the worst.
+    browser.click(".holes th:nth-child(3) button");
+    assert_eq!(column(&browser, 1).last().unwrap(), "5");
+    browser.click(".holes th:nth-child(3) button");
+    assert_eq!(column(&browser, 1)[0], "5");
+    let sorted = browser.run(
+        "return [...document.querySelectorAll('.holes th[aria-sort]')].map((head) => head.getAttribute('aria-sort'))",
+    );
+    assert_eq!(sorted[2], "descending");
+    assert_eq!(sorted.as_array().unwrap().iter().filter(|sort| *sort != "none").count(), 1);
+
+    // A click anywhere in its row leads to the block that made it, and marks the call with the wrong digit.
+    browser.click(".holes tbody tr:first-child td.state");
+    assert_eq!(landed(&browser), "new-2-51 G01 X[#18+[#17-#7]*#26] Y[#24+[#17-#7]*#27] F#9");
+    let seen = browser.run(
+        "const box = document.querySelector('.half.at').getBoundingClientRect(); \
+         const viewer = document.getElementById('viewer').getBoundingClientRect(); \
+         return box.top >= viewer.bottom && box.bottom <= innerHeight",
+    );
+    assert_eq!(seen, true, "the block stands in sight, below the drawing");
+    let caller = browser.run("return document.querySelector('.half.from code').textContent");
+    assert!(caller.as_str().unwrap().contains("W15.2385"), "{caller}");
+    assert!(
+        picked(&browser).contains("hole 5") && picked(&browser).contains("O8100:52"),
+        "{}",
+        picked(&browser)
+    );
+    is_quiet(&browser);
+}
+
+#[test]
+fn all_can_be_done_with_keys() {
+    let (_place, page) = one_digit_wrong("");
+    let Some(browser) = Browser::start(1400, 1000) else { return };
+    browser.open(&page);
+
+    // A column head sorts, the arrows go from row to row, Enter goes to the block.
+    browser.run("document.querySelector('.holes th:nth-child(8) button').focus()");
+    browser.press(&key::ENTER.repeat(2));
+    assert_eq!(column(&browser, 1)[0], "5", "moved the farthest");
+    browser.run("document.querySelector('.holes tbody a').focus()");
+    browser.press(&[key::DOWN, key::UP, key::ENTER].concat());
+    assert!(landed(&browser).starts_with("new-2-51 "), "{}", landed(&browser));
+    let focus = browser.run("return document.activeElement.id");
+    assert_eq!(focus, "new-2-51", "reading goes on at the block");
+
+    // The drawing: turned, zoomed, put back; both canvases look from the same side.
+    browser.run("document.getElementById('canvas-new').focus()");
+    let (old, new) = (picture(&browser, "old"), picture(&browser, "new"));
+    browser.press(key::LEFT);
+    let (turned_old, turned_new) = (picture(&browser, "old"), picture(&browser, "new"));
+    assert!(old != turned_old && new != turned_new, "both turn");
+    browser.press(&[key::RIGHT, "+"].concat());
+    assert_ne!(picture(&browser, "new"), new, "zoomed");
+    browser.press("0");
+    assert_eq!(picture(&browser, "new"), new);
+
+    // From move to move, each with its block; Enter goes there.
+    browser.press("nnn");
+    assert!(picked(&browser).starts_with("New, move 3 of "), "{}", picked(&browser));
+    browser.press(key::ENTER);
+    let name = picked(&browser).split(". ").nth(1).unwrap().split(' ').next().unwrap().to_owned();
+    let (program, line) = name.split_once(':').unwrap();
+    let source = ["O8100", "O8102", "O8101"].iter().position(|known| *known == program).unwrap();
+    assert!(landed(&browser).starts_with(&format!("new-{source}-{line} ")), "{name}: {}", landed(&browser));
+    is_quiet(&browser);
+}
+
+/// The middle of what a script gives as left, top, width and height.
+fn middle(browser: &Browser, script: &str) -> (f64, f64) {
+    let found = browser.run(script);
+    let number = |name: &str| found[name].as_f64().unwrap();
+    (number("left") + number("width") / 2.0, number("top") + number("height") / 2.0)
+}
+
+#[test]
+fn the_mouse_turns_zooms_and_picks() {
+    // One hole, in the middle of all that is fitted into the canvas.
+    let program = "O1\nT1 M6\nG0 X0 Y0 Z10.\nM3 S500\nG1 Z-8. F50\nG0 Z10.\nX90. Y40.\nM30\n";
+    let (_place, page) = of_texts(program.as_bytes(), program.replace("Z-8.", "Z-9.").as_bytes());
+    let Some(browser) = Browser::start(1200, 1000) else { return };
+    browser.open(&page);
+    browser.run("document.getElementById('viewer').scrollIntoView()");
+    let (x, y) =
+        middle(&browser, "return document.getElementById('canvas-new').getBoundingClientRect().toJSON()");
+    let before = picture(&browser, "new");
+    browser.drag(&[(x + 150.0, y + 60.0), (x + 200.0, y + 60.0), (x + 220.0, y + 80.0)]);
+    let turned = picture(&browser, "new");
+    assert_ne!(turned, before);
+    browser.wheel((x, y), -240.0);
+    assert_ne!(picture(&browser, "new"), turned);
+
+    browser.click("[data-view=reset]");
+    browser.drag(&[(x, y)]);
+    assert!(landed(&browser).starts_with("new-0-5 G1 Z-9."), "{}; {}", landed(&browser), picked(&browser));
+    assert!(picked(&browser).starts_with("New, hole 1 at X 0.000 Y 0.000"), "{}", picked(&browser));
+    is_quiet(&browser);
+}
+
+#[test]
+fn a_telephone_the_dark_and_paper_are_served() {
+    let (_place, page) = one_digit_wrong("--reference JOB");
+    let Some(browser) = Browser::start(1400, 1000) else { return };
+    browser.open(&page);
+    let paper = || browser.run("return getComputedStyle(document.body).backgroundColor");
+    assert_eq!(paper(), "rgb(255, 255, 255)");
+    let light = picture(&browser, "new");
+    let dark = json!({"features": [{"name": "prefers-color-scheme", "value": "dark"}]});
+    browser.command("Emulation.setEmulatedMedia", &dark);
+    assert_eq!(paper(), "rgb(21, 23, 26)");
+    assert_ne!(picture(&browser, "new"), light, "the drawing follows");
+
+    let printed = browser.command(
+        "Page.printToPDF",
+        &json!({"printBackground": true, "paperWidth": 8.27, "paperHeight": 11.69}),
+    );
+    let pdf = printed["data"].as_str().unwrap();
+    assert!(pdf.starts_with("JVBERi0"), "%PDF- in base64");
+
+    let narrow = json!({"width": 375, "height": 740, "deviceScaleFactor": 2, "mobile": true});
+    browser.command("Emulation.setDeviceMetricsOverride", &narrow);
+    let wide = browser.run("return document.documentElement.scrollWidth");
+    assert_eq!(wide, 375, "nothing sticks out to the side");
+    browser.click(".holes tbody tr:first-child a.go");
+    assert!(landed(&browser).starts_with("new-2-51 "), "{}", landed(&browser));
+    is_quiet(&browser);
+}
+
+#[test]
+fn what_a_program_says_is_text_and_nothing_else() {
+    let mut old =
+        b"O1(</script><img src=x onerror=\"document.title='broken'\">)\n#1=1(</SCRIPT><b id=broken>)\n"
+            .to_vec();
+    // GBK for a greeting, and bytes that are no text in any encoding.
+    old.extend(b"(\xc4\xe3\xba\xc3 \xff\xfe\x00)\n#3006=1(<!--<script>)\nG0 X1.(&lt;)\n");
+    let mut new = old.clone();
+    old.extend(b"M30\n");
+    new.extend(b"G1 X5. F'100\nM30\n");
+    let (_place, page) = of_texts(&old, &new);
+    assert!(std::str::from_utf8(&std::fs::read(&page).unwrap()).is_ok(), "the page is UTF-8");
+    let Some(browser) = Browser::start(1200, 900) else { return };
+    browser.open(&page);
+    assert_eq!(browser.run("return document.querySelectorAll('img, #broken').length"), 0);
+    assert_eq!(browser.run("return document.title"), "Review of NEW.nc against OLD.nc");
+    let line = browser.run("return document.querySelector('#old-0-1 code').textContent");
+    assert_eq!(line, "O1(</script><img src=x onerror=\"document.title='broken'\">)");
+    let line = browser.run("return document.querySelector('#old-0-5 code').textContent");
+    assert_eq!(line, "G0 X1.(&lt;)");
+    let told = browser.run("return document.getElementById('told').textContent");
+    assert!(told.as_str().unwrap().contains("<!--<script>"), "{told}");
+    is_quiet(&browser);
+}
+
+#[test]
+fn a_long_program_is_cut_and_says_so() {
+    let moves = "WHILE[#1 LT 45000]DO1\n#1=#1+1\nG1 X[#1 MOD 100] Y[#1/1000.] F900\nEND1\n";
+    let program = format!("O1\n#1=0\nG0 Z5.\n{moves}G0 Z50.\nM30\n");
+    let (_place, page) = of_texts(program.as_bytes(), program.as_bytes());
+    let text = std::fs::read_to_string(&page).unwrap();
+    assert!(text.len() < 5_000_000, "{} bytes", text.len());
+    assert!(text.contains("the first 40\u{a0}000 of 45\u{a0}002 moves are drawn"));
+    assert!(text.contains("#1 0 … 44999 (45000×)"), "the variable's first and last value before the block");
+    let Some(browser) = Browser::start(1200, 900) else { return };
+    browser.open(&page);
+    browser.run("document.getElementById('canvas-new').focus()");
+    let turned = browser.run(
+        "const begun = performance.now(); \
+         return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(performance.now() - begun))))",
+    );
+    assert!(turned.as_f64().unwrap() < 5000.0, "{turned} ms");
+    is_quiet(&browser);
+}
