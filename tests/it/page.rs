@@ -261,3 +261,41 @@ fn a_long_program_is_cut_and_says_so() {
     assert!(turned.as_f64().unwrap() < 5000.0, "{turned} ms");
     is_quiet(&browser);
 }
+
+#[test]
+fn a_program_alone_has_a_page_too() {
+    let place = tempfile::tempdir().unwrap();
+    let example = workspace().join("examples/melon-mould").display().to_string();
+    let program = format!("{example}/O8100.nc --machine {example}/machine.toml");
+    let judged = page(place.path(), &format!("verify {program} --reference {example}/job.toml"));
+    let text = std::fs::read_to_string(&judged).unwrap();
+    assert!(
+        text.contains("PASS, 5 of 5 wanted holes good")
+            && text.contains("Predicted by simulation, not measured")
+    );
+    assert!(!text.contains("id=\"changes\"") && !text.contains("canvas-old"));
+    // `sha256sum job.toml`, as the page writes it.
+    let digest = std::fs::read(format!("{example}/job.toml")).map(sha256).unwrap();
+    assert!(text.contains(&digest), "{digest}");
+
+    let Some(browser) = Browser::start(1200, 900) else { return };
+    page(place.path(), &format!("holes {program}"));
+    browser.open(&judged);
+    assert_eq!(column(&browser, 1), ["1", "2", "3", "4", "5"]);
+    browser.click(".holes tbody tr:nth-child(2) a.go");
+    assert!(landed(&browser).starts_with("new-2-51 "), "{}", landed(&browser));
+    is_quiet(&browser);
+}
+
+/// As `sha256sum` prints it.
+fn sha256(bytes: Vec<u8>) -> String {
+    use std::io::Write;
+    let mut sum = std::process::Command::new("sha256sum")
+        .stdin(std::process::Stdio::piped())
+        .stdout(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    sum.stdin.take().unwrap().write_all(&bytes).unwrap();
+    let said = sum.wait_with_output().unwrap().stdout;
+    String::from_utf8(said).unwrap().split(' ').next().unwrap().to_owned()
+}

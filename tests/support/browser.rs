@@ -22,6 +22,7 @@ pub struct Browser {
 
 impl Browser {
     /// A browser, where one is installed: elsewhere it says that the test is skipped, which a build server mustn't.
+    #[expect(clippy::print_stderr, reason = "a test that is skipped says so")]
     pub fn start(width: u32, height: u32) -> Option<Self> {
         let installed = |name: &str| {
             let told =

@@ -70,7 +70,8 @@ Examples:
   gcode-sim verify O8100.nc --reference job.toml
   gcode-sim verify O8100.nc --reference reference.csv --tolerance 0.1 --worst-first
   gcode-sim verify O8100.nc --reference job.toml --machine machine.toml --format json
-  gcode-sim verify O8100.nc --reference job.toml --picture top.png")]
+  gcode-sim verify O8100.nc --reference job.toml --picture top.png
+  gcode-sim verify O8100.nc --reference job.toml --page review.html")]
     Verify(VerifyArguments),
 
     /// Draw a program's holes on the part as a PNG
@@ -105,6 +106,7 @@ A comment (CHECK-OFF DOUBLED-N) on a block silences that rule there, at the head
 Examples:
   gcode-sim diff old/O8100.nc new/O8100.nc
   gcode-sim diff old/O8100.nc new/O8100.nc --tolerance 0.01 --picture changes.png
+  gcode-sim diff old/O8100.nc new/O8100.nc --page review.html --reference job.toml
   git show HEAD:O8100.nc | gcode-sim diff - O8100.nc
 
 Sequence numbers, spaces, comments, names of locals and the way numbers are written make no difference.

@@ -102,9 +102,7 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
             documents: &page::documents(&arguments.run, arguments.reference.as_deref())?,
         };
         page::write(&review, path)?;
-        if arguments.format == TextFormat::Text {
-            output::print(&format!("page: {}\n", path.display()))?;
-        }
+        page::tell(path, arguments.format == TextFormat::Text)?;
     }
     let mut status = if compared.changes.is_empty() { Status::Holds } else { Status::Fails };
     for revision in [&old, &new] {

@@ -1,16 +1,23 @@
 //! `gcode-sim holes`: the holes a program makes, in the part's frame.
+use std::path::PathBuf;
+
 use clap::Args;
 
 use super::args::{ListFormat, ProgramArguments};
-use super::{Refusal, Status, options, output, unused_machine};
+use super::{Refusal, Status, options, output, page, unused_machine};
 use crate::part::hole::HoleList;
 use crate::report::holes as report;
-use crate::session;
+use crate::session::{self, Simulation};
 
 #[derive(Debug, Args)]
 pub(super) struct HolesArguments {
     #[command(flatten)]
     program: ProgramArguments,
+
+    /// Also write a page to this file: the holes, the path, the blocks and what the variables were; needs nothing but a
+    /// browser
+    #[arg(long, value_name = "OUT.html")]
+    page: Option<PathBuf>,
 
     /// How the result is written
     #[arg(long, value_enum, default_value_t = ListFormat::Text)]
@@ -20,8 +27,19 @@ pub(super) struct HolesArguments {
 pub(super) fn run(arguments: &HolesArguments) -> Result<Status, Refusal> {
     let (request, mut folders) = options::request(&arguments.program)?;
     unused_machine::tell(&arguments.program, &request);
+    if let Some(path) = &arguments.page {
+        let watched = page::watched(&request, &mut folders, None)?;
+        page::write_alone(&request, &watched, None, &arguments.program.conditions, path)?;
+        let status = tell(arguments, &watched.0.simulation)?;
+        page::tell(path, arguments.format == ListFormat::Text)?;
+        return Ok(status);
+    }
     let simulation =
         session::simulate(&request, &mut folders, None).map_err(|e| Refusal::new(e.to_string()))?;
+    tell(arguments, &simulation)
+}
+
+fn tell(arguments: &HolesArguments, simulation: &Simulation) -> Result<Status, Refusal> {
     print(&simulation.list(), arguments.format)?;
     Ok(super::findings(&simulation.extracted.findings, &simulation.run))
 }

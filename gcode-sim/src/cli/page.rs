@@ -2,13 +2,54 @@
 use std::path::Path;
 
 use super::args::RunConditions;
+use super::library::Folders;
 use super::{Refusal, input, output};
-use crate::report::page::{Document, Page};
+use crate::changes::Revision;
+use crate::part::reference::Reference;
+use crate::part::surface::Surface;
+use crate::report::page::{Document, Page, Seen};
+use crate::session::{Request, Trace};
+use crate::verify::Verdict;
+
+/// A program's run with all that a page shows of it.
+pub(super) fn watched(
+    request: &Request,
+    folders: &mut Folders,
+    surface: Option<Surface>,
+) -> Result<(Revision, Trace), Refusal> {
+    let mut trace = Trace::default();
+    let revision = Revision::watched(request, folders, surface, &mut trace);
+    Ok((revision.map_err(|error| Refusal::new(error.to_string()))?, trace))
+}
+
+/// Writes the page of one program, with the verdict on it where there is a reference.
+pub(super) fn write_alone(
+    request: &Request,
+    (revision, trace): &(Revision, Trace),
+    judged: Option<(&Path, &Reference, &Verdict)>,
+    conditions: &RunConditions,
+    path: &Path,
+) -> Result<(), Refusal> {
+    let page = Page {
+        old: None,
+        new: Seen { request, revision, trace, verdict: judged.map(|(_, _, verdict)| verdict) },
+        machine: &request.machine,
+        reference: judged.map(|(_, reference, _)| reference),
+        conditions: &flags(conditions),
+        documents: &documents(conditions, judged.map(|(path, ..)| path))?,
+    };
+    write(&page, path)
+}
 
 /// Writes a page to its file.
 pub(super) fn write(page: &Page<'_>, path: &Path) -> Result<(), Refusal> {
     let html = page.html().map_err(|error| Refusal::new(format!("the page can't be written: {error}")))?;
     output::write(path, html.as_bytes())
+}
+
+/// Says where the page is, among results that are text.
+pub(super) fn tell(path: &Path, is_text: bool) -> Result<(), Refusal> {
+    if is_text { output::print(&format!("page: {}\n", path.display())) } else { Ok(()) }
 }
 
 /// The files besides the programs.

@@ -5,15 +5,15 @@ use clap::Args;
 
 use super::args::{ProgramArguments, TextFormat};
 use super::library::Folders;
-use super::{Refusal, Status, options, output, render, unused_machine};
+use super::{Refusal, Status, options, output, page, render, unused_machine};
 use crate::part::flutes::Flutes;
 use crate::part::reference::Reference;
 use crate::part::wanted::Wanted;
 use crate::picture;
 use crate::report::verdict_table::{Layout, table};
 use crate::report::{flute_table, flute_view};
-use crate::session::{self, Request};
-use crate::verify::{Answer, Tolerances};
+use crate::session::{self, Request, Simulation};
+use crate::verify::{Answer, Tolerances, Verdict};
 
 #[derive(Debug, Args)]
 pub(super) struct VerifyArguments {
@@ -45,6 +45,11 @@ pub(super) struct VerifyArguments {
     #[arg(long, value_name = "OUT.png")]
     picture: Option<PathBuf>,
 
+    /// Also write a page to this file: the holes with their deviations, the path, the blocks and what the variables were;
+    /// needs nothing but a browser
+    #[arg(long, value_name = "OUT.html")]
+    page: Option<PathBuf>,
+
     /// How the result is written
     #[arg(long, value_enum, default_value_t = TextFormat::Text)]
     format: TextFormat,
@@ -66,6 +71,7 @@ pub(super) fn run(arguments: &VerifyArguments) -> Result<Status, Refusal> {
                 ("--depth-tolerance", depth.is_some()),
                 ("--worst-first", arguments.worst_first),
                 ("--full", arguments.full),
+                ("--page", arguments.page.is_some()),
             ];
             if let Some((flag, _)) = of_holes.iter().find(|(_, given)| *given) {
                 return Err(Refusal::new(format!("{flag} is about holes, and the reference is a burr")));
@@ -113,18 +119,38 @@ fn holes(
     reference: &Reference,
     tolerances: Tolerances,
 ) -> Result<Status, Refusal> {
+    if let Some(path) = &arguments.page {
+        let watched = page::watched(request, &mut folders, reference.surface)?;
+        let simulation = &watched.0.simulation;
+        let verdict = simulation.verify(reference, tolerances, &request.machine);
+        let judged = Some((arguments.reference.as_path(), reference, &verdict));
+        page::write_alone(request, &watched, judged, &arguments.program.conditions, path)?;
+        let status = tell(arguments, request, reference, simulation, &verdict)?;
+        page::tell(path, arguments.format == TextFormat::Text)?;
+        return Ok(status);
+    }
     let simulation = session::simulate(request, &mut folders, reference.surface)
         .map_err(|error| Refusal::new(error.to_string()))?;
     let verdict = simulation.verify(reference, tolerances, &request.machine);
+    tell(arguments, request, reference, &simulation, &verdict)
+}
+
+fn tell(
+    arguments: &VerifyArguments,
+    request: &Request,
+    reference: &Reference,
+    simulation: &Simulation,
+    verdict: &Verdict,
+) -> Result<Status, Refusal> {
     match arguments.format {
-        TextFormat::Json => output::json(&verdict)?,
+        TextFormat::Json => output::json(verdict)?,
         TextFormat::Text => {
             let layout = Layout { worst_first: arguments.worst_first, full: arguments.full };
-            output::print(&table(&verdict, layout))?;
+            output::print(&table(verdict, layout))?;
         }
     }
     if let Some(path) = &arguments.picture {
-        let view = render::view(request, &simulation, reference, &verdict);
+        let view = render::view(request, simulation, reference, verdict);
         render::write(&picture::main_view(&view), "1600x1200", path)?;
         if arguments.format == TextFormat::Text {
             output::print(&format!("picture: {}\n", path.display()))?;

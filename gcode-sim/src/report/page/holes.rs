@@ -1,5 +1,5 @@
 //! The table of holes: each with its deviations where there is a reference, else with what has become of it.
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use maud::{Markup, html};
 
@@ -47,9 +47,8 @@ impl HoleTable {
     }
 
     pub(super) fn markup(&self, page: &Page<'_>) -> Markup {
-        let calm = |row: &&Row| !row.state.is_worth_a_look();
-        let hidden = self.rows.iter().filter(calm).count().saturating_sub(SHOWN);
-        let mut shown_calm = 0;
+        let calm = self.rows.iter().enumerate().filter(|(_, row)| !row.state.is_worth_a_look());
+        let hidden: BTreeSet<usize> = calm.skip(SHOWN).map(|(number, _)| number).collect();
         html! {
             @if self.rows.is_empty() { p { "No hole is made." } } @else {
                 p.note {
@@ -73,15 +72,14 @@ impl HoleTable {
                         } }
                         tbody {
                             @for (number, row) in self.rows.iter().enumerate() {
-                                @let more = !row.state.is_worth_a_look() && { shown_calm += 1; SHOWN < shown_calm };
-                                (row.markup(number, more))
+                                (row.markup(number, hidden.contains(&number)))
                             }
                         }
                     }
                 }
-                @if hidden > 0 {
+                @if !hidden.is_empty() {
                     p.note #hidden-rows {
-                        (count(hidden as u64)) " holes that are as they should be aren't shown, nor printed. "
+                        (count(hidden.len() as u64)) " more holes aren't shown, nor printed; those that differ or are wrong all are. "
                         button type="button" #show-rows { "Show all" }
                     }
                 }

@@ -82,34 +82,53 @@ fn pairs<'a>(sides: &[Side<'a>]) -> Vec<Pair<'a>> {
 }
 
 fn program(pair: &Pair<'_>, sides: &[Side<'_>], done: &[Done<'_>], left: &mut usize) -> Markup {
-    let lines = lines(pair);
-    let Some(text) = pair.iter().rev().flatten().next() else { return html! {} };
-    let mut gap = 0;
+    let Some(named) = pair.iter().rev().flatten().next() else { return html! {} };
+    let shown = shown(lines(pair), pair, done, left);
     html! {
-        h3.program { (text.programs.join(", ")) }
+        h3.program { (named.programs.join(", ")) }
         div.listing.two[sides.len() == 2] {
             div.row.names {
                 @for (side, text) in sides.iter().zip(pair) {
-                    div.half { @if sides.len() == 2 { (heading(side, sides)) " " } @match text { Some(text) => (text.name), None => "not there" } }
+                    div.half {
+                        @if sides.len() == 2 { (heading(side, sides)) " " }
+                        @match text { Some(text) => (text.name), None => "not there" }
+                    }
                 }
             }
-            @for line in &lines {
-                @let wanted = line.iter().zip(pair).zip(done).any(|((at, text), done)| is_wanted(*at, *text, done));
-                @if *left > 0 || wanted {
-                    @if gap > 0 { (gap_of(std::mem::take(&mut gap))) }
-                    @let _ = *left = left.saturating_sub(1);
-                    (row(line, pair, sides, done))
-                } @else {
-                    @let _ = gap += 1;
+            @for one in &shown {
+                @match one {
+                    Shown::Line(line) => (row(line, pair, sides, done)),
+                    Shown::Gap(lines) => div.gap {
+                        (count(*lines)) " lines are left out here: a page holds " (MOST_ROWS)
+                        " and those that a hole or a finding leads to"
+                    },
                 }
             }
-            @if gap > 0 { (gap_of(gap)) }
         }
     }
 }
 
-fn gap_of(lines: u64) -> Markup {
-    html! { div.gap { (count(lines)) " lines are left out here: a page holds " (MOST_ROWS) " and those that a hole or a finding leads to" } }
+/// A line, or how many are left out.
+enum Shown {
+    Line(Line),
+    Gap(u64),
+}
+
+/// As many lines as are left, and those behind them that something leads to.
+fn shown(lines: Vec<Line>, pair: &Pair<'_>, done: &[Done<'_>], left: &mut usize) -> Vec<Shown> {
+    let mut all: Vec<Shown> = Vec::new();
+    for line in lines {
+        let wanted = || line.iter().zip(pair).zip(done).any(|((at, text), done)| is_wanted(*at, *text, done));
+        if *left > 0 || wanted() {
+            *left = left.saturating_sub(1);
+            all.push(Shown::Line(line));
+        } else if let Some(Shown::Gap(lines)) = all.last_mut() {
+            *lines += 1;
+        } else {
+            all.push(Shown::Gap(1));
+        }
+    }
+    all
 }
 
 fn is_wanted(at: Option<usize>, text: Option<&Text>, done: &Done<'_>) -> bool {

@@ -211,7 +211,8 @@ pub(super) fn viewer(sides: &[Side<'_>], data: &Data) -> Markup {
                 li.wrong { "hole that differs, or is wrong" }
                 li.absent { "missing hole" }
             }
-            p.note #keys {
+            details.note #keys {
+                summary { "Mouse, touch and keys" }
                 "Drag, or the arrow keys, turn; the wheel, two fingers, + and − zoom; Shift and drag moves. "
                 "N and P go from move to move, Enter to the block of what is picked, 0 is the first view."
             }

@@ -16,26 +16,22 @@ pub(super) fn proof(page: &Page<'_>, sides: &[Side<'_>]) -> Markup {
         p {
             "gcode-sim " (env!("CARGO_PKG_VERSION")) ", control " (dialect)
             ", increment " (increment) ". "
-            @if page.conditions.is_empty() {
-                "Everything else as it is by default: the machine of the paper, no set variables, no settings."
-            } @else {
-                "Given: "
-                @for (place, flag) in page.conditions.iter().enumerate() {
-                    @if place > 0 { ", " }
-                    code { (shown(flag)) }
-                }
-                "."
+            "Run with "
+            @for (place, flag) in page.conditions.iter().enumerate() {
+                @if place > 0 { ", " }
+                code { (shown(flag)) }
             }
+            "; without " code { "--machine" } " it is the machine of the paper."
         }
         div.scroll {
             table.digests {
-                thead { tr { th scope="col" { "File" } th scope="col" { "Is" } th scope="col" { "Bytes" } th scope="col" { "SHA-256" } } }
+                thead { tr { th scope="col" { "File" } th scope="col" { "Is" } th scope="col" { "Size" } th scope="col" { "SHA-256" } } }
                 tbody {
                     @for (name, role, bytes) in files(page, sides) {
                         tr {
                             th scope="row" { (name) }
                             td { (role) }
-                            td.number { (count(bytes.len() as u64)) }
+                            td.number { (count(bytes.len() as u64)) " bytes" }
                             td { code.digest { (sha256(bytes)) } }
                         }
                     }

@@ -221,7 +221,7 @@ class Viewer {
       wide = Math.max(wide, Math.abs(rows[0][0] * a + rows[0][1] * b + rows[0][2] * c));
       high = Math.max(high, Math.abs(rows[1][0] * a + rows[1][1] * b + rows[1][2] * c));
     }
-    return Math.min((0.44 * width) / wide, (0.4 * height) / high);
+    return Math.min((0.42 * width) / wide, (0.4 * height) / high);
   }
 
   fit() {

@@ -16,7 +16,7 @@ pub(super) fn shown(text: &str) -> String {
 /// A variable's value: up to six decimals, as many as it has.
 pub(super) fn value(value: f64) -> String {
     if value != 0.0 && value.abs() < 1e-6 || 1e12 <= value.abs() {
-        return format!("{value:e}");
+        return format!("{value:.3e}");
     }
     let text = near(value, 6);
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
@@ -37,7 +37,7 @@ pub(super) fn count(number: u64) -> String {
     let digits = number.to_string();
     let mut text = String::new();
     for (place, digit) in digits.chars().enumerate() {
-        if place > 0 && (digits.len() - place) % 3 == 0 && digits.len() > 4 {
+        if place > 0 && (digits.len() - place).is_multiple_of(3) && digits.len() > 4 {
             text.push('\u{a0}');
         }
         text.push(digit);
@@ -52,7 +52,7 @@ mod tests {
     #[test]
     fn numbers_read_as_people_write_them() {
         assert_eq!([value(1158.8), value(-0.5), value(0.0), value(7.0)], ["1158.8", "-0.5", "0", "7"]);
-        assert_eq!(value(2.5e-9), "2.5e-9");
+        assert_eq!(value(2.5e-9), "2.500e-9");
         assert_eq!(count(1_234_567), "1\u{a0}234\u{a0}567");
         assert_eq!(count(5460), "5460");
         assert_eq!(
