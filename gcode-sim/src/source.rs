@@ -47,10 +47,15 @@ impl Source {
         Self { name, bytes, lines: OnceLock::new() }
     }
 
+    fn starts(&self) -> &[u32] {
+        self.lines.get_or_init(|| line_starts(&self.bytes))
+    }
+
     /// The lines without their ends, bytes that aren't UTF-8 replaced.
     pub fn lines(&self) -> impl Iterator<Item = String> + '_ {
-        let ends = self.lines.iter().skip(1).map(|end| *end as usize).chain([self.bytes.len()]);
-        self.lines.iter().zip(ends).map(|(start, end)| {
+        let starts = self.starts();
+        let ends = starts.iter().skip(1).map(|end| *end as usize).chain([self.bytes.len()]);
+        starts.iter().zip(ends).map(|(start, end)| {
             let line = &self.bytes[*start as usize..end];
             let ended = line.iter().rposition(|b| !matches!(b, b'\n' | b'\r')).map_or(0, |last| last + 1);
             String::from_utf8_lossy(&line[..ended]).into_owned()
@@ -59,7 +64,7 @@ impl Source {
 
     /// The line and column of the byte at `offset`.
     pub fn place(&self, offset: u32) -> LineColumn {
-        let lines = self.lines.get_or_init(|| line_starts(&self.bytes));
+        let lines = self.starts();
         let index = lines.partition_point(|start| *start <= offset).saturating_sub(1);
         let start = lines.get(index).copied().unwrap_or(0);
         LineColumn { line: index as u32 + 1, column: offset - start + 1 }

@@ -5,8 +5,8 @@ use crate::source::Span;
 
 /// Looks at a control between its blocks.
 pub trait Watcher {
-    /// A block is about to be done: [`Control::next_block`].
-    fn before(&mut self, control: &Control);
+    /// A block is about to be done: [`Control::next_block`], which makes it ready and changes nothing else.
+    fn before(&mut self, control: &mut Control);
 
     /// It has been done, or an alarm has stopped it.
     fn after(&mut self, control: &Control);
@@ -14,13 +14,13 @@ pub trait Watcher {
 
 /// Nobody looks on.
 impl Watcher for () {
-    fn before(&mut self, _: &Control) {}
+    fn before(&mut self, _: &mut Control) {}
 
     fn after(&mut self, _: &Control) {}
 }
 
 impl<W: Watcher> Watcher for &mut W {
-    fn before(&mut self, control: &Control) {
+    fn before(&mut self, control: &mut Control) {
         (**self).before(control);
     }
 
@@ -31,7 +31,7 @@ impl<W: Watcher> Watcher for &mut W {
 
 /// Somebody who may be there.
 impl<W: Watcher> Watcher for Option<W> {
-    fn before(&mut self, control: &Control) {
+    fn before(&mut self, control: &mut Control) {
         self.iter_mut().for_each(|watcher| watcher.before(control));
     }
 
@@ -42,18 +42,20 @@ impl<W: Watcher> Watcher for Option<W> {
 
 impl Control {
     /// The block that a step would do now; `None` where the program has no more.
-    pub fn next_block(&self) -> Option<Span> {
+    pub fn next_block(&mut self) -> Option<Span> {
         let frame = self.core.frames.last()?;
-        let program = self.memory.programs().get(frame.program.0 as usize)?;
-        program.ops.get(frame.next).map(|op| op.span)
+        let (program, place) = (frame.program, frame.next);
+        // A memory without any program has a main program all the same.
+        self.memory.programs().get(program.0 as usize)?;
+        self.memory.ready(program, place).map(|(_, op)| op.span)
     }
 
-    /// The variables that the next block will assign as things stand; those whose numbers are computed as well.
+    /// The variables that [`Control::next_block`] will assign as things stand; those whose numbers are computed as well.
     pub fn will_assign(&self) -> Vec<u32> {
         let mut numbers = Vec::new();
         let Some(frame) = self.core.frames.last() else { return numbers };
-        let Some(program) = self.memory.programs().get(frame.program.0 as usize) else { return numbers };
-        let Some(op) = program.ops.get(frame.next) else { return numbers };
+        let program = self.memory.get(frame.program);
+        let Some(op) = program.op(frame.next) else { return numbers };
         // To look is no part of the run: what a function has to tell is told when the block is done.
         let told = self.core.told.take();
         if !op.skip.is_some_and(|switch| self.core.skips(switch)) {
@@ -101,8 +103,8 @@ mod tests {
     }
 
     impl Watcher for Assigned {
-        fn before(&mut self, control: &Control) {
-            self.numbers = control.will_assign();
+        fn before(&mut self, control: &mut Control) {
+            self.numbers = control.next_block().map_or(Vec::new(), |_| control.will_assign());
         }
 
         fn after(&mut self, control: &Control) {

@@ -87,7 +87,7 @@ impl Trace {
 }
 
 impl Watcher for Trace {
-    fn before(&mut self, control: &Control) {
+    fn before(&mut self, control: &mut Control) {
         self.now = None;
         let Some(block) = control.next_block() else { return };
         self.read(control, block.source);
