@@ -12,4 +12,6 @@ pub mod families;
 
 pub mod check;
 
+pub mod sheet;
+
 pub mod cli;

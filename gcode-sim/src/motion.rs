@@ -221,6 +221,17 @@ pub enum StopKind {
     Message,
 }
 
+impl StopKind {
+    /// As a program writes it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::M00 => "M00",
+            Self::M01 => "M01",
+            Self::Message => "#3006",
+        }
+    }
+}
+
 /// A straight cut that a skip signal may end: G31, before it moves.
 #[derive(Clone, Copy, Debug)]
 pub struct SkipFeed<'a> {

@@ -21,4 +21,5 @@ mod page;
 mod pin_holes;
 mod real_files;
 mod round_trip;
+mod sheet;
 mod tidy;

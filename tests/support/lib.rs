@@ -15,6 +15,7 @@ pub mod fuzz;
 mod r#gen;
 mod picture;
 pub mod programs;
+pub mod sheet;
 mod syntax;
 mod verify;
 
@@ -32,6 +33,7 @@ pub const KINDS: &[(&str, Run)] = &[
     ("exec", exec::run),
     ("gen", r#gen::run),
     ("picture", picture::run),
+    ("sheet", sheet::run),
     ("syntax", syntax::run),
     ("verify", verify::run),
 ];

@@ -81,16 +81,16 @@ pub fn check(job: &Job, package: &Package) -> Result<Checked, CheckError> {
     }
 }
 
-fn told(what: &str, error: &dyn std::fmt::Display) -> CheckError {
+pub(crate) fn told(what: &str, error: &dyn std::fmt::Display) -> CheckError {
     CheckError::Broken(format!("{what}: {error}"))
 }
 
-fn main_program(package: &Package) -> Result<&Program, CheckError> {
+pub(crate) fn main_program(package: &Package) -> Result<&Program, CheckError> {
     package.main().ok_or_else(|| CheckError::Broken("the main program was not emitted".to_owned()))
 }
 
 /// The package's programs as the control's program memory.
-struct Programs<'p>(&'p Package);
+pub(crate) struct Programs<'p>(pub(crate) &'p Package);
 
 impl Library for Programs<'_> {
     fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)> {

@@ -10,7 +10,15 @@ use crate::check::{CheckError, Checked, check};
 use crate::families;
 use crate::package::{Package, file_name};
 
-pub(super) fn run(path: &Path, out: &Path) -> Result<Status, Refusal> {
+/// A job, its programs, and the run in which they hold.
+pub(super) struct Held {
+    pub job: Job,
+    pub package: Package,
+    pub checked: Checked,
+}
+
+/// Reads a job, emits its programs and runs them; `None` where they don't hold, and why is told.
+pub(super) fn held(path: &Path) -> Result<Option<Held>, Refusal> {
     let text = input::text(path)?;
     let job = Job::parse(&text).map_err(|error| Refusal::new(format!("{}, {error}", path.display())))?;
     let package = families::emit(&job);
@@ -18,7 +26,7 @@ pub(super) fn run(path: &Path, out: &Path) -> Result<Status, Refusal> {
         Ok(checked) => checked,
         Err(CheckError::Impossible(why)) => {
             output::tell(&format!("error: {why}\nerror: nothing is written for {}\n", path.display()));
-            return Ok(Status::Fails);
+            return Ok(None);
         }
         Err(error) => return Err(Refusal::new(error.to_string())),
     };
@@ -26,8 +34,13 @@ pub(super) fn run(path: &Path, out: &Path) -> Result<Status, Refusal> {
         let reasons = checked.refusals.concat();
         let job = path.display();
         output::tell(&format!("{reasons}error: nothing is written, for the programs of {job} don't hold\n"));
-        return Ok(Status::Fails);
+        return Ok(None);
     }
+    Ok(Some(Held { job, package, checked }))
+}
+
+pub(super) fn run(path: &Path, out: &Path) -> Result<Status, Refusal> {
+    let Some(Held { package, checked, .. }) = held(path)? else { return Ok(Status::Fails) };
     let pictures = pictures(&checked)?;
     make_folder(out)?;
     let mut files: Vec<(PathBuf, &[u8])> =
@@ -60,7 +73,7 @@ fn left_over(job: &Job, package: &Package, out: &Path) -> Vec<PathBuf> {
 }
 
 /// What was drawn of it, as PNG by file name: `O8100.png`, and where there are more views `O8400-tip.png`.
-fn pictures(checked: &Checked) -> Result<Vec<(String, Vec<u8>)>, Refusal> {
+pub(super) fn pictures(checked: &Checked) -> Result<Vec<(String, Vec<u8>)>, Refusal> {
     let refused = |error: PictureError| Refusal::new(error.to_string());
     let size = Size::new(1600, 1200).map_err(refused)?;
     let drawn = |(name, scene): &(String, Scene)| {

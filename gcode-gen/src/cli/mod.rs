@@ -1,6 +1,7 @@
 //! The only place of the generator that prints and opens files: arguments in, exit status out.
 mod emit;
 mod new;
+mod sheet;
 
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -58,6 +59,25 @@ Examples:
         #[arg(short, long, value_name = "DIR")]
         out: PathBuf,
     },
+
+    /// Write the set-up sheet of a job's programs: one HTML file, for paper and screens
+    #[command(after_help = "\
+Examples:
+  gcode-gen sheet job.toml -o setup.html
+  gcode-gen sheet job.toml -o setup.html --rates rates.toml
+
+What only people know (part, drawing, minutes, rates) is the job's section [sheet]: see docs/setup-sheet.md.")]
+    Sheet {
+        /// The job file; '-' reads standard input
+        #[arg(value_name = "JOB.toml")]
+        job: PathBuf,
+        /// The file to write
+        #[arg(short, long, value_name = "SHEET.html")]
+        output: PathBuf,
+        /// What machine hours cost, instead of the job's [sheet.rates]
+        #[arg(long, value_name = "RATES.toml")]
+        rates: Option<PathBuf>,
+    },
 }
 
 fn families() -> clap::builder::PossibleValuesParser {
@@ -74,6 +94,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Status {
     let done = match &arguments.command {
         Command::New { family, output } => new::run(family, output.as_deref()),
         Command::Emit { job, out } => emit::run(job, out),
+        Command::Sheet { job, output, rates } => sheet::run(job, output, rates.as_deref()),
     };
     done.unwrap_or_else(|refusal: Refusal| {
         output::tell(&format!("error: {refusal}\n"));

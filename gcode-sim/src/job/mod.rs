@@ -8,6 +8,7 @@ mod honeycomb;
 mod pin_holes;
 pub(crate) mod reader;
 mod sections;
+mod sheet;
 mod wording;
 
 use serde::Deserialize;
@@ -23,6 +24,7 @@ pub use pin_holes::{
 };
 pub use reader::JobError;
 use reader::Reader;
+pub use sheet::{Beside, Minutes, Rates, SheetWords};
 
 use crate::control::{Dialect, Increment};
 
@@ -85,6 +87,15 @@ impl Job {
             Self::Honeycomb(job) => job.machine.clearance,
             Self::Burr(job) => job.grinder.clearance,
             Self::Alignment(job) => job.machine.clearance,
+        }
+    }
+
+    /// What the set-up sheet says beside what follows from the job.
+    pub fn sheet(&self) -> &SheetWords {
+        match self {
+            Self::PinHoles(job) => &job.sheet,
+            Self::Honeycomb(job) => &job.sheet,
+            Self::Burr(job) => &job.sheet,
         }
     }
 

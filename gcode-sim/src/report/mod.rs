@@ -4,7 +4,7 @@ pub mod changes;
 pub mod check;
 pub mod diagnostic;
 pub mod explain;
-mod figures;
+pub mod figures;
 pub mod flute_table;
 pub mod flute_view;
 pub mod holes;

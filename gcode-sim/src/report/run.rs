@@ -7,7 +7,7 @@ use serde::{Serialize, Serializer};
 use crate::alarm::remedy;
 use crate::changes::Where;
 use crate::exec::{Outcome, Value, printable};
-use crate::motion::{Axes, Event, EventKind, Position, Sink, StopKind};
+use crate::motion::{Axes, Event, EventKind, Position, Sink};
 use crate::session::Run;
 use crate::source::Span;
 
@@ -189,7 +189,7 @@ impl RunReport {
             stops: control
                 .stops()
                 .iter()
-                .map(|stop| StopReport { kind: stop_name(stop.kind), text: stop.text.clone() })
+                .map(|stop| StopReport { kind: stop.kind.name(), text: stop.text.clone() })
                 .collect(),
             output: control.output().iter().map(|line| printable(line)).collect(),
             passed_on: control
@@ -257,14 +257,6 @@ impl RunReport {
             let _ = writeln!(text, "{place:<14} {:<6} {}{feed}  {:.2} s", step.kind, step.to, step.seconds);
         }
         text
-    }
-}
-
-fn stop_name(kind: StopKind) -> &'static str {
-    match kind {
-        StopKind::M00 => "M00",
-        StopKind::M01 => "M01",
-        StopKind::Message => "#3006",
     }
 }
 

@@ -5,6 +5,7 @@ use toml::Spanned;
 use super::{AxisSigns, Burr, BurrProgram, BurrShape, BurrTolerance, FluteLaw, Grinder, Nose, ProgramForm};
 use crate::control::{Dialect, Increment};
 use crate::job::sections::{FileControl, sign, within};
+use crate::job::sheet::FileSheet;
 use crate::job::{JobControl, JobError, Reader};
 use crate::units::Deg;
 
@@ -18,6 +19,7 @@ struct File {
     machine: FileMachine,
     program: Option<FileProgram>,
     tolerance: Option<FileTolerance>,
+    sheet: Option<FileSheet>,
 }
 
 #[derive(Deserialize)]
@@ -120,6 +122,7 @@ pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<Burr, JobError> {
         grinder: file.machine.check(reader)?,
         program: FileProgram::check(file.program.as_ref(), reader, control.dialect)?,
         tolerance: FileTolerance::check(file.tolerance.as_ref(), reader)?,
+        sheet: FileSheet::of(file.sheet, reader)?,
     })
 }
 

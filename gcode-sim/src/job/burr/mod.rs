@@ -3,7 +3,7 @@ mod file;
 
 pub(super) use file::parse;
 
-use super::JobControl;
+use super::{JobControl, SheetWords};
 
 /// A ball-end rotary burr; lengths in mm, angles in degrees.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,6 +19,7 @@ pub struct Burr {
     pub grinder: Grinder,
     pub program: BurrProgram,
     pub tolerance: BurrTolerance,
+    pub sheet: SheetWords,
 }
 
 impl Burr {

@@ -4,6 +4,7 @@ use toml::Spanned;
 
 use super::{Clamp, CombMachine, Cylinder, Drill, Honeycomb, Metric, Spacing};
 use crate::job::sections::{FileControl, FileRotary, FileTolerance, heights, length, within};
+use crate::job::sheet::FileSheet;
 use crate::job::{JobError, Reader};
 
 #[derive(Deserialize)]
@@ -17,6 +18,7 @@ struct File {
     cylinder: FileCylinder,
     pattern: Spanned<FilePattern>,
     drill: FileDrill,
+    sheet: Option<FileSheet>,
 }
 
 #[derive(Deserialize)]
@@ -82,6 +84,7 @@ pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<Honeycomb, JobError> 
         depth_tolerance: file.tolerance.depth(reader)?,
         cylinder,
         drill,
+        sheet: FileSheet::of(file.sheet, reader)?,
     })
 }
 

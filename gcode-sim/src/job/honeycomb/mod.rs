@@ -3,7 +3,7 @@ mod file;
 
 pub(super) use file::parse;
 
-use super::{JobControl, Rotary};
+use super::{JobControl, Rotary, SheetWords};
 
 /// A honeycomb on a cylinder about x; lengths in mm, angles in degrees.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,6 +18,7 @@ pub struct Honeycomb {
     pub position_tolerance: f64,
     /// How far a hole's depth may be off.
     pub depth_tolerance: f64,
+    pub sheet: SheetWords,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,6 +7,7 @@ use toml::Spanned;
 use super::tools::{FileTool, ToolsWanted, assign, default_tools};
 use super::{AxisDirection, Head, HeadKind, HoleWanted, MacroSettings, PinHoles, PinMachine, Surface, Tool};
 use crate::job::sections::{FileControl, FileRotary, FileTolerance, ROTARY_LETTERS, heights, length, within};
+use crate::job::sheet::FileSheet;
 use crate::job::{JobError, Reader};
 
 #[derive(Deserialize)]
@@ -22,6 +23,7 @@ struct File {
     tool: Option<Vec<FileTool>>,
     #[serde(rename = "macro")]
     macros: Option<FileMacro>,
+    sheet: Option<FileSheet>,
 }
 
 #[derive(Deserialize)]
@@ -89,6 +91,7 @@ pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<PinHoles, JobError> {
         tools,
         macros: MacroSettings { common },
         holes,
+        sheet: FileSheet::of(file.sheet, reader)?,
     })
 }
 

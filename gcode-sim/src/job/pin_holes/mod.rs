@@ -4,7 +4,7 @@ mod tools;
 
 pub(super) use file::{FileMachine, FileSurface, parse};
 
-use super::{JobControl, Rotary};
+use super::{JobControl, Rotary, SheetWords};
 
 /// Pin holes on an ellipsoid of revolution; lengths in mm, angles in degrees.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,6 +19,7 @@ pub struct PinHoles {
     pub tools: Vec<Tool>,
     pub macros: MacroSettings,
     pub holes: Vec<HoleWanted>,
+    pub sheet: SheetWords,
 }
 
 /// (x² + z²)/a² + y²/b² = 1.
@@ -165,7 +166,7 @@ depth = 15.0
             (
                 "[control]\n",
                 "[contrl]\n",
-                "line 2: key 'contrl' is not known; allowed: family, control, machine, surface, tolerance, hole, tool, macro",
+                "line 2: key 'contrl' is not known; allowed: family, control, machine, surface, tolerance, hole, tool, macro, sheet",
             ),
         ] {
             assert_eq!(told(from, to), message, "{from:?} -> {to:?}");

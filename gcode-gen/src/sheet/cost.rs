@@ -1,0 +1,135 @@
+//! What a part takes and costs: the simulated run, and the minutes and rates that the user gives.
+use gcode_sim::job::{Beside, Minutes, Rates, SheetWords};
+
+use super::record::Record;
+
+/// The time a part takes on one machine, in minutes. Nobody has measured it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Taken {
+    /// Of the program.
+    pub run: f64,
+    pub stops: usize,
+    pub tool_changes: usize,
+    /// What the user gave; what is missing isn't counted.
+    pub minutes: Minutes,
+}
+
+impl Taken {
+    pub fn all_stops(&self) -> Option<f64> {
+        each(self.stops, self.minutes.stop)
+    }
+
+    pub fn all_tool_changes(&self) -> Option<f64> {
+        each(self.tool_changes, self.minutes.tool_change)
+    }
+
+    /// The machine is taken for so many minutes.
+    pub fn all(&self) -> f64 {
+        let rest = [self.minutes.setup, self.all_stops(), self.all_tool_changes()];
+        self.run + rest.into_iter().flatten().sum::<f64>()
+    }
+
+    /// What isn't in the sum, because nobody said how long it takes; in the words of the job's keys.
+    pub fn not_counted(&self) -> Vec<&'static str> {
+        let all = [
+            ("setup_minutes", self.minutes.setup.is_none()),
+            ("stop_minutes", self.minutes.stop.is_none() && self.stops > 0),
+            ("tool_change_minutes", self.minutes.tool_change.is_none() && self.tool_changes > 0),
+        ];
+        all.into_iter().filter(|(_, missing)| *missing).map(|(key, _)| key).collect()
+    }
+}
+
+fn each(count: usize, minutes: Option<f64>) -> Option<f64> {
+    if count == 0 { Some(0.0) } else { minutes.map(|minutes| minutes * count as f64) }
+}
+
+/// What the part costs on one machine.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cost {
+    /// The machine's name; `None` for the job's own.
+    pub machine: Option<String>,
+    pub taken: Taken,
+    /// A machine hour.
+    pub rate: f64,
+    /// Whether the run's minutes are the user's, not the simulation's.
+    pub run_given: bool,
+}
+
+impl Cost {
+    /// In the currency of the rates.
+    pub fn cost(&self) -> f64 {
+        self.taken.all() / 60.0 * self.rate
+    }
+
+    /// How much less than on `other`, in percent of that; negative where it costs less.
+    pub fn change(&self, other: &Self) -> f64 {
+        (self.cost() / other.cost() - 1.0) * 100.0
+    }
+}
+
+/// On the job's own machine.
+pub fn taken(words: &SheetWords, record: &Record) -> Taken {
+    Taken {
+        run: record.times.all() / 60.0,
+        stops: record.stops.len(),
+        tool_changes: record.tools.len(),
+        minutes: words.minutes,
+    }
+}
+
+/// The job's own machine first, then those beside it. What isn't said of another machine is taken to be the same there.
+pub fn costs(rates: &Rates, own: &Taken) -> Vec<Cost> {
+    let beside = |other: &Beside| Cost {
+        machine: Some(other.machine.clone()),
+        taken: Taken {
+            run: other.run.unwrap_or(own.run),
+            minutes: Minutes {
+                setup: other.minutes.setup.or(own.minutes.setup),
+                stop: other.minutes.stop.or(own.minutes.stop),
+                tool_change: other.minutes.tool_change.or(own.minutes.tool_change),
+            },
+            ..own.clone()
+        },
+        rate: other.rate,
+        run_given: other.run.is_some(),
+    };
+    let first = Cost { machine: None, taken: own.clone(), rate: rates.rate, run_given: false };
+    std::iter::once(first).chain(rates.beside.iter().map(beside)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 30 min of run, 6 stops of 10, 2 tool changes of 5, 20 of set-up: two hours.
+    fn two_hours() -> Taken {
+        let minutes = Minutes { setup: Some(20.0), stop: Some(10.0), tool_change: Some(5.0) };
+        Taken { run: 30.0, stops: 6, tool_changes: 2, minutes }
+    }
+
+    #[test]
+    fn minutes_add_up_and_what_is_not_said_is_not_counted() {
+        assert_eq!(two_hours().all(), 120.0);
+        assert!(two_hours().not_counted().is_empty());
+        let silent = Taken { minutes: Minutes::default(), ..two_hours() };
+        assert_eq!(silent.all(), 30.0);
+        assert_eq!(silent.not_counted(), ["setup_minutes", "stop_minutes", "tool_change_minutes"]);
+        let unstopped = Taken { stops: 0, tool_changes: 0, ..silent };
+        assert_eq!(unstopped.not_counted(), ["setup_minutes"]);
+    }
+
+    #[test]
+    fn a_quarter_of_the_rate_in_the_same_time_is_75_percent_less() {
+        let other = Beside { machine: "5-axis".into(), rate: 400.0, run: None, minutes: Minutes::default() };
+        let rates = Rates { currency: "CNY".into(), rate: 100.0, beside: vec![other.clone()] };
+        let costs = costs(&rates, &two_hours());
+        assert_eq!((costs[0].cost(), costs[1].cost()), (200.0, 800.0));
+        assert_eq!(costs[0].change(&costs[1]), -75.0);
+        // Without stops there, 60 min: 400, and half of it is saved.
+        let minutes = Minutes { stop: Some(0.0), ..Minutes::default() };
+        let rates = Rates { beside: vec![Beside { minutes, ..other }], ..rates };
+        let costs = super::costs(&rates, &two_hours());
+        assert_eq!((costs[1].cost(), costs[0].change(&costs[1])), (400.0, -50.0));
+    }
+}

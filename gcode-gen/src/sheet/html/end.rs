@@ -1,0 +1,40 @@
+//! The end of the sheet: what nobody has checked, and lines to sign.
+use maud::{Markup, html};
+
+use super::table;
+use crate::check::Judgement;
+use crate::sheet::Sheet;
+
+/// What no simulation here looks at, whatever the part.
+const NEVER: &[&str] = &[
+    "the machine's own errors: positioning, run-out of the rotary axis, how well the head is set",
+    "chips, clamps, fixtures, the tool's shank and holder, the machine's travel: only the tool against the part's surface",
+    "acceleration and the time of operator stops and tool changes: run times are paths over feeds and rapid rates",
+];
+
+pub(super) fn unknown(sheet: &Sheet<'_>) -> Markup {
+    let own = match &sheet.checked.judgement {
+        Judgement::Holes(verdict) => &verdict.not_checked,
+        Judgement::Flutes(verdict) => &verdict.not_checked,
+    };
+    html! {
+        div.together {
+            h2 { "Not checked" }
+            ul {
+                @for what in NEVER { li { (what) } }
+                @for what in own { li { (what) } }
+            }
+        }
+    }
+}
+
+pub(super) fn sign() -> Markup {
+    let rows =
+        ["prepared", "checked", "approved"].map(|role| vec![html! { (role) }, html! {}, html! {}, html! {}]);
+    html! {
+        div.together {
+            h2 { "Signatures" }
+            div.sign { (table(&["", "name", "signature", "date"], rows)) }
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! The head of the sheet: what part, on what machine, which programs, and what the simulation says of them.
+use gcode_sim::control::{Dialect, Increment};
+use gcode_sim::report::figures::{count, near};
+use maud::{Markup, html};
+
+use super::{blank, cell, kind, table};
+use crate::check::Judgement;
+use crate::package::file_name;
+use crate::sheet::encode::sha256;
+use crate::sheet::{BASIS, Sheet};
+
+pub(super) fn facts(sheet: &Sheet<'_>) -> Markup {
+    let words = sheet.job.sheet();
+    let control = sheet.job.control();
+    let dialect = Dialect::ALL.iter().find(|(_, d)| *d == control.dialect).map_or("", |(name, _)| name);
+    let increment = Increment::ALL.iter().find(|(_, i)| *i == control.increment).map_or("", |(name, _)| name);
+    let said = |word: &Option<String>| word.as_ref().map_or_else(blank, |word| html! { (word) });
+    html! {
+        h1 { "Set-up sheet" }
+        p { (kind(sheet.job)) ", main program " b { (file_name(sheet.package.main).trim_end_matches(".nc")) } }
+        div.wide { table.facts { tbody {
+            tr { th { "part" } td { (said(&words.part)) } th { "drawing" } td { (said(&words.drawing)) } }
+            tr { th { "revision" } td { (said(&words.revision)) } th { "material" } td { (said(&words.material)) } }
+            tr {
+                th { "machine" } td { (said(&words.machine)) }
+                th { "control" }
+                td { (dialect) ", least increment " (increment) " (" (control.increment.size()) " mm and degrees)" }
+            }
+            tr { th { "serial number of the part" } td { (blank()) } th { "order" } td { (blank()) } }
+        } } }
+        p.note { "Lengths in mm, angles in degrees, feeds in mm/min. Lines that are empty are filled in by hand." }
+    }
+}
+
+pub(super) fn verdict(sheet: &Sheet<'_>) -> Markup {
+    html! {
+        div.verdict {
+            b { "PASS. " (BASIS) ". " }
+            @match &sheet.checked.judgement {
+                Judgement::Holes(verdict) => {
+                    (count(verdict.holes.len(), "hole")) ", all within tolerance"
+                    @if let Some(worst) = verdict.worst {
+                        "; the worst position is Φ" (near(worst, 4)) " of Φ" (verdict.tolerance)
+                    }
+                    "."
+                }
+                Judgement::Flutes(verdict) => {
+                    (verdict.sentence())
+                    @if let Some(off) = verdict.surface_deviation {
+                        "; the contact is at most " (near(off, 4)) " mm off the tooth bottom, " (verdict.tolerance)
+                        " is allowed"
+                    }
+                    "."
+                }
+            }
+            " The machine's own errors are not in these numbers."
+        }
+    }
+}
+
+pub(super) fn programs(sheet: &Sheet<'_>) -> Markup {
+    let rows = sheet.package.files().into_iter().map(|(name, text)| {
+        let digest = digest(text);
+        vec![cell(&name), cell(title(text)), html! { (text.lines().count()) }, digest]
+    });
+    html! {
+        h2 { "Programs" }
+        (table(&["file", "what it is", "#lines", "SHA-256"], rows))
+        p.note {
+            "The hash is that of the file as " code { "gcode-gen emit" } " writes it. Before it goes to the control: "
+            code { "certutil -hashfile " (file_name(sheet.package.main)) " SHA256" } " (Windows) or "
+            code { "sha256sum " (file_name(sheet.package.main)) } ". What was edited since is not what was simulated."
+        }
+    }
+}
+
+/// In two halves, that a narrow column breaks between.
+fn digest(text: &str) -> Markup {
+    let digits = sha256(text.as_bytes());
+    let (one, other) = digits.split_at(digits.len() / 2);
+    html! { span.mono.digest { (one) wbr; (other) } }
+}
+
+/// A program's first comment; what the machine file is for.
+fn title(text: &str) -> &str {
+    let line = text.lines().find(|line| line.starts_with('O')).unwrap_or("");
+    let comment = line.split_once('(').and_then(|(_, rest)| rest.strip_suffix(')'));
+    comment.unwrap_or("the machine, for gcode-sim")
+}

@@ -1,0 +1,99 @@
+//! What to measure: requirements, room for results, and beside them what the simulation says.
+use gcode_sim::report::figures::{near, signed, signed_to};
+use gcode_sim::verify::{HoleVerdict, Verdict};
+use maud::{Markup, html};
+
+use super::{cell, table};
+use crate::check::Judgement;
+use crate::sheet::encode::png_address;
+use crate::sheet::measure::{LISTED, characteristics};
+use crate::sheet::{BASIS, Sheet};
+
+/// In the manner of form 3 of AS9102: requirements are filled in, results are the inspector's.
+pub(super) fn form(sheet: &Sheet<'_>) -> Markup {
+    let all = characteristics(&sheet.checked.judgement);
+    html! {
+        h2 { "What to measure" }
+        p {
+            "In the manner of AS9102, form 3. The columns for results are the inspector's and stay empty here: "
+            "a simulation is not a measurement. "
+            @if let Judgement::Holes(_) = sheet.checked.judgement { "Nominal places stand in the tables of holes below." }
+        }
+        div.wide { table {
+            thead { tr {
+                th.n { "char. no." } th { "reference" } th { "characteristic" } th { "requirement" }
+                th { "results" } th { "gauge, non-conformance" } th { "predicted (simulation)" }
+            } }
+            tbody {
+                @for (index, one) in all.iter().enumerate() {
+                    tr {
+                        td.n { (index + 1) } td.wrap { (one.reference) } td { (one.name) } td { (one.requirement) }
+                        td.result {} td.result {} td.wrap { (one.predicted) }
+                    }
+                }
+            }
+        } }
+    }
+}
+
+/// Nominal and predicted places; of many holes the worst ones.
+pub(super) fn holes(sheet: &Sheet<'_>) -> Markup {
+    let Judgement::Holes(verdict) = &sheet.checked.judgement else { return html! {} };
+    let shown = shown(verdict);
+    let nominal = shown.iter().map(|hole| {
+        let placed = &hole.nominal;
+        let diameter = placed.diameter.map_or("-".to_owned(), |d| near(d, 3));
+        let place = placed.entry.map(|v| near(v, 3)).into_iter().chain(placed.axis.map(|v| near(v, 6)));
+        let all = std::iter::once(hole.id.clone()).chain(place).chain([near(placed.depth, 3), diameter]);
+        all.map(cell).collect()
+    });
+    let predicted = shown.iter().map(|hole| {
+        let off = std::array::from_fn::<_, 3, _>(|i| signed(hole.actual.entry[i] - hole.nominal.entry[i]));
+        let rest = [
+            near(hole.tilt, 4),
+            signed_to(hole.depth_error, 4),
+            format!("Φ{}", near(hole.phi, 4)),
+            format!("Φ{}", verdict.tolerance),
+            near(hole.out_of_tolerance, 4),
+        ];
+        std::iter::once(hole.id.clone()).chain(off).chain(rest).map(cell).collect()
+    });
+    html! {
+        h2 { "Holes" }
+        @if shown.len() < verdict.holes.len() {
+            p {
+                "The worst " (shown.len()) " of " (verdict.holes.len()) " holes; "
+                code { "gcode-sim verify --full" } " and " code { "--format json" } " list all."
+            }
+        }
+        h3 { "Nominal, in the part's frame: entry, axis out of the part, depth, diameter" }
+        (table(&["hole", "#x", "#y", "#z", "#i", "#j", "#k", "#depth", "#diameter"], nominal))
+        h3 { (BASIS) ": deviations (actual less nominal) where the axis enters, tilt, depth, position as ISO 1101 has it" }
+        (table(&["hole", "#dx", "#dy", "#dz", "#tilt", "#depth", "#position", "#tolerance", "#out of it"], predicted))
+    }
+}
+
+fn shown(verdict: &Verdict) -> Vec<&HoleVerdict> {
+    let mut all: Vec<&HoleVerdict> = verdict.holes.iter().collect();
+    if all.len() > LISTED {
+        all.sort_by(|a, b| b.phi.total_cmp(&a.phi));
+        all.truncate(24);
+    }
+    all
+}
+
+/// The part as the simulated program makes it.
+pub(super) fn pictures(sheet: &Sheet<'_>) -> Markup {
+    if sheet.pictures.is_empty() {
+        return html! {};
+    }
+    html! {
+        h2 { "The part as the simulated program makes it" }
+        @for (name, png) in &sheet.pictures {
+            figure {
+                img src=(png_address(png)) alt=(name);
+                figcaption { (name) ": " (BASIS) "." }
+            }
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! What stands in the machine: the tools, the head's angles in their order, the settings of the control.
+use gcode_sim::job::{HeadKind, Job, PinHoles};
+use gcode_sim::report::figures::short;
+use gcode_sim::units::Deg;
+use gcode_sim::verify::Verdict;
+use maud::{Markup, html};
+
+use super::{blank, cell, table};
+use crate::check::Judgement;
+use crate::order::passes;
+use crate::sheet::Sheet;
+use crate::sheet::duty::tip_is_programmed;
+
+pub(super) fn tools(sheet: &Sheet<'_>) -> Markup {
+    let row = |number: String, name: &str, diameter: f64, length: Markup, speed: f64, feed: String| {
+        vec![cell(number), cell(name), cell(short(diameter)), length, cell(short(speed)), cell(feed), blank()]
+    };
+    let rows: Vec<_> = match sheet.job {
+        Job::PinHoles(job) => job
+            .tools
+            .iter()
+            .filter(|tool| sheet.record.tools.contains(&tool.number))
+            .map(|tool| {
+                let length = if tip_is_programmed(job) {
+                    html! { "–" }
+                } else {
+                    cell(short(tool.length))
+                };
+                let feed = format!("{} in, {} out", short(tool.feed), short(tool.retract_feed));
+                row(format!("T{}", tool.number), &tool.name, tool.diameter, length, tool.speed, feed)
+            })
+            .collect(),
+        Job::Honeycomb(job) => {
+            let drill = &job.drill;
+            let length = html! { "measured, in H" (drill.number) };
+            vec![row(
+                format!("T{}", drill.number),
+                "DRILL",
+                drill.diameter,
+                length,
+                drill.speed,
+                short(drill.feed),
+            )]
+        }
+        Job::Burr(job) => {
+            let program = job.program;
+            let feed =
+                format!("{} along the flute, {} into the blank", short(program.speed), short(program.plunge));
+            vec![vec![
+                cell("wheel"),
+                cell("GRINDING WHEEL"),
+                blank(),
+                blank(),
+                cell(short(program.wheel)),
+                cell(feed),
+                blank(),
+            ]]
+        }
+    };
+    html! {
+        div.together {
+            h2 { "Tools" }
+            (table(&["tool", "name", "#diameter", "#length", "#r/min", "feed", "holder, remark"], rows))
+            @if let Job::PinHoles(job) = sheet.job {
+                @if tip_is_programmed(job) {
+                    p.note { "No tool lengths in this job: X and Y are the tip, whose place is set again after each turn of the head." }
+                } @else {
+                    p.note { "Lengths are from the spindle's gauge line to the tip; the head's pivot is " (short(job.machine.head.pivot)) " mm from the gauge line. The program counts with them itself: no G43." }
+                }
+            }
+        }
+    }
+}
+
+/// The order in which the head is set, and the holes made with each setting; only pin holes have it.
+pub(super) fn head_angles(sheet: &Sheet<'_>) -> Markup {
+    let (Job::PinHoles(job), Judgement::Holes(verdict)) = (sheet.job, &sheet.checked.judgement) else {
+        return html! {};
+    };
+    let by = match job.machine.head.kind {
+        HeadKind::Manual => "set by hand at an operator stop".to_owned(),
+        HeadKind::Axis(letter) => format!("moved by the program as axis {letter}"),
+    };
+    let rows = settings_of(job, verdict).into_iter().enumerate().map(|(index, setting)| {
+        vec![
+            html! { (index + 1) },
+            html! { "T" (setting.tool) },
+            cell(setting.angle.map_or("-".to_owned(), short)),
+            cell(short(setting.radius)),
+            cell(setting.holes.join(", ")),
+        ]
+    });
+    html! {
+        div.together {
+            h2 { "Head angles in their order" }
+            p { "The head's angle counts from X towards Y; 90 is parallel to Y. It is " (by) "." }
+            (table(&["#setting", "tool", "#head angle, °", "#radius of the holes", "holes, in their order"], rows))
+        }
+    }
+}
+
+struct Setting {
+    tool: u32,
+    /// Of the holes as the simulation made them.
+    angle: Option<f64>,
+    radius: f64,
+    holes: Vec<String>,
+}
+
+fn settings_of(job: &PinHoles, verdict: &Verdict) -> Vec<Setting> {
+    let angle = |id: &str| {
+        let hole = verdict.holes.iter().find(|hole| hole.id == id)?;
+        let [x, y, z] = hole.actual.axis;
+        // In the plane z = 0 to which the table brings it; rounded like the angle that was set.
+        let angle = Deg::atan2(y, (x * x + z * z).sqrt()).0;
+        Some(job.control.increment.round(angle))
+    };
+    let mut all = Vec::new();
+    for pass in passes(job) {
+        for setting in pass.settings {
+            all.push(Setting {
+                tool: pass.tool.number,
+                angle: setting.holes.first().and_then(|hole| angle(&hole.id)),
+                radius: setting.radius,
+                holes: setting.holes.iter().map(|hole| hole.id.clone()).collect(),
+            });
+        }
+    }
+    all
+}
+
+/// What the control must be set to for the numbers of this sheet.
+pub(super) fn settings(sheet: &Sheet<'_>) -> Markup {
+    let [slide, turn] = sheet.record.rapids;
+    let codes: Vec<String> = sheet.record.passed_on.iter().map(|code| format!("M{code:02}")).collect();
+    html! {
+        div.together {
+            h2 { "What the control must be like" }
+            ul {
+                li { "The family of controls and the least increment stand at the head of this sheet." }
+                li { "Rapid rates (1420) are taken as " (short(slide)) " mm/min and " (short(turn)) " degrees/min; only the run time depends on them." }
+                @if !codes.is_empty() {
+                    li { (codes.join(", ")) ": M codes of the machine builder. What they do here isn't simulated; try them by MDI before the run." }
+                }
+            }
+        }
+    }
+}

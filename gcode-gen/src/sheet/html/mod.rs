@@ -1,0 +1,117 @@
+//! The sheet as HTML: self-contained, for paper (A4) and for screens. Every text from outside is escaped by the macro.
+mod drawing;
+mod end;
+mod head;
+mod inspection;
+mod machine;
+mod stops;
+mod time;
+mod zero;
+
+use gcode_sim::job::Job;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use super::{BASIS, Sheet};
+use crate::package::file_name;
+
+pub(super) fn page(sheet: &Sheet<'_>) -> String {
+    let main = file_name(sheet.package.main);
+    let words = sheet.job.sheet();
+    let part = words.part.as_deref().unwrap_or("part not named");
+    let drawing = [("drawing", &words.drawing), ("revision", &words.revision)];
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { "Set-up sheet: " (part) ", " (main) }
+                style { (PreEscaped(include_str!("style.css"))) }
+            }
+            body {
+                table.frame role="presentation" {
+                    thead { tr { td {
+                        div.running {
+                            b { (BASIS) }
+                            span {
+                                (part)
+                                @for (name, word) in drawing {
+                                    @if let Some(word) = word { ", " (name) " " (word) }
+                                }
+                                ", " (main)
+                            }
+                        }
+                    } } }
+                    tbody { tr { td { (sections(sheet)) } } }
+                }
+            }
+        }
+    };
+    page.into_string()
+}
+
+fn sections(sheet: &Sheet<'_>) -> Markup {
+    html! {
+        (head::facts(sheet))
+        (head::verdict(sheet))
+        (head::programs(sheet))
+        (zero::zero(sheet))
+        (machine::tools(sheet))
+        (machine::head_angles(sheet))
+        (stops::stops(sheet))
+        (machine::settings(sheet))
+        (inspection::form(sheet))
+        (inspection::holes(sheet))
+        (inspection::pictures(sheet))
+        (time::time(sheet))
+        (end::unknown(sheet))
+        (end::sign())
+    }
+}
+
+/// A table that a narrow screen scrolls sideways; columns named with a leading `#` hold figures.
+fn table(columns: &[&str], rows: impl IntoIterator<Item = Vec<Markup>>) -> Markup {
+    let figures: Vec<bool> = columns.iter().map(|name| name.starts_with('#')).collect();
+    html! {
+        div.wide {
+            table {
+                thead { tr {
+                    @for name in columns {
+                        @match name.strip_prefix('#') {
+                            Some(name) => th.n { (name) },
+                            None => th { (name) },
+                        }
+                    }
+                } }
+                tbody {
+                    @for row in rows {
+                        tr {
+                            @for (cell, figure) in row.iter().zip(&figures) {
+                                @if *figure { td.n { (cell) } } @else { td { (cell) } }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A cell of plain text.
+fn cell(text: impl AsRef<str>) -> Markup {
+    html! { (text.as_ref()) }
+}
+
+/// Room to write by hand.
+fn blank() -> Markup {
+    html! { span.blank {} }
+}
+
+/// What kind of part it is, as a heading has it.
+fn kind(job: &Job) -> &'static str {
+    match job {
+        Job::PinHoles(_) => "pin holes on an ellipsoid of revolution",
+        Job::Honeycomb(_) => "honeycomb of radial holes on a cylinder",
+        Job::Burr(_) => "ball-end rotary burr",
+    }
+}

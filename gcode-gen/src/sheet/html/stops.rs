@@ -1,0 +1,42 @@
+//! The operator's stops in their order: what the control shows, what to do, a box to tick.
+use gcode_sim::report::figures::{count, near};
+use maud::{Markup, html};
+
+use super::{cell, table};
+use crate::sheet::Sheet;
+use crate::sheet::duty::duty;
+use crate::sheet::record::Stop;
+
+pub(super) fn stops(sheet: &Sheet<'_>) -> Markup {
+    let stops = &sheet.record.stops;
+    if stops.is_empty() {
+        return html! {
+            h2 { "Operator stops" }
+            p { "The program doesn't stop for the operator between its start and its end." }
+        };
+    }
+    let rows = stops.iter().enumerate().map(|(index, stop)| {
+        vec![
+            html! { (index + 1) },
+            shown(stop),
+            html! { @if let Some(tool) = stop.tool { "T" (tool) } },
+            html! { ol { @for step in duty(sheet.job, stop) { li { (step) } } } },
+            cell(near(stop.after / 60.0, 1)),
+            html! { span.tick {} },
+        ]
+    });
+    html! {
+        h2 { "Operator stops, and what to do" }
+        p { (count(stops.len(), "stop")) ", in this order. The minutes are those the machine has run before the stop." }
+        (table(&["#stop", "the control shows", "tool", "what to do", "#min", "done"], rows))
+    }
+}
+
+/// The message as the control shows it, and where the program stands.
+fn shown(stop: &Stop) -> Markup {
+    let at = stop.at.iter().map(|(program, line)| format!("{program} line {line}")).collect::<Vec<_>>();
+    html! {
+        b { (stop.kind.name()) } " " span.mono { (stop.text) }
+        div.note { (at.join(", called from ")) }
+    }
+}

@@ -1,0 +1,119 @@
+//! Run time, and where rates are given the cost, beside the same part on other machines.
+use gcode_sim::report::figures::{near, short, signed_to};
+use maud::{Markup, html};
+
+use super::{cell, table};
+use crate::sheet::cost::{Cost, Taken, costs, taken};
+use crate::sheet::{BASIS, Sheet};
+
+pub(super) fn time(sheet: &Sheet<'_>) -> Markup {
+    let times = sheet.record.times;
+    let own = taken(sheet.job.sheet(), &sheet.record);
+    let minutes = |seconds: f64| near(seconds / 60.0, 1);
+    html! {
+        div.together {
+            h2 { "Run time and cost" }
+            p {
+                "The program runs " b { (minutes(times.all())) " min" } ": feed " (minutes(times.feed)) ", rapid "
+                (minutes(times.rapid)) ", dwell " (minutes(times.dwell)) ". " (BASIS) ": paths over feeds and rapid rates, "
+                "without acceleration, which makes it longer at the machine."
+            }
+            @match sheet.rates {
+                Some(rates) => {
+                    @let all = costs(rates, &own);
+                    (cost_table(&all, &rates.currency))
+                    @for other in all.iter().skip(1) { (beside(&all[0], other)) }
+                    (assumed(&all))
+                }
+                None => {
+                    (time_table(&own))
+                    p { b { "No rate was given: " } "the sheet shows time only. A rate a machine hour, with its currency, goes into the job as "
+                        code { "[sheet.rates]" } " or into the file of " code { "--rates" } "." }
+                }
+            }
+            (uncounted(&own))
+        }
+    }
+}
+
+/// `6 × 10`, or that nobody said.
+fn times(count: usize, each: Option<f64>, all: Option<f64>) -> String {
+    match (count, each, all) {
+        (0, ..) => "none".to_owned(),
+        (_, Some(each), Some(all)) => format!("{} ({count} × {})", near(all, 1), short(each)),
+        _ => format!("not given ({count})"),
+    }
+}
+
+fn parts(taken: &Taken) -> [String; 4] {
+    [
+        taken.minutes.setup.map_or("not given".to_owned(), |minutes| near(minutes, 1)),
+        near(taken.run, 1),
+        times(taken.stops, taken.minutes.stop, taken.all_stops()),
+        times(taken.tool_changes, taken.minutes.tool_change, taken.all_tool_changes()),
+    ]
+}
+
+const PARTS: [&str; 4] = ["set-up, min", "run, min", "operator stops, min", "tool changes, min"];
+
+fn time_table(own: &Taken) -> Markup {
+    let sum = (near(own.all(), 1), near(own.all() / 60.0, 2));
+    let rows = PARTS.iter().zip(parts(own)).map(|(name, value)| vec![cell(name), cell(value)]);
+    let last = vec![html! { b { "machine time, min" } }, html! { b { (sum.0) " (" (sum.1) " h)" } }];
+    table(&["", "#this job"], rows.chain([last]))
+}
+
+fn cost_table(all: &[Cost], currency: &str) -> Markup {
+    let names = all.iter().map(|cost| cost.machine.as_deref().unwrap_or("this job"));
+    let mut rows: Vec<Vec<Markup>> = PARTS
+        .iter()
+        .enumerate()
+        .map(|(row, name)| {
+            let values = all.iter().map(|cost| cell(&parts(&cost.taken)[row]));
+            std::iter::once(cell(name)).chain(values).collect()
+        })
+        .collect();
+    let mut row = |name: String, value: &dyn Fn(&Cost) -> Markup| {
+        rows.push(std::iter::once(cell(name)).chain(all.iter().map(value)).collect());
+    };
+    row("machine time, h".to_owned(), &|cost| cell(near(cost.taken.all() / 60.0, 2)));
+    row(format!("rate, {currency} a machine hour"), &|cost| cell(short(cost.rate)));
+    row(format!("cost of one part, {currency}"), &|cost| html! { b { (near(cost.cost(), 2)) } });
+    let columns: Vec<String> =
+        std::iter::once(String::new()).chain(names.map(|name| format!("#{name}"))).collect();
+    table(&columns.iter().map(String::as_str).collect::<Vec<_>>(), rows)
+}
+
+/// One sentence with the difference.
+fn beside(own: &Cost, other: &Cost) -> Markup {
+    html! {
+        p {
+            "Against " (other.machine.as_deref().unwrap_or("")) ": "
+            b { (signed_to(own.change(other), 1)) " %" } " (" (near(own.cost(), 2)) " beside " (near(other.cost(), 2)) ")."
+        }
+    }
+}
+
+fn assumed(all: &[Cost]) -> Markup {
+    html! {
+        @if all.len() > 1 {
+            p.note {
+                "Assumed, not simulated: on the other machines the numbers of stops and tool changes are the same, and so is every "
+                "time that wasn't given for them"
+                @if all.iter().skip(1).any(|cost| !cost.run_given) { ", the run time too" }
+                ". Rates and minutes are the user's."
+            }
+        }
+    }
+}
+
+fn uncounted(own: &Taken) -> Markup {
+    let keys = own.not_counted();
+    html! {
+        @if !keys.is_empty() {
+            p.note {
+                "Not counted, because the job's section " code { "[sheet]" } " doesn't say it: " (keys.join(", ")) "."
+            }
+        }
+    }
+}

@@ -1,0 +1,240 @@
+//! Where the zero is: a picture of each family, and the offsets and signs in words.
+use gcode_sim::job::{Burr, Honeycomb, Job, PinHoles};
+use gcode_sim::part::flutes::Flutes;
+use gcode_sim::report::figures::short;
+use gcode_sim::verify::Verdict;
+use maud::{Markup, html};
+
+use super::drawing::{Anchor, Paper, WIDTH, arrow, centre_line, drawing, line, path, text, thin, zero_sign};
+use crate::check::Judgement;
+use crate::sheet::Sheet;
+use crate::sheet::duty::tip_is_programmed;
+
+pub(super) fn zero(sheet: &Sheet<'_>) -> Markup {
+    let (picture, words) = match (sheet.job, &sheet.checked.judgement) {
+        (Job::PinHoles(job), Judgement::Holes(verdict)) => (of_pin_holes(job, verdict), pin_holes(job)),
+        (Job::Honeycomb(job), _) => (of_honeycomb(job), honeycomb(job)),
+        (Job::Burr(job), _) => (of_burr(job), burr(job)),
+        (Job::PinHoles(job), Judgement::Flutes(_)) => (html! {}, pin_holes(job)),
+    };
+    html! {
+        div.together {
+            h2 { "Where the zero is" }
+            figure { (picture) figcaption { "Drawn to scale but for tools and arrows; the sign with two black quarters is the work zero G54." } }
+        }
+        ul { @for sentence in words { li { (sentence) } } }
+    }
+}
+
+fn pin_holes(job: &PinHoles) -> Vec<String> {
+    let (letter, minus) = (job.machine.rotary.letter, if job.machine.rotary.sign < 0 { "−" } else { "" });
+    let mut all = vec![
+        format!(
+            "G54: X0 Y0 Z0 is the centre of the ellipsoid. Y is its axis of revolution and the axis of {letter}; the pole \
+             is at Y{}.",
+            short(job.surface.b)
+        ),
+        format!(
+            "{letter} = {minus}azimuth (sign {}); the azimuth counts from X towards Z, and {letter}0 has azimuth 0 in the plane \
+             Z0 on the side of X+.",
+            if minus.is_empty() { "+1" } else { "−1" }
+        ),
+        format!(
+            "Check the sign before the first cut: with {letter} at {minus}10 the place of azimuth +10 must stand in the plane Z0. \
+             On the other side the sign is wrong, and all holes come out mirrored."
+        ),
+    ];
+    all.push(match tip_is_programmed(job) {
+        true => "X and Y are the tip of the tool.".to_owned(),
+        false => "X and Y are the pivot of the head; the program counts with the pivot's distance and the tool's length.".to_owned(),
+    });
+    all.push("Start with the tool clear of the part, above or beside it.".to_owned());
+    all
+}
+
+fn length(one: f64, other: f64) -> f64 {
+    (one * one + other * other).sqrt()
+}
+
+/// The section z = 0: the ellipse, and the tool at every angle of the head.
+fn of_pin_holes(job: &PinHoles, verdict: &Verdict) -> Markup {
+    let (a, b) = (job.surface.a, job.surface.b);
+    let scale = (150.0 / a).min(220.0 / b);
+    let (wide, high) = (a * scale, b * scale);
+    let paper = Paper { origin: [wide + 40.0, high + 60.0], scale };
+    let height = high + 100.0;
+    let [left, right] = [paper.at(-a, 0.0), paper.at(a, 0.0)];
+    let dome =
+        format!("M{:.1} {:.1}A{wide:.1} {high:.1} 0 0 1 {:.1} {:.1}", left[0], left[1], right[0], right[1]);
+    let zero = paper.at(0.0, 0.0);
+    let column = right[0] + 60.0;
+    // From the top down, each label below the one before.
+    let mut tools: Vec<[f64; 4]> = Vec::new();
+    for hole in &verdict.holes {
+        let ([x, y, z], [i, j, k]) = (hole.nominal.entry, hole.nominal.axis);
+        let one = [length(x, z), y, length(i, k), j];
+        if !tools.iter().any(|known| (0..4).all(|at| (known[at] - one[at]).abs() < 1e-6)) {
+            tools.push(one);
+        }
+    }
+    tools.sort_by(|one, other| other[1].total_cmp(&one[1]));
+    let more = tools.len().saturating_sub(8);
+    tools.truncate(8);
+    let mut below = 24.0;
+    let tools = tools.into_iter().map(|[r, y, across, up]| {
+        let tip = paper.at(r, y);
+        let back = [tip[0] + 42.0 * across, tip[1] - 42.0 * up];
+        let place = [column, f64::max(below, back[1])];
+        below = place[1] + 16.0;
+        html! {
+            (arrow(back, tip))
+            (thin(back, [place[0] - 3.0, place[1] - 4.0]))
+            (text(place, Anchor::Start, &format!("radius {}", short(r))))
+        }
+    });
+    let content = html! {
+        (path(&dome))
+        (line([left[0] - 15.0, left[1]], [right[0] + 25.0, right[1]]))
+        (text([right[0] + 30.0, right[1] + 4.0], Anchor::Start, "X"))
+        (centre_line([zero[0], height - 15.0], [zero[0], 24.0]))
+        (text([zero[0], 16.0], Anchor::Middle, &format!("Y, axis of {}", job.machine.rotary.letter)))
+        (zero_sign(zero))
+        (text([zero[0] + 12.0, zero[1] + 20.0], Anchor::Start, "G54 X0 Y0 Z0"))
+        (text([(zero[0] + left[0]) / 2.0, zero[1] + 20.0], Anchor::Middle, &format!("a {}", short(a))))
+        (text([zero[0] - 6.0, zero[1] - high / 2.0], Anchor::End, &format!("b {}", short(b))))
+        @for tool in tools { (tool) }
+        @if more > 0 {
+            (text([column, zero[1] + 36.0], Anchor::Start, &format!("and {more} more")))
+        }
+    };
+    drawing(height, "The section z = 0 of the part with the work zero at its centre", content)
+}
+
+fn honeycomb(job: &Honeycomb) -> Vec<String> {
+    let (letter, minus) = (job.machine.rotary.letter, if job.machine.rotary.sign < 0 { "−" } else { "" });
+    let mut all = vec![
+        "G54: X0 at the first hole of the first row, Y0 on the axis of the cylinder, Z0 on its outer surface.".to_owned(),
+        format!(
+            "Z0 is {} mm from the axis: the radius of the outer diameter {}.",
+            short(job.cylinder.outer / 2.0),
+            short(job.cylinder.outer)
+        ),
+        format!(
+            "{letter} turns about X; row by row {letter} = {minus}row·180/N (sign {}). {letter}0 is the first row: put a seam or a mark \
+             there.",
+            if minus.is_empty() { "+1" } else { "−1" }
+        ),
+        format!("Tool length: H{0} holds that of T{0}, called by G43.", job.drill.number),
+    ];
+    all.extend(
+        job.machine.clamp.map(|clamp| {
+            format!("M{} lets the rotary go before it turns, M{} holds it.", clamp.off, clamp.on)
+        }),
+    );
+    all.push("Start with the tool clear of the part.".to_owned());
+    all
+}
+
+/// From the side, the drill from above; and seen along the axis.
+fn of_honeycomb(job: &Honeycomb) -> Markup {
+    let (length, outer, bore) = (job.cylinder.length, job.cylinder.outer, job.cylinder.bore);
+    let scale = (180.0 / length).min(120.0 / outer);
+    let radius = outer / 2.0;
+    let paper = Paper { origin: [70.0, 60.0], scale };
+    let [first, last] = [paper.at(0.0, 0.0), paper.at(length, -outer)];
+    let (middle, height) = ((first[1] + last[1]) / 2.0, last[1] + 45.0);
+    let sides = format!("M{:.1} {:.1}H{:.1}V{:.1}H{:.1}Z", first[0], first[1], last[0], last[1], first[0]);
+    let end = [last[0] + 105.0 + radius * scale, middle];
+    let content = html! {
+        (path(&sides))
+        (centre_line([first[0] - 25.0, middle], [last[0] + 30.0, middle]))
+        (text([last[0] + 8.0, middle - 5.0], Anchor::Start, &format!("axis of {}, X", job.machine.rotary.letter)))
+        (arrow([first[0], 16.0], [first[0], first[1] - 9.0]))
+        (text([first[0] + 8.0, 22.0], Anchor::Start, &format!("T{}, first hole", job.drill.number)))
+        (zero_sign(first))
+        (text([first[0] + 12.0, first[1] - 6.0], Anchor::Start, "G54 X0 Z0"))
+        (text([(first[0] + last[0]) / 2.0, last[1] + 20.0], Anchor::Middle, &format!("holes from X0 to X{}", short(length))))
+        circle cx=(format!("{:.1}", end[0])) cy=(format!("{:.1}", end[1])) r=(format!("{:.1}", radius * scale)) {}
+        @if bore > 0.0 {
+            circle cx=(format!("{:.1}", end[0])) cy=(format!("{:.1}", end[1])) r=(format!("{:.1}", bore / 2.0 * scale)) {}
+        }
+        (centre_line([end[0], first[1] - 30.0], [end[0], last[1] + 12.0]))
+        (zero_sign([end[0], first[1]]))
+        (text([end[0] + 12.0, first[1] - 6.0], Anchor::Start, "Y0 Z0"))
+        (text([end[0], last[1] + 26.0], Anchor::Middle, &format!("Φ{}", short(outer))))
+    };
+    drawing(
+        height,
+        "The cylinder from the side and along its axis, with the work zero on its surface",
+        content,
+    )
+}
+
+fn burr(job: &Burr) -> Vec<String> {
+    let [x, y] = job.grinder.c_offset.map(short);
+    let signs = job.grinder.signs;
+    let turned: Vec<_> = [("X", signs.x), ("Y", signs.y), ("A", signs.a), ("B", signs.b), ("C", signs.c)]
+        .into_iter()
+        .filter_map(|(letter, sign)| (sign < 0).then_some(letter))
+        .collect();
+    let turned = match turned.is_empty() {
+        true => "All axes run as the method has them (signs +1).".to_owned(),
+        false => format!("These axes run the other way round (sign −1): {}.", turned.join(", ")),
+    };
+    vec![
+        "G54 X0 Y0 at C0: the burr lies along X, its tip towards X−, and the wheel, which comes from Y−, touches the tooth \
+         bottom where the cylinder ends."
+            .to_owned(),
+        format!(
+            "From the axis of C to the end of the cylinder, in the middle of the burr: X{x} Y{y} at C0. These two are measured at the machine; \
+             a wrong one spoils the nose."
+        ),
+        format!("B swivels the wheel to the helix angle {}°; A0 is the first flute.", short(job.helix)),
+        turned,
+        "Start with C between 0 and the end of the flute, the wheel clear of the burr.".to_owned(),
+    ]
+}
+
+/// The burr at C0, X0 and Y0, the wheel touching it.
+fn of_burr(job: &Burr) -> Markup {
+    let flutes = Flutes::of_job(job);
+    let (radius, pole, start) = (flutes.profile.radius(), flutes.profile.pole(), flutes.start);
+    let [ex, ey] = job.grinder.c_offset;
+    let shank = start + 0.6 * radius;
+    let (left, right) = (pole.min(-ex), shank.max(-ex));
+    let (low, high) = ((-radius).min(-ey), radius.max(-ey));
+    let scale = (360.0 / (right - left)).min(170.0 / (high - low));
+    let paper = Paper { origin: [50.0 - left * scale, 40.0 + high * scale], scale };
+    let height = (high - low) * scale + 130.0;
+    let (r, nose) = (radius * scale, -pole * scale);
+    let [top, bottom, back] = [paper.at(0.0, radius), paper.at(0.0, -radius), paper.at(shank, radius)];
+    let outline = format!(
+        "M{:.1} {:.1}H{:.1}A{nose:.1} {r:.1} 0 0 0 {:.1} {:.1}H{:.1}",
+        back[0], top[1], top[0], bottom[0], bottom[1], back[0]
+    );
+    let wheel = format!(
+        "M{:.1} {:.1}A90 90 0 0 1 {:.1} {:.1}",
+        bottom[0] - 64.0,
+        bottom[1] + 27.0,
+        bottom[0] + 64.0,
+        bottom[1] + 27.0
+    );
+    let (centre, c) = (paper.at(0.0, 0.0), paper.at(-ex, -ey));
+    let across = 9.0;
+    let content = html! {
+        (path(&outline))
+        (centre_line([paper.at(pole, 0.0)[0] - 15.0, centre[1]], [back[0] + 12.0, centre[1]]))
+        (thin([centre[0], top[1]], [centre[0], bottom[1]]))
+        (text([back[0] + 14.0, centre[1] + 4.0], Anchor::Start, "X, A"))
+        g stroke="#0072b2" { (path(&wheel)) }
+        (text([bottom[0] + 70.0, bottom[1] + 32.0], Anchor::Start, "wheel"))
+        (zero_sign(bottom))
+        (text([bottom[0] + 12.0, bottom[1] + 46.0], Anchor::Start, "G54 X0 Y0 at C0"))
+        (line([c[0] - across, c[1]], [c[0] + across, c[1]]))
+        (line([c[0], c[1] - across], [c[0], c[1] + across]))
+        (text([c[0] + 12.0, c[1] - 8.0], Anchor::Start, &format!("axis of C: {} {} from here to the cylinder's end", short(ex), short(ey))))
+        (thin(c, centre))
+        (text([WIDTH - 8.0, height - 10.0], Anchor::End, &format!("Φ{}, flutes {} long", short(2.0 * radius), short(job.shape.length))))
+    };
+    drawing(height, "The burr at C0 with the wheel touching it at the work zero", content)
+}

@@ -1,0 +1,147 @@
+//! What an inspector is asked to measure, one line a characteristic, as form 3 of AS9102 has them.
+use gcode_sim::report::figures::{near, signed};
+use gcode_sim::verify::flutes::FluteVerdict;
+use gcode_sim::verify::{Distance, HoleVerdict, Neighbours, Verdict};
+
+use crate::check::Judgement;
+
+/// So many holes have lines each; of more only the pattern has.
+pub const LISTED: usize = 100;
+
+/// One thing to measure. The result isn't here: a simulation is no measurement.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Characteristic {
+    pub reference: String,
+    pub name: &'static str,
+    pub requirement: String,
+    /// What the simulation says.
+    pub predicted: String,
+}
+
+pub fn characteristics(judgement: &Judgement) -> Vec<Characteristic> {
+    match judgement {
+        Judgement::Holes(verdict) if verdict.holes.len() <= LISTED => {
+            let each = verdict.holes.iter().flat_map(|hole| of_hole(hole, verdict));
+            each.chain(verdict.neighbours.iter().flat_map(of_neighbours)).collect()
+        }
+        Judgement::Holes(verdict) => of_all(verdict),
+        Judgement::Flutes(verdict) => of_flutes(verdict),
+    }
+}
+
+fn characteristic(
+    reference: &str,
+    name: &'static str,
+    requirement: String,
+    predicted: String,
+) -> Characteristic {
+    Characteristic { reference: reference.to_owned(), name, requirement, predicted }
+}
+
+fn of_hole(hole: &HoleVerdict, verdict: &Verdict) -> Vec<Characteristic> {
+    let reference = format!("hole {}", hole.id);
+    let mut all = vec![
+        characteristic(
+            &reference,
+            "position",
+            format!("Φ{} (ISO 1101)", verdict.tolerance),
+            format!("Φ{}", near(hole.phi, 4)),
+        ),
+        characteristic(
+            &reference,
+            "depth",
+            depth(hole.nominal.depth, verdict),
+            format!("{} ({})", near(hole.actual.depth, 4), signed(hole.depth_error)),
+        ),
+    ];
+    all.extend(hole.nominal.diameter.map(|nominal| {
+        let tool =
+            hole.actual.diameter.map_or("not known".to_owned(), |d| format!("Φ{} (the tool's)", near(d, 3)));
+        characteristic(&reference, "diameter", diameter(nominal), tool)
+    }));
+    all
+}
+
+fn depth(nominal: f64, verdict: &Verdict) -> String {
+    format!("{} ±{}", near(nominal, 3), verdict.depth_tolerance)
+}
+
+fn diameter(nominal: f64) -> String {
+    format!("Φ{}, limits: see the drawing", near(nominal, 3))
+}
+
+/// Of a pattern: the extremes over all holes.
+fn of_all(verdict: &Verdict) -> Vec<Characteristic> {
+    let reference = format!("all {} holes", verdict.holes.len());
+    let mut all = vec![characteristic(
+        &reference,
+        "position",
+        format!("Φ{} (ISO 1101)", verdict.tolerance),
+        format!("at most Φ{}", near(verdict.worst.unwrap_or(0.0), 4)),
+    )];
+    let errors = || verdict.holes.iter().map(|hole| hole.depth_error);
+    let (least, most) = (errors().fold(f64::INFINITY, f64::min), errors().fold(f64::NEG_INFINITY, f64::max));
+    if let Some(first) = verdict.holes.first() {
+        let off = format!("{} to {} off", signed(least), signed(most));
+        all.push(characteristic(&reference, "depth", depth(first.nominal.depth, verdict), off));
+        all.extend(first.nominal.diameter.map(|nominal| {
+            let tool = first
+                .actual
+                .diameter
+                .map_or("not known".to_owned(), |d| format!("Φ{} (the tool's)", near(d, 3)));
+            characteristic(&reference, "diameter", diameter(nominal), tool)
+        }));
+    }
+    all.extend(verdict.neighbours.iter().flat_map(of_neighbours));
+    all
+}
+
+fn of_neighbours(neighbours: &Neighbours) -> Vec<Characteristic> {
+    let Neighbours { metric, wanted, with_six, with_six_wanted, min, max } = neighbours;
+    let place = |distance: &Option<Distance>| match distance {
+        Some(Distance { distance, between: [one, other] }) => {
+            format!("{} between {one} and {other}", near(*distance, 4))
+        }
+        None => "none".to_owned(),
+    };
+    let pitch = || format!("{} ({metric})", near(*wanted, 4));
+    vec![
+        characteristic("neighbours", "least distance", pitch(), place(min)),
+        characteristic("neighbours", "greatest distance", pitch(), place(max)),
+        characteristic("neighbours", "holes with all six", with_six_wanted.to_string(), with_six.to_string()),
+    ]
+}
+
+fn of_flutes(verdict: &FluteVerdict) -> Vec<Characteristic> {
+    let number = |value: Option<f64>, places: usize| value.map_or("-".to_owned(), |v| near(v, places));
+    let mut all = vec![
+        characteristic("flutes", "number", verdict.wanted_flutes.to_string(), verdict.flutes.to_string()),
+        characteristic(
+            "tooth bottom",
+            "off the profile",
+            format!("at most {}", verdict.tolerance),
+            number(verdict.surface_deviation, 4),
+        ),
+        characteristic(
+            "flutes",
+            "helix angle off its law",
+            format!("0° ±{}°", verdict.helix_tolerance),
+            format!("{}°", number(verdict.helix_error, 3)),
+        ),
+        characteristic(
+            "flutes",
+            "gap between neighbours",
+            format!("even ±{}°", verdict.index_tolerance),
+            format!("{}° off", number(verdict.index_error, 4)),
+        ),
+    ];
+    // Where a helix angle can be measured: at these polar angles, on the law that was asked for.
+    all.extend(verdict.laws.iter().map(|law| {
+        let wanted = if verdict.law == "published" { law.published } else { law.constant_helix };
+        let requirement = format!("{}° ±{}°", near(wanted, 2), verdict.helix_tolerance);
+        let place = format!("{}° from the tip", law.theta);
+        let found = law.measured.map_or("not measured".to_owned(), |angle| format!("{}°", near(angle, 2)));
+        characteristic(&place, "helix angle", requirement, found)
+    }));
+    all
+}

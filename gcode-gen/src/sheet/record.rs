@@ -1,0 +1,111 @@
+//! A run as the operator lives through it: the tools, the stops in their order, and what the time goes into.
+use gcode_sim::machine::Machine;
+use gcode_sim::motion::{Event, EventKind, Place, Sink, StopKind};
+use gcode_sim::session::{Request, Run, run};
+
+use crate::check::{CheckError, Programs, main_program, told};
+use crate::package::{Package, file_name};
+
+/// What happens at the machine, in the order in which it does.
+#[derive(Debug)]
+pub struct Record {
+    pub stops: Vec<Stop>,
+    /// The numbers that M06 puts into the spindle.
+    pub tools: Vec<u32>,
+    pub times: Times,
+    /// M codes that are left to the machine builder.
+    pub passed_on: Vec<u32>,
+    /// Rapid rates that the times count with: of sliding axes, mm/min, and of turning ones, degrees/min.
+    pub rapids: [f64; 2],
+}
+
+/// The program waits for the operator.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stop {
+    pub kind: StopKind,
+    pub text: String,
+    /// The variables that the text names, with their values.
+    pub named: Vec<(u32, f64)>,
+    /// The tool in the spindle.
+    pub tool: Option<u32>,
+    /// The machine has run so long before it, in seconds.
+    pub after: f64,
+    /// The block that stops, and those it was called from: program and line, innermost first.
+    pub at: Vec<(String, u32)>,
+}
+
+/// In seconds; paths over feeds and rapid rates, without acceleration, stops and tool changes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Times {
+    pub rapid: f64,
+    pub feed: f64,
+    pub dwell: f64,
+}
+
+impl Times {
+    pub fn all(&self) -> f64 {
+        self.rapid + self.feed + self.dwell
+    }
+}
+
+/// Runs the package's main program on its own machine file.
+///
+/// # Errors
+/// A package that contradicts itself, which [`crate::check::check`] has refused before.
+pub fn record(package: &Package) -> Result<Record, CheckError> {
+    let machine = Machine::parse(&package.machine).map_err(|e| told("machine.toml", &e))?;
+    let main = main_program(package)?;
+    let request = Request::new(file_name(main.number), main.text.as_bytes(), machine);
+    let mut listener = Listener::default();
+    let run =
+        run(&request, &mut Programs(package), &mut listener).map_err(|e| told("the main program", &e))?;
+    let stops = listener.stops.into_iter().map(|(stop, place)| Stop { at: places(&run, &place), ..stop });
+    Ok(Record {
+        stops: stops.collect(),
+        tools: listener.tools,
+        times: listener.times,
+        passed_on: run.control.passed_on().keys().copied().collect(),
+        rapids: [request.settings.rapid.0, request.settings.rapid_rotary],
+    })
+}
+
+fn places(run: &Run, place: &Place) -> Vec<(String, u32)> {
+    let calls = std::iter::successors(place.calls.as_deref(), |call| call.outer.as_deref());
+    std::iter::once(place.block).chain(calls.map(|call| call.from)).map(|span| run.locate(span)).collect()
+}
+
+#[derive(Default)]
+struct Listener {
+    stops: Vec<(Stop, Place)>,
+    tools: Vec<u32>,
+    times: Times,
+}
+
+impl Sink for Listener {
+    fn event(&mut self, event: &Event<'_>) {
+        let seconds = event.seconds.0;
+        match &event.kind {
+            EventKind::Rapid { .. } => self.times.rapid += seconds,
+            EventKind::Feed { .. } | EventKind::Arc { .. } | EventKind::Skip { .. } => {
+                self.times.feed += seconds;
+            }
+            EventKind::Dwell { .. } => self.times.dwell += seconds,
+            EventKind::Tool { number } => self.tools.push(*number),
+            EventKind::Stop { kind, text, named } => {
+                let stop = Stop {
+                    kind: *kind,
+                    text: text.clone(),
+                    named: named.clone(),
+                    tool: self.tools.last().copied(),
+                    after: self.times.all(),
+                    at: Vec::new(),
+                };
+                self.stops.push((stop, event.place()));
+            }
+            EventKind::ToolLength { .. }
+            | EventKind::Spindle { .. }
+            | EventKind::Coolant { .. }
+            | EventKind::Auxiliary { .. } => {}
+        }
+    }
+}
