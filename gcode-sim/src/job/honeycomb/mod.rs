@@ -207,7 +207,7 @@ depth = 12.0
             (
                 "[drill]",
                 "[dril]",
-                "line 15: key 'dril' is not known; allowed: family, control, machine, tolerance, cylinder, pattern, drill",
+                "line 15: key 'dril' is not known; allowed: family, control, machine, tolerance, cylinder, pattern, drill, sheet",
             ),
             (
                 "depth = 12.0",
