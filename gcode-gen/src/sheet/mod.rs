@@ -8,6 +8,7 @@ pub mod encode;
 mod html;
 pub mod measure;
 pub mod record;
+pub mod settings;
 
 use gcode_sim::job::{Job, Rates};
 use gcode_sim::report::figures::{count, near, signed_to};
@@ -15,6 +16,7 @@ use gcode_sim::report::figures::{count, near, signed_to};
 use crate::check::{CheckError, Checked};
 use crate::package::Package;
 use record::Record;
+use settings::Needed;
 
 /// What the whole page says of its numbers, wherever it shows any.
 pub const BASIS: &str = "Predicted by simulation, not measured";
@@ -25,6 +27,7 @@ pub struct Sheet<'a> {
     package: &'a Package,
     checked: &'a Checked,
     record: Record,
+    needed: Vec<Needed>,
     rates: Option<&'a Rates>,
     /// Captions and PNGs.
     pictures: Vec<(String, Vec<u8>)>,
@@ -43,7 +46,15 @@ impl<'a> Sheet<'a> {
         pictures: Vec<(String, Vec<u8>)>,
     ) -> Result<Self, CheckError> {
         let rates = rates.or(job.sheet().rates.as_ref());
-        Ok(Self { job, package, checked, record: record::record(package)?, rates, pictures })
+        Ok(Self {
+            job,
+            package,
+            checked,
+            record: record::record(package)?,
+            needed: settings::needed(package)?,
+            rates,
+            pictures,
+        })
     }
 
     /// Time and money in two or three lines, for a terminal.

@@ -22,6 +22,13 @@ pub struct Row {
     set: fn(&mut Settings, &str) -> Option<()>,
 }
 
+impl Row {
+    /// Whether it is on or off, 1 or 0.
+    pub fn is_switch(&self) -> bool {
+        self.allowed == SWITCH
+    }
+}
+
 const SWITCH: &str = "0 or 1";
 const LENGTH: &str = "a length in mm, 0 or more";
 const POINT: &str = "axes and their machine coordinates, as in X10,Z-5";

@@ -10,6 +10,7 @@ use crate::check::Judgement;
 use crate::order::passes;
 use crate::sheet::Sheet;
 use crate::sheet::duty::tip_is_programmed;
+use crate::sheet::settings::BLOCKS;
 
 pub(super) fn tools(sheet: &Sheet<'_>) -> Markup {
     let row = |number: String, name: &str, diameter: f64, length: Markup, speed: f64, feed: String| {
@@ -139,10 +140,28 @@ pub(super) fn settings(sheet: &Sheet<'_>) -> Markup {
             ul {
                 li { "The family of controls and the least increment stand at the head of this sheet." }
                 li { "Rapid rates (1420) are taken as " (short(slide)) " mm/min and " (short(turn)) " degrees/min; only the run time depends on them." }
+                (needed(sheet))
                 @if !codes.is_empty() {
                     li { (codes.join(", ")) ": M codes of the machine builder. What they do here isn't simulated; try them by MDI before the run." }
                 }
             }
+        }
+    }
+}
+
+/// The switches that the programs depend on.
+fn needed(sheet: &Sheet<'_>) -> Markup {
+    let needed = &sheet.needed;
+    html! {
+        @for one in needed {
+            li {
+                b { (one.key) " = " (one.value) } " (" (one.meaning) "): with the other value " (one.otherwise) "."
+            }
+        }
+        li {
+            "All switches in which controls differ (" code { "gcode-sim settings" } " lists them) were turned one by one: "
+            @if needed.is_empty() { "none" } @else { "no other" }
+            " changes what the first " (BLOCKS) " blocks of a run do."
         }
     }
 }

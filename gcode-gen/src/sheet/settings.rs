@@ -1,0 +1,125 @@
+//! Which settings of the control the programs depend on: each switch is turned in turn, and the run held against the one
+//! with all of them as the family of controls has them.
+use gcode_sim::control::{ROWS, Row, Settings};
+use gcode_sim::exec::{Limits, Outcome};
+use gcode_sim::machine::Machine;
+use gcode_sim::motion::{Event, EventKind, Position, Sink, StopKind};
+use gcode_sim::session::{Request, run};
+
+use crate::check::{CheckError, Programs, main_program, told};
+use crate::package::{Package, file_name};
+
+/// A run is followed so far: loops only repeat blocks that have been seen by then.
+pub const BLOCKS: u64 = 2_000;
+
+/// A switch that must stand as the simulation had it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Needed {
+    pub key: &'static str,
+    pub meaning: &'static str,
+    /// 0 or 1.
+    pub value: &'static str,
+    /// What happens with the other value.
+    pub otherwise: String,
+}
+
+/// Runs the main program once for every switch.
+///
+/// # Errors
+/// A package that contradicts itself.
+pub fn needed(package: &Package) -> Result<Vec<Needed>, CheckError> {
+    let machine = Machine::parse(&package.machine).map_err(|e| told("machine.toml", &e))?;
+    let main = main_program(package)?;
+    let mut request = Request::new(file_name(main.number), main.text.as_bytes(), machine);
+    request.limits = Limits { blocks: BLOCKS };
+    let usual = request.settings.clone();
+    let mut trace = |settings: Settings| {
+        request.settings = settings;
+        let mut trace = Trace::default();
+        let run =
+            run(&request, &mut Programs(package), &mut trace).map_err(|e| told("the main program", &e))?;
+        trace.alarm = match &run.outcome {
+            Outcome::Alarm(stopped) => {
+                let (program, line) = run.locate(stopped.place.block);
+                Some(format!("the run stops with {} in {program} line {line}", stopped.alarm.row().code))
+            }
+            Outcome::End | Outcome::Limit => None,
+        };
+        Ok(trace)
+    };
+    let wanted = trace(usual.clone())?;
+    let mut found = Vec::new();
+    for row in ROWS {
+        let Some((value, turned)) = turned(row, &usual) else { continue };
+        let other = trace(turned)?;
+        if other != wanted {
+            let otherwise = other.alarm.unwrap_or_else(|| "the machine moves otherwise".to_owned());
+            found.push(Needed { key: row.key, meaning: row.meaning, value, otherwise });
+        }
+    }
+    Ok(found)
+}
+
+/// The value that a switch has, and the settings with the other one; `None` for what is no switch.
+fn turned(row: &Row, usual: &Settings) -> Option<(&'static str, Settings)> {
+    ["0", "1"].into_iter().zip(["1", "0"]).find_map(|(value, other)| {
+        let mut same = usual.clone();
+        same.set(row.key, value).ok()?;
+        let mut turned = usual.clone();
+        turned.set(row.key, other).ok()?;
+        (row.is_switch() && same == *usual && turned != *usual).then_some((value, turned))
+    })
+}
+
+/// All that a run tells the machine and the operator.
+#[derive(Debug, Default, PartialEq)]
+struct Trace {
+    moves: Vec<(Position, Option<f64>)>,
+    tools: Vec<u32>,
+    stops: Vec<(StopKind, String)>,
+    dwells: Vec<f64>,
+    alarm: Option<String>,
+}
+
+impl Sink for Trace {
+    fn event(&mut self, event: &Event<'_>) {
+        match &event.kind {
+            EventKind::Rapid { to } => self.moves.push((*to, None)),
+            EventKind::Feed { to, rate }
+            | EventKind::Arc { to, rate, .. }
+            | EventKind::Skip { to, rate, .. } => {
+                self.moves.push((*to, Some(rate.0)));
+            }
+            EventKind::Dwell { time } => self.dwells.push(time.0),
+            EventKind::Tool { number } => self.tools.push(*number),
+            EventKind::Stop { kind, text, .. } => self.stops.push((*kind, text.clone())),
+            EventKind::ToolLength { .. }
+            | EventKind::Spindle { .. }
+            | EventKind::Coolant { .. }
+            | EventKind::Auxiliary { .. } => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::package::Program;
+
+    fn found(text: &str) -> Vec<(&'static str, &'static str, String)> {
+        let programs = vec![Program { number: 1, text: text.to_owned() }];
+        let package = Package { main: 1, programs, machine: String::new() };
+        let needed = needed(&package).unwrap();
+        needed.into_iter().map(|one| (one.key, one.value, one.otherwise)).collect()
+    }
+
+    /// ATAN of the third quadrant is 225, or -135 with NAT; `IF[..]` needs THEN unless PLAIN-IF; X10 is 10 µm or mm.
+    #[test]
+    fn a_switch_that_changes_what_happens_is_named() {
+        let moves = "the machine moves otherwise".to_owned();
+        assert_eq!(found("O1\n#1=ATAN[-1.]/[-1.]\nG0 X#1\nM30\n"), [("NAT", "0", moves.clone())]);
+        assert_eq!(found("O1\nG0 X10\nM30\n"), [("DPI", "0", moves)]);
+        assert_eq!(found("O1\n#1=POW[2.,3.]\nG0 X#1\nM30\n").len(), 2, "two switches know POW");
+        assert_eq!(found("O1\nG0 X10.\nM30\n"), []);
+    }
+}
