@@ -85,7 +85,7 @@ pub(crate) fn told(what: &str, error: &dyn std::fmt::Display) -> CheckError {
     CheckError::Broken(format!("{what}: {error}"))
 }
 
-pub(crate) fn main_program(package: &Package) -> Result<&Program, CheckError> {
+fn main_program(package: &Package) -> Result<&Program, CheckError> {
     package.main().ok_or_else(|| CheckError::Broken("the main program was not emitted".to_owned()))
 }
 

@@ -40,7 +40,7 @@ pub(super) fn held(path: &Path) -> Result<Option<Held>, Refusal> {
 }
 
 pub(super) fn run(path: &Path, out: &Path) -> Result<Status, Refusal> {
-    let Some(Held { package, checked, .. }) = held(path)? else { return Ok(Status::Fails) };
+    let Some(Held { job, package, checked }) = held(path)? else { return Ok(Status::Fails) };
     let pictures = pictures(&checked)?;
     make_folder(out)?;
     let mut files: Vec<(PathBuf, &[u8])> =

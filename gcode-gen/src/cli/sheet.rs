@@ -10,7 +10,7 @@ use crate::sheet::Sheet;
 pub(super) fn run(path: &Path, out: &Path, rates: Option<&Path>) -> Result<Status, Refusal> {
     let rates = rates.map(read_rates).transpose()?;
     let Some(Held { job, package, checked }) = held(path)? else { return Ok(Status::Fails) };
-    let pictures = pictures(&checked, package.main)?;
+    let pictures = pictures(&checked)?;
     let sheet = Sheet::new(&job, &package, &checked, rates.as_ref(), pictures)
         .map_err(|error| Refusal::new(error.to_string()))?;
     output::write(out, sheet.html().as_bytes())?;

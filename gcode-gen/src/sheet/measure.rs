@@ -1,5 +1,8 @@
 //! What an inspector is asked to measure, one line a characteristic, as form 3 of AS9102 has them.
-use gcode_sim::report::figures::{near, signed};
+use gcode_sim::gauge;
+use gcode_sim::job::{Alignment, Job};
+use gcode_sim::report::figures::{near, short, signed, signed_to};
+use gcode_sim::units::{Deg, Mm};
 use gcode_sim::verify::flutes::FluteVerdict;
 use gcode_sim::verify::{Distance, HoleVerdict, Neighbours, Verdict};
 
@@ -18,8 +21,12 @@ pub struct Characteristic {
     pub predicted: String,
 }
 
-pub fn characteristics(judgement: &Judgement) -> Vec<Characteristic> {
+pub fn characteristics(job: &Job, judgement: &Judgement) -> Vec<Characteristic> {
     match judgement {
+        Judgement::Measured => match job {
+            Job::Alignment(job) => of_alignment(job),
+            Job::PinHoles(_) | Job::Honeycomb(_) | Job::Burr(_) => Vec::new(),
+        },
         Judgement::Holes(verdict) if verdict.holes.len() <= LISTED => {
             let each = verdict.holes.iter().flat_map(|hole| of_hole(hole, verdict));
             each.chain(verdict.neighbours.iter().flat_map(of_neighbours)).collect()
@@ -142,6 +149,38 @@ fn of_flutes(verdict: &FluteVerdict) -> Vec<Characteristic> {
         let place = format!("{}° from the tip", law.theta);
         let found = law.measured.map_or("not measured".to_owned(), |angle| format!("{}°", near(angle, 2)));
         characteristic(&place, "helix angle", requirement, found)
+    }));
+    all
+}
+
+/// What shows how a part stands: the sine table, the chord, the run-out at both heights.
+fn of_alignment(job: &Alignment) -> Vec<Characteristic> {
+    let table = &job.sine_table;
+    let setting = gauge::setting(Mm(table.length), Deg(table.phi), &table.gauge_blocks);
+    let height = |x: f64| {
+        let part = x / job.surface.a;
+        job.surface.b * (1.0 - part * part).sqrt()
+    };
+    let (e, f) = (job.chord.e_radius, job.chord.f_radius);
+    let (across, up) = (e - f, height(e) - height(f));
+    let chord = (across * across + up * up).sqrt();
+    let mut all = vec![
+        characteristic(
+            "sine table",
+            "angle",
+            format!("{}°", short(table.phi)),
+            format!("{}″ left by the blocks", signed_to(setting.left, 2)),
+        ),
+        characteristic(
+            "chord E F",
+            "length",
+            near(chord, 4),
+            "the model's; #572 shows how far the best pair is from it".to_owned(),
+        ),
+    ];
+    all.extend(job.runout.heights.map(|y| {
+        let place = format!("y {}", short(y));
+        characteristic(&place, "run-out", "see the drawing".to_owned(), "not predicted".to_owned())
     }));
     all
 }

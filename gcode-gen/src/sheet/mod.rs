@@ -29,12 +29,12 @@ pub struct Sheet<'a> {
     record: Record,
     needed: Vec<Needed>,
     rates: Option<&'a Rates>,
-    /// Captions and PNGs.
+    /// Names and PNGs.
     pictures: Vec<(String, Vec<u8>)>,
 }
 
 impl<'a> Sheet<'a> {
-    /// `checked` holds; `rates` go before those of the job. `pictures` are captions and PNGs.
+    /// `checked` holds; `rates` go before those of the job. `pictures` are names and PNGs.
     ///
     /// # Errors
     /// A package that contradicts itself.
@@ -50,7 +50,7 @@ impl<'a> Sheet<'a> {
             job,
             package,
             checked,
-            record: record::record(package)?,
+            record: record::record(job, package)?,
             needed: settings::needed(package)?,
             rates,
             pictures,

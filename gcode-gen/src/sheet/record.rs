@@ -1,13 +1,16 @@
 //! A run as the operator lives through it: the tools, the stops in their order, and what the time goes into.
+use gcode_sim::exec::Outcome;
+use gcode_sim::job::Job;
 use gcode_sim::machine::Machine;
 use gcode_sim::motion::{Event, EventKind, Place, Sink, StopKind};
-use gcode_sim::session::{Request, Run, run};
+use gcode_sim::part::surface::Surface;
+use gcode_sim::session::{Request, Run, SessionError, run, simulate_beside};
 
-use crate::check::{CheckError, Programs, main_program, told};
-use crate::package::{Package, file_name};
+use crate::check::{CheckError, Programs, told};
+use crate::package::{Package, file_name, stem};
 
 /// What happens at the machine, in the order in which it does.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Record {
     pub stops: Vec<Stop>,
     /// The numbers that M06 puts into the spindle.
@@ -15,6 +18,8 @@ pub struct Record {
     pub times: Times,
     /// M codes that are left to the machine builder.
     pub passed_on: Vec<u32>,
+    /// Main programs that end in an alarm as long as nobody has measured what they read.
+    pub waiting: Vec<String>,
     /// Rapid rates that the times count with: of sliding axes, mm/min, and of turning ones, degrees/min.
     pub rapids: [f64; 2],
 }
@@ -48,25 +53,46 @@ impl Times {
     }
 }
 
-/// Runs the package's main program on its own machine file.
+/// Runs the package's main programs on its own machine file, one after the other.
 ///
 /// # Errors
 /// A package that contradicts itself, which [`crate::check::check`] has refused before.
-pub fn record(package: &Package) -> Result<Record, CheckError> {
-    let machine = Machine::parse(&package.machine).map_err(|e| told("machine.toml", &e))?;
-    let main = main_program(package)?;
-    let request = Request::new(file_name(main.number), main.text.as_bytes(), machine);
+pub fn record(job: &Job, package: &Package) -> Result<Record, CheckError> {
     let mut listener = Listener::default();
-    let run =
-        run(&request, &mut Programs(package), &mut listener).map_err(|e| told("the main program", &e))?;
-    let stops = listener.stops.into_iter().map(|(stop, place)| Stop { at: places(&run, &place), ..stop });
-    Ok(Record {
-        stops: stops.collect(),
-        tools: listener.tools,
-        times: listener.times,
-        passed_on: run.control.passed_on().keys().copied().collect(),
-        rapids: [request.settings.rapid.0, request.settings.rapid_rotary],
-    })
+    let mut record = Record::default();
+    for main in &package.mains {
+        let request = request(package, *main)?;
+        record.rapids = [request.settings.rapid.0, request.settings.rapid_rotary];
+        let broken = |error: SessionError| told(&file_name(*main), &error);
+        let run = match job {
+            // A probe needs a part to touch.
+            Job::Alignment(job) => {
+                let surface = Surface::Ellipsoid { a: job.surface.a, b: job.surface.b };
+                simulate_beside(&request, &mut Programs(package), Some(surface), &mut listener)
+                    .map_err(broken)?
+                    .run
+            }
+            Job::PinHoles(_) | Job::Honeycomb(_) | Job::Burr(_) => {
+                run(&request, &mut Programs(package), &mut listener).map_err(broken)?
+            }
+        };
+        if !matches!(run.outcome, Outcome::End) {
+            record.waiting.push(stem(*main));
+        }
+        let stops = listener.stops.drain(..);
+        record.stops.extend(stops.map(|(stop, place)| Stop { at: places(&run, &place), ..stop }));
+        record.passed_on.extend(run.control.passed_on().keys());
+    }
+    record.passed_on.sort_unstable();
+    record.passed_on.dedup();
+    Ok(Record { tools: listener.tools, times: listener.times, ..record })
+}
+
+/// To run a main program on the package's own machine file.
+pub(super) fn request(package: &Package, main: u32) -> Result<Request, CheckError> {
+    let machine = Machine::parse(&package.machine).map_err(|e| told("machine.toml", &e))?;
+    let program = package.program(main).ok_or_else(|| told(&file_name(main), &"it was not emitted"))?;
+    Ok(Request::new(file_name(main), program.text.as_bytes(), machine))
 }
 
 fn places(run: &Run, place: &Place) -> Vec<(String, u32)> {

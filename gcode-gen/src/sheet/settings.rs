@@ -2,12 +2,12 @@
 //! with all of them as the family of controls has them.
 use gcode_sim::control::{ROWS, Row, Settings};
 use gcode_sim::exec::{Limits, Outcome};
-use gcode_sim::machine::Machine;
 use gcode_sim::motion::{Event, EventKind, Position, Sink, StopKind};
-use gcode_sim::session::{Request, run};
+use gcode_sim::session::{Request, SessionError, run};
 
-use crate::check::{CheckError, Programs, main_program, told};
-use crate::package::{Package, file_name};
+use super::record::request;
+use crate::check::{CheckError, Programs, told};
+use crate::package::Package;
 
 /// A run is followed so far: loops only repeat blocks that have been seen by then.
 pub const BLOCKS: u64 = 2_000;
@@ -23,38 +23,31 @@ pub struct Needed {
     pub otherwise: String,
 }
 
-/// Runs the main program once for every switch.
+/// Runs the main programs once for every switch; those that don't end without values measured before say nothing.
 ///
 /// # Errors
 /// A package that contradicts itself.
 pub fn needed(package: &Package) -> Result<Vec<Needed>, CheckError> {
-    let machine = Machine::parse(&package.machine).map_err(|e| told("machine.toml", &e))?;
-    let main = main_program(package)?;
-    let mut request = Request::new(file_name(main.number), main.text.as_bytes(), machine);
-    request.limits = Limits { blocks: BLOCKS };
-    let usual = request.settings.clone();
-    let mut trace = |settings: Settings| {
-        request.settings = settings;
-        let mut trace = Trace::default();
-        let run =
-            run(&request, &mut Programs(package), &mut trace).map_err(|e| told("the main program", &e))?;
-        trace.alarm = match &run.outcome {
-            Outcome::Alarm(stopped) => {
-                let (program, line) = run.locate(stopped.place.block);
-                Some(format!("the run stops with {} in {program} line {line}", stopped.alarm.row().code))
-            }
-            Outcome::End | Outcome::Limit => None,
+    let mut found: Vec<Needed> = Vec::new();
+    for main in &package.mains {
+        let mut request = request(package, *main)?;
+        request.limits = Limits { blocks: BLOCKS };
+        let usual = request.settings.clone();
+        let mut trace = |settings: Settings| {
+            request.settings = settings;
+            Trace::of(&request, package).map_err(|error| told(&request.name, &error))
         };
-        Ok(trace)
-    };
-    let wanted = trace(usual.clone())?;
-    let mut found = Vec::new();
-    for row in ROWS {
-        let Some((value, turned)) = turned(row, &usual) else { continue };
-        let other = trace(turned)?;
-        if other != wanted {
-            let otherwise = other.alarm.unwrap_or_else(|| "the machine moves otherwise".to_owned());
-            found.push(Needed { key: row.key, meaning: row.meaning, value, otherwise });
+        let wanted = trace(usual.clone())?;
+        if wanted.alarm.is_some() {
+            continue;
+        }
+        for row in ROWS {
+            let Some((value, turned)) = turned(row, &usual) else { continue };
+            let other = trace(turned)?;
+            if other != wanted && found.iter().all(|known| known.key != row.key) {
+                let otherwise = other.alarm.unwrap_or_else(|| "the machine moves otherwise".to_owned());
+                found.push(Needed { key: row.key, meaning: row.meaning, value, otherwise });
+            }
         }
     }
     Ok(found)
@@ -79,6 +72,21 @@ struct Trace {
     stops: Vec<(StopKind, String)>,
     dwells: Vec<f64>,
     alarm: Option<String>,
+}
+
+impl Trace {
+    fn of(request: &Request, package: &Package) -> Result<Self, SessionError> {
+        let mut trace = Self::default();
+        let run = run(request, &mut Programs(package), &mut trace)?;
+        trace.alarm = match &run.outcome {
+            Outcome::Alarm(stopped) => {
+                let (program, line) = run.locate(stopped.place.block);
+                Some(format!("the run stops with {} in {program} line {line}", stopped.alarm.row().code))
+            }
+            Outcome::End | Outcome::Limit => None,
+        };
+        Ok(trace)
+    }
 }
 
 impl Sink for Trace {
@@ -108,7 +116,7 @@ mod tests {
 
     fn found(text: &str) -> Vec<(&'static str, &'static str, String)> {
         let programs = vec![Program { number: 1, text: text.to_owned() }];
-        let package = Package { main: 1, programs, machine: String::new() };
+        let package = Package { mains: vec![1], programs, machine: String::new() };
         let needed = needed(&package).unwrap();
         needed.into_iter().map(|one| (one.key, one.value, one.otherwise)).collect()
     }

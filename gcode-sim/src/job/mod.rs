@@ -96,6 +96,7 @@ impl Job {
             Self::PinHoles(job) => &job.sheet,
             Self::Honeycomb(job) => &job.sheet,
             Self::Burr(job) => &job.sheet,
+            Self::Alignment(job) => &job.sheet,
         }
     }
 

@@ -14,8 +14,9 @@ const NEVER: &[&str] = &[
 
 pub(super) fn unknown(sheet: &Sheet<'_>) -> Markup {
     let own = match &sheet.checked.judgement {
-        Judgement::Holes(verdict) => &verdict.not_checked,
-        Judgement::Flutes(verdict) => &verdict.not_checked,
+        Judgement::Holes(verdict) => verdict.not_checked.as_slice(),
+        Judgement::Flutes(verdict) => verdict.not_checked.as_slice(),
+        Judgement::Measured => &[],
     };
     html! {
         div.together {

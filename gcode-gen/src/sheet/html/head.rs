@@ -3,9 +3,8 @@ use gcode_sim::control::{Dialect, Increment};
 use gcode_sim::report::figures::{count, near};
 use maud::{Markup, html};
 
-use super::{blank, cell, kind, table};
+use super::{blank, cell, kind, mains, table};
 use crate::check::Judgement;
-use crate::package::file_name;
 use crate::sheet::encode::sha256;
 use crate::sheet::{BASIS, Sheet};
 
@@ -17,7 +16,7 @@ pub(super) fn facts(sheet: &Sheet<'_>) -> Markup {
     let said = |word: &Option<String>| word.as_ref().map_or_else(blank, |word| html! { (word) });
     html! {
         h1 { "Set-up sheet" }
-        p { (kind(sheet.job)) ", main program " b { (file_name(sheet.package.main).trim_end_matches(".nc")) } }
+        p { (kind(sheet.job)) ", main " (if sheet.package.mains.len() == 1 { "program " } else { "programs " }) b { (mains(sheet)) } }
         div.wide { table.facts { tbody {
             tr { th { "part" } td { (said(&words.part)) } th { "drawing" } td { (said(&words.drawing)) } }
             tr { th { "revision" } td { (said(&words.revision)) } th { "material" } td { (said(&words.material)) } }
@@ -52,6 +51,11 @@ pub(super) fn verdict(sheet: &Sheet<'_>) -> Markup {
                     }
                     "."
                 }
+                Judgement::Measured => {
+                    "On simulated parts that stand in known wrong places:"
+                    @for line in sheet.checked.report.lines() { br; (line) }
+                    br;
+                }
             }
             " The machine's own errors are not in these numbers."
         }
@@ -63,13 +67,14 @@ pub(super) fn programs(sheet: &Sheet<'_>) -> Markup {
         let digest = digest(text);
         vec![cell(&name), cell(title(text)), html! { (text.lines().count()) }, digest]
     });
+    let first = sheet.package.files().into_iter().map(|(name, _)| name).next().unwrap_or_default();
     html! {
         h2 { "Programs" }
         (table(&["file", "what it is", "#lines", "SHA-256"], rows))
         p.note {
             "The hash is that of the file as " code { "gcode-gen emit" } " writes it. Before it goes to the control: "
-            code { "certutil -hashfile " (file_name(sheet.package.main)) " SHA256" } " (Windows) or "
-            code { "sha256sum " (file_name(sheet.package.main)) } ". What was edited since is not what was simulated."
+            code { "certutil -hashfile " (first) " SHA256" } " (Windows) or "
+            code { "sha256sum " (first) } ". What was edited since is not what was simulated."
         }
     }
 }

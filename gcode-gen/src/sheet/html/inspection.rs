@@ -11,7 +11,7 @@ use crate::sheet::{BASIS, Sheet};
 
 /// In the manner of form 3 of AS9102: requirements are filled in, results are the inspector's.
 pub(super) fn form(sheet: &Sheet<'_>) -> Markup {
-    let all = characteristics(&sheet.checked.judgement);
+    let all = characteristics(sheet.job, &sheet.checked.judgement);
     html! {
         h2 { "What to measure" }
         p {

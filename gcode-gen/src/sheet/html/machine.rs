@@ -43,6 +43,18 @@ pub(super) fn tools(sheet: &Sheet<'_>) -> Markup {
                 short(drill.feed),
             )]
         }
+        Job::Alignment(job) => {
+            let length = html! { "measured" };
+            vec![vec![
+                cell("probe"),
+                cell("STYLUS BALL"),
+                cell(short(2.0 * job.probe_radius)),
+                length,
+                blank(),
+                blank(),
+                blank(),
+            ]]
+        }
         Job::Burr(job) => {
             let program = job.program;
             let feed =
@@ -158,10 +170,12 @@ fn needed(sheet: &Sheet<'_>) -> Markup {
                 b { (one.key) " = " (one.value) } " (" (one.meaning) "): with the other value " (one.otherwise) "."
             }
         }
-        li {
+        @if sheet.package.mains.len() > sheet.record.waiting.len() {
+          li {
             "All switches in which controls differ (" code { "gcode-sim settings" } " lists them) were turned one by one: "
             @if needed.is_empty() { "none" } @else { "no other" }
             " changes what the first " (BLOCKS) " blocks of a run do."
+          }
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The sheet as HTML: self-contained, for paper (A4) and for screens. Every text from outside is escaped by the macro.
 mod drawing;
 mod end;
+mod gauge;
 mod head;
 mod inspection;
 mod machine;
@@ -12,10 +13,10 @@ use gcode_sim::job::Job;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use super::{BASIS, Sheet};
-use crate::package::file_name;
+use crate::package::stem;
 
 pub(super) fn page(sheet: &Sheet<'_>) -> String {
-    let main = file_name(sheet.package.main);
+    let main = mains(sheet);
     let words = sheet.job.sheet();
     let part = words.part.as_deref().unwrap_or("part not named");
     let drawing = [("drawing", &words.drawing), ("revision", &words.revision)];
@@ -58,6 +59,7 @@ fn sections(sheet: &Sheet<'_>) -> Markup {
         (zero::zero(sheet))
         (machine::tools(sheet))
         (machine::head_angles(sheet))
+        (gauge::blocks(sheet))
         (stops::stops(sheet))
         (machine::settings(sheet))
         (inspection::form(sheet))
@@ -107,11 +109,17 @@ fn blank() -> Markup {
     html! { span.blank {} }
 }
 
+/// The main programs: `O8100`.
+fn mains(sheet: &Sheet<'_>) -> String {
+    sheet.package.mains.iter().map(|main| stem(*main)).collect::<Vec<_>>().join(", ")
+}
+
 /// What kind of part it is, as a heading has it.
 fn kind(job: &Job) -> &'static str {
     match job {
         Job::PinHoles(_) => "pin holes on an ellipsoid of revolution",
         Job::Honeycomb(_) => "honeycomb of radial holes on a cylinder",
         Job::Burr(_) => "ball-end rotary burr",
+        Job::Alignment(_) => "setting up a part of revolution",
     }
 }

@@ -9,10 +9,14 @@ use crate::sheet::record::Stop;
 
 pub(super) fn stops(sheet: &Sheet<'_>) -> Markup {
     let stops = &sheet.record.stops;
+    let waiting = &sheet.record.waiting;
     if stops.is_empty() {
         return html! {
             h2 { "Operator stops" }
-            p { "The program doesn't stop for the operator between its start and its end." }
+            @if waiting.len() < sheet.package.mains.len() {
+                p { "The program doesn't stop for the operator between its start and its end." }
+            }
+            (unknown(waiting))
         };
     }
     let rows = stops.iter().enumerate().map(|(index, stop)| {
@@ -29,6 +33,18 @@ pub(super) fn stops(sheet: &Sheet<'_>) -> Markup {
         h2 { "Operator stops, and what to do" }
         p { (count(stops.len(), "stop")) ", in this order. The minutes are those the machine has run before the stop." }
         (table(&["#stop", "the control shows", "tool", "what to do", "#min", "done"], rows))
+        (unknown(waiting))
+    }
+}
+
+/// Programs that couldn't be followed to their ends.
+fn unknown(waiting: &[String]) -> Markup {
+    html! {
+        @if !waiting.is_empty() {
+            p {
+                "Not known of " (waiting.join(", ")) ", which ends in an alarm until what it reads has been measured: read its remarks."
+            }
+        }
     }
 }
 

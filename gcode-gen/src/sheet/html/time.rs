@@ -13,10 +13,13 @@ pub(super) fn time(sheet: &Sheet<'_>) -> Markup {
     html! {
         div.together {
             h2 { "Run time and cost" }
-            p {
+            @if sheet.record.waiting.len() < sheet.package.mains.len() { p {
                 "The program runs " b { (minutes(times.all())) " min" } ": feed " (minutes(times.feed)) ", rapid "
                 (minutes(times.rapid)) ", dwell " (minutes(times.dwell)) ". " (BASIS) ": paths over feeds and rapid rates, "
                 "without acceleration, which makes it longer at the machine."
+            } }
+            @if !sheet.record.waiting.is_empty() {
+                p { "Not in it: " (sheet.record.waiting.join(", ")) ", which ends in an alarm until what it reads has been measured." }
             }
             @match sheet.rates {
                 Some(rates) => {

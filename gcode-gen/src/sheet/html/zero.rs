@@ -1,5 +1,5 @@
 //! Where the zero is: a picture of each family, and the offsets and signs in words.
-use gcode_sim::job::{Burr, Honeycomb, Job, PinHoles};
+use gcode_sim::job::{Alignment, Burr, Honeycomb, Job, PinHoles, Surface};
 use gcode_sim::part::flutes::Flutes;
 use gcode_sim::report::figures::short;
 use gcode_sim::verify::Verdict;
@@ -15,7 +15,8 @@ pub(super) fn zero(sheet: &Sheet<'_>) -> Markup {
         (Job::PinHoles(job), Judgement::Holes(verdict)) => (of_pin_holes(job, verdict), pin_holes(job)),
         (Job::Honeycomb(job), _) => (of_honeycomb(job), honeycomb(job)),
         (Job::Burr(job), _) => (of_burr(job), burr(job)),
-        (Job::PinHoles(job), Judgement::Flutes(_)) => (html! {}, pin_holes(job)),
+        (Job::PinHoles(job), Judgement::Flutes(_) | Judgement::Measured) => (html! {}, pin_holes(job)),
+        (Job::Alignment(job), _) => (of_alignment(job), alignment(job)),
     };
     html! {
         div.together {
@@ -56,9 +57,54 @@ fn length(one: f64, other: f64) -> f64 {
     (one * one + other * other).sqrt()
 }
 
-/// The section z = 0: the ellipse, and the tool at every angle of the head.
+/// The tool at every angle of the head.
 fn of_pin_holes(job: &PinHoles, verdict: &Verdict) -> Markup {
-    let (a, b) = (job.surface.a, job.surface.b);
+    let mut tools: Vec<([f64; 4], String)> = Vec::new();
+    for hole in &verdict.holes {
+        let ([x, y, z], [i, j, k]) = (hole.nominal.entry, hole.nominal.axis);
+        let one = [length(x, z), y, length(i, k), j];
+        if !tools.iter().any(|(known, _)| (0..4).all(|at| (known[at] - one[at]).abs() < 1e-6)) {
+            tools.push((one, format!("radius {}", short(one[0]))));
+        }
+    }
+    section(job.surface, job.machine.rotary.letter, tools)
+}
+
+/// Of a point of the surface in the plane z = 0: itself, and the direction out of the part.
+fn on_surface(surface: Surface, x: f64) -> [f64; 4] {
+    let (a, b) = (surface.a, surface.b);
+    let y = b * (1.0 - (x / a) * (x / a)).sqrt();
+    let (across, up) = (x / (a * a), y / (b * b));
+    let long = length(across, up);
+    [x, y, across / long, up / long]
+}
+
+fn alignment(job: &Alignment) -> Vec<String> {
+    let (letter, minus) = (job.machine.rotary.letter, if job.machine.rotary.sign < 0 { "−" } else { "" });
+    vec![
+        format!(
+            "G54: X0 Z0 on the axis of {letter}, Y0 at the centre of the ellipsoid, {} mm below its pole. What counts is the centre of \
+             the stylus ball.",
+            short(job.surface.b)
+        ),
+        format!("{letter} = {minus}azimuth; the azimuth counts from X towards Z. The head does not turn."),
+        format!(
+            "E and F are points of the surface in the plane Z0, at X{} and X{}.",
+            short(job.chord.e_radius),
+            short(job.chord.f_radius)
+        ),
+    ]
+}
+
+fn of_alignment(job: &Alignment) -> Markup {
+    let ends = [("E", job.chord.e_radius), ("F", job.chord.f_radius)];
+    let ends = ends.map(|(name, x)| (on_surface(job.surface, x), format!("{name} at X{}", short(x))));
+    section(job.surface, job.machine.rotary.letter, ends.into())
+}
+
+/// The section z = 0: the ellipse, and arrows to some of its points, from the direction that goes out there.
+fn section(surface: Surface, rotary: char, mut tools: Vec<([f64; 4], String)>) -> Markup {
+    let (a, b) = (surface.a, surface.b);
     let scale = (150.0 / a).min(220.0 / b);
     let (wide, high) = (a * scale, b * scale);
     let paper = Paper { origin: [wide + 40.0, high + 60.0], scale };
@@ -69,27 +115,19 @@ fn of_pin_holes(job: &PinHoles, verdict: &Verdict) -> Markup {
     let zero = paper.at(0.0, 0.0);
     let column = right[0] + 60.0;
     // From the top down, each label below the one before.
-    let mut tools: Vec<[f64; 4]> = Vec::new();
-    for hole in &verdict.holes {
-        let ([x, y, z], [i, j, k]) = (hole.nominal.entry, hole.nominal.axis);
-        let one = [length(x, z), y, length(i, k), j];
-        if !tools.iter().any(|known| (0..4).all(|at| (known[at] - one[at]).abs() < 1e-6)) {
-            tools.push(one);
-        }
-    }
-    tools.sort_by(|one, other| other[1].total_cmp(&one[1]));
+    tools.sort_by(|(one, _), (other, _)| other[1].total_cmp(&one[1]));
     let more = tools.len().saturating_sub(8);
     tools.truncate(8);
     let mut below = 24.0;
-    let tools = tools.into_iter().map(|[r, y, across, up]| {
-        let tip = paper.at(r, y);
+    let tools = tools.into_iter().map(|([x, y, across, up], label)| {
+        let tip = paper.at(x, y);
         let back = [tip[0] + 42.0 * across, tip[1] - 42.0 * up];
         let place = [column, f64::max(below, back[1])];
         below = place[1] + 16.0;
         html! {
             (arrow(back, tip))
             (thin(back, [place[0] - 3.0, place[1] - 4.0]))
-            (text(place, Anchor::Start, &format!("radius {}", short(r))))
+            (text(place, Anchor::Start, &label))
         }
     });
     let content = html! {
@@ -97,7 +135,7 @@ fn of_pin_holes(job: &PinHoles, verdict: &Verdict) -> Markup {
         (line([left[0] - 15.0, left[1]], [right[0] + 25.0, right[1]]))
         (text([right[0] + 30.0, right[1] + 4.0], Anchor::Start, "X"))
         (centre_line([zero[0], height - 15.0], [zero[0], 24.0]))
-        (text([zero[0], 16.0], Anchor::Middle, &format!("Y, axis of {}", job.machine.rotary.letter)))
+        (text([zero[0], 16.0], Anchor::Middle, &format!("Y, axis of {rotary}")))
         (zero_sign(zero))
         (text([zero[0] + 12.0, zero[1] + 20.0], Anchor::Start, "G54 X0 Y0 Z0"))
         (text([(zero[0] + left[0]) / 2.0, zero[1] + 20.0], Anchor::Middle, &format!("a {}", short(a))))

@@ -7,6 +7,7 @@ use super::{Alignment, Chord, Runout, SineTable};
 use crate::gauge::{self, GaugeSet};
 use crate::job::pin_holes::{FileMachine, FileSurface};
 use crate::job::sections::{FileControl, length, within};
+use crate::job::sheet::FileSheet;
 use crate::job::{JobError, Reader, Surface};
 use crate::units::{Deg, Mm};
 
@@ -24,6 +25,7 @@ struct File {
     runout: FileRunout,
     #[serde(default)]
     ellipse: FileEllipse,
+    sheet: Option<FileSheet>,
 }
 
 #[derive(Deserialize)]
@@ -75,6 +77,7 @@ pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<Alignment, JobError> 
         chord,
         runout: file.runout.check(reader, surface)?,
         ellipse: file.ellipse.check(reader, control, surface, chord)?,
+        sheet: FileSheet::of(file.sheet, reader)?,
         surface,
     })
 }

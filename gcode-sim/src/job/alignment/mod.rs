@@ -4,7 +4,7 @@ mod file;
 
 pub(super) use file::parse;
 
-use super::{JobControl, PinMachine, Surface};
+use super::{JobControl, PinMachine, SheetWords, Surface};
 use crate::gauge::GaugeSet;
 
 /// A part to be aligned; lengths in mm, angles in degrees.
@@ -19,6 +19,7 @@ pub struct Alignment {
     pub chord: Chord,
     pub runout: Runout,
     pub ellipse: EllipsePath,
+    pub sheet: SheetWords,
 }
 
 /// The table that sets the angle between the part's bottom face and its axis.
