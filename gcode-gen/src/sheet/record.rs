@@ -1,10 +1,11 @@
 //! A run as the operator lives through it: the tools, the stops in their order, and what the time goes into.
 use gcode_sim::exec::Outcome;
+use gcode_sim::holes::Extractor;
 use gcode_sim::job::Job;
 use gcode_sim::machine::Machine;
 use gcode_sim::motion::{Event, EventKind, Place, Sink, StopKind};
 use gcode_sim::part::surface::Surface;
-use gcode_sim::session::{Request, Run, SessionError, run, simulate_beside};
+use gcode_sim::session::{Request, Run, SessionError, run};
 
 use crate::check::{CheckError, Programs, told};
 use crate::package::{Package, file_name, stem};
@@ -68,9 +69,8 @@ pub fn record(job: &Job, package: &Package) -> Result<Record, CheckError> {
             // A probe needs a part to touch.
             Job::Alignment(job) => {
                 let surface = Surface::Ellipsoid { a: job.surface.a, b: job.surface.b };
-                simulate_beside(&request, &mut Programs(package), Some(surface), &mut listener)
-                    .map_err(broken)?
-                    .run
+                let mut probe = Extractor::new(&request.machine).with_surface(Some(surface));
+                run(&request, &mut Programs(package), &mut (&mut probe, &mut listener)).map_err(broken)?
             }
             Job::PinHoles(_) | Job::Honeycomb(_) | Job::Burr(_) => {
                 run(&request, &mut Programs(package), &mut listener).map_err(broken)?

@@ -53,8 +53,7 @@ pub(super) fn verdict(sheet: &Sheet<'_>) -> Markup {
                 }
                 Judgement::Measured => {
                     "On simulated parts that stand in known wrong places:"
-                    @for line in sheet.checked.report.lines() { br; (line) }
-                    br;
+                    @for line in sheet.checked.report.lines() { p { (line) } }
                 }
             }
             " The machine's own errors are not in these numbers."
@@ -63,14 +62,15 @@ pub(super) fn verdict(sheet: &Sheet<'_>) -> Markup {
 }
 
 pub(super) fn programs(sheet: &Sheet<'_>) -> Markup {
-    let rows = sheet.package.files().into_iter().map(|(name, text)| {
-        let digest = digest(text);
-        vec![cell(&name), cell(title(text)), html! { (text.lines().count()) }, digest]
-    });
+    let rows = sheet
+        .package
+        .files()
+        .into_iter()
+        .map(|(name, text)| vec![cell(&name), cell(title(text)), digest(text)]);
     let first = sheet.package.files().into_iter().map(|(name, _)| name).next().unwrap_or_default();
     html! {
         h2 { "Programs" }
-        (table(&["file", "what it is", "#lines", "SHA-256"], rows))
+        (table(&["file", "what it is", "SHA-256"], rows))
         p.note {
             "The hash is that of the file as " code { "gcode-gen emit" } " writes it. Before it goes to the control: "
             code { "certutil -hashfile " (first) " SHA256" } " (Windows) or "

@@ -14,7 +14,7 @@ pub(super) fn stops(sheet: &Sheet<'_>) -> Markup {
         return html! {
             h2 { "Operator stops" }
             @if waiting.len() < sheet.package.mains.len() {
-                p { "The program doesn't stop for the operator between its start and its end." }
+                p { "No stop for the operator between start and end." }
             }
             (unknown(waiting))
         };
