@@ -75,7 +75,7 @@ proptest! {
         let at = 2 + at.min(blocks.len());
         lines.insert(at, "G4 P123");
         let found = changes(&revision(&old).record, &revision(&(lines.join("\n") + "\n")).record, 0.0001);
-        let codes: Vec<_> = found.iter().map(|change| change.code).collect();
+        let codes: Vec<_> = found.iter().map(|change| &*change.code).collect();
         prop_assert_eq!(codes, ["dwell"]);
     }
 }

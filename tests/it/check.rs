@@ -89,7 +89,8 @@ fn every_rule_has_its_page_and_a_case() {
         told += &std::fs::read_to_string(entry.unwrap().path().join("findings.snap")).unwrap();
     }
     for rule in ALL {
-        assert!(page.contains(&format!("\n## {}\n", rule.name)), "docs/checks.md lacks {}", rule.name);
+        let heading = format!("\n## {}: {}\n", rule.name, rule.about);
+        assert!(page.contains(&heading), "docs/checks.md lacks '{}'", heading.trim());
         let finds = [" error ", " warning "].iter().any(|s| told.contains(&format!("{s}{}:", rule.name)));
         assert!(finds, "no case in tests/suite/check finds {}", rule.name);
     }

@@ -2,6 +2,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
+use gcode_sim::changes::CODES;
 use gcode_sim::diag::{Diagnostic, Severity};
 use gcode_sim::exec::Outcome;
 use gcode_sim::machine::Machine;
@@ -77,6 +78,24 @@ fn every_alarm_and_finding_has_its_page_and_every_page_its_code() {
         .map(|entry| entry.unwrap().path().file_stem().unwrap().to_string_lossy().into_owned())
         .collect();
     assert_eq!(files, listed, "a file that no one shows, or a page without its file");
+}
+
+#[test]
+fn every_change_has_its_section_and_every_section_its_change() {
+    let sections: Vec<_> = explain::changes().map(|page| page.code).collect();
+    let answers = ["case-new", "case-refused"];
+    assert_eq!(sections, CODES.into_iter().chain(answers).collect::<Vec<_>>(), "docs/changes.md");
+    for page in explain::changes() {
+        assert!(page.text.contains("\n**Look at:** "), "{}: what to do", page.code);
+    }
+}
+
+#[test]
+fn a_code_with_two_meanings_is_explained_with_both() {
+    let titles: Vec<_> = explain::pages("hole-depth").map(|page| page.title()).collect();
+    assert_eq!(titles.len(), 2, "{titles:?}");
+    assert_eq!(explain::pages("ps112").count(), 1);
+    assert_eq!(explain::pages("no-such-code").count(), 0);
 }
 
 #[test]

@@ -1,11 +1,13 @@
 //! Laws and whole-program tests that are not cases: house rules, round trips, published numbers, the README.
 #![expect(clippy::unwrap_used, clippy::disallowed_methods, reason = "tests read files and may panic")]
 
+mod accepted;
 mod arithmetic;
 mod budget;
 mod burr;
 mod changes;
 mod check;
+mod ci;
 mod compensation;
 mod control;
 mod control_page;
@@ -20,6 +22,8 @@ mod misplaced;
 mod page;
 mod pin_holes;
 mod real_files;
+mod results;
 mod round_trip;
 mod sheet;
 mod tidy;
+mod watch;

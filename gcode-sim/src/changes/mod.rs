@@ -11,7 +11,9 @@ mod record;
 mod steps;
 mod store;
 
-use serde::Serialize;
+use std::borrow::Cow;
+
+use serde::{Deserialize, Serialize};
 
 pub use holes::Paired;
 pub use path::Leg;
@@ -20,11 +22,46 @@ pub use store::StoreError;
 
 use self::align::{Link, align};
 
+/// What a change can be called, in the order of their sections in docs/changes.md.
+pub const CODES: [&str; 30] = [
+    "outcome",
+    "hole-moved",
+    "hole-tilted",
+    "hole-depth",
+    "hole-diameter",
+    "hole-tool",
+    "hole-order",
+    "hole-lost",
+    "hole-added",
+    "move-shifted",
+    "move-added",
+    "move-lost",
+    "move-kind",
+    "move-arc",
+    "feed",
+    "dwell",
+    "tool",
+    "tool-length",
+    "spindle",
+    "coolant",
+    "m-code",
+    "stop",
+    "output",
+    "variable",
+    "mode",
+    "work-offset",
+    "tool-offset",
+    "parameter",
+    "signal",
+    "counter",
+];
+
 /// One difference that matters.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Change {
-    /// A stable name such as `hole-moved`.
-    pub code: &'static str,
+    /// One of [`CODES`].
+    pub code: Cow<'static, str>,
     /// What is different, with numbers and units; makes sense alone.
     pub message: String,
     /// The first block of the old revision that does it, where there is one.
@@ -35,7 +72,8 @@ pub struct Change {
 
 impl Change {
     fn new(code: &'static str, message: impl Into<String>) -> Self {
-        Self { code, message: message.into(), old: None, new: None }
+        debug_assert!(CODES.contains(&code), "{code}");
+        Self { code: code.into(), message: message.into(), old: None, new: None }
     }
 
     fn once_at(self, place: Option<&Where>) -> Self {

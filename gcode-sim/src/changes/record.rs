@@ -113,6 +113,20 @@ impl Revision {
         Ok(Self { simulation, record })
     }
 
+    /// The files of the programs, by the names that [`Where`] gives them; those that stand for one file only.
+    pub fn files(&self) -> BTreeMap<String, String> {
+        let memory = self.simulation.run.control.memory();
+        let mut files: BTreeMap<String, Option<String>> = BTreeMap::new();
+        for program in memory.programs() {
+            let file = memory.sources().get(program.span.source).name.clone();
+            files
+                .entry(program.label())
+                .and_modify(|known| *known = known.take().filter(|known| *known == file))
+                .or_insert(Some(file.clone()));
+        }
+        files.into_iter().filter_map(|(program, file)| Some((program, file?))).collect()
+    }
+
     /// The run was cut off by a limit: what lies behind it isn't in the record.
     pub fn is_cut_off(&self) -> bool {
         self.stopped().any(|finding| finding.code == "limit")

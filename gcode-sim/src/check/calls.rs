@@ -41,7 +41,7 @@ pub(crate) struct Argument {
 }
 
 /// The programs that a program calls, by codes that call too.
-pub(super) fn targets(program: &Program, settings: &Settings) -> Vec<CalledAs> {
+pub(crate) fn targets(program: &Program, settings: &Settings) -> Vec<CalledAs> {
     sites(program, settings).into_iter().map(|site| site.target).collect()
 }
 

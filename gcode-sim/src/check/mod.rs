@@ -19,11 +19,12 @@ mod variables;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+pub(crate) use calls::{CalledAs, targets as called};
+
 use crate::control::Settings;
 use crate::diag::{Diagnostic, Severity};
 use crate::program::{Library, Memory, Program, ProgramId};
 use crate::source::Span;
-use calls::CalledAs;
 use subject::Subject;
 pub(crate) use variables::variables_read;
 

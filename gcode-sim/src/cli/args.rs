@@ -97,6 +97,7 @@ in the machine file.")]
 Examples:
   gcode-sim check O8100.nc
   gcode-sim check O1234.nc --lib macros --format json
+  gcode-sim check O1234.nc --format sarif > findings.sarif
 
 A comment (CHECK-OFF DOUBLED-N) on a block silences that rule there, at the head of a program in all of it.")]
     Check(CheckArguments),
@@ -120,8 +121,10 @@ Examples:
   gcode-sim test programs
   gcode-sim test programs --lib macros --shard 2/4 --format json
   gcode-sim test programs --only flange --accept
+  gcode-sim test programs --lib macros --format junit > result.xml
+  gcode-sim test --merge shard-1.json shard-2.json --format sarif
 
-A case is a folder with a program (main.nc, or the only .nc in it) and, where they are wanted, lib/, machine.toml,
+A case is a folder with a program (main.nc, or the only .nc in it that no other calls) and, where they are wanted, lib/, machine.toml,
 control.toml, a reference (reference.json, reference.csv or job.toml), and accepted.json, which --accept writes.")]
     Test(TestArguments),
 
@@ -226,6 +229,15 @@ impl RunConditions {
 pub(super) enum TextFormat {
     Text,
     Json,
+}
+
+/// What findings with places are written as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum FindingFormat {
+    Text,
+    Json,
+    /// SARIF 2.1.0
+    Sarif,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]

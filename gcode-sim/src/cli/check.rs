@@ -3,10 +3,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::args::{RunConditions, TextFormat};
+use super::args::{FindingFormat, RunConditions};
 use super::{Refusal, Status, options, output};
 use crate::check::check;
 use crate::report::check::{CheckReport, text};
+use crate::report::sarif::{self, Finding};
 
 #[derive(Debug, Args)]
 pub(super) struct CheckArguments {
@@ -39,8 +40,8 @@ pub(super) struct CheckArguments {
     code: Vec<String>,
 
     /// How the result is written
-    #[arg(long, value_enum, default_value_t = TextFormat::Text)]
-    format: TextFormat,
+    #[arg(long, value_enum, default_value_t = FindingFormat::Text)]
+    format: FindingFormat,
 }
 
 pub(super) fn run(arguments: &CheckArguments) -> Result<Status, Refusal> {
@@ -59,8 +60,13 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<Status, Refusal> {
         return Err(Refusal::new(format!("{} holds no program", request.name)));
     }
     match arguments.format {
-        TextFormat::Text => output::print(&text(&checked))?,
-        TextFormat::Json => output::json(&CheckReport::new(&checked))?,
+        FindingFormat::Text => output::print(&text(&checked))?,
+        FindingFormat::Json => output::json(&CheckReport::new(&checked))?,
+        FindingFormat::Sarif => {
+            let sources = checked.memory.sources();
+            let findings: Vec<_> = checked.findings.iter().map(|found| Finding::of(found, sources)).collect();
+            output::json(&sarif::log(&findings, &options::started_in()))?;
+        }
     }
     Ok(if checked.stands() { Status::Fails } else { Status::Holds })
 }

@@ -25,6 +25,10 @@ pub(super) fn run(arguments: &ExplainArguments) -> Result<Status, Refusal> {
             "{code} is none of this simulator's alarms and findings: gcode-sim explain --list names them"
         ))
     };
-    output::print(&explain::find(code).ok_or_else(unknown)?.shown())?;
+    let pages: Vec<String> = explain::pages(code).map(|page| page.shown()).collect();
+    if pages.is_empty() {
+        return Err(unknown());
+    }
+    output::print(&pages.join("\n"))?;
     Ok(Status::Holds)
 }

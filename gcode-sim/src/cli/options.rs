@@ -89,6 +89,11 @@ pub(super) fn wanted(path: &Path) -> Result<Wanted, Refusal> {
     Wanted::parse(&input::text(path)?).map_err(|error| Refusal::new(format!("{}, {error}", path.display())))
 }
 
+/// The folder that the program was started in, which results name files from.
+pub(super) fn started_in() -> String {
+    std::env::current_dir().map(|folder| folder.display().to_string()).unwrap_or_default()
+}
+
 /// A tolerance that somebody asked for.
 pub(super) fn tolerance(flag: &str, value: Option<f64>) -> Result<Option<f64>, Refusal> {
     match value {

@@ -79,13 +79,13 @@ pub(super) fn entries(text: &mut String, changes: &[Change], indent: &str) {
     const SHOWN: usize = 6;
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
     for change in changes {
-        *counts.entry(change.code).or_default() += 1;
+        *counts.entry(&change.code).or_default() += 1;
     }
     let mut seen: BTreeMap<&str, usize> = BTreeMap::new();
     for change in changes {
-        let number = seen.entry(change.code).or_default();
+        let number = seen.entry(&change.code).or_default();
         *number += 1;
-        let all = counts[change.code];
+        let all = counts[&*change.code];
         if *number <= SHOWN {
             entry(text, change, indent);
         }

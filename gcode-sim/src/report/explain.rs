@@ -1,5 +1,5 @@
 //! What `explain` says: one page for every alarm and every finding of a run, written in `docs/explain/` and carried in
-//! the program; the rules of `check` have their sections in `docs/checks.md`.
+//! the program; the rules of `check` and the entries of `diff` have their sections in `docs/checks.md` and `docs/changes.md`.
 use std::fmt::Write;
 
 /// One page: what a code means, what causes it, a program that raises it and what to write instead.
@@ -185,15 +185,34 @@ pub const PAGES: &[Page] = pages![
 
 /// The rules of `check`, each a section of their page.
 pub fn rules() -> impl Iterator<Item = Page> {
-    let sections = include_str!("../../../docs/checks.md").split("\n## ").skip(1);
-    sections.map(|text| Page { code: text.lines().next().unwrap_or_default(), text })
+    sections(include_str!("../../../docs/checks.md"))
+}
+
+/// What `diff` and `test` tell, each a section of their page.
+pub fn changes() -> impl Iterator<Item = Page> {
+    sections(include_str!("../../../docs/changes.md"))
+}
+
+/// The sections of a page with a heading `code: what it means`.
+fn sections(page: &'static str) -> impl Iterator<Item = Page> {
+    let sections = page.split("\n## ").skip(1);
+    sections.filter_map(|text| Some(Page { code: text.split_once(": ")?.0, text }))
+}
+
+fn all() -> impl Iterator<Item = Page> {
+    PAGES.iter().copied().chain(rules()).chain(changes())
+}
+
+/// All pages of a code: of `hole-depth`, which `verify` tells and `diff` too, there are two.
+pub fn pages(code: &str) -> impl Iterator<Item = Page> {
+    let own = find(code).map(|page| page.code);
+    all().filter(move |page| Some(page.code) == own)
 }
 
 /// The page of a code in any of its spellings: `PS0112`, `ps112`, `112`, `MC3021`, `hole-position`, `doubled-n`.
 pub fn find(code: &str) -> Option<Page> {
     let code = code.trim();
-    let mut all = PAGES.iter().copied().chain(rules());
-    if let Some(page) = all.find(|page| page.code.eq_ignore_ascii_case(code)) {
+    if let Some(page) = all().find(|page| page.code.eq_ignore_ascii_case(code)) {
         return Some(page);
     }
     let code = code.to_ascii_uppercase();
@@ -217,13 +236,7 @@ impl Page {
     /// What the code means in a few words.
     pub fn title(&self) -> &'static str {
         let first = self.text.lines().next().unwrap_or_default();
-        match first.split_once(": ") {
-            Some((_, title)) => title,
-            // A rule's section begins with its first sentence.
-            None => {
-                self.text.lines().nth(2).and_then(|line| line.split(['.', ':', ',']).next()).unwrap_or(first)
-            }
-        }
+        first.split_once(": ").map_or(first, |(_, title)| title)
     }
 
     /// What is fenced as `nc` (the program that raises the alarm, then the one that doesn't), `csv` or `toml`.
@@ -245,7 +258,7 @@ impl Page {
                 writeln!(text, "    {line}")
             } else {
                 let line = line.strip_prefix("## ").or(line.strip_prefix("# ")).unwrap_or(line);
-                writeln!(text, "{}", line.replace('`', ""))
+                writeln!(text, "{}", line.replace('`', "").replace("**", ""))
             };
         }
         text
@@ -254,7 +267,7 @@ impl Page {
 
 /// All codes with what they mean, one line each.
 pub fn list() -> String {
-    PAGES.iter().copied().chain(rules()).fold(String::new(), |mut text, page| {
+    all().fold(String::new(), |mut text, page| {
         let _ = writeln!(text, "{:<20} {}", page.code, page.title());
         text
     })

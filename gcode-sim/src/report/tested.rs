@@ -1,85 +1,205 @@
 //! What came of the cases of `test`, as text and as data.
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::changes::{counted, entries};
-use crate::changes::{Change, Totals};
+use super::sarif::{At, Finding};
+use crate::changes::{Change, Totals, Where};
+use crate::diag::Severity;
 
-/// The document of `test --format json`.
-#[derive(Debug, Serialize)]
+/// The document of `test --format json`, and what `test --merge` reads.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct TestReport {
     /// Says what kind of numbers these are.
-    pub basis: &'static str,
+    pub basis: String,
+    /// Which part of the cases this is; `None` for all.
+    pub shard: Option<Shard>,
     pub cases: Vec<CaseReport>,
     /// The names of the cases whose results were accepted now.
     pub accepted: Vec<String>,
 }
 
-#[derive(Debug, Serialize)]
+/// One of several parts of the cases, run on machines side by side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Shard {
+    /// Counts from 1.
+    pub number: usize,
+    pub of: usize,
+    /// How many cases there are in all parts.
+    pub cases: usize,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct CaseReport {
     pub name: String,
-    /// `same`, `changed`, `new` where nothing is accepted yet, `refused` where the case can't be used.
-    pub answer: &'static str,
+    /// The main program's file.
+    pub file: Option<String>,
+    pub answer: Answer,
     pub changes: Vec<Change>,
     /// What the reference says against the holes.
-    pub against: Option<String>,
+    pub against: Option<Against>,
+    /// Why the case can't be used.
     pub error: Option<String>,
     pub totals: Option<Totals>,
     /// How the run ended, in words.
     pub ending: Option<String>,
+    /// The files of the programs that `changes` and `against` name.
+    pub files: BTreeMap<String, String>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Answer {
+    /// As accepted.
+    Same,
+    Changed,
+    /// Nothing is accepted yet.
+    New,
+    /// The case can't be used.
+    Refused,
+}
+
+/// The first thing that a failed verdict has against a program.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Against {
+    /// The code of the finding.
+    pub code: String,
+    pub message: String,
+    /// The block that does it, where it is one.
+    pub place: Option<Where>,
 }
 
 impl TestReport {
-    pub fn new(cases: impl Iterator<Item = CaseReport>, accepted: Vec<String>) -> Self {
-        Self { basis: "predicted by simulation, not measured", cases: cases.collect(), accepted }
+    pub fn new(shard: Option<Shard>, cases: Vec<CaseReport>, accepted: Vec<String>) -> Self {
+        Self { basis: "predicted by simulation, not measured".to_owned(), shard, cases, accepted }
     }
 
     /// The same for people: what isn't as accepted, and how many are.
     pub fn text(&self) -> String {
         let mut text = String::new();
-        for case in &self.cases {
-            let totals = case
-                .totals
-                .as_ref()
-                .map(|t| format!("{}, {}", counted(t.holes as u64, "hole"), counted(t.moves, "move")));
-            let mut totals = totals.unwrap_or_default();
-            if let Some(ending) = case.ending.as_ref().filter(|words| words.starts_with("alarm")) {
-                totals.push_str(&format!("; {ending}"));
-            }
-            let _ = match (case.answer, &case.error) {
-                (_, Some(error)) => writeln!(text, "refused  {}: {error}", case.name),
-                ("new", _) => writeln!(text, "new      {}: nothing accepted yet ({totals})", case.name),
-                ("changed", _) => writeln!(text, "changed  {}", case.name),
-                _ => Ok(()),
-            };
-            entries(&mut text, &case.changes, "    ");
-            if let Some(against) = &case.against {
-                let _ = writeln!(text, "fails    {}: {against}", case.name);
-            }
-        }
+        self.cases.iter().for_each(|case| case.tell(&mut text));
         for name in &self.accepted {
             let case = self.cases.iter().find(|case| case.name == *name);
-            let ending =
-                case.and_then(|case| case.ending.as_deref()).filter(|words| words.starts_with("alarm"));
+            let ending = case.and_then(CaseReport::alarm);
             let ending = ending.map(|words| format!(", which ends with {words}")).unwrap_or_default();
             let _ = writeln!(text, "accepted {name}{ending}");
         }
         let count = |answer| self.cases.iter().filter(|case| case.answer == answer).count();
-        let mut words = vec![format!("{} as accepted", count("same"))];
-        for answer in ["changed", "new", "refused"] {
-            if count(answer) > 0 {
-                words.push(format!("{} {answer}", count(answer)));
-            }
+        let mut words = vec![format!("{} as accepted", count(Answer::Same))];
+        let others = [(Answer::Changed, "changed"), (Answer::New, "new"), (Answer::Refused, "refused")];
+        for (answer, word) in others.into_iter().filter(|(answer, _)| count(*answer) > 0) {
+            words.push(format!("{} {word}", count(answer)));
         }
         let failing = self.cases.iter().filter(|case| case.against.is_some()).count();
         if failing > 0 {
             words.push(format!("{failing} against its reference"));
         }
         let _ = writeln!(text, "{}: {}", counted(self.cases.len() as u64, "case"), words.join(", "));
-        if count("changed") + count("new") > 0 {
+        if count(Answer::Changed) + count(Answer::New) > 0 {
             text.push_str("--accept takes what is new; --only NAME takes one\n");
         }
         text
+    }
+
+    /// What isn't as accepted or fails its reference, each with its place.
+    pub fn findings(&self) -> Vec<Finding> {
+        self.cases.iter().flat_map(CaseReport::findings).collect()
+    }
+}
+
+impl CaseReport {
+    /// A case and its answer, and nothing else yet.
+    pub fn new(name: String, file: Option<String>, answer: Answer) -> Self {
+        Self {
+            name,
+            file,
+            answer,
+            changes: Vec::new(),
+            against: None,
+            error: None,
+            totals: None,
+            ending: None,
+            files: BTreeMap::new(),
+        }
+    }
+
+    /// As accepted, and not against its reference.
+    pub fn is_good(&self) -> bool {
+        self.answer == Answer::Same && self.against.is_none()
+    }
+
+    /// The alarm that the run ended with.
+    fn alarm(&self) -> Option<&str> {
+        self.ending.as_deref().filter(|words| words.starts_with("alarm"))
+    }
+
+    /// What isn't as it should be; nothing of a good case.
+    pub(super) fn tell(&self, text: &mut String) {
+        let name = &self.name;
+        let mut totals = self.totals.as_ref().map_or_else(String::new, |totals| {
+            format!("{}, {}", counted(totals.holes as u64, "hole"), counted(totals.moves, "move"))
+        });
+        if let Some(alarm) = self.alarm() {
+            totals.push_str(&format!("; {alarm}"));
+        }
+        let _ = match self.answer {
+            Answer::Refused => {
+                writeln!(text, "refused  {name}: {}", self.error.as_deref().unwrap_or_default())
+            }
+            Answer::New => writeln!(text, "new      {name}: nothing accepted yet ({totals})"),
+            Answer::Changed => writeln!(text, "changed  {name}"),
+            Answer::Same => Ok(()),
+        };
+        entries(text, &self.changes, "    ");
+        if let Some(Against { code, message, .. }) = &self.against {
+            let _ = writeln!(text, "fails    {name}: {code}: {message}");
+        }
+    }
+
+    fn findings(&self) -> Vec<Finding> {
+        let whole = || self.file.clone().map(|file| At { file, line: None, column: None });
+        let found = |code: &str, message: String, at: Option<At>, calls: &[Where]| Finding {
+            code: code.to_owned(),
+            severity: Severity::Error,
+            message: format!("{}: {message}", self.name),
+            at: at.or_else(whole),
+            related: calls
+                .iter()
+                .filter_map(|call| Some((self.at(call)?, "called from here".to_owned())))
+                .collect(),
+        };
+        let mut all = Vec::new();
+        match self.answer {
+            Answer::Refused => {
+                all.push(found("case-refused", self.error.clone().unwrap_or_default(), None, &[]));
+            }
+            Answer::New => all.push(found("case-new", "nothing accepted yet".to_owned(), None, &[])),
+            Answer::Same | Answer::Changed => {}
+        }
+        for Change { code, message, old, new } in &self.changes {
+            // What is gone has no line in the file as it is now: its old one is told in words.
+            let was = old.as_ref().filter(|_| new.is_none());
+            let was = was.map(|place| format!(" (was {}:{} {})", place.program, place.line, place.block));
+            let calls = new.as_ref().map_or(&[][..], |place| &place.calls);
+            let message = format!("{message}{}", was.unwrap_or_default());
+            all.push(found(code, message, new.as_ref().and_then(|place| self.at(place)), calls));
+        }
+        if let Some(Against { code, message, place }) = &self.against {
+            let calls = place.as_ref().map_or(&[][..], |place| &place.calls);
+            let at = place.as_ref().and_then(|place| self.at(place));
+            all.push(found(code, message.clone(), at, calls));
+        }
+        all
+    }
+
+    fn at(&self, place: &Where) -> Option<At> {
+        let file = self.files.get(&place.program)?.clone();
+        Some(At { file, line: Some(place.line), column: None })
     }
 }

@@ -1,14 +1,17 @@
 //! One case of `gcode-sim test`: a folder with a program, what it needs, and what was accepted of it.
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use crate::changes::{Change, Record, Revision, changes};
+use super::main_program;
+use crate::changes::{Change, Record, Revision, Where, changes};
 use crate::cli::args::RunConditions;
 use crate::cli::{Refusal, input, options};
 use crate::diag::{Diagnostic, Severity};
 use crate::exec::Limits;
 use crate::part::wanted::Wanted;
-use crate::session::{self, SessionError};
-use crate::verify::{Answer, Tolerances};
+use crate::report::tested::{Against, Answer, CaseReport};
+use crate::session::{self, Run, SessionError};
+use crate::verify::{self, Tolerances};
 
 /// The file that holds what was accepted.
 pub(super) const ACCEPTED: &str = "accepted.json";
@@ -18,61 +21,33 @@ pub(super) struct Case {
     /// Its path below the folder that was asked for, `/` between the parts.
     pub name: String,
     pub folder: PathBuf,
-    program: PathBuf,
+    programs: Vec<PathBuf>,
 }
 
 /// What came of a case.
 pub(super) struct Tried {
-    pub name: String,
-    pub answer: Tested,
-    /// What the reference says against the holes, in one line.
-    pub against: Option<String>,
+    pub report: CaseReport,
     /// To be accepted; `None` where nothing could be run.
     pub record: Option<Record>,
 }
 
-pub(super) enum Tested {
-    /// As accepted.
-    Same,
-    Changed(Vec<Change>),
-    /// Nothing accepted yet.
-    New,
-    /// The case can't be used.
-    Refused(String),
-}
-
-impl Tried {
-    pub(super) fn is_good(&self) -> bool {
-        matches!(self.answer, Tested::Same) && self.against.is_none()
-    }
-}
-
-/// The cases in a folder and below it, by name. A folder with programs is a case: its main program is `main.nc` or the
-/// only `.nc` there is; folders below it are its own business.
+/// The cases in a folder and below it, by name. A folder with programs is a case; folders below it are its own business.
 pub(super) fn find(root: &Path) -> Result<Vec<Case>, Refusal> {
     let mut cases = Vec::new();
     let mut folders = vec![(root.to_owned(), String::new())];
     while let Some((folder, name)) = folders.pop() {
         let entries = input::folder(&folder)?;
-        let programs: Vec<&PathBuf> =
-            entries.iter().filter(|path| path.is_file() && is_program(path)).collect();
-        let main = programs.iter().find(|path| path.file_stem().is_some_and(|stem| stem == "main"));
-        match (main, &programs[..]) {
-            (Some(program), _) | (None, [program]) => {
-                let name = if name.is_empty() { ".".to_owned() } else { name };
-                cases.push(Case { name, folder, program: (*program).clone() });
+        let (programs, others): (Vec<_>, Vec<_>) =
+            entries.into_iter().partition(|path| is_program(path) && path.is_file());
+        if programs.is_empty() {
+            for below in others.into_iter().filter(|path| path.is_dir()) {
+                let own = below.file_name().unwrap_or_default().to_string_lossy();
+                let path = if name.is_empty() { own.into_owned() } else { format!("{name}/{own}") };
+                folders.push((below, path));
             }
-            (None, []) => {
-                for below in entries.iter().filter(|path| path.is_dir()) {
-                    let own = below.file_name().unwrap_or_default().to_string_lossy();
-                    let path = if name.is_empty() { own.into_owned() } else { format!("{name}/{own}") };
-                    folders.push((below.clone(), path));
-                }
-            }
-            (None, _) => {
-                let message = "holds several programs: name the one to run main.nc";
-                return Err(Refusal::new(format!("{} {message}", folder.display())));
-            }
+        } else {
+            let name = if name.is_empty() { ".".to_owned() } else { name };
+            cases.push(Case { name, folder, programs });
         }
     }
     cases.sort_by(|a, b| a.name.cmp(&b.name));
@@ -86,16 +61,23 @@ fn is_program(path: &Path) -> bool {
 impl Case {
     /// Runs the case and holds it against what was accepted.
     pub(super) fn run(&self, libraries: &[PathBuf], tolerance: f64) -> Tried {
-        let refused = |refusal: Refusal| Tried {
-            name: self.name.clone(),
-            answer: Tested::Refused(refusal.to_string()),
-            against: None,
-            record: None,
-        };
-        self.tried(libraries, tolerance).unwrap_or_else(refused)
+        let main = main_program::of(&self.folder, &self.programs);
+        let file = main.as_ref().ok().map(|path| path.display().to_string());
+        let empty = |answer| CaseReport::new(self.name.clone(), file.clone(), answer);
+        let tried = main.and_then(|program| self.tried(&program, libraries, tolerance, empty));
+        tried.unwrap_or_else(|refusal| {
+            let error = Some(refusal.to_string());
+            Tried { report: CaseReport { error, ..empty(Answer::Refused) }, record: None }
+        })
     }
 
-    fn tried(&self, libraries: &[PathBuf], tolerance: f64) -> Result<Tried, Refusal> {
+    fn tried(
+        &self,
+        program: &Path,
+        libraries: &[PathBuf],
+        tolerance: f64,
+        empty: impl Fn(Answer) -> CaseReport,
+    ) -> Result<Tried, Refusal> {
         let there = |name: &str| Some(self.folder.join(name)).filter(|path| path.exists());
         let conditions = RunConditions {
             machine: there("machine.toml"),
@@ -104,7 +86,7 @@ impl Case {
             max_blocks: Limits::default().blocks,
             ..RunConditions::default()
         };
-        let (request, mut folders) = options::request(&conditions.of(&self.program))?;
+        let (request, mut folders) = options::request(&conditions.of(program))?;
         let reference = ["reference.json", "reference.csv", "job.toml"].into_iter().find_map(there);
         let wanted = reference.as_deref().map(options::wanted).transpose()?;
         let surface = match &wanted {
@@ -122,33 +104,61 @@ impl Case {
             Some(Wanted::Holes(reference)) => {
                 let tolerances = Tolerances::of(reference, None);
                 let verdict = revision.simulation.verify(reference, tolerances, &request.machine);
-                fails(verdict.verdict, &verdict.diagnostics)
+                fails(verdict.verdict, &verdict.diagnostics, &revision.simulation.run)
             }
             Some(Wanted::Flutes(flutes)) => {
-                let verdict = session::grind(&request, &mut folders, flutes);
-                let verdict = verdict.map_err(|error| Refusal::new(error.to_string()))?.verify();
-                fails(verdict.verdict, &verdict.diagnostics)
+                let grinding = session::grind(&request, &mut folders, flutes);
+                let grinding = grinding.map_err(|error| Refusal::new(error.to_string()))?;
+                let verdict = grinding.verify();
+                fails(verdict.verdict, &verdict.diagnostics, &grinding.run)
             }
         };
-        let answer = match there(ACCEPTED) {
-            None => Tested::New,
+        let (answer, changes) = match there(ACCEPTED) {
+            None => (Answer::New, Vec::new()),
             Some(path) => {
                 let unusable = |error| Refusal::new(format!("{}: {error}", path.display()));
                 let accepted = Record::from_json(&input::text(&path)?).map_err(|error| {
                     unusable(format!("{error}; delete it, run with --accept, and look at what was accepted"))
                 })?;
                 let found = changes(&accepted, &revision.record, tolerance);
-                if found.is_empty() { Tested::Same } else { Tested::Changed(found) }
+                (if found.is_empty() { Answer::Same } else { Answer::Changed }, found)
             }
         };
-        Ok(Tried { name: self.name.clone(), answer, against, record: Some(revision.record) })
+        let record = &revision.record;
+        let report = CaseReport {
+            files: files(&revision, &changes, against.as_ref()),
+            changes,
+            against,
+            totals: Some(record.totals.clone()),
+            ending: Some(record.words().to_owned()),
+            ..empty(answer)
+        };
+        Ok(Tried { report, record: Some(revision.record) })
     }
 }
 
 /// The first thing that a failed verdict has against the program.
-fn fails(answer: Answer, findings: &[Diagnostic]) -> Option<String> {
+fn fails(answer: verify::Answer, findings: &[Diagnostic], run: &Run) -> Option<Against> {
+    if answer != verify::Answer::Fail {
+        return None;
+    }
     let first = findings.iter().find(|finding| Severity::Error <= finding.severity);
-    let words =
-        || first.map_or_else(|| "not what it wants".to_owned(), |f| format!("{}: {}", f.code, f.message));
-    (answer == Answer::Fail).then(words)
+    let place = first.and_then(|first| Some(Where::of(run, first.place.as_ref()?)));
+    let (code, message) =
+        first.map_or(("verdict", "not what it wants"), |first| (first.code.as_str(), first.message.as_str()));
+    Some(Against { code: code.to_owned(), message: message.to_owned(), place })
+}
+
+/// The files of the programs that are named by what is told.
+fn files(revision: &Revision, changes: &[Change], against: Option<&Against>) -> BTreeMap<String, String> {
+    let places = changes.iter().filter_map(|change| change.new.as_ref());
+    let places = places.chain(against.and_then(|against| against.place.as_ref()));
+    let named: BTreeSet<&str> = places
+        .flat_map(|place| std::iter::once(place).chain(&place.calls))
+        .map(|place| place.program.as_str())
+        .collect();
+    if named.is_empty() {
+        return BTreeMap::new();
+    }
+    revision.files().into_iter().filter(|(program, _)| named.contains(program.as_str())).collect()
 }

@@ -1,20 +1,23 @@
 //! `gcode-sim test`: a shop's own programs, each held against what was accepted of it.
 mod case;
+mod main_program;
+mod merge;
+mod watch;
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 
-use self::case::{ACCEPTED, Case, Tested, Tried};
-use super::args::TextFormat;
+use self::case::{ACCEPTED, Case, Tried};
 use super::{Refusal, Status, options, output};
-use crate::report::tested::{CaseReport, TestReport};
+use crate::report::tested::{Answer, Shard, TestReport};
+use crate::report::{junit, sarif};
 
 #[derive(Debug, Args)]
 pub(super) struct TestArguments {
     /// Folders with cases, at any depth
-    #[arg(value_name = "DIR", required = true)]
+    #[arg(value_name = "DIR", required_unless_present = "merge")]
     folders: Vec<PathBuf>,
 
     /// A folder that holds called programs, after each case's own folders (repeatable)
@@ -29,21 +32,76 @@ pub(super) struct TestArguments {
     #[arg(long, value_name = "K/N")]
     shard: Option<String>,
 
+    /// Put the JSON results of all shards together instead of running anything
+    #[arg(long, value_name = "RESULT.json", num_args = 1.., conflicts_with_all = ["folders", "libraries", "only", "shard", "accept"])]
+    merge: Vec<PathBuf>,
+
     /// Accept what came of the cases: write their accepted.json
     #[arg(long)]
     accept: bool,
+
+    /// Run again what a saved file concerns, until Ctrl-C
+    #[arg(long, conflicts_with_all = ["accept", "format", "merge"])]
+    watch: bool,
 
     /// What differs by no more than this is the same, mm or degrees
     #[arg(long, value_name = "MM", default_value_t = 0.0001, allow_negative_numbers = true)]
     tolerance: f64,
 
     /// How the result is written
-    #[arg(long, value_enum, default_value_t = TextFormat::Text)]
-    format: TextFormat,
+    #[arg(long, value_enum, default_value_t = TestFormat::Text)]
+    format: TestFormat,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum TestFormat {
+    Text,
+    Json,
+    /// JUnit XML
+    Junit,
+    /// SARIF 2.1.0
+    Sarif,
 }
 
 pub(super) fn run(arguments: &TestArguments) -> Result<Status, Refusal> {
     let tolerance = options::tolerance("--tolerance", Some(arguments.tolerance))?.unwrap_or_default();
+    if arguments.watch {
+        return watch::run(arguments, tolerance);
+    }
+    let report = match arguments.merge.as_slice() {
+        [] => tested(arguments, tolerance)?,
+        files => merge::merged(files)?,
+    };
+    print(&report, arguments.format)?;
+    let is_refused = report.cases.iter().any(|case| case.answer == Answer::Refused);
+    Ok(match report.cases.iter().all(|case| case.is_good()) {
+        true => Status::Holds,
+        false if is_refused => Status::Refused,
+        false => Status::Fails,
+    })
+}
+
+fn print(report: &TestReport, format: TestFormat) -> Result<(), Refusal> {
+    match format {
+        TestFormat::Json => output::json(report),
+        TestFormat::Text => output::print(&report.text()),
+        TestFormat::Junit => {
+            let document = junit::document(report);
+            output::print(&document.map_err(|why| Refusal::new(format!("no JUnit XML: {why}")))?)
+        }
+        TestFormat::Sarif => output::json(&sarif::log(&report.findings(), &options::started_in())),
+    }
+}
+
+fn tested(arguments: &TestArguments, tolerance: f64) -> Result<TestReport, Refusal> {
+    let (shard, cases) = cases(arguments)?;
+    let mut tried = all(&cases, &arguments.libraries, tolerance);
+    let accepted = if arguments.accept { accept(&cases, &mut tried)? } else { Vec::new() };
+    Ok(TestReport::new(shard, tried.into_iter().map(|tried| tried.report).collect(), accepted))
+}
+
+/// The cases that are asked for, and which part of them these are.
+fn cases(arguments: &TestArguments) -> Result<(Option<Shard>, Vec<Case>), Refusal> {
     let mut cases = Vec::new();
     for folder in &arguments.folders {
         let mut found = case::find(folder)?;
@@ -61,23 +119,10 @@ pub(super) fn run(arguments: &TestArguments) -> Result<Status, Refusal> {
             return Err(Refusal::new(format!("no case has a name with '{}'", arguments.only.join("' or '"))));
         }
     }
-    if let Some(text) = &arguments.shard {
-        let (number, of) = shard(text)?;
-        cases = cases.into_iter().skip(number - 1).step_by(of).collect();
-    }
-    let mut tried = all(&cases, arguments, tolerance);
-    let accepted = if arguments.accept { accept(&cases, &mut tried)? } else { Vec::new() };
-    let report = TestReport::new(tried.iter().map(reported), accepted);
-    match arguments.format {
-        TextFormat::Json => output::json(&report)?,
-        TextFormat::Text => output::print(&report.text())?,
-    }
-    let refused = tried.iter().any(|tried| matches!(tried.answer, Tested::Refused(_)));
-    Ok(match tried.iter().all(Tried::is_good) {
-        true => Status::Holds,
-        false if refused => Status::Refused,
-        false => Status::Fails,
-    })
+    let Some(text) = &arguments.shard else { return Ok((None, cases)) };
+    let (number, of) = shard(text)?;
+    let shard = Shard { number, of, cases: cases.len() };
+    Ok((Some(shard), cases.into_iter().skip(number - 1).step_by(of).collect()))
 }
 
 /// `2/4`: the second of four parts.
@@ -90,14 +135,14 @@ fn shard(text: &str) -> Result<(usize, usize), Refusal> {
 }
 
 /// Runs the cases on all cores; the answers are in the order of the cases.
-fn all(cases: &[Case], arguments: &TestArguments, tolerance: f64) -> Vec<Tried> {
+fn all(cases: &[Case], libraries: &[PathBuf], tolerance: f64) -> Vec<Tried> {
     let next = AtomicUsize::new(0);
     let work = || {
         let mut done = Vec::new();
         loop {
             let index = next.fetch_add(1, Ordering::Relaxed);
             let Some(case) = cases.get(index) else { return done };
-            done.push((index, case.run(&arguments.libraries, tolerance)));
+            done.push((index, case.run(libraries, tolerance)));
         }
     };
     let workers = std::thread::available_parallelism().map_or(1, usize::from).min(cases.len());
@@ -117,34 +162,15 @@ fn all(cases: &[Case], arguments: &TestArguments, tolerance: f64) -> Vec<Tried> 
 fn accept(cases: &[Case], tried: &mut [Tried]) -> Result<Vec<String>, Refusal> {
     let mut files = Vec::new();
     let mut names = Vec::new();
-    for (case, tried) in cases.iter().zip(tried.iter_mut()) {
-        let Some(record) = tried.record.as_ref().filter(|_| !matches!(tried.answer, Tested::Same)) else {
-            continue;
-        };
+    for (case, Tried { report, record }) in cases.iter().zip(tried.iter_mut()) {
+        let Some(record) = record.as_ref().filter(|_| report.answer != Answer::Same) else { continue };
         let text = record.to_json().map_err(|error| Refusal::new(error.to_string()))?;
         files.push((case.folder.join(ACCEPTED), text.into_bytes()));
-        names.push(tried.name.clone());
-        tried.answer = Tested::Same;
+        names.push(report.name.clone());
+        report.answer = Answer::Same;
+        report.changes.clear();
     }
     let files: Vec<_> = files.iter().map(|(path, bytes)| (path.as_path(), bytes.as_slice())).collect();
     output::write_all(&files)?;
     Ok(names)
-}
-
-fn reported(tried: &Tried) -> CaseReport {
-    let (answer, changes, error) = match &tried.answer {
-        Tested::Same => ("same", Vec::new(), None),
-        Tested::Changed(changes) => ("changed", changes.clone(), None),
-        Tested::New => ("new", Vec::new(), None),
-        Tested::Refused(why) => ("refused", Vec::new(), Some(why.clone())),
-    };
-    CaseReport {
-        name: tried.name.clone(),
-        answer,
-        changes,
-        against: tried.against.clone(),
-        error,
-        totals: tried.record.as_ref().map(|record| record.totals.clone()),
-        ending: tried.record.as_ref().map(|record| record.words().to_owned()),
-    }
 }

@@ -1,0 +1,55 @@
+//! `gcode-sim test --merge`: the results of shards that ran on machines side by side, as one.
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+use crate::cli::{Refusal, input};
+use crate::report::tested::TestReport;
+
+/// All results as one, the cases in the order of their names. A missing shard would look like cases that hold, so it is
+/// refused, and so is a case that stands twice.
+pub(super) fn merged(files: &[PathBuf]) -> Result<TestReport, Refusal> {
+    let mut reports = Vec::with_capacity(files.len());
+    for file in files {
+        let refused = |why: &dyn std::fmt::Display| Refusal::new(format!("{}: {why}", file.display()));
+        let report: TestReport =
+            serde_json::from_str(&input::text(file)?).map_err(|error| refused(&error))?;
+        if report.shard.is_some_and(|shard| !(1..=shard.of).contains(&shard.number)) {
+            return Err(refused(&"a shard counts from 1 to the number of shards"));
+        }
+        reports.push(report);
+    }
+    complete(&reports)?;
+    let accepted = reports.iter_mut().flat_map(|report| std::mem::take(&mut report.accepted)).collect();
+    let mut cases: Vec<_> = reports.into_iter().flat_map(|report| report.cases).collect();
+    cases.sort_by(|a, b| a.name.cmp(&b.name));
+    if let Some([first, _]) = cases.array_windows().find(|[a, b]| a.name == b.name) {
+        return Err(Refusal::new(format!("case {} is in two of the results", first.name)));
+    }
+    Ok(TestReport::new(None, cases, accepted))
+}
+
+/// All shards are there, of one collection.
+fn complete(reports: &[TestReport]) -> Result<(), Refusal> {
+    let shards: Vec<_> = reports.iter().filter_map(|report| report.shard).collect();
+    let Some(first) = shards.first() else { return Ok(()) };
+    let is_alike = |shard: &crate::report::tested::Shard| (shard.of, shard.cases) == (first.of, first.cases);
+    if shards.len() < reports.len() || !shards.iter().all(is_alike) {
+        return Err(Refusal::new("--merge: these aren't shards of one collection of cases"));
+    }
+    let there: BTreeSet<usize> = shards.iter().map(|shard| shard.number).collect();
+    let missing: Vec<String> =
+        (1..=first.of).filter(|k| !there.contains(k)).map(|k| format!("{k}/{}", first.of)).collect();
+    if !missing.is_empty() {
+        return Err(Refusal::new(format!(
+            "--merge: the results of --shard {} are missing",
+            missing.join(", ")
+        )));
+    }
+    let cases: usize = reports.iter().map(|report| report.cases.len()).sum();
+    if cases != first.cases {
+        let message =
+            format!("--merge: {cases} cases of {}: a shard is incomplete or twice there", first.cases);
+        return Err(Refusal::new(message));
+    }
+    Ok(())
+}

@@ -1,0 +1,92 @@
+//! `gcode-sim test --watch`: runs again what a saved file concerns, until Ctrl-C.
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime};
+
+use super::{TestArguments, all, case, cases};
+use crate::cli::{Refusal, Status, output};
+use crate::report::tested::TestReport;
+
+/// How often the files are looked at.
+const PAUSE: Duration = Duration::from_millis(250);
+
+/// What is known of a file without reading it: when it was written, and how long it is.
+type Stamps = BTreeMap<PathBuf, (Option<SystemTime>, u64)>;
+
+/// Tells what came of all cases, then of those that each saved file concerns; comes back only where nothing can be told.
+pub(super) fn run(arguments: &TestArguments, tolerance: f64) -> Result<Status, Refusal> {
+    let folders = || arguments.folders.iter().chain(&arguments.libraries);
+    let mut stamps = stamps(folders());
+    let mut changed: Option<Vec<PathBuf>> = None;
+    // A misspelt folder should be told at once, not waited for.
+    cases(arguments)?;
+    loop {
+        match round(arguments, tolerance, changed.as_deref()) {
+            Ok(text) => output::print(&text)?,
+            // A folder may be away while it is replaced.
+            Err(refusal) => output::tell(&format!("error: {refusal}\n")),
+        }
+        let now = next(&stamps, || self::stamps(folders()));
+        changed = Some(differing(&stamps, &now));
+        stamps = now;
+    }
+}
+
+/// The cases that the changed files concern: those in whose folders they are, or all where one is elsewhere.
+fn round(arguments: &TestArguments, tolerance: f64, changed: Option<&[PathBuf]>) -> Result<String, Refusal> {
+    let (shard, mut cases) = cases(arguments)?;
+    let mut text = String::new();
+    if let Some(changed) = changed {
+        let of = |case: &case::Case| changed.iter().any(|path| path.starts_with(&case.folder));
+        let is_of_case = |path: &PathBuf| cases.iter().any(|case| path.starts_with(&case.folder));
+        let all_of_cases = changed.iter().all(is_of_case);
+        let names: Vec<String> = changed.iter().take(3).map(|path| path.display().to_string()).collect();
+        let more = if changed.len() > 3 { format!(" and {} more", changed.len() - 3) } else { String::new() };
+        text.push_str(&format!("\nsaved: {}{more}\n", names.join(", ")));
+        if all_of_cases {
+            cases.retain(of);
+        }
+    }
+    let tried = all(&cases, &arguments.libraries, tolerance);
+    let report = TestReport::new(shard, tried.into_iter().map(|tried| tried.report).collect(), Vec::new());
+    text.push_str(&report.text());
+    Ok(text)
+}
+
+/// The stamps as soon as they are others than `old` and stay so for a pause: an editor may write in several steps.
+fn next(old: &Stamps, look: impl Fn() -> Stamps) -> Stamps {
+    let mut last = look();
+    loop {
+        std::thread::sleep(PAUSE);
+        let now = look();
+        if now == last && now != *old {
+            return now;
+        }
+        last = now;
+    }
+}
+
+fn differing(old: &Stamps, new: &Stamps) -> Vec<PathBuf> {
+    let gone = old.keys().filter(|path| !new.contains_key(*path));
+    let written = new.iter().filter(|(path, stamp)| old.get(*path) != Some(stamp)).map(|(path, _)| path);
+    gone.chain(written).cloned().collect()
+}
+
+/// All files in folders and below them.
+fn stamps<'a>(folders: impl Iterator<Item = &'a PathBuf>) -> Stamps {
+    let mut found = Stamps::new();
+    let mut left: Vec<PathBuf> = folders.cloned().collect();
+    while let Some(folder) = left.pop() {
+        let entries = std::fs::read_dir(Path::new(&folder)).into_iter().flatten().flatten();
+        for entry in entries {
+            let path = entry.path();
+            match std::fs::metadata(&path) {
+                Ok(about) if about.is_dir() => left.push(path),
+                Ok(about) => _ = found.insert(path, (about.modified().ok(), about.len())),
+                // Gone between the two looks.
+                Err(_) => {}
+            }
+        }
+    }
+    found
+}

@@ -1,0 +1,48 @@
+//! The cases of `test` as JUnit XML, the form that build servers count and show.
+use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
+
+use super::tested::{Answer, CaseReport, TestReport};
+
+/// The document of `test --format junit`: one suite, a test for each case.
+///
+/// # Errors
+/// What the writer of XML has against it.
+pub fn document(report: &TestReport) -> Result<String, String> {
+    let mut suite = TestSuite::new("programs");
+    suite.add_test_cases(report.cases.iter().map(case));
+    let mut all = Report::new("gcode-sim test");
+    all.add_test_suite(suite);
+    all.to_string().map_err(|error| error.to_string())
+}
+
+fn case(case: &CaseReport) -> TestCase {
+    // A failure is told as it is on the terminal, and in a few words for lists.
+    let mut text = String::new();
+    case.tell(&mut text);
+    let (code, message) = match (case.answer, &case.against, case.changes.first()) {
+        (Answer::Refused, ..) => ("case-refused", case.error.clone().unwrap_or_default()),
+        (Answer::Changed, _, Some(first)) => {
+            let more = case.changes.len() - 1;
+            let and = if more == 0 { String::new() } else { format!("; and {more} more") };
+            (&*first.code, format!("{}: {}{and}", first.code, first.message))
+        }
+        (_, Some(against), _) => (&*against.code, format!("{}: {}", against.code, against.message)),
+        (Answer::New, ..) => ("case-new", "nothing accepted yet".to_owned()),
+        (Answer::Same | Answer::Changed, None, _) => {
+            return named(case, TestCaseStatus::success());
+        }
+    };
+    let kind = if case.answer == Answer::Refused { NonSuccessKind::Error } else { NonSuccessKind::Failure };
+    let mut status = TestCaseStatus::non_success(kind);
+    status.set_type(code).set_message(message).set_description(text);
+    named(case, status)
+}
+
+fn named(case: &CaseReport, status: TestCaseStatus) -> TestCase {
+    let mut test = TestCase::new(case.name.as_str(), status);
+    test.set_classname("programs");
+    if let Some(file) = &case.file {
+        test.extra.insert("file".into(), file.as_str().into());
+    }
+    test
+}

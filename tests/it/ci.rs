@@ -1,0 +1,98 @@
+//! docs/ci.md is true: in a scratch repository its hook refuses a changed macro with the message that stands there, and
+//! takes it once accepted; the commands of its workflow do what its page says.
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use gcode_tests::programs::{program, run_line};
+
+fn example() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/nc-repository")
+}
+
+fn copy(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).unwrap();
+    for entry in std::fs::read_dir(from).unwrap() {
+        let path = entry.unwrap().path();
+        let target = to.join(path.file_name().unwrap());
+        if path.is_dir() { copy(&path, &target) } else { std::fs::copy(&path, target).map(drop).unwrap() }
+    }
+}
+
+/// `git` in a repository of its own, whatever the surroundings say, with gcode-sim on its path.
+fn git(place: &Path, arguments: &[&str]) -> Output {
+    let bin = PathBuf::from(program("gcode-sim").get_program()).parent().unwrap().to_owned();
+    let path = std::env::join_paths(
+        std::iter::once(bin).chain(std::env::split_paths(&std::env::var_os("PATH").unwrap_or_default())),
+    );
+    let mut command = Command::new("git");
+    for name in ["GIT_DIR", "GIT_INDEX_FILE", "GIT_WORK_TREE"] {
+        command.env_remove(name);
+    }
+    command.args(["-c", "user.name=Shop", "-c", "user.email=shop@example.com", "-c", "core.hooksPath=hooks"]);
+    command.args(arguments).current_dir(place).env("PATH", path.unwrap());
+    command.env("GIT_CONFIG_GLOBAL", "/dev/null").env("GIT_CONFIG_SYSTEM", "/dev/null");
+    command.output().expect("git is there")
+}
+
+fn page() -> String {
+    std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/ci.md")).unwrap()
+}
+
+fn move_the_row(place: &Path) {
+    let file = place.join("macros/O9001.nc");
+    let text = std::fs::read_to_string(&file).unwrap();
+    assert!(text.contains("Y5. "));
+    std::fs::write(&file, text.replace("Y5. ", "Y5.01 ")).unwrap();
+}
+
+#[cfg(unix)]
+#[test]
+fn the_hook_refuses_a_changed_macro_with_the_message_of_the_page() {
+    let place = tempfile::tempdir().unwrap();
+    let place = place.path();
+    copy(&example(), place);
+    assert!(git(place, &["init", "--quiet"]).status.success());
+    git(place, &["add", "--all"]);
+    let first = git(place, &["commit", "--quiet", "-m", "Programs"]);
+    assert!(first.status.success(), "{first:?}");
+
+    move_the_row(place);
+    // The change is in the folder and not staged: a commit of something else isn't about it.
+    std::fs::write(place.join("notes.txt"), "Plate: 4 holes\n").unwrap();
+    git(place, &["add", "notes.txt"]);
+    assert!(git(place, &["commit", "--quiet", "-m", "Notes"]).status.success());
+
+    let refused = git(place, &["commit", "--quiet", "-a", "-m", "Row moved"]);
+    assert_eq!(refused.status.code(), Some(1));
+    let said = [refused.stdout, refused.stderr].concat();
+    let said = String::from_utf8(said).unwrap();
+    assert!(page().contains(&format!("```text\n{said}```")), "docs/ci.md shows something else than\n{said}");
+
+    run_line("gcode-sim test parts --lib macros --accept", place);
+    let taken = git(place, &["commit", "--quiet", "-a", "-m", "Row moved"]);
+    assert!(taken.status.success(), "{taken:?}");
+    let moved = String::from_utf8(git(place, &["show", "HEAD", "--", "parts"]).stdout).unwrap();
+    assert!(moved.contains("+{\"entry\":[10.0,5.01,"), "{moved}");
+}
+
+/// The lines of the workflow that run gcode-sim, with the numbers of the shards in.
+#[test]
+fn the_commands_of_the_workflow_do_what_the_page_says() {
+    let text = std::fs::read_to_string(example().join(".github/workflows/programs.yml")).unwrap();
+    let place = tempfile::tempdir().unwrap();
+    copy(&example(), place.path());
+    move_the_row(place.path());
+    let mut codes = Vec::new();
+    for line in text.lines().filter_map(|line| line.trim().strip_prefix("- run: gcode-sim ")) {
+        let command = line.split("||").next().unwrap();
+        let shards = if command.contains("matrix.shard") { 1..=2 } else { 1..=1 };
+        for shard in shards {
+            let command = command.replace("${{ matrix.shard }}", &shard.to_string());
+            codes.push(run_line(&format!("gcode-sim {command}"), place.path()).status.code().unwrap());
+        }
+    }
+    assert_eq!(codes, [1, 0, 1, 1, 1], "one shard has the changed case, the other none");
+    let sarif = std::fs::read_to_string(place.path().join("result.sarif")).unwrap();
+    assert!(sarif.contains("\"uri\": \"macros/O9001.nc\""), "{sarif}");
+    assert!(std::fs::read_to_string(place.path().join("result.xml")).unwrap().contains("failures=\"1\""));
+}
