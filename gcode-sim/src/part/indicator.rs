@@ -93,7 +93,7 @@ mod tests {
     /// both radii come out; with the proportions of a flatter dome the change is sixteen times that.
     #[test]
     fn figure_5_can_be_had() {
-        let tilt = at(1133.266_655, 1082.596_426, 200.0, -1.0);
+        let tilt = at(1_133.266_655, 1_082.596_426, 200.0, -1.0);
         assert!((tilt.radius.0 - 1113.76).abs() < 1e-3 && (tilt.change.0 + 0.35).abs() < 1e-5, "{tilt:?}");
         let flat = at(1158.8, 724.3, 200.0, -1.0);
         assert!((flat.radius.0 - 1113.747).abs() < 1e-3 && (flat.change.0 + 5.683).abs() < 1e-3, "{flat:?}");

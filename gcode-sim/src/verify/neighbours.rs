@@ -16,7 +16,7 @@ pub struct Neighbours {
     pub metric: &'static str,
     /// The distance wanted of all neighbours: the pitch with which the pattern closes.
     pub wanted: f64,
-    /// Holes that have all six, and how many should.
+    /// Of the holes wanted inside the pattern, those that are drilled and have all six; how many are wanted there.
     pub with_six: usize,
     pub with_six_wanted: usize,
     /// The two neighbours that are nearest to one another, and those that are farthest apart.
@@ -66,12 +66,13 @@ pub(super) fn neighbours(
     let min = known().min_by(|a, b| a.1.min.total_cmp(&b.1.min));
     // Of equal ones the first, as for the smallest.
     let max = known().rev().max_by(|a, b| a.1.max.total_cmp(&b.1.max));
-    let six = |around: &[Option<Around>]| around.iter().flatten().filter(|a| a.count == SIX).count();
+    let six = |around: &Option<Around>| around.is_some_and(|around| around.count == SIX);
+    let inner = comparison.pairs.iter().filter(|pair| six(&around_wanted[pair.wanted]));
     let summary = Neighbours {
         metric: pattern.metric.name(),
         wanted: pattern.pitch,
-        with_six: six(&around),
-        with_six_wanted: six(&around_wanted),
+        with_six: inner.filter(|pair| six(&around[pair.found])).count(),
+        with_six_wanted: around_wanted.iter().filter(|around| six(around)).count(),
         min: min.map(|(index, around)| distance(index, around.nearest, around.min)),
         max: max.map(|(index, around)| distance(index, around.farthest, around.max)),
     };
