@@ -408,7 +408,7 @@ fn moves_without_measure_end_in_a_finding() {
 
 #[test]
 fn where_the_axes_stand_at_the_start_is_told_as_not_checked() {
-    let verdict = passed(&example());
+    let verdict = passed(&two_flutes());
     let told = "rapid motion up to where the wheel first stands off the blank (1 move)";
     assert!(verdict.not_checked.iter().any(|line| line.starts_with(told)), "{:?}", verdict.not_checked);
 }
@@ -445,5 +445,15 @@ fn a_cylinder_of_less_than_an_increment_is_none() {
     for form in ["moves", "loop"] {
         passed(&Wish { diameter: 6.01912604312952, flutes: 1, helix: 5.0, form, ..nose.clone() });
         passed(&Wish { cylinder: 0.000_4, flutes: 1, form, ..example() });
+    }
+}
+
+/// A small burr without a cylinder, of a single flute: its one pass is seen, with the radii in mm and in parts of its own.
+#[test]
+fn one_flute_without_a_cylinder_is_ground() {
+    let small = Wish { diameter: 4.0, cylinder: 0.0, flutes: 1, helix: 5.0, tip_angle: 8.0, ..example() };
+    let written = Wish { form: "moves", chord_error: 0.005, ..small };
+    for profile in [(2.6245 / 2.0, 0.6516 / 2.0), (2.6245, 0.6516)] {
+        assert_eq!(passed(&Wish { profile: Some(profile), ..written.clone() }).flutes, 1);
     }
 }
