@@ -62,9 +62,11 @@ impl Cost {
         self.taken.all() / 60.0 * self.rate
     }
 
-    /// How much less than on `other`, in percent of that; negative where it costs less.
-    pub fn change(&self, other: &Self) -> f64 {
-        (self.cost() / other.cost() - 1.0) * 100.0
+    /// How much more than on `other`, in percent of that, negative where it costs less; `None` where a time is given for one
+    /// of them only, which makes any difference.
+    pub fn change(&self, other: &Self) -> Option<f64> {
+        let alike = self.taken.not_counted() == other.taken.not_counted();
+        alike.then(|| (self.cost() / other.cost() - 1.0) * 100.0)
     }
 }
 
@@ -125,11 +127,15 @@ mod tests {
         let rates = Rates { currency: "CNY".into(), rate: 100.0, beside: vec![other.clone()] };
         let costs = costs(&rates, &two_hours());
         assert_eq!((costs[0].cost(), costs[1].cost()), (200.0, 800.0));
-        assert_eq!(costs[0].change(&costs[1]), -75.0);
+        assert_eq!(costs[0].change(&costs[1]), Some(-75.0));
         // Without stops there, 60 min: 400, and half of it is saved.
         let minutes = Minutes { stop: Some(0.0), ..Minutes::default() };
         let rates = Rates { beside: vec![Beside { minutes, ..other }], ..rates };
         let costs = super::costs(&rates, &two_hours());
-        assert_eq!((costs[1].cost(), costs[0].change(&costs[1])), (400.0, -50.0));
+        assert_eq!((costs[1].cost(), costs[0].change(&costs[1])), (400.0, Some(-50.0)));
+        // A set-up that only the other one has would look like a saving.
+        let silent = Taken { minutes: Minutes { setup: None, ..two_hours().minutes }, ..two_hours() };
+        let other = Cost { taken: silent, ..costs[1].clone() };
+        assert_eq!(costs[0].change(&other), None);
     }
 }

@@ -71,10 +71,12 @@ impl<'a> Sheet<'a> {
             let price = format!("{} {} a part", near(cost.cost(), 2), rates.currency);
             text += &match &cost.machine {
                 None => format!("{price}\n"),
-                Some(machine) => {
-                    let change = signed_to(costs[0].change(cost), 1);
-                    format!("{price} on {machine}; this job {change} %\n")
-                }
+                Some(machine) => match costs[0].change(cost) {
+                    Some(change) => format!("{price} on {machine}; this job {} %\n", signed_to(change, 1)),
+                    None => {
+                        format!("{price} on {machine}; not compared: a time is given for one of them only\n")
+                    }
+                },
             };
         }
         text

@@ -92,7 +92,11 @@ fn beside(own: &Cost, other: &Cost) -> Markup {
     html! {
         p {
             "Against " (other.machine.as_deref().unwrap_or("")) ": "
-            b { (signed_to(own.change(other), 1)) " %" } " (" (near(own.cost(), 2)) " beside " (near(other.cost(), 2)) ")."
+            @match own.change(other) {
+                Some(change) => b { (signed_to(change, 1)) " %" },
+                None => "not compared, because a time is given for one of them only",
+            }
+            " (" (near(own.cost(), 2)) " beside " (near(other.cost(), 2)) ")."
         }
     }
 }
