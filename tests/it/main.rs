@@ -19,6 +19,7 @@ mod explain;
 mod honeycomb;
 mod limits;
 mod misplaced;
+mod packaging;
 mod page;
 mod pin_holes;
 mod real_files;

@@ -8,6 +8,7 @@ use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
 use gcode_sim::cli::front::{self, Colours};
+use gcode_sim::cli::packaging::{self, ManArguments, ShellArguments};
 use gcode_sim::cli::{Refusal, Status, output};
 
 /// Emits parametric Fanuc macro programs in which the control itself computes the geometry.
@@ -78,6 +79,18 @@ What only people know (part, drawing, minutes, rates) is the job's section [shee
         #[arg(long, value_name = "RATES.toml")]
         rates: Option<PathBuf>,
     },
+
+    /// Write the completions of a shell to standard output
+    #[command(after_help = "\
+Example:
+  gcode-gen completions bash > ~/.local/share/bash-completion/completions/gcode-gen")]
+    Completions(ShellArguments),
+
+    /// Write the manual pages into a folder, one a command
+    #[command(after_help = "\
+Example:
+  gcode-gen man ~/.local/share/man/man1")]
+    Man(ManArguments),
 }
 
 fn families() -> clap::builder::PossibleValuesParser {
@@ -95,6 +108,8 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Status {
         Command::New { family, output } => new::run(family, output.as_deref()),
         Command::Emit { job, out } => emit::run(job, out),
         Command::Sheet { job, output, rates } => sheet::run(job, output, rates.as_deref()),
+        Command::Completions(shell) => packaging::completions::<Arguments>(shell),
+        Command::Man(folder) => packaging::man::<Arguments>(folder),
     };
     done.unwrap_or_else(|refusal: Refusal| {
         output::tell(&format!("error: {refusal}\n"));

@@ -11,6 +11,7 @@ use super::diff::DiffArguments;
 use super::explain::ExplainArguments;
 use super::front::Colours;
 use super::holes::HolesArguments;
+use super::packaging::{ManArguments, ShellArguments};
 use super::readings::ReadingsArguments;
 use super::reference::ReferenceArguments;
 use super::render::RenderArguments;
@@ -147,6 +148,18 @@ Examples:
   gcode-sim explain hole-position
   gcode-sim explain --list")]
     Explain(ExplainArguments),
+
+    /// Write the completions of a shell to standard output
+    #[command(after_help = "\
+Example:
+  gcode-sim completions bash > ~/.local/share/bash-completion/completions/gcode-sim")]
+    Completions(ShellArguments),
+
+    /// Write the manual pages into a folder, one a command
+    #[command(after_help = "\
+Example:
+  gcode-sim man ~/.local/share/man/man1")]
+    Man(ManArguments),
 
     /// Compare two pictures and mark what differs
     #[command(after_help = "\

@@ -11,6 +11,7 @@ pub mod input;
 pub mod library;
 mod options;
 pub mod output;
+pub mod packaging;
 mod page;
 mod progress;
 mod readings;
@@ -86,6 +87,8 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Status {
         Command::Budget(arguments) => budget::run(&arguments),
         Command::Settings => settings::run(),
         Command::Explain(arguments) => explain::run(&arguments),
+        Command::Completions(shell) => packaging::completions::<Arguments>(&shell),
+        Command::Man(folder) => packaging::man::<Arguments>(&folder),
         Command::Compare(arguments) => compare::run(&arguments),
     };
     done.unwrap_or_else(|refusal| {
