@@ -2,6 +2,7 @@
 #![expect(clippy::unwrap_used, clippy::disallowed_methods, reason = "tests read files and may panic")]
 
 mod accepted;
+mod alignment;
 mod arithmetic;
 mod budget;
 mod burr;

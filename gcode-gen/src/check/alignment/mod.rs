@@ -2,6 +2,7 @@
 //! not written.
 mod chord;
 mod ellipse;
+mod runout;
 
 use gcode_sim::diag::Severity;
 use gcode_sim::exec::{Outcome, Value};
@@ -29,7 +30,11 @@ struct Tried {
 type Trial = fn(&Bench<'_>) -> Result<Tried, CheckError>;
 
 /// What each main program has to find.
-const TRIALS: &[(u32, Trial)] = &[(alignment::CHORD, chord::tried), (alignment::ELLIPSE, ellipse::tried)];
+const TRIALS: &[(u32, Trial)] = &[
+    (alignment::CHORD, chord::tried),
+    (alignment::RUNOUT, runout::tried),
+    (alignment::ELLIPSE, ellipse::tried),
+];
 
 pub(super) fn check(job: &Alignment, package: &Package) -> Result<Checked, CheckError> {
     let mut checked = Checked {

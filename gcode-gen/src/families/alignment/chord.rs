@@ -13,12 +13,21 @@ pub const MAIN: u32 = 8200;
 
 /// The pair and the correction.
 const MATCH: u32 = 8201;
+/// Candidates where none were entered.
+const TOUCH: u32 = 8202;
+
+/// First common variable of the candidates of E and of F, and how a spiral turns from one candidate to the next: the golden
+/// angle, and another one the other way, so that no two pairs are alike.
+const POINTS: [(&str, f64, f64); 2] = [("E", 501.0, 137.508), ("F", 531.0, -100.0)];
 
 pub(super) const MEASUREMENT: Measurement = Measurement {
     main: MAIN,
     title: "CHORD E F OF A PART TO BE SET UP",
     write,
-    macros: &[Macro { number: MATCH, file: "O8201_chord.nc", text: include_str!("chord.nc") }],
+    macros: &[
+        Macro { number: MATCH, file: "O8201_chord.nc", text: include_str!("chord.nc") },
+        Macro { number: TOUCH, file: "O8202_candidates.nc", text: include_str!("candidates.nc") },
+    ],
 };
 
 fn write(job: &Alignment, text: &mut Text) {
@@ -33,22 +42,43 @@ fn write(job: &Alignment, text: &mut Text) {
         "#570 #571 THE CHOSEN NUMBERS, #572 THEIR CHORD LESS THAT OF THE MODEL".to_owned(),
         "#573-#576 WHAT IS ADDED TO THE WORK OFFSET IN X Y Z AND THE ROTARY".to_owned(),
         "#577 TILT OF THE CHORD ABOUT Z, NOT CORRECTED".to_owned(),
-        format!("CALLS O{MATCH}, ALARMS {k}061-{k}069. NOTHING MOVES"),
+        format!("CALLS O{TOUCH}, WHICH TOUCHES THEM WHERE NONE WERE ENTERED OR A CHORD"),
+        "WAS MADE FROM THEM ALREADY, #578 1., AND MOVES NOTHING ELSE".to_owned(),
+        format!("CALLS O{MATCH}, THE PAIR AND THE WORK OFFSET"),
+        format!("ALARMS {k}061-{k}069 BY O{MATCH}, {k}121-{k}134 BY O{TOUCH}"),
+        "START WITH THE BALL CLEAR OF THE PART, ABOVE IT OR AT +X".to_owned(),
         format!("AFTERWARDS {rotary}0. TURNS THE CHORD INTO THE PLANE Z 0"),
     ] {
         text.remark(line);
     }
     text.block(Block::of("G21"));
     text.block(Block::of("G00 G17 G40 G49 G54 G80 G90 G94"));
+    for ((name, first, turn), x) in POINTS.into_iter().zip([&e, &f]) {
+        text.block(touch(job, first, turn, x).comment(name));
+    }
     text.block(
         Block::call(MATCH)
             .word('A', number(job.surface.a))
             .word('B', number(job.surface.b))
-            .word('D', e)
-            .word('E', f)
+            .word('D', &e)
+            .word('E', &f)
             .word('H', number(f64::from(chord.candidates)))
             .word('U', number(f64::from(job.machine.rotary.sign)))
             .comment("CHORD"),
     );
     text.block(Block::of("M30"));
+}
+
+fn touch(job: &Alignment, first: f64, turn: f64, x: &str) -> Block {
+    Block::call(TOUCH)
+        .word('A', number(job.surface.a))
+        .word('B', number(job.surface.b))
+        .word('C', number(job.chord.circle))
+        .word('D', x)
+        .word('F', number(job.probe_feed))
+        .word('H', number(f64::from(job.chord.candidates)))
+        .word('I', number(first))
+        .word('K', number(turn))
+        .word('R', number(job.probe_radius))
+        .word('V', number(job.probe_search))
 }

@@ -7,6 +7,7 @@ mod chord;
 mod ellipse;
 mod machine_file;
 mod resident;
+mod runout;
 
 use gcode_sim::job::Alignment;
 
@@ -17,6 +18,7 @@ use crate::package::{Package, Program};
 
 pub use chord::MAIN as CHORD;
 pub use ellipse::MAIN as ELLIPSE;
+pub use runout::MAIN as RUNOUT;
 
 pub const FAMILY: Family =
     Family { name: "alignment", new_job: include_str!("new.toml"), resident: resident::of_the_defaults };
@@ -33,7 +35,7 @@ struct Measurement {
 }
 
 /// Every measurement there is.
-const ALL: &[Measurement] = &[chord::MEASUREMENT, ellipse::MEASUREMENT];
+const ALL: &[Measurement] = &[chord::MEASUREMENT, runout::MEASUREMENT, ellipse::MEASUREMENT];
 
 /// The main programs, the resident macros and the machine file of a job.
 pub fn emit(job: &Alignment) -> Package {

@@ -32,6 +32,8 @@ struct File {
 #[serde(deny_unknown_fields)]
 struct FileProbe {
     radius: Spanned<f64>,
+    feed: Option<Spanned<f64>>,
+    search: Option<Spanned<f64>>,
 }
 
 #[derive(Deserialize)]
@@ -64,15 +66,22 @@ pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<Alignment, JobError> 
     let surface = file.surface.check(reader)?;
     let control = file.control.check(reader)?;
     let chord = file.chord.check(reader, surface)?;
+    let probe = &file.probe;
+    let of_probe = |key: &str, value: &Spanned<f64>, unit: &str| {
+        reader.number(key, value, &format!("0.01 to 1000 {unit}"), within(0.01, 1000.0))
+    };
     Ok(Alignment {
         control,
         machine: file.machine.check(reader)?,
-        probe_radius: reader.number(
-            "probe.radius",
-            &file.probe.radius,
-            "0.01 to 1000 mm",
-            within(0.01, 1000.0),
-        )?,
+        probe_radius: of_probe("probe.radius", &probe.radius, "mm")?,
+        probe_feed: match &probe.feed {
+            Some(feed) => of_probe("probe.feed", feed, "mm/min")?,
+            None => 100.0,
+        },
+        probe_search: match &probe.search {
+            Some(search) => of_probe("probe.search", search, "mm")?,
+            None => 10.0,
+        },
         sine_table: file.sine_table.check(reader)?,
         chord,
         runout: file.runout.check(reader, surface)?,
@@ -113,9 +122,16 @@ impl FileChord {
         let allowed = format!("0 to the equatorial radius a = {} mm", surface.a);
         let radius = |key: &str, value| reader.number(key, value, &allowed, within(0.0, surface.a));
         let candidates = *self.candidates.as_ref();
+        let e_radius = radius("chord.e_radius", &self.e_radius)?;
+        let f_radius = radius("chord.f_radius", &self.f_radius)?;
+        if e_radius == f_radius {
+            let message =
+                format!("key 'chord.f_radius' is {f_radius}: as large as e_radius, and there is no chord");
+            return Err(reader.error(&self.f_radius, message));
+        }
         Ok(Chord {
-            e_radius: radius("chord.e_radius", &self.e_radius)?,
-            f_radius: radius("chord.f_radius", &self.f_radius)?,
+            e_radius,
+            f_radius,
             circle: length(reader, "chord.circle", &self.circle)?,
             // Three common variables a point, thirty for each end of the chord.
             candidates: u32::try_from(candidates).ok().filter(|n| (1..=10).contains(n)).ok_or_else(|| {
@@ -138,8 +154,8 @@ impl FileRunout {
         };
         let (from, to, readings) = *self.angles.as_ref();
         let fits = from.abs() <= 360.0 && to.abs() <= 360.0 && from < to;
-        if !(fits && (3.0..=1000.0).contains(&readings) && readings.fract() == 0.0) {
-            let message = "key 'runout.angles' is from, to and the number of readings: degrees, -360 to 360, and 3 to 1000";
+        if !(fits && (3.0..=100.0).contains(&readings) && readings.fract() == 0.0) {
+            let message = "key 'runout.angles' is from, to and the number of readings: degrees, -360 to 360, and 3 to 100";
             return Err(reader.error(&self.angles, message));
         }
         Ok(Runout { heights, from, to, readings: readings as u32 })
@@ -179,6 +195,7 @@ angles = [-25.0, 25.0, 11]
     #[test]
     fn everything_a_job_says_is_read() {
         let Ok(Job::Alignment(job)) = Job::parse(JOB) else { panic!("no alignment: {JOB}") };
+        assert_eq!((job.probe_feed, job.probe_search), (100.0, 10.0));
         assert_eq!((job.probe_radius, job.surface.b, job.sine_table.phi), (3.0, 724.3, 38.5));
         assert_eq!((job.sine_table.length, job.sine_table.gauge_blocks.name), (200.0, "metric-87"));
         assert_eq!((job.chord.e_radius, job.chord.candidates), (812.4, 10));
@@ -191,7 +208,11 @@ angles = [-25.0, 25.0, 11]
         for (from, to, message) in [
             ("[probe]\nradius = 3.0\n", "", "key 'probe' is missing"),
             ("radius = 3.0", "radius = 0", "line 12: key 'probe.radius' is 0: 0.01 to 1000 mm"),
-            ("radius = 3.0", "diameter = 6", "line 12: key 'probe.diameter' is not known; allowed: radius"),
+            (
+                "radius = 3.0",
+                "diameter = 6",
+                "line 12: key 'probe.diameter' is not known; allowed: radius, feed, search",
+            ),
             ("phi = 38.5", "phi = 46", "line 15: key 'sine_table.phi' is 46: 0 to 45 degrees"),
             ("length = 200.0", "length = 5", "line 14: key 'sine_table.length' is 5: 10 to 2000 mm"),
             (
@@ -209,6 +230,12 @@ angles = [-25.0, 25.0, 11]
             ("candidates = 10", "candidates = 11", "line 21: key 'chord.candidates' is 11: 1 to 10"),
             (
                 "e_radius = 812.4",
+                "e_radius = 318",
+                "line 19: key 'chord.f_radius' is 318: as large as e_radius, and there is no chord",
+            ),
+            ("radius = 3.0", "radius = 3.0\nfeed = 0", "line 13: key 'probe.feed' is 0: 0.01 to 1000 mm/min"),
+            (
+                "e_radius = 812.4",
                 "e_radius = 1200.0",
                 "line 18: key 'chord.e_radius' is 1200: 0 to the equatorial radius a = 1158.8 mm",
             ),
@@ -220,7 +247,7 @@ angles = [-25.0, 25.0, 11]
             (
                 "25.0, 11]",
                 "25.0, 2]",
-                "line 24: key 'runout.angles' is from, to and the number of readings: degrees, -360 to 360, and 3 to 1000",
+                "line 24: key 'runout.angles' is from, to and the number of readings: degrees, -360 to 360, and 3 to 100",
             ),
         ] {
             let text = JOB.replacen(from, to, 1);

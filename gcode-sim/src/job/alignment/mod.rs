@@ -15,6 +15,10 @@ pub struct Alignment {
     pub surface: Surface,
     /// Radius of the stylus ball.
     pub probe_radius: f64,
+    /// mm/min of a touch.
+    pub probe_feed: f64,
+    /// A touch begins this far before where the surface should be, and ends as far behind it.
+    pub probe_search: f64,
     pub sine_table: SineTable,
     pub chord: Chord,
     pub runout: Runout,
@@ -59,7 +63,9 @@ pub struct EllipsePath {
 pub struct Runout {
     /// The two y of the indicator.
     pub heights: [f64; 2],
+    /// Where the rotary stands at the first reading and at the last.
     pub from: f64,
     pub to: f64,
+    /// At each height; 3 to 100.
     pub readings: u32,
 }

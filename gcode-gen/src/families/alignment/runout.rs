@@ -1,0 +1,75 @@
+//! Run-out: the part touched along X at two heights over the petal's angles, and its shift and tilt fitted on the
+//! control. After the operator's correction a second pass shows what remains.
+use gcode_sim::job::Alignment;
+
+use super::{Macro, Measurement, common_remarks};
+use crate::families::control;
+use crate::nc::block::Block;
+use crate::nc::number::number;
+use crate::nc::program::Program as Text;
+
+/// The main program.
+pub const MAIN: u32 = 8210;
+
+/// Readings and fit.
+const FIT: u32 = 8211;
+
+pub(super) const MEASUREMENT: Measurement = Measurement {
+    main: MAIN,
+    title: "RUN-OUT OF A PART TO BE SET UP",
+    write,
+    macros: &[Macro { number: FIT, file: "O8211_run_out.nc", text: include_str!("runout.nc") }],
+};
+
+fn write(job: &Alignment, text: &mut Text) {
+    let rotary = job.machine.rotary.letter;
+    let runout = &job.runout;
+    let k = control::alarm_thousands(job.control.dialect);
+    let [low, high] = runout.heights.map(number);
+    let [from, to] = [runout.from, runout.to].map(number);
+    text.remark(format!(
+        "{} READINGS FROM {rotary}{from} TO {rotary}{to} AT Y {low} AND Y {high}",
+        runout.readings
+    ));
+    common_remarks(job, text);
+    for line in [
+        format!("CALLS O{FIT} TWICE, BETWEEN THEM A STOP TO CORRECT THE PART"),
+        "#580 #581 SHIFT OF THE PART IN X AND Z, #582 #583 ITS TILT ABOUT".to_owned(),
+        "X AND Z, OF THE LAST PASS. THE PART IS MOVED BY THE OPPOSITE".to_owned(),
+        "#584 ITS SHIFT IN Y, LESS SURE. #585 WHAT THE FIT LEAVES".to_owned(),
+        "#590-#595 THE SAME OF THE FIRST PASS".to_owned(),
+        format!("ALARMS {k}141-{k}157 BY O{FIT}"),
+        format!("START WITH THE BALL CLEAR OF THE PART, ABOVE IT OR AT +X, {rotary} FREE"),
+        "TO TURN".to_owned(),
+    ] {
+        text.remark(line);
+    }
+    text.block(Block::of("G21"));
+    text.block(Block::of("G00 G17 G40 G49 G54 G80 G90 G94"));
+    text.block(pass(job).comment("FIRST PASS"));
+    for of_pass in 0..6 {
+        text.block(Block::of(format!("#{}=#{}", 590 + of_pass, 580 + of_pass)));
+    }
+    text.block(Block::of("#3006=1(CORRECT BY #580-#583)"));
+    text.block(pass(job).comment("WHAT REMAINS"));
+    text.block(Block::of("M30"));
+}
+
+fn pass(job: &Alignment) -> Block {
+    let runout = &job.runout;
+    let [low, high] = runout.heights;
+    let arguments = [
+        ('A', job.surface.a),
+        ('B', job.surface.b),
+        ('R', job.probe_radius),
+        ('I', low),
+        ('J', high),
+        ('D', runout.from),
+        ('E', runout.to),
+        ('H', f64::from(runout.readings)),
+        ('F', job.probe_feed),
+        ('V', job.probe_search),
+        ('U', f64::from(job.machine.rotary.sign)),
+    ];
+    arguments.into_iter().fold(Block::call(FIT), |block, (letter, value)| block.word(letter, number(value)))
+}
