@@ -243,6 +243,26 @@ fn what_a_program_says_is_text_and_nothing_else() {
 }
 
 #[test]
+fn a_program_that_stops_shows_where_and_why() {
+    let old = b"O1\n#1=4.\nG0 X[#1/2.]\nM30\n";
+    let (_place, page) = of_texts(old, b"O1\n#1=4.\nG0 X[#1/0]\nM30\n");
+    let text = std::fs::read_to_string(&page).unwrap();
+    assert!(text.contains("New: stopped, alarm PS0112"), "the answer names the alarm");
+    let Some(browser) = Browser::start(1200, 900) else { return };
+    browser.open(&page);
+    // From the alarm to its line; nothing is there to be drawn on the new side.
+    browser.click("#told .alarm .place a");
+    assert_eq!(landed(&browser), "new-0-3 G0 X[#1/0]");
+    let halves = browser.run(
+        "return ['old-0-3', 'new-0-3', 'old-0-4', 'new-0-4'].map((id) => document.getElementById(id).classList.contains('done'))",
+    );
+    assert_eq!(halves, json!([true, true, true, false]), "M30 of the new program is never reached");
+    let values = browser.run("return document.querySelector('#old-0-2 .values').textContent.trim()");
+    assert_eq!(values, "#1 ← 4");
+    is_quiet(&browser);
+}
+
+#[test]
 fn a_long_program_is_cut_and_says_so() {
     let moves = "WHILE[#1 LT 45000]DO1\n#1=#1+1\nG1 X[#1 MOD 100] Y[#1/1000.] F900\nEND1\n";
     let program = format!("O1\n#1=0\nG0 Z5.\n{moves}G0 Z50.\nM30\n");

@@ -195,7 +195,7 @@ fn said(values: &Values) -> String {
     if !constant {
         text.push_str(&format!(" … {last} ({}×", values.times));
         if let Some((low, high)) = values.range {
-            let outside = |bound: f64| bound != values.first.number() && bound != values.last.number();
+            let outside = |bound: f64| ![values.first, values.last].contains(&Value::Number(bound));
             if outside(low) || outside(high) {
                 text.push_str(&format!(", from {} to {}", value(low), value(high)));
             }
@@ -241,5 +241,44 @@ fn half_of(half: &Half<'_>, line: u32, text: &Text, side: &Side<'_>) -> Markup {
                 span.values { @for one in &half.values { span { (one) } " " } }
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn text(lines: &[&str]) -> Text {
+        let lines = lines.iter().map(|line| (*line).to_owned()).collect();
+        Text { source: SourceId(0), name: "O1.nc".to_owned(), programs: vec!["O0001".to_owned()], lines }
+    }
+
+    #[test]
+    fn equal_lines_stand_side_by_side() {
+        let (old, new) = (text(&["O1", "G0 X1.", "M30"]), text(&["O1", "G0 X2.", "G0 X3.", "M30"]));
+        let expected =
+            [vec![Some(0), Some(0)], vec![Some(1), Some(1)], vec![None, Some(2)], vec![Some(2), Some(3)]];
+        assert_eq!(lines(&vec![Some(&old), Some(&new)]), expected);
+        assert_eq!(lines(&vec![None, Some(&old)]).len(), 3);
+    }
+
+    #[test]
+    fn values_are_told_by_their_first_last_and_extremes() {
+        let number = Value::Number;
+        let one = Values {
+            number: 7,
+            role: Role::Read,
+            times: 1,
+            first: number(2.5),
+            last: number(2.5),
+            range: Some((2.5, 2.5)),
+        };
+        assert_eq!(said(&one), "#7 2.5");
+        assert_eq!(said(&Values { role: Role::Assigned, ..one }), "#7 ← 2.5");
+        let several = Values { times: 4, last: number(1.0), range: Some((1.0, 2.5)), ..one };
+        assert_eq!(said(&several), "#7 2.5 … 1 (4×)");
+        assert_eq!(said(&Values { range: Some((-3.0, 2.5)), ..several }), "#7 2.5 … 1 (4×, from -3 to 2.5)");
+        let vacant = Values { first: Value::Vacant, ..several };
+        assert_eq!(said(&vacant), "#7 vacant … 1 (4×, from 1 to 2.5)");
     }
 }

@@ -72,7 +72,7 @@ fn stops(side: &Side<'_>) -> Markup {
                         }
                     }
                     " " (shown(&stop.text))
-                    @for (number, number_value) in &stop.named { " #" (number) " = " (value(*number_value)) }
+                    @for (number, number_value) in &stop.named { ", #" (number) " = " (value(*number_value)) }
                     @if let Some(place) = places.get(number) { div.place { (chain(place, side.lines)) } }
                 }
             }

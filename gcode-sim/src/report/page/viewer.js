@@ -115,31 +115,60 @@ class Side {
     this.drawAxes(colours);
   }
 
+  // The entry of a hole looks away from who looks.
+  isAway(hole) {
+    const near = this.view.rows[2];
+    return [0, 1, 2].reduce((sum, axis) => sum + near[axis] * (hole.entry[axis] - hole.bottom[axis]), 0) < -1e-9;
+  }
+
   drawHoles(colours, pick) {
-    const context = this.context;
-    const named = this.holes.length <= 60;
-    context.font = "12px system-ui, sans-serif";
+    const isPicked = (hole) => hole === pick.hole || (hole.row !== null && hole.row === pick.row);
+    const wrong = (hole) => ["bad", "extra", "changed", "missing"].includes(hole.state);
+    const kind = (hole) => (isPicked(hole) ? "pick" : wrong(hole) ? "wrong" : "hole");
+    const groups = new Map();
     for (const hole of this.holes) {
-      const isPicked = hole === pick.hole || (hole.row !== null && hole.row === pick.row);
-      const wrong = ["bad", "extra", "changed", "missing"].includes(hole.state);
-      const colour = isPicked ? colours.pick : wrong ? colours.wrong : colours.hole;
-      const [x, y] = this.point(hole.entry);
-      const [bx, by] = this.point(hole.bottom);
-      const radius = Math.max(3, (hole.diameter / 2) * this.view.scale);
-      Object.assign(context, { strokeStyle: colour, fillStyle: colour, lineWidth: isPicked ? 3 : 1.5 });
-      context.beginPath();
-      context.moveTo(x, y);
-      context.lineTo(bx, by);
-      context.stroke();
-      context.setLineDash(hole.state === "missing" ? [3, 3] : []);
-      for (const more of wrong ? [0, 4] : [0]) {
-        context.beginPath();
-        context.arc(x, y, radius + more, 0, 2 * Math.PI);
-        context.stroke();
-      }
-      context.setLineDash([]);
-      if (named || isPicked) context.fillText(hole.id, x + radius + 7, y - radius - 3);
+      const name = `${this.isAway(hole) ? "a" : "b"} ${kind(hole)} ${hole.state === "missing"}`;
+      if (!groups.has(name)) groups.set(name, []);
+      groups.get(name).push(hole);
     }
+    const context = this.context;
+    const many = this.holes.length > 500;
+    // Those that look away first and faint, those that are right before those that are wrong.
+    const order = (name) => [name[0], ["hole", "wrong", "pick"].indexOf(name.split(" ")[1])].join("");
+    for (const name of [...groups.keys()].sort((a, b) => (order(a) < order(b) ? -1 : 1))) {
+      const [away, role, isMissing] = name.split(" ");
+      const style = { globalAlpha: away === "a" && role === "hole" ? 0.3 : 1, strokeStyle: colours[role], fillStyle: colours[role] };
+      Object.assign(context, style, { lineWidth: role === "pick" ? 3 : many ? 0.8 : 1.5 });
+      context.setLineDash(isMissing === "true" ? [3, 3] : []);
+      this.strokeHoles(groups.get(name), role !== "hole");
+      context.setLineDash([]);
+      context.font = "12px system-ui, sans-serif";
+      for (const hole of this.holes.length <= 60 || role !== "hole" ? groups.get(name).slice(0, 60) : []) {
+        const [x, y] = this.point(hole.entry);
+        const radius = this.radius(hole);
+        context.fillText(hole.id, x + radius + 7, y - radius - 3);
+      }
+    }
+    context.globalAlpha = 1;
+  }
+
+  radius(hole) {
+    return Math.max(this.holes.length > 500 ? 1.5 : 3, (hole.diameter / 2) * this.view.scale);
+  }
+
+  strokeHoles(holes, ringed) {
+    const context = this.context;
+    context.beginPath();
+    for (const hole of holes) {
+      const [x, y] = this.point(hole.entry);
+      context.moveTo(x, y);
+      context.lineTo(...this.point(hole.bottom));
+      for (const radius of ringed ? [this.radius(hole), this.radius(hole) + 4] : [this.radius(hole)]) {
+        context.moveTo(x + radius, y);
+        context.arc(x, y, radius, 0, 2 * Math.PI);
+      }
+    }
+    context.stroke();
   }
 
   // The part's axes, and a length to compare with.
@@ -175,8 +204,10 @@ class Side {
     const reach = 12;
     let best = null;
     for (const hole of this.holes) {
-      const far = toSegment(x, y, ...this.point(hole.entry), ...this.point(hole.bottom));
-      if (far < Math.max(reach, (hole.diameter / 2) * this.view.scale) && (!best || far < best.far)) best = { far, hole, side: this };
+      const near = toSegment(x, y, ...this.point(hole.entry), ...this.point(hole.bottom));
+      // One that looks away lies behind others.
+      const far = near + (this.isAway(hole) ? reach / 2 : 0);
+      if (far < Math.max(reach, this.radius(hole)) && (!best || far < best.far)) best = { far, hole, side: this };
     }
     if (best) return best;
     for (let move = 0; move < this.counts.length; move++) {
@@ -215,6 +246,7 @@ class Viewer {
 
   // Pixels for a millimetre so that all is in sight as the camera stands.
   fitting(rows, width, height) {
+    if (this.extents.length === 0) return 1;
     let [wide, high] = [1e-3, 1e-3];
     for (let at = 0; at < this.extents.length; at += 3) {
       const [a, b, c] = [0, 1, 2].map((axis) => this.extents[at + axis] - this.middle[axis]);
