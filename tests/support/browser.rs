@@ -4,6 +4,7 @@ use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
 use std::path::Path;
 use std::process::{Child, ChildStdout, Command, Stdio};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use serde_json::{Value, json};
 
@@ -18,7 +19,11 @@ pub struct Browser {
     port: u16,
     session: String,
     _profile: tempfile::TempDir,
+    _turn: MutexGuard<'static, ()>,
 }
+
+/// One browser at a time: several at once are slower than one after the other.
+static TURN: Mutex<()> = Mutex::new(());
 
 impl Browser {
     /// A browser, where one is installed: elsewhere it says that the test is skipped, which a build server mustn't.
@@ -38,6 +43,7 @@ impl Browser {
             eprintln!("skipped: no chromium with {DRIVER} here");
             return None;
         };
+        let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
         let mut driver = Command::new(DRIVER)
             .arg("--port=0")
             .stdout(Stdio::piped())
@@ -62,7 +68,8 @@ impl Browser {
             "goog:chromeOptions": options,
             "goog:loggingPrefs": {"browser": "ALL", "performance": "ALL"},
         }}});
-        let mut started = Self { driver, _said: said, port, session: String::new(), _profile: profile };
+        let mut started =
+            Self { driver, _said: said, port, session: String::new(), _profile: profile, _turn: turn };
         let session = started.ask("POST", "/session", &wanted).unwrap();
         started.session = format!("/session/{}", session["sessionId"].as_str().unwrap());
         Some(started)
