@@ -8,6 +8,7 @@ mod budget;
 mod burr;
 mod changes;
 mod check;
+mod chord_limits;
 mod ci;
 mod compensation;
 mod control;
