@@ -76,12 +76,35 @@ impl Source {
 fn line_starts(bytes: &[u8]) -> Vec<u32> {
     let mut starts = vec![0];
     let mut at = 0;
-    while let Some(found) = bytes[at..].iter().position(|b| *b <= b'\r' && matches!(b, b'\n' | b'\r')) {
-        at += found;
+    loop {
+        at += line_length(&bytes[at..]);
+        if at == bytes.len() {
+            return starts;
+        }
         at += end_of_line(&bytes[at..]);
         starts.push(at as u32);
     }
-    starts
+}
+
+/// The length of the line that a text begins with, its end not counted. Eight bytes are looked at together.
+pub fn line_length(text: &[u8]) -> usize {
+    const ONES: u64 = u64::from_ne_bytes([1; 8]);
+    const TOPS: u64 = ONES << 7;
+    // The lowest bit set marks the first byte that is `byte`.
+    let marks = |word: u64, byte: u8| {
+        let differs = word ^ ONES * u64::from(byte);
+        differs.wrapping_sub(ONES) & !differs & TOPS
+    };
+    let (words, rest) = text.as_chunks::<8>();
+    for (place, word) in words.iter().enumerate() {
+        let word = u64::from_le_bytes(*word);
+        let found = marks(word, b'\n') | marks(word, b'\r');
+        if found != 0 {
+            return 8 * place + found.trailing_zeros() as usize / 8;
+        }
+    }
+    let last = rest.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
+    8 * words.len() + last.unwrap_or(rest.len())
 }
 
 /// No sender puts more CRs than this around a LF; the limit keeps reading linear in a file of nothing but CRs.
@@ -150,6 +173,16 @@ mod tests {
         assert_eq!(starts(b"a\n\r\rb\n\r\rc"), [0, 4, 8]);
         assert_eq!(starts(b"a\r\n\r\nb"), [0, 3, 5], "an empty line between CR LF pairs is a line");
         assert_eq!(starts(b"a\r\rb"), [0, 2, 3], "CRs without a LF end a line each");
+    }
+
+    #[test]
+    fn a_line_ends_at_the_first_of_its_ends_wherever_it_stands() {
+        for length in 0..40 {
+            for end in [&b"\n"[..], b"\r", b"\r\n\n", b"", b"\n\x0b\x0c\x8a\x8d\r\r\r\r"] {
+                let text = [&b"X\x0b\x0c\x0e\x09\x8a\x8d\xff".repeat(5)[..length], end].concat();
+                assert_eq!(line_length(&text), length, "{text:?}");
+            }
+        }
     }
 
     #[test]

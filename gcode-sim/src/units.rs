@@ -116,6 +116,7 @@ impl Deg {
 const WHOLE: f64 = 4_503_599_627_370_496.0;
 
 /// Half away from 0: `f64::round` in a few instructions on processors that round by themselves only in other ways.
+#[inline]
 pub fn round(value: f64) -> f64 {
     if !(-WHOLE..WHOLE).contains(&value) {
         return value;

@@ -1,5 +1,12 @@
 //! Sizes that no program has: each is read and comes to an end or to an alarm, and soon.
-use gcode_sim::exec::Outcome;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+
+use gcode_sim::exec::{Outcome, Progress};
+use gcode_sim::machine::Machine;
+use gcode_sim::motion::{Event, Sink};
+use gcode_sim::program::NoLibrary;
+use gcode_sim::session::{Request, run};
 use gcode_tests::{expect, fuzz};
 use proptest::prelude::*;
 
@@ -156,4 +163,30 @@ proptest! {
         fuzz::reader(&program);
         fuzz::run(&program);
     }
+}
+
+/// Somebody who ends the run at its first move.
+struct Impatient(Arc<Progress>);
+
+impl Sink for Impatient {
+    fn event(&mut self, _: &Event<'_>) {
+        self.0.stop.store(true, Ordering::Relaxed);
+    }
+}
+
+#[test]
+fn a_run_ended_from_outside_tells_what_is_known_so_far() {
+    let text = "O1\nG0 X5.\n#1=0\nWHILE[#1LT1000000]DO1\n#1=#1+1\nG0 X10.\nEND1\nM30\n";
+    let progress = Arc::new(Progress::default());
+    let mut request = Request::new("long.nc", text.as_bytes(), Machine::default());
+    request.progress = Some(Arc::clone(&progress));
+    let done = run(&request, &mut NoLibrary, &mut Impatient(Arc::clone(&progress))).unwrap();
+    assert!(matches!(done.outcome, Outcome::Limit));
+    // It is looked at every 4,096 blocks: two, 1,023 turns of four, and WHILE and the assignment of another.
+    assert_eq!(done.control.blocks(), 4096);
+    assert_eq!(done.control.work_position(0), 10.0);
+    assert_eq!(done.control.variable(1).unwrap().number(), 1024.0);
+    let finding = done.stopped().unwrap();
+    assert_eq!((finding.code.as_str(), progress.blocks.load(Ordering::Relaxed)), ("limit", 4096));
+    assert!(finding.message.contains("ended from outside after 4096 blocks"), "{}", finding.message);
 }

@@ -4,6 +4,7 @@
 mod accepted;
 mod alignment;
 mod arithmetic;
+mod blocks;
 mod budget;
 mod burr;
 mod changes;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::args::{ListFormat, ProgramArguments};
-use super::{Refusal, Status, options, output, page, unused_machine};
+use super::{Refusal, Status, options, output, page, progress, unused_machine};
 use crate::part::hole::HoleList;
 use crate::report::holes as report;
 use crate::session::{self, Simulation};
@@ -25,7 +25,7 @@ pub(super) struct HolesArguments {
 }
 
 pub(super) fn run(arguments: &HolesArguments) -> Result<Status, Refusal> {
-    let (request, mut folders) = options::request(&arguments.program)?;
+    let (mut request, mut folders) = options::request(&arguments.program)?;
     unused_machine::tell(&arguments.program, &request);
     if let Some(path) = &arguments.page {
         let watched = page::watched(&request, &mut folders, None)?;
@@ -34,8 +34,8 @@ pub(super) fn run(arguments: &HolesArguments) -> Result<Status, Refusal> {
         page::tell(path, arguments.format == ListFormat::Text)?;
         return Ok(status);
     }
-    let simulation =
-        session::simulate(&request, &mut folders, None).map_err(|e| Refusal::new(e.to_string()))?;
+    let simulation = progress::of_run(&mut request, |request| session::simulate(request, &mut folders, None))
+        .map_err(|e| Refusal::new(e.to_string()))?;
     tell(arguments, &simulation)
 }
 

@@ -1,18 +1,50 @@
-//! A line on standard error for who waits longer than a second; none where nobody watches.
+//! A line on standard error for who waits longer than a second, none where nobody watches; Ctrl-C ends a run with what is
+//! known so far.
 use std::io::IsTerminal;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Duration;
 
 use super::output;
+use crate::exec::Progress;
+use crate::session::Request;
+
+/// Wider than any line shown.
+const WIDTH: usize = 60;
 
 /// Does the work, and meanwhile shows how much of `all` is counted.
 pub(super) fn watched<T>(all: usize, counted: &AtomicUsize, work: impl FnOnce() -> T) -> T {
+    let bar = || {
+        let part = (counted.load(Ordering::Relaxed) as f64 / all.max(1) as f64).min(1.0);
+        format!("[{:<40}] {:3.0} %", "#".repeat((part * 40.0) as usize), part * 100.0)
+    };
+    showing(bar, work)
+}
+
+/// Runs a program, and meanwhile shows how many blocks it has executed. The first Ctrl-C ends the run, the second the
+/// process.
+pub(super) fn of_run<T>(request: &mut Request, work: impl FnOnce(&Request) -> T) -> T {
+    let run = Arc::new(Progress::default());
+    request.progress = Some(Arc::clone(&run));
+    let watched = Arc::clone(&run);
+    // Where no handler can be set, Ctrl-C ends the process as ever.
+    _ = ctrlc::set_handler(move || {
+        if watched.stop.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+    });
+    let count = || format!("{} blocks; Ctrl-C ends the run", run.blocks.load(Ordering::Relaxed));
+    showing(count, || work(request))
+}
+
+/// Does the work, and after a second shows what `line` says of it again and again.
+fn showing<T>(line: impl Fn() -> String + Sync, work: impl FnOnce() -> T) -> T {
     if !std::io::stderr().is_terminal() {
         return work();
     }
     let done = AtomicBool::new(false);
     std::thread::scope(|scope| {
-        let watcher = scope.spawn(|| watch(all, counted, &done));
+        let watcher = scope.spawn(|| show(&line, &done));
         let answer = work();
         done.store(true, Ordering::Relaxed);
         watcher.thread().unpark();
@@ -20,17 +52,15 @@ pub(super) fn watched<T>(all: usize, counted: &AtomicUsize, work: impl FnOnce() 
     })
 }
 
-fn watch(all: usize, counted: &AtomicUsize, done: &AtomicBool) {
+fn show(line: &impl Fn() -> String, done: &AtomicBool) {
     std::thread::park_timeout(Duration::from_secs(1));
     let mut shown = false;
     while !done.load(Ordering::Relaxed) {
-        let part = (counted.load(Ordering::Relaxed) as f64 / all.max(1) as f64).min(1.0);
-        let bar = "#".repeat((part * 40.0) as usize);
-        output::tell(&format!("\r[{bar:<40}] {:3.0} %", part * 100.0));
+        output::tell(&format!("\r{:<WIDTH$}", line()));
         shown = true;
         std::thread::park_timeout(Duration::from_millis(100));
     }
     if shown {
-        output::tell(&format!("\r{:48}\r", ""));
+        output::tell(&format!("\r{:WIDTH$}\r", ""));
     }
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use super::args::ProgramArguments;
-use super::{Refusal, Status, options, output, unused_machine};
+use super::{Refusal, Status, options, output, progress, unused_machine};
 use crate::part::flutes::Flutes;
 use crate::part::reference::Reference;
 use crate::part::wanted::Wanted;
@@ -62,12 +62,13 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<Status, Refusal> {
 }
 
 fn holes(arguments: &RenderArguments, reference: Option<Reference>) -> Result<Status, Refusal> {
-    let (request, mut folders) = options::request(&arguments.program)?;
+    let (mut request, mut folders) = options::request(&arguments.program)?;
     unused_machine::tell(&arguments.program, &request);
     let asked = options::tolerance("--tolerance", arguments.tolerance)?;
     let surface = reference.as_ref().and_then(|r| r.surface);
     let simulation =
-        session::simulate(&request, &mut folders, surface).map_err(|e| Refusal::new(e.to_string()))?;
+        progress::of_run(&mut request, |request| session::simulate(request, &mut folders, surface))
+            .map_err(|e| Refusal::new(e.to_string()))?;
     let drawn = match &reference {
         Some(reference) => {
             let verdict = simulation.verify(reference, Tolerances::of(reference, asked), &request.machine);
@@ -93,12 +94,12 @@ fn holes(arguments: &RenderArguments, reference: Option<Reference>) -> Result<St
 }
 
 fn flutes(arguments: &RenderArguments, mut wanted: Flutes) -> Result<Status, Refusal> {
-    let (request, mut folders) = options::request(&arguments.program)?;
+    let (mut request, mut folders) = options::request(&arguments.program)?;
     unused_machine::tell(&arguments.program, &request);
     let asked = options::tolerance("--tolerance", arguments.tolerance)?;
     wanted.surface_tolerance = asked.unwrap_or(wanted.surface_tolerance);
-    let grinding =
-        session::grind(&request, &mut folders, &wanted).map_err(|e| Refusal::new(e.to_string()))?;
+    let grinding = progress::of_run(&mut request, |request| session::grind(request, &mut folders, &wanted))
+        .map_err(|e| Refusal::new(e.to_string()))?;
     let verdict = grinding.verify();
     let view = flute_view::of(&name(&request), &grinding, &verdict);
     let scene = match arguments.view {

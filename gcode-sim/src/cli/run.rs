@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::args::{ProgramArguments, TextFormat};
-use super::{Refusal, Status, options, output, unused_machine};
+use super::{Refusal, Status, options, output, progress, unused_machine};
 use crate::holes::Extractor;
 use crate::report::run::{MOST_MOVES, Moves, RunReport};
 use crate::session;
@@ -32,13 +32,16 @@ pub(super) struct RunArguments {
 }
 
 pub(super) fn run(arguments: &RunArguments) -> Result<Status, Refusal> {
-    let (request, mut folders) = options::request(&arguments.program)?;
+    let (mut request, mut folders) = options::request(&arguments.program)?;
     unused_machine::tell(&arguments.program, &request);
     let wanted = arguments.show.iter().map(|text| options::variable(text)).collect::<Result<Vec<_>, _>>()?;
     let mut moves = arguments.moves.then(Moves::default);
-    // Follows the tool only where there is a part that it could touch.
-    let mut probe = request.part.map(|part| Extractor::new(&request.machine).with_surface(Some(part)));
-    let done = session::run(&request, &mut folders, &mut (&mut moves, &mut probe));
+    let done = progress::of_run(&mut request, |request| {
+        // Follows the tool only where there is a part that it could touch.
+        let follow = |part| Extractor::new(&request.machine).with_surface(Some(part));
+        let mut probe = request.part.map(follow);
+        session::run(request, &mut folders, &mut (&mut moves, &mut probe))
+    });
     let run = done.map_err(|error| Refusal::new(error.to_string()))?;
     let mut system = Vec::new();
     for number in wanted {

@@ -5,7 +5,7 @@ use clap::Args;
 
 use super::args::{ProgramArguments, TextFormat};
 use super::library::Folders;
-use super::{Refusal, Status, options, output, page, render, unused_machine};
+use super::{Refusal, Status, options, output, page, progress, render, unused_machine};
 use crate::part::flutes::Flutes;
 use crate::part::reference::Reference;
 use crate::part::wanted::Wanted;
@@ -58,13 +58,13 @@ pub(super) struct VerifyArguments {
 pub(super) fn run(arguments: &VerifyArguments) -> Result<Status, Refusal> {
     let asked = options::tolerance("--tolerance", arguments.tolerance)?;
     let depth = options::tolerance("--depth-tolerance", arguments.depth_tolerance)?;
-    let (request, folders) = options::request(&arguments.program)?;
+    let (mut request, folders) = options::request(&arguments.program)?;
     unused_machine::tell(&arguments.program, &request);
     match options::wanted(&arguments.reference)? {
         Wanted::Holes(reference) => {
             let mut tolerances = Tolerances::of(&reference, asked);
             tolerances.depth = depth.unwrap_or(tolerances.depth);
-            holes(arguments, &request, folders, &reference, tolerances)
+            holes(arguments, &mut request, folders, &reference, tolerances)
         }
         Wanted::Flutes(mut wanted) => {
             let of_holes = [
@@ -77,19 +77,19 @@ pub(super) fn run(arguments: &VerifyArguments) -> Result<Status, Refusal> {
                 return Err(Refusal::new(format!("{flag} is about holes, and the reference is a burr")));
             }
             wanted.surface_tolerance = asked.unwrap_or(wanted.surface_tolerance);
-            flutes(arguments, &request, folders, &wanted)
+            flutes(arguments, &mut request, folders, &wanted)
         }
     }
 }
 
 fn flutes(
     arguments: &VerifyArguments,
-    request: &Request,
+    request: &mut Request,
     mut folders: Folders,
     wanted: &Flutes,
 ) -> Result<Status, Refusal> {
-    let grinding =
-        session::grind(request, &mut folders, wanted).map_err(|error| Refusal::new(error.to_string()))?;
+    let grinding = progress::of_run(request, |request| session::grind(request, &mut folders, wanted))
+        .map_err(|error| Refusal::new(error.to_string()))?;
     let verdict = grinding.verify();
     match arguments.format {
         TextFormat::Json => output::json(&verdict)?,
@@ -114,7 +114,7 @@ fn judged(status: Status, answer: Answer) -> Status {
 
 fn holes(
     arguments: &VerifyArguments,
-    request: &Request,
+    request: &mut Request,
     mut folders: Folders,
     reference: &Reference,
     tolerances: Tolerances,
@@ -129,8 +129,9 @@ fn holes(
         page::tell(path, arguments.format == TextFormat::Text)?;
         return Ok(status);
     }
-    let simulation = session::simulate(request, &mut folders, reference.surface)
-        .map_err(|error| Refusal::new(error.to_string()))?;
+    let simulation =
+        progress::of_run(request, |request| session::simulate(request, &mut folders, reference.surface))
+            .map_err(|error| Refusal::new(error.to_string()))?;
     let verdict = simulation.verify(reference, tolerances, &request.machine);
     tell(arguments, request, reference, &simulation, &verdict)
 }

@@ -35,7 +35,7 @@ impl Core {
         }
         self.misplaced_words(given, plan, span)?;
         let compensates = plan.state.modal.cutter != CutterSide::Off;
-        let sides = || given.g_codes().any(|row| matches!(row.effect, Effect::Cutter(_)));
+        let sides = || given.has_code(|effect| matches!(effect, Effect::Cutter(_)));
         if given.has(b'D') || compensates && (self.settings.new_radius_at_once || sides()) {
             plan.state.radius = self.offset_radius(plan.state.codes.d).unwrap_or(0.0);
         }
@@ -44,19 +44,17 @@ impl Core {
 
     /// Words that need a code which the block doesn't have, or must not stand beside one it has.
     fn misplaced_words(&self, given: &Given, plan: &Plan, span: Span) -> Checked<()> {
-        let smooth = given.g_codes().any(|row| row.effect == Effect::Smoothness);
+        let smooth = given.has_code(|effect| effect == Effect::Smoothness);
         for letter in [b'E', b'N', b'O'] {
             if given.has(letter) && !(smooth && letter == b'E') {
                 return Err(Alarm::ImproperAddress { letter: char::from(letter) }.at(given.span(letter)));
             }
         }
-        if given.g_codes().any(|row| row.effect == Effect::LookAhead)
-            && given.count(b'P')?.is_none_or(|p| p > 1)
-        {
+        if given.has_code(|effect| effect == Effect::LookAhead) && given.count(b'P')?.is_none_or(|p| p > 1) {
             return Err(Alarm::LookAheadFormat.at(span));
         }
         // The axis words behind G22 are limits, no move.
-        let limits = given.g_codes().any(|row| row.effect == Effect::StrokeCheck(StrokeCheck::On));
+        let limits = given.has_code(|effect| effect == Effect::StrokeCheck(StrokeCheck::On));
         if limits && (self.names_axis(given) || given.has_any(b"IJK")) {
             return Err(Alarm::NotSimulated { what: "G22 with limits".into() }.at(span));
         }
@@ -64,7 +62,7 @@ impl Core {
             use OneShot::{DataInput, Dwell};
             matches!(effect, Effect::OneShot(Dwell | DataInput) | Effect::Scaling(Scaling::Off))
         };
-        if given.has(b'T') && given.g_codes().any(|row| keeps_tool(row.effect)) {
+        if given.has(b'T') && given.has_code(keeps_tool) {
             return Err(Alarm::TNotAllowed.at(given.span(b'T')));
         }
         let repeats = given.g_codes().any(takes_l)
@@ -72,7 +70,7 @@ impl Core {
         if given.has(b'L') && !repeats {
             return Err(Alarm::ImproperAddress { letter: 'L' }.at(given.span(b'L')));
         }
-        let dwells = given.g_codes().any(|row| row.effect == Effect::OneShot(OneShot::Dwell));
+        let dwells = given.has_code(|effect| effect == Effect::OneShot(OneShot::Dwell));
         for letter in [b'A', b'B', b'C', b'U', b'V', b'W', b'X', b'Y', b'Z'] {
             let known = || self.settings.axes.find(letter).is_some() || (letter == b'U' && dwells);
             if given.has(letter) && !known() {

@@ -14,23 +14,29 @@ const STACK: usize = crate::program::STACK;
 
 pub(super) type Checked<T> = Result<T, Spanned<Alarm>>;
 
-/// Values waiting for their operator.
+/// Values waiting for their operator, the last one apart: most operators need no other.
 struct Stack {
-    values: [Value; STACK],
+    last: Value,
+    below: [Value; STACK],
     used: usize,
 }
 
 impl Stack {
+    #[inline]
     fn push(&mut self, value: Value) {
-        if let Some(place) = self.values.get_mut(self.used) {
-            *place = value;
+        if let Some(place) = self.below.get_mut(self.used) {
+            *place = self.last;
             self.used += 1;
         }
+        self.last = value;
     }
 
+    #[inline]
     fn pop(&mut self) -> Value {
+        let last = self.last;
         self.used = self.used.saturating_sub(1);
-        self.values.get(self.used).copied().unwrap_or_default()
+        self.last = self.below.get(self.used).copied().unwrap_or_default();
+        last
     }
 }
 
@@ -65,6 +71,7 @@ impl Core {
     }
 
     /// The value of a variable of any kind.
+    #[inline]
     pub(super) fn read(&self, number: u32) -> Result<Value, Alarm> {
         match self.vars.kind(number) {
             Kind::Local(index) => Ok(self.vars.locals()[index]),
@@ -75,7 +82,7 @@ impl Core {
     }
 
     fn run_code(&self, program: &Program, code: Code, rounds: RoundsTo) -> Checked<Value> {
-        let mut stack = Stack { values: [Value::Vacant; STACK], used: 0 };
+        let mut stack = Stack { last: Value::Vacant, below: [Value::Vacant; STACK], used: 0 };
         for instruction in program.code(code) {
             let value = self
                 .instruction(program, instruction, &mut stack, rounds)
@@ -85,6 +92,7 @@ impl Core {
         Ok(stack.pop())
     }
 
+    #[inline]
     fn instruction(
         &self,
         program: &Program,
@@ -189,7 +197,12 @@ impl Core {
 
 /// A variable's number by an expression: rounded, never negative; vacant is #0.
 pub(super) fn index(value: Value) -> Result<u32, Alarm> {
-    let number = round(value.number());
+    let number = value.number();
+    let whole = number as u32;
+    if f64::from(whole) == number {
+        return Ok(whole);
+    }
+    let number = round(number);
     if (0.0..=f64::from(u32::MAX)).contains(&number) {
         return Ok(number as u32);
     }

@@ -1,6 +1,7 @@
 //! The programs on the way to the block at hand: frames, nesting, returns.
 use std::sync::Arc;
 
+use super::run::Over;
 use super::vars::Locals;
 use super::{Control, Core};
 use crate::alarm::Alarm;
@@ -215,14 +216,14 @@ impl Control {
     }
 
     /// M99, and M99 P with its number and the place that [`Control::find_return`] has found.
-    pub(super) fn go_back(&mut self, to: Option<(u32, OpIndex)>) -> Option<super::Outcome> {
+    pub(super) fn go_back(&mut self, to: Option<(u32, OpIndex)>) -> Option<Over> {
         let main = self.core.frame().kind == FrameKind::Main;
         let ends = self.is_last_pass();
         if main {
             self.core.cycles += 1;
         }
         if ends {
-            return Some(super::Outcome::End);
+            return Some(Over::End);
         }
         let Some((number, target)) = to else {
             if main {

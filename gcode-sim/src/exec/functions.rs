@@ -6,10 +6,12 @@ use crate::syntax::ast::{BinaryOp, Function, Relation};
 use crate::units::{Deg, round};
 
 /// Results beyond what a double holds are PS0111.
+#[inline]
 fn finite(value: f64) -> Result<f64, Alarm> {
     if value.is_finite() { Ok(value) } else { Err(Alarm::FloatOverflow) }
 }
 
+#[inline]
 pub(super) fn binary(op: BinaryOp, left: f64, right: f64, unsure: &Unsure) -> Result<f64, Alarm> {
     let bits = |value| bits(value, unsure);
     finite(match op {
@@ -48,6 +50,7 @@ fn bits(value: f64, unsure: &Unsure) -> Result<i32, Alarm> {
 }
 
 /// Vacant equals vacant and differs from 0; larger and smaller take it for 0 (manual's comparison table).
+#[inline]
 pub(super) fn compare(relation: Relation, left: Value, right: Value) -> bool {
     let (l, r) = (left.number(), right.number());
     match relation {

@@ -50,11 +50,12 @@ mod words;
 
 use std::cell::Cell;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 pub use left::{Remainder, RemainderKind};
 pub use modal::Modal;
 pub use notes::Note;
-pub use outcome::{Limits, Outcome, Stop, Stopped};
+pub use outcome::{Limits, Outcome, Progress, Stop, Stopped};
 pub use print::printable;
 pub use state::{Codes, State};
 pub use vars::{Value, Vars};
@@ -86,6 +87,7 @@ pub struct Control {
     outcome: Option<Outcome>,
     watch: Watch,
     endless: Option<Endless>,
+    progress: Option<Arc<Progress>>,
 }
 
 /// Everything but the programs.
@@ -170,6 +172,7 @@ impl Control {
             outcome: None,
             watch: Watch::default(),
             endless: None,
+            progress: None,
         };
         control.select(ProgramId::default());
         control
@@ -185,6 +188,11 @@ impl Control {
             self.core.state.codes.o = program.shown_number();
             self.core.block = program.span;
         }
+    }
+
+    /// Lets somebody see how far the run is, and end it.
+    pub fn show_progress(&mut self, progress: Arc<Progress>) {
+        self.progress = Some(progress);
     }
 
     /// Sets a variable before the run, as the operator would on the screen.

@@ -81,7 +81,7 @@ impl Core {
         let additional = given.has(b'P')
             && act.is_none()
             && modal.cycle.is_none()
-            && given.g_codes().any(|row| row.effect == Effect::Work(1));
+            && given.has_code(|effect| effect == Effect::Work(1));
         Ok(if additional { Some(Act::AdditionalWork) } else { act })
     }
 }

@@ -13,7 +13,7 @@ use crate::source::Span;
 impl Core {
     /// 3. G43, G44, G49 and a new H; whether the offset changed.
     pub(super) fn length(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<bool> {
-        let commanded = given.has(b'H') || given.g_codes().any(|row| matches!(row.effect, Effect::Length(_)));
+        let commanded = given.has(b'H') || given.has_code(|effect| matches!(effect, Effect::Length(_)));
         if !commanded || (plan.state.modal.length == Length::Off && self.state.modal.length == Length::Off) {
             return Ok(false);
         }
@@ -53,7 +53,7 @@ impl Core {
         let arcs = matches!(motion, Motion::Clockwise | Motion::Counterclockwise);
         let named = self.names_axis(given);
         // A code of group 01 behind that of a cycle: a plain move, the cycle's own words are nothing.
-        let overruled = given.g_codes().any(|row| matches!(row.effect, Effect::Cycle(Some(_))));
+        let overruled = given.has_code(|effect| matches!(effect, Effect::Cycle(Some(_))));
         if overruled {
             given.accept(b"KPQR");
         }
@@ -61,7 +61,7 @@ impl Core {
             return self.settle(given, plan, lengthened, span);
         }
         // Some controls round corners by R or read I J K here; the end of cutter compensation takes a vector.
-        let vector = given.g_codes().any(|row| row.effect == Effect::Cutter(CutterSide::Off));
+        let vector = given.has_code(|effect| effect == Effect::Cutter(CutterSide::Off));
         if let Some(letter) = b"IJKR".iter().find(|l| given.has(**l) && !arcs && !vector && !overruled) {
             let what = format!("{} beside a straight move", char::from(*letter));
             return Err(Alarm::NotSimulated { what }.at(given.span(*letter)));

@@ -82,6 +82,11 @@ impl Offsets {
         Ok(self.tool(Register::HGeometry, h)? + self.tool(Register::HWear, h)?)
     }
 
+    /// The zero of a work coordinate system in machine coordinates.
+    fn zero(&self, system: &Position, state: &State, axis: Axis) -> f64 {
+        self.external[axis] + system[axis] + state.local[axis] + state.shift[axis]
+    }
+
     fn system(&self, work: WorkSystem) -> &Position {
         match work {
             WorkSystem::Standard(number) => &self.standard[usize::from(number) - 1],
@@ -93,13 +98,13 @@ impl Offsets {
 impl Core {
     /// The zero of the active work coordinate system in machine coordinates.
     pub(super) fn zero(&self, state: &State, axis: Axis) -> f64 {
-        let system = self.offsets.system(state.modal.work);
-        self.offsets.external[axis] + system[axis] + state.local[axis] + state.shift[axis]
+        self.offsets.zero(self.offsets.system(state.modal.work), state, axis)
     }
 
     /// A programmed point in machine coordinates, tool length included.
     pub(super) fn to_machine(&self, state: &State, point: Position) -> Position {
         let mut machine = state.transform.forward(point);
+        let (system, grid) = (self.offsets.system(state.modal.work), self.grid());
         for axis in 0..self.settings.axes.len() {
             if self.settings.roll_over[axis] {
                 // From where the axis stands, the shorter way: turns already made stay made.
@@ -107,7 +112,8 @@ impl Core {
                 machine[axis] = self.clean(state.machine[axis] + shorter_way(work, machine[axis]));
                 continue;
             }
-            machine[axis] = self.clean(machine[axis] + self.zero(state, axis) + state.length[axis]);
+            let zero = self.offsets.zero(system, state, axis);
+            machine[axis] = cleaned(machine[axis] + zero + state.length[axis], grid);
         }
         machine
     }
@@ -153,8 +159,12 @@ impl Core {
 
     /// A coordinate without the residues of adding: a hundredth of the increment carries both mm and inches exactly.
     pub(super) fn clean(&self, value: f64) -> f64 {
-        let grid = self.settings.increment.per_unit() * 100.0;
-        round(value * grid) / grid
+        cleaned(value, self.grid())
+    }
+
+    /// What [`Core::clean`] rounds to, parts of a millimetre or a degree.
+    fn grid(&self) -> f64 {
+        self.settings.increment.per_unit() * 100.0
     }
 
     /// A work coordinate from 0 to 360 on an axis that rolls over.
@@ -224,4 +234,9 @@ impl Offsets {
             _ => &mut self.additional[system - 7],
         }
     }
+}
+
+#[inline]
+fn cleaned(value: f64, grid: f64) -> f64 {
+    round(value * grid) / grid
 }

@@ -1,4 +1,6 @@
 //! How long a run may take, and how it ends or stops.
+use std::sync::atomic::{AtomicBool, AtomicU64};
+
 use crate::alarm::Alarm;
 use crate::motion::{Place, StopKind};
 use crate::source::Span;
@@ -16,13 +18,22 @@ impl Default for Limits {
     }
 }
 
+/// Between a run and who waits for it: how far it is, and whether it should end now.
+#[derive(Debug, Default)]
+pub struct Progress {
+    /// Blocks executed, now and then.
+    pub blocks: AtomicU64,
+    /// Set from outside: the run ends as by its limit, and what is known so far stays.
+    pub stop: AtomicBool,
+}
+
 /// How a run ended.
 #[derive(Clone, Debug)]
 pub enum Outcome {
     /// M02, M30, the M99 that ends the run, or the program's end.
     End,
     Alarm(Stopped),
-    /// The limit of blocks, or a loop that provably never ends ([`Control::endless_loop`](super::Control::endless_loop)).
+    /// The limit of blocks, [`Progress::stop`], or a loop that provably never ends ([`Control::endless_loop`](super::Control::endless_loop)).
     Limit,
 }
 

@@ -1,4 +1,6 @@
 //! A run: block by block to the end, to an alarm, or to a limit.
+use std::sync::atomic::Ordering;
+
 use super::eval::Checked;
 use super::frames::FrameKind;
 use super::notes::Note;
@@ -13,6 +15,16 @@ use crate::source::Span;
 /// pecks is one block, and a loop round it must end as well.
 const MOVES: u64 = 1_000_000;
 const MOVES_PER_BLOCK: u64 = 20;
+/// Who watches is told after so many blocks.
+const TOLD: u64 = 4096;
+
+/// How a block can end the run without an alarm.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Over {
+    End,
+    /// It is in a loop that never ends.
+    Never,
+}
 
 impl Control {
     /// Runs to the end, to an alarm, or to a limit.
@@ -30,6 +42,9 @@ impl Control {
     ) -> Outcome {
         let moves = limits.blocks.saturating_mul(MOVES_PER_BLOCK).max(MOVES);
         while self.core.blocks < limits.blocks && self.core.moves <= moves {
+            if self.core.blocks.is_multiple_of(TOLD) && self.is_told_to_stop() {
+                break;
+            }
             watcher.before(self);
             let outcome = self.step(library, sink);
             watcher.after(self);
@@ -41,13 +56,21 @@ impl Control {
         Outcome::Limit
     }
 
+    /// Tells who watches how far the run is; whether it should end.
+    pub fn is_told_to_stop(&self) -> bool {
+        self.progress.as_ref().is_some_and(|progress| {
+            progress.blocks.store(self.core.blocks, Ordering::Relaxed);
+            progress.stop.load(Ordering::Relaxed)
+        })
+    }
+
     /// Does one block; `Some` when the run is over. A block that alarms has changed nothing.
     pub fn step<S: Sink>(&mut self, library: &mut impl Library, sink: &mut S) -> Option<Outcome> {
         if let Some(outcome @ (Outcome::End | Outcome::Alarm(_))) = &self.outcome {
             return Some(outcome.clone());
         }
         let mut done = self.block(library, sink);
-        if matches!(done, Ok(Some(Outcome::End)))
+        if matches!(done, Ok(Some(Over::End)))
             && let Err(alarm) = self.core.end_ahead(sink)
         {
             done = Err(alarm);
@@ -56,7 +79,9 @@ impl Control {
             self.core.notes.entry(note).or_insert(self.core.block);
         }
         let outcome = match done {
-            Ok(outcome) => outcome?,
+            Ok(None) => return None,
+            Ok(Some(Over::End)) => Outcome::End,
+            Ok(Some(Over::Never)) => Outcome::Limit,
             Err(alarm) => {
                 self.core.complete(&alarm, sink);
                 let calls = self.core.frames.last().map(|f| f.calls.clone()).unwrap_or_default();
@@ -69,7 +94,7 @@ impl Control {
     }
 
     /// Reads the next block and does what it says.
-    fn block<S: Sink>(&mut self, library: &mut impl Library, sink: &mut S) -> Checked<Option<Outcome>> {
+    fn block<S: Sink>(&mut self, library: &mut impl Library, sink: &mut S) -> Checked<Option<Over>> {
         let Self { memory, core, plan, given, watch, endless, .. } = self;
         if memory.programs().is_empty() {
             return Err(Alarm::EndOfRecord.at(Span::default()));
@@ -81,7 +106,7 @@ impl Control {
             core.block = Span { start: program.span.end, ..program.span };
             // A text may just stop; running into `%` or another program is running off the tape.
             if main && !program.closed {
-                return Ok(Some(Outcome::End));
+                return Ok(Some(Over::End));
             }
             return Err(Alarm::EndOfRecord.at(core.block));
         };
@@ -106,12 +131,12 @@ impl Control {
             OpKind::Empty | OpKind::If { .. } => {}
             OpKind::Alarm(alarm) => return Err((**alarm).clone()),
             OpKind::Statement(statement) => {
-                let outcome = core.statement(program, statement, op.span, sink)?;
+                core.statement(program, statement, op.span, sink)?;
                 if core.frame().next <= place {
                     *endless = watch.jumped(core);
-                    return Ok(endless.map(|_| Outcome::Limit));
+                    return Ok(endless.map(|_| Over::Never));
                 }
-                return Ok(outcome);
+                return Ok(None);
             }
             OpKind::Words(words) if core.state.parameter_input => {
                 let span = op.span;
@@ -143,7 +168,7 @@ impl Control {
         span: Span,
         library: &mut impl Library,
         sink: &mut S,
-    ) -> Checked<Option<Outcome>> {
+    ) -> Checked<Option<Over>> {
         let mut flow = std::mem::take(&mut self.plan.flow);
         match &mut flow {
             Flow::Call(call) => {
@@ -177,14 +202,14 @@ impl Control {
                 self.core.state.codes.o = self.memory.get(program).shown_number();
                 if outcome.is_none() {
                     self.endless = self.watch.jumped(&mut self.core);
-                    return Ok(self.endless.map(|_| Outcome::Limit));
+                    return Ok(self.endless.map(|_| Over::Never));
                 }
                 return Ok(outcome);
             }
             Flow::CancelModal => self.core.cancel_modal(),
             Flow::End => {
                 self.core.parts[0] += 1.0;
-                return Ok(Some(Outcome::End));
+                return Ok(Some(Over::End));
             }
         }
         Ok(None)

@@ -1,8 +1,8 @@
 //! Macro statements: assignments, branches and loops. They never tell the machine anything, but for #3000 and #3006.
+use super::Core;
 use super::eval::{Checked, index, integer};
 use super::notes::Note;
 use super::vars::{Kind, Value};
-use super::{Core, Outcome};
 use crate::alarm::Alarm;
 use crate::motion::{EventKind, Place, Sink, StopKind};
 use crate::program::{OpIndex, Operand, Program, Statement};
@@ -19,7 +19,7 @@ impl Core {
         statement: &Statement,
         span: Span,
         sink: &mut S,
-    ) -> Checked<Option<Outcome>> {
+    ) -> Checked<()> {
         match statement {
             Statement::Assign { target, target_span, value, text } => {
                 let number = self.target(program, *target).map_err(|a| a.at(*target_span))?;
@@ -72,7 +72,7 @@ impl Core {
             Statement::CloseOutput => self.open_output(false),
             Statement::Alarm(alarm) => return Err((**alarm).clone()),
         }
-        Ok(None)
+        Ok(())
     }
 
     pub(super) fn target(&self, program: &Program, target: Operand) -> Result<u32, Alarm> {

@@ -106,6 +106,7 @@ impl Vars {
 
 impl Vars {
     /// What kind of variable `number` is.
+    #[inline]
     pub(super) fn kind(&self, number: u32) -> Kind {
         match number {
             0 => Kind::Vacant,
@@ -119,10 +120,12 @@ impl Vars {
         }
     }
 
+    #[inline]
     pub fn locals(&self) -> &Locals {
         &self.levels[self.level]
     }
 
+    #[inline]
     pub(super) fn set_local(&mut self, index: usize, value: Value) {
         let locals = &mut self.levels[self.level];
         self.digest ^= mix(self.level + 1, index, locals[index]) ^ mix(self.level + 1, index, value);
@@ -154,6 +157,7 @@ impl Vars {
         self.commons[index]
     }
 
+    #[inline]
     pub(super) fn set_common(&mut self, index: usize, value: Value) {
         let place = &mut self.commons[index];
         self.digest ^= mix(0, index, *place) ^ mix(0, index, value);

@@ -7,7 +7,7 @@ use super::code_calls::CallingWord;
 use super::eval::{Checked, at, integer};
 use crate::alarm::Alarm;
 use crate::control::{CodeSet, Settings};
-use crate::program::codes::{self, Row};
+use crate::program::codes::{self, Effect, Row};
 use crate::program::m_codes;
 use crate::program::{Coded, Input, Program, Words};
 use crate::source::Span;
@@ -33,6 +33,8 @@ pub(super) struct Given {
     values: [(Raw, Span); 26],
     g: [Option<&'static Row>; G_CODES],
     g_count: usize,
+    /// A G code stands in the block that is not of group 01.
+    beyond_moves: bool,
     pub(super) m: [Option<(u32, Span)>; M_CODES],
     pub(super) m_count: usize,
     /// `,R` or `,C`.
@@ -51,6 +53,7 @@ impl Default for Given {
             values: [(Raw::Computed(0.0), Span::default()); 26],
             g: [None; G_CODES],
             g_count: 0,
+            beyond_moves: false,
             m: [None; M_CODES],
             m_count: 0,
             corner: None,
@@ -66,6 +69,7 @@ impl Given {
         self.present = 0;
         self.read.set(0);
         self.g_count = 0;
+        self.beyond_moves = false;
         self.m_count = 0;
         self.corner = None;
         self.lost_m.clear();
@@ -90,6 +94,7 @@ impl Given {
         }
         self.g[self.g_count] = Some(row);
         self.g_count += 1;
+        self.beyond_moves |= !matches!(row.effect, Effect::Motion(_));
         Ok(())
     }
 
@@ -161,6 +166,11 @@ impl Given {
         self.g[..self.g_count].iter().flatten().copied()
     }
 
+    /// Whether the block has a G code of an effect, which is none of group 01.
+    pub(super) fn has_code(&self, is_it: impl Fn(Effect) -> bool) -> bool {
+        self.beyond_moves && self.g_codes().any(|row| is_it(row.effect))
+    }
+
     /// A count or a number: no point, no minus; a computed value is rounded.
     pub(super) fn count(&self, letter: u8) -> Checked<Option<u32>> {
         let Some((raw, span)) = self.get(letter) else { return Ok(None) };
@@ -209,9 +219,9 @@ impl Core {
                 at(given.put_corner(word, raw), word.span)?;
                 continue;
             }
-            let letter = match word.axis {
+            let letter = match &word.axis {
                 Some(axis) => {
-                    let number = self.operand(program, axis)?.number();
+                    let number = self.operand(program, **axis)?.number();
                     self.settings.axes.letter(at(self.axis_of(number), word.span)?) as u8
                 }
                 None => word.letter,

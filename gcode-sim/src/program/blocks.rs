@@ -53,6 +53,7 @@ impl Blocks {
         block_at(source, bytes.get(..self.length as usize)?, start)
     }
 
+    #[inline]
     pub(super) fn op(&self, place: OpIndex) -> Option<&Op> {
         self.ops.get(self.entries.get(place)?.op as usize)
     }
@@ -62,6 +63,7 @@ impl Blocks {
         if self.ops.len() == self.entries.len() { &self.ops } else { &[] }
     }
 
+    #[inline]
     pub(super) fn code(&self, code: Code) -> &[Instruction] {
         &self.lowering.instructions[code.start as usize..code.end as usize]
     }
@@ -70,15 +72,12 @@ impl Blocks {
         self.lowering.names.get(index as usize).map_or("", String::as_str)
     }
 
-    /// Lowers a block if it isn't. Where too many are, the others are forgotten.
+    /// Lowers a block that isn't. Where too many are, the others are forgotten.
     pub(super) fn ready(&mut self, place: OpIndex, source: SourceId, bytes: &[u8], loops: &Loops) {
-        let unread = self.entries.get(place).is_some_and(|entry| entry.op == UNREAD);
-        if unread {
-            if self.ops.len() >= KEPT {
-                self.forget();
-            }
-            self.lower(place, source, bytes, loops);
+        if self.ops.len() >= KEPT {
+            self.forget();
         }
+        self.lower(place, source, bytes, loops);
     }
 
     /// Lowers all blocks, in order.

@@ -112,9 +112,12 @@ impl Memory {
     /// Lowers one block of a program, so that it can be executed; `None` behind the last.
     pub(crate) fn ready(&mut self, id: ProgramId, place: OpIndex) -> Option<(&Program, &Op)> {
         let Self { sources, programs, .. } = self;
-        let Program { blocks, span, loops, .. } = &mut programs[id.0 as usize];
-        blocks.ready(place, span.source, &sources.get(span.source).bytes, loops);
-        let program = self.get(id);
+        let program = &mut programs[id.0 as usize];
+        if program.op(place).is_none() {
+            let Program { blocks, span, loops, .. } = program;
+            blocks.ready(place, span.source, &sources.get(span.source).bytes, loops);
+        }
+        let program = &*program;
         program.op(place).map(|op| (program, op))
     }
 
@@ -183,8 +186,9 @@ impl Memory {
 
     /// The program that a place belongs to.
     pub fn program_at(&self, span: Span) -> Option<&Program> {
-        self.programs
-            .iter()
-            .find(|p| p.span.source == span.source && (p.span.start..=p.span.end).contains(&span.start))
+        // They stand in the order of their texts, and in the order of their places there.
+        let before = |p: &Program| (p.span.source, p.span.end) < (span.source, span.start);
+        let found = self.programs.get(self.programs.partition_point(before))?;
+        (found.span.source == span.source && found.span.start <= span.start).then_some(found)
     }
 }

@@ -66,7 +66,7 @@ pub struct Op {
 pub enum OpKind {
     /// A block without words: an empty line, a comment, a sequence number alone.
     Empty,
-    Words(Box<Words>),
+    Words(Words),
     Statement(Statement),
     /// `IF[…]` before words or a statement, with THEN or without.
     If {

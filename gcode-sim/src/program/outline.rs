@@ -50,7 +50,7 @@ impl Growing {
             self.loops.extend(part.map(|(part, number)| (place as OpIndex, part, number)));
         }
         if let Outlined::Apart(block) = block {
-            self.apart.insert(place, block);
+            self.apart.insert(place, *block);
         }
         start
     }

@@ -24,7 +24,7 @@ pub struct Words {
 pub struct Coded {
     pub letter: u8,
     /// `AX[…]`: the number of the axis that the word is for.
-    pub axis: Option<Operand>,
+    pub axis: Option<Box<Operand>>,
     /// `,R` and `,C`.
     pub comma: bool,
     pub value: Input,
@@ -98,6 +98,9 @@ impl Lowering {
         for word in words.clone() {
             list.push(self.word(word)?);
         }
+        if !list.iter().any(|word| matches!(word.value, Input::G(650 | 660 | 661 | 670, _))) {
+            return subprogram(list, words);
+        }
         let is = |coded: &Coded, code: u32| matches!(coded.value, Input::G(c, _) if c == code);
         let call = [(650, Calling::Macro), (660, Calling::AfterMoves), (661, Calling::EveryBlock)];
         for (code, kind) in call {
@@ -142,7 +145,7 @@ impl Lowering {
             }
         };
         let axis = match &word.axis {
-            Some(axis) => Some(self.operand(axis, Context::Macro)?),
+            Some(axis) => Some(Box::new(self.operand(axis, Context::Macro)?)),
             None => None,
         };
         Ok(Coded { letter, axis, comma: word.address.comma, value, span: word.span })
@@ -263,6 +266,6 @@ fn subprogram<'a>(
 
 impl From<Words> for OpKind {
     fn from(words: Words) -> Self {
-        Self::Words(Box::new(words))
+        Self::Words(words)
     }
 }

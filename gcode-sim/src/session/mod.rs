@@ -9,7 +9,7 @@ pub use trace::{Executed, Role, Trace, Values};
 use crate::alarm::{Alarm, Code, remedy};
 use crate::control::Settings;
 use crate::diag::{Diagnostic, Severity};
-use crate::exec::{Control, Limits, Note, Outcome, Watcher};
+use crate::exec::{Control, Limits, Note, Outcome, Progress, Watcher};
 use crate::flutes::{Follower, Ground, NoGrinder};
 use crate::holes::{Extracted, Extractor};
 use crate::machine::Machine;
@@ -37,6 +37,8 @@ pub struct Request {
     pub variables: Vec<(u32, f64)>,
     /// The part's surface, where it is there to be probed.
     pub part: Option<Surface>,
+    /// Who sees how far the run is, and may end it.
+    pub progress: Option<Arc<Progress>>,
 }
 
 impl Request {
@@ -53,6 +55,7 @@ impl Request {
             limits: Limits::default(),
             variables: Vec::new(),
             part: None,
+            progress: None,
         }
     }
 }
@@ -107,6 +110,9 @@ pub fn run_watched<S: Sink>(
         presets(&request.machine, &request.settings).chain(request.variables.iter().copied())
     {
         control.set(number, value).map_err(|alarm| SessionError::Variable { number, alarm })?;
+    }
+    if let Some(progress) = &request.progress {
+        control.show_progress(Arc::clone(progress));
     }
     let outcome = control.run_watched(request.limits, library, sink, watcher);
     Ok(Run { control, outcome })
@@ -283,6 +289,12 @@ impl Run {
     fn unended(&self) -> Diagnostic {
         let Some((first, last)) = self.control.endless_loop() else {
             let (blocks, moves) = (self.control.blocks(), self.control.moves());
+            if self.control.is_told_to_stop() {
+                let message =
+                    format!("the run was ended from outside after {blocks} blocks and {moves} moves");
+                let finding = Diagnostic::new(Severity::Alarm, "limit", message).at(self.control.place());
+                return finding.help("what is told is of the blocks so far");
+            }
             let message = format!("the program has not ended after {blocks} blocks and {moves} moves");
             let finding = Diagnostic::new(Severity::Alarm, "limit", message).at(self.control.place());
             return finding.help("does a loop never end? --max-blocks allows more");

@@ -288,7 +288,7 @@ proptest! {
             Outlined::Read(block) => {
                 (block.number.as_ref().map(|n| n.node), block_at(block.span.source, whole, block.span.start))
             }
-            Outlined::Apart(block) => (block.number.as_ref().map(|n| n.node), Some(block)),
+            Outlined::Apart(block) => (block.number.as_ref().map(|n| n.node), Some(*block)),
         });
         prop_assert_eq!(tree.len(), outlined.len());
         for (tree, outlined) in tree.into_iter().zip(outlined) {

@@ -11,27 +11,26 @@ const MOST_PLACES: usize = 18;
 
 /// An unsigned literal below `limit`, were its point left out.
 pub(super) fn decimal(input: Input<'_>, negative: bool, limit: u64) -> Read<'_, Decimal> {
-    let (mut digits, mut count, mut used) = (0u64, 0, 0);
+    let (mut digits, mut count, mut used, mut at) = (0u64, 0, 0, 0);
     let mut before_point = None;
-    for (at, byte) in input.iter().enumerate() {
-        let digit = byte.wrapping_sub(b'0');
-        if digit <= 9 {
-            digits = digits * 10 + u64::from(digit);
-            count += 1;
+    loop {
+        while let Some(byte @ b'0'..=b'9') = input.get(at) {
+            digits = digits * 10 + u64::from(byte - b'0');
+            (count, at) = (count + 1, at + 1);
             if digits >= limit {
                 return fail(input, Alarm::TooManyDigits);
             }
-        } else if *byte == b'.' {
-            if before_point.is_some() {
-                return fail(input, Alarm::IllegalPoint { letter: None });
-            }
-            before_point = Some(count);
-        } else if is_space(*byte) {
-            continue;
-        } else {
-            break;
+            used = at;
         }
-        used = at + 1;
+        match input.get(at) {
+            Some(b'.') if before_point.is_some() => return fail(input, Alarm::IllegalPoint { letter: None }),
+            Some(b'.') => {
+                (before_point, at) = (Some(count), at + 1);
+                used = at;
+            }
+            Some(byte) if is_space(*byte) => at += 1,
+            _ => break,
+        }
     }
     let places = before_point.map(|before| count - before);
     if places > Some(MOST_PLACES) {

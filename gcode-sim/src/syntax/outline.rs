@@ -17,9 +17,9 @@ pub enum Outlined {
         span: Span,
         number: Option<u32>,
     },
-    Read(Block),
+    Read(Box<Block>),
     /// Something else stands before it in its line: it can't be read from its own beginning on.
-    Apart(Block),
+    Apart(Box<Block>),
 }
 
 impl Outlined {
@@ -94,6 +94,7 @@ impl Iterator for Outlines<'_> {
                 }
                 Some(Piece::Block(block)) => {
                     self.told |= !says_nothing(&block);
+                    let block = Box::new(block);
                     let read = if begins { Outlined::Read(block) } else { Outlined::Apart(block) };
                     return Some(Piece::Block(read));
                 }

@@ -8,7 +8,7 @@ use super::number::integer;
 use super::token::{Input, Line, is_space, spaces};
 use super::word::program_name;
 use crate::alarm::Alarm;
-use crate::source::{SourceId, Span, end_of_line};
+use crate::source::{SourceId, Span, end_of_line, line_length};
 
 /// What a file is made of, line by line, so that nobody has to hold all of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,19 +23,16 @@ pub enum Piece<B = Block> {
     Block(B),
 }
 
-/// What bytes mean to who looks for the parts of a line, as bits.
-const LINE_END: u8 = 1;
-/// May begin a comment or a remark.
-const REMARK: u8 = 2;
+/// What bytes mean to who looks for the parts of a line, as bits. This one may begin a comment or a remark.
+const REMARK: u8 = 1;
 /// May end a block before its line does (`%`, `O`, `:`, `<`), or be of DO, END or EN, or of a folder line.
-const DIVIDES: u8 = 4;
+const DIVIDES: u8 = 2;
 
 const MEANINGS: [u8; 256] = {
     let mut all = [0; 256];
     let mut byte = 0;
     while byte < all.len() {
         all[byte] = match byte as u8 {
-            b'\n' | b'\r' => LINE_END,
             b'(' | b';' | b'/' => REMARK,
             b'%' | b'O' | b'o' | b':' | b'<' | b'D' | b'd' | b'E' | b'e' | b'&' => DIVIDES,
             _ => 0,
@@ -114,16 +111,8 @@ impl<'a> Pieces<'a> {
     pub(super) fn next_line(&mut self) -> Option<()> {
         loop {
             let text = self.bytes.get(self.next..).filter(|text| !text.is_empty())?;
-            self.meanings = 0;
-            let mut length = 0;
-            for byte in text {
-                let meaning = MEANINGS[usize::from(*byte)];
-                if meaning == LINE_END {
-                    break;
-                }
-                self.meanings |= meaning;
-                length += 1;
-            }
+            let length = line_length(text);
+            self.meanings = text[..length].iter().fold(0, |all, byte| all | MEANINGS[usize::from(*byte)]);
             (self.begin, self.at) = (self.next, self.next);
             self.end = self.next + length;
             self.code_end = self.end;
@@ -173,7 +162,9 @@ impl<'a> Pieces<'a> {
             }
             return Some(Piece::Section);
         }
-        if let Some((rest, name)) = program_word(at) {
+        if let [b'O' | b'o' | b':' | b'<', ..] = at
+            && let Some((rest, name)) = program_word(at)
+        {
             let span = line.span(at, rest);
             self.at = left(rest);
             return Some(Piece::Program { name, span });

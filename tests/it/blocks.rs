@@ -1,0 +1,67 @@
+//! What the emitted macros cost a control: blocks executed for each hole or flute of the examples.
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::path::Path;
+
+use gcode_gen::families;
+use gcode_gen::package::file_name;
+use gcode_sim::exec::{Control, Outcome};
+use gcode_sim::job::Job;
+use gcode_sim::machine::Machine;
+use gcode_sim::part::wanted::Wanted;
+use gcode_sim::program::{Library, Memory};
+use gcode_sim::session::Request;
+
+/// The emitted files by the number in their names.
+struct Files(BTreeMap<String, String>);
+
+impl Library for Files {
+    fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)> {
+        let name = file_name(number);
+        let text = self.0.get(&name)?;
+        Some((name, text.clone().into_bytes()))
+    }
+}
+
+/// Blocks executed of each program, by the name of its file.
+fn blocks(job: &Job) -> BTreeMap<String, u64> {
+    let package = families::emit(job);
+    let files: BTreeMap<_, _> =
+        package.files().into_iter().map(|(name, text)| (name, text.to_owned())).collect();
+    let main = file_name(package.mains[0]);
+    let request =
+        Request::new(main.clone(), files[&main].as_bytes(), Machine::parse(&package.machine).unwrap());
+    let mut memory = Memory::default();
+    memory.load(main, request.bytes);
+    let mut control = Control::new(memory, request.settings);
+    let mut library = Files(files);
+    let mut counted = BTreeMap::new();
+    let outcome = loop {
+        let outcome = control.step(&mut library, &mut ());
+        let source = control.memory().sources().get(control.place().block.source);
+        *counted.entry(source.name.clone()).or_insert(0) += 1;
+        if let Some(outcome) = outcome {
+            break outcome;
+        }
+    };
+    assert!(matches!(outcome, Outcome::End), "{outcome:?}");
+    counted
+}
+
+#[test]
+fn the_macros_cost_so_many_blocks_for_each_hole() {
+    let mut shown = String::new();
+    for example in ["melon-mould", "honeycomb", "burr"] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().join("examples").join(example);
+        let job = Job::parse(&std::fs::read_to_string(path.join("job.toml")).unwrap()).unwrap();
+        let (wanted, what) = match Wanted::of_job(&job).unwrap() {
+            Wanted::Holes(holes) => (holes.holes.len(), "hole"),
+            Wanted::Flutes(flutes) => (flutes.count as usize, "flute"),
+        };
+        for (name, blocks) in blocks(&job) {
+            let each = blocks as f64 / wanted as f64;
+            writeln!(shown, "{example} {name}: {each:.1} blocks a {what}, {blocks} in all").unwrap();
+        }
+    }
+    insta::assert_snapshot!(shown);
+}
