@@ -264,7 +264,7 @@ type Case = (&'static [(&'static str, &'static str)], u32, &'static str);
 
 #[test]
 fn the_macro_refuses_what_cannot_be_before_anything_moves() {
-    let cases: [Case; 26] = [
+    let cases: [Case; 27] = [
         (&[(" A5.", "")], 31, "A MISSING OR NOT POSITIVE"),
         (&[("C2.", "C0.")], 32, "C MISSING OR NOT POSITIVE"),
         (&[(" D100.", "")], 33, "D MISSING OR NOT POSITIVE"),
@@ -288,6 +288,7 @@ fn the_macro_refuses_what_cannot_be_before_anything_moves() {
         (&[("B20.", "B0.")], 47, "ONE OF B AND E MUST BE 0."),
         (&[("B20.", "B130.")], 48, "FEWER THAN 2 ROWS FIT"),
         (&[("B20.", "B0."), ("E0.", "E1.")], 48, "FEWER THAN 2 ROWS FIT"),
+        (&[("A5.", "A21.")], 49, "HOLES WOULD OVERLAP"),
         (&[("B20.", "B4.9")], 49, "HOLES WOULD OVERLAP"),
         (&[("B20.", "B6."), ("Z12.", "Z20.")], 49, "HOLES WOULD OVERLAP"),
         (&[("B20.", "B60."), ("Z12.", "Z49.")], 49, "HOLES WOULD OVERLAP"),

@@ -6,6 +6,7 @@
 //! `(CHECK-OFF NAME)` on a block, or at the head of a program for all of it, silences a rule there (`silence`).
 mod calls;
 mod circles;
+mod expressions;
 mod flow;
 mod literal;
 mod parameters;

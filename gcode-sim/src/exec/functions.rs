@@ -12,7 +12,7 @@ fn finite(value: f64) -> Result<f64, Alarm> {
 }
 
 #[inline]
-pub(super) fn binary(op: BinaryOp, left: f64, right: f64, unsure: &Unsure) -> Result<f64, Alarm> {
+pub(crate) fn binary(op: BinaryOp, left: f64, right: f64, unsure: &Unsure) -> Result<f64, Alarm> {
     let bits = |value| bits(value, unsure);
     finite(match op {
         BinaryOp::Add => left + right,
@@ -63,7 +63,7 @@ pub(super) fn compare(relation: Relation, left: Value, right: Value) -> bool {
     }
 }
 
-pub(super) fn function(name: Function, x: f64, settings: &Settings) -> Result<f64, Alarm> {
+pub(crate) fn function(name: Function, x: f64, settings: &Settings) -> Result<f64, Alarm> {
     let domain = |ok: bool| {
         let function = || format!("{name:?}").to_uppercase();
         if ok { Ok(()) } else { Err(Alarm::OutOfRange { function: function(), value: x }) }
@@ -128,7 +128,7 @@ fn signed(degrees: f64, settings: &Settings) -> f64 {
     if degrees < 0.0 && !settings.signed_angles { degrees + 360.0 } else { degrees }
 }
 
-pub(super) fn atan2(y: f64, x: f64, settings: &Settings) -> Result<f64, Alarm> {
+pub(crate) fn atan2(y: f64, x: f64, settings: &Settings) -> Result<f64, Alarm> {
     if y == 0.0 && x == 0.0 {
         if settings.unsure.atan_of_nothing_alarms {
             return Err(Alarm::OutOfRange { function: "ATAN".into(), value: 0.0 });
@@ -139,7 +139,7 @@ pub(super) fn atan2(y: f64, x: f64, settings: &Settings) -> Result<f64, Alarm> {
     Ok(signed(Deg::atan2(y + 0.0, x).0, settings))
 }
 
-pub(super) fn power(base: f64, exponent: f64) -> Result<f64, Alarm> {
+pub(crate) fn power(base: f64, exponent: f64) -> Result<f64, Alarm> {
     if base < 0.0 {
         return Err(Alarm::OutOfRange { function: "POW".into(), value: base });
     }

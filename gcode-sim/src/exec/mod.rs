@@ -14,6 +14,7 @@ mod endless;
 mod eval;
 mod frames;
 mod functions;
+pub(crate) mod known;
 mod left;
 mod m_codes;
 mod modal;

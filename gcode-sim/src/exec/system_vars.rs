@@ -132,6 +132,16 @@ fn find(number: u32, offsets: OffsetVariables) -> Result<&'static Row, Alarm> {
     found.ok_or_else(|| not_simulated(number, NOT_SIMULATED).unwrap_or(unknown))
 }
 
+/// The alarm of reading a number on any control with these offsets.
+pub(super) fn readable(number: u32, offsets: OffsetVariables) -> Result<(), Alarm> {
+    find(number, offsets)?.read.map(|_| ()).ok_or(Alarm::ReadProtected { number })
+}
+
+/// The alarm of writing a number on any control with these offsets.
+pub(super) fn writable(number: u32, offsets: OffsetVariables) -> Result<(), Alarm> {
+    find(number, offsets)?.write.map(|_| ()).ok_or(Alarm::WriteProtected { number })
+}
+
 /// A control may have up to 128 signals each way; here are the first 32.
 fn first_signals(word: u32) -> Result<(), Alarm> {
     if word > 0 {

@@ -9,7 +9,7 @@ use super::hole::Hole;
 use super::read::ReferenceError;
 use super::reference::Reference;
 use super::surface::Surface;
-use crate::job::{Honeycomb, Metric, Spacing};
+use crate::job::{Cylinder, Honeycomb, Metric, Spacing};
 use crate::units::Deg;
 
 /// No cylinder that is drilled hole by hole has more.
@@ -29,6 +29,10 @@ pub struct Pattern {
     pub asked: Option<f64>,
     /// Holes stand at 0 ≤ x ≤ length, mm.
     pub length: f64,
+    /// Where the holes begin, mm.
+    pub outer: f64,
+    /// 0 where the cylinder is solid, mm.
+    pub bore: f64,
 }
 
 impl Pattern {
@@ -134,8 +138,9 @@ fn pattern(job: &Honeycomb) -> Result<Pattern, ReferenceError> {
             "key 'pattern.pitch': fewer than two rows of one group fit round diameter {diameter}: a smaller pitch"
         ));
     }
-    let length = job.cylinder.length;
-    Ok(Pattern { pitch: closed(metric, diameter, rows), metric, diameter, rows, asked, length })
+    let Cylinder { length, outer, bore, .. } = job.cylinder;
+    let pitch = closed(metric, diameter, rows);
+    Ok(Pattern { metric, diameter, rows, pitch, asked, length, outer, bore })
 }
 
 /// How many rows of each group come nearest to the pitch that was asked for; `None` where they are too many.
@@ -165,7 +170,8 @@ fn nearest_count(diameter: f64, asked: f64) -> Option<u32> {
 
 /// The pitch at which so many rows close: a hole's neighbours in the next row are as far as those in its own, mm.
 fn closed(metric: Metric, diameter: f64, rows: u32) -> f64 {
-    let guess = Pattern { metric, diameter, rows, pitch: 0.0, asked: None, length: 0.0 };
+    let guess =
+        Pattern { metric, diameter, rows, pitch: 0.0, asked: None, length: 0.0, outer: diameter, bore: 0.0 };
     // The neighbour in the next row stands half a pitch further: with a small pitch it is farther than the pitch.
     let next = |pitch: f64| {
         let (here, there) =

@@ -1,4 +1,5 @@
 //! Holds the holes a program makes against the wanted ones: which is which, how far off, and whether that will do.
+mod causes;
 mod checks;
 pub mod flutes;
 mod matching;

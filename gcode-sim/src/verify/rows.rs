@@ -107,12 +107,16 @@ impl Rows {
     }
 }
 
-/// The mean of the numbers that differ from the middle one by no more than rounding makes of them, 2 %.
+/// The mean of the numbers that differ from the middle one by no more than rounding makes of them, 2 %; the one that
+/// differs most isn't among them where there are enough, for a small seam is no rounding.
 fn usual(numbers: impl Iterator<Item = f64>) -> Option<f64> {
     let mut sorted: Vec<f64> = numbers.collect();
     sorted.sort_by(f64::total_cmp);
     let middle = *sorted.get(sorted.len().checked_sub(1)? / 2)?;
-    let alike = sorted.iter().filter(|number| (**number - middle).abs() <= 0.02 * middle.abs());
+    let off = |number: f64| (number - middle).abs();
+    sorted.sort_by(|a, b| off(*a).total_cmp(&off(*b)));
+    let most = sorted.len() - usize::from(sorted.len() >= FEWEST);
+    let alike = sorted[..most].iter().filter(|number| off(**number) <= 0.02 * middle.abs());
     let (sum, count) = alike.fold((0.0, 0.0), |(sum, count), number| (sum + number, count + 1.0));
     Some(sum / count)
 }

@@ -1,4 +1,5 @@
 //! The rules: a file each, a line each in [`ALL`].
+mod constant_alarm;
 mod doubled_n;
 mod doubled_program;
 mod endless_loop;
@@ -6,12 +7,18 @@ mod jump_into_loop;
 mod live_position;
 mod loop_pairs;
 mod missing_argument;
+mod missing_feed;
 mod missing_n;
+mod missing_offset;
 mod missing_point;
 mod missing_program;
+mod no_such_variable;
+mod open_comment;
 mod relation_symbol;
 mod round_brackets;
 mod rounded_pi;
+mod several_m_codes;
+mod stray_word;
 mod unknown_check;
 mod unknown_code;
 mod unreachable;
@@ -47,6 +54,13 @@ pub const ALL: &[Rule] = &[
     Rule { name: unknown_code::NAME, about: "a G or M code the control doesn't have", find: unknown_code::find },
     Rule { name: missing_program::NAME, about: "a call of a program that isn't there", find: missing_program::find },
     Rule { name: missing_argument::NAME, about: "a macro call without a letter that the macro needs", find: missing_argument::find },
+    Rule { name: several_m_codes::NAME, about: "more M codes in a block than the control takes", find: several_m_codes::find },
+    Rule { name: no_such_variable::NAME, about: "a variable that isn't there, or can't be read or written so", find: no_such_variable::find },
+    Rule { name: constant_alarm::NAME, about: "arithmetic of numbers that always alarms", find: constant_alarm::find },
+    Rule { name: missing_offset::NAME, about: "an H or D beyond the tool offsets", find: missing_offset::find },
+    Rule { name: missing_feed::NAME, about: "a feed move before any F", find: missing_feed::find },
+    Rule { name: open_comment::NAME, about: "a comment that isn't closed", find: open_comment::find },
+    Rule { name: stray_word::NAME, about: "a word that no block of this control takes", find: stray_word::find },
     Rule { name: unset_variable::NAME, about: "a local variable that is read before it is set", find: unset_variable::find },
     Rule { name: missing_point::NAME, about: "a number without a point that means thousandths", find: missing_point::find },
     Rule { name: rounded_pi::NAME, about: "a rounded π as a factor", find: rounded_pi::find },

@@ -1,10 +1,11 @@
 //! A rounded π as a factor: on the circumference of a cylinder 3.14 leaves half a millimetre in a thousand over.
 use std::f64::consts::PI;
 
+use crate::check::expressions;
 use crate::check::literal::constant;
 use crate::check::subject::{Finding, Subject, Unit};
 use crate::source::Span;
-use crate::syntax::ast::{BinaryOp, CallForm, Condition, Expr, ExprKind, Item, Statement, WordValue};
+use crate::syntax::ast::{BinaryOp, CallForm, Expr, ExprKind};
 
 pub(super) const NAME: &str = "rounded-pi";
 
@@ -17,7 +18,7 @@ pub(super) fn find(_: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     let mut found = Vec::new();
     for (index, block) in unit.blocks.iter().enumerate().filter(|(index, _)| unit.reached[*index]) {
         let mut factors = Vec::new();
-        block.items.iter().for_each(|item| in_item(item, &mut factors));
+        expressions::of_block(block).into_iter().for_each(|expr| in_expr(expr, &mut factors));
         for (pi, span) in factors {
             let off = (pi - PI) / PI * 100.0;
             let written = format!("{pi:.7}");
@@ -32,40 +33,6 @@ pub(super) fn find(_: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
         }
     }
     found
-}
-
-fn in_item(item: &Item, found: &mut Vec<(f64, Span)>) {
-    match item {
-        Item::Word(word) => {
-            if let WordValue::Expr(expr) = &word.value {
-                in_expr(expr, found);
-            }
-        }
-        Item::Statement(statement) => in_statement(&statement.node, found),
-        Item::Skip(_) | Item::Unreadable(_) => {}
-    }
-}
-
-fn in_statement(statement: &Statement, found: &mut Vec<(f64, Span)>) {
-    match statement {
-        Statement::Assign { value, .. } => in_expr(value, found),
-        Statement::IfThen { condition, then } => {
-            in_condition(condition, found);
-            in_statement(then, found);
-        }
-        Statement::IfGoto { condition, .. }
-        | Statement::If { condition, .. }
-        | Statement::While { condition, .. } => in_condition(condition, found),
-        _ => {}
-    }
-}
-
-fn in_condition(condition: &Condition, found: &mut Vec<(f64, Span)>) {
-    match condition {
-        Condition::Compare { left, right, .. } => [left, right].into_iter().for_each(|e| in_expr(e, found)),
-        Condition::Logic(_, _, one, other) => [one, other].into_iter().for_each(|c| in_condition(c, found)),
-        Condition::Bracket(inner) => in_condition(inner, found),
-    }
 }
 
 /// The factors and divisors that are nearly π.

@@ -17,9 +17,26 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
             if error > 0.0 { "deep" } else { "shallow" },
             comparison.tolerances.depth
         );
-        let finding = Diagnostic::error("hole-depth", message)
+        let mut finding = Diagnostic::error("hole-depth", message)
             .help("check the programmed depth, the tool's length and its offset")
             .at(comparison.found[pair.found].place.clone());
+        if let Some(note) = without_point(nominal, nominal + error) {
+            finding = finding.note(note);
+        }
         objections.push(Objection { wanted: Some(pair.wanted), finding });
+    }
+}
+
+/// A depth that is a thousandth of the wanted one, or with the finer increment a ten-thousandth.
+fn without_point(wanted: f64, found: f64) -> Option<&'static str> {
+    let is = |parts: f64| (found * parts / wanted - 1.0).abs() < 0.01;
+    match () {
+        () if is(1e3) => {
+            Some("that is a thousandth of it: a number without a decimal point counts thousandths here")
+        }
+        () if is(1e4) => Some(
+            "that is a ten-thousandth of it: a number without a decimal point counts ten-thousandths here",
+        ),
+        () => None,
     }
 }

@@ -4,10 +4,11 @@ use super::{Comparison, Objection};
 use crate::diag::Diagnostic;
 use crate::part::honeycomb::Pattern;
 use crate::units::Deg;
+use crate::verify::causes::causes;
 use crate::verify::rows::Rows;
 
-/// An angle that is off by less than this makes no hole of a turn stand aside, in parts of a row.
-const SHARE: f64 = 0.1;
+/// What rounding to the rotary's increment, 0.01° at the coarsest, may make of a turn.
+const ROUNDED: Deg = Deg(0.03);
 
 pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>) {
     let Some(pattern) = comparison.pattern else { return };
@@ -15,7 +16,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
     let (usual, wanted) = (rows.usual, rows.wanted(pattern));
     // After a whole turn the error has added up.
     let turn = (usual - wanted).abs() * (360.0 / wanted.0);
-    if turn.0 < SHARE * pattern.step().0 {
+    if turn < ROUNDED || pattern.arc(turn) <= comparison.tolerances.position / 2.0 {
         return;
     }
     let (found, right) = (pattern.arc(usual), pattern.arc(wanted));
@@ -38,6 +39,9 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
             "this angle would be right for a diameter of {fits:.2} mm, the pitch is to hold on {}",
             pattern.diameter
         ));
+        if let Some(causes) = causes(pattern, fits / pattern.diameter, true) {
+            finding = finding.note(causes);
+        }
     }
     objections.push(Objection { wanted: None, finding });
 }

@@ -1,6 +1,7 @@
 //! In a row the holes stand at the pitch with which the pattern closes: another one is told with what it adds up to.
 use super::{Comparison, Objection};
 use crate::diag::Diagnostic;
+use crate::verify::causes::causes;
 use crate::verify::rows::Rows;
 
 pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>) {
@@ -23,6 +24,9 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
             "{asked} mm are what was asked for; round the circumference the pattern closes with {:.4}",
             pattern.pitch
         ));
+    }
+    if let Some(causes) = causes(pattern, spacing / pattern.pitch, false) {
+        finding = finding.note(causes);
     }
     let finding = finding.help("compute the pitch from the number of rows that close, after the angle");
     objections.push(Objection { wanted: None, finding });
