@@ -37,7 +37,7 @@ fn of_statement<'a>(statement: &'a Statement, found: &mut Vec<&'a Expr>) {
         Statement::Print { parts, .. } => {
             found.extend(parts.iter().filter_map(|part| match part {
                 PrintPart::Value { variable, .. } => Some(variable),
-                _ => None,
+                PrintPart::Text(_) => None,
             }));
         }
         Statement::SetNames { first, .. } => found.push(first),
