@@ -29,5 +29,6 @@ mod real_files;
 mod results;
 mod round_trip;
 mod sheet;
+mod sine_table;
 mod tidy;
 mod watch;

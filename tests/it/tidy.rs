@@ -126,7 +126,7 @@ fn the_two_sides_stay_apart() {
 /// names of controls and the units, and nothing else.
 #[test]
 fn the_reference_shares_nothing_with_the_generator() {
-    uses_only("gcode-gen/src/families", "gcode_sim::", &["control", "job", "units"]);
+    uses_only("gcode-gen/src/families", "gcode_sim::", &["control", "gauge", "job", "units"]);
 }
 
 #[test]

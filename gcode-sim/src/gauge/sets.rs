@@ -139,10 +139,19 @@ impl GaugeSet {
         blocks
     }
 
+    /// What every thickness that can be made is a whole number of.
+    pub fn step(&self) -> Thickness {
+        Thickness(self.blocks().iter().fold(0, |step, block| common_divisor(step, block.0)))
+    }
+
     /// All blocks on top of each other.
     pub fn total(&self) -> Thickness {
         Thickness(self.blocks().iter().map(|block| block.0).sum())
     }
+}
+
+fn common_divisor(one: u32, other: u32) -> u32 {
+    if other == 0 { one } else { common_divisor(other, one % other) }
 }
 
 #[cfg(test)]
@@ -175,6 +184,14 @@ mod tests {
     fn a_set_of_87_reaches_715_millimetres() {
         let set = GaugeSet::ALL.into_iter().find(|set| set.name == "metric-87").unwrap();
         assert_eq!(set.total().to_string(), "715.295");
+        assert_eq!(set.step().to_string(), "0.001");
+        let steps = GaugeSet::ALL.map(|set| set.step().to_string());
+        // 1.0005 is in the sets of 88 and 112; 1.005 without 1.001 … in those of 32, 38, 47, 76, 83 and 103.
+        let half = [
+            "0.005", "0.005", "0.001", "0.005", "0.005", "0.005", "0.001", "0.0005", "0.001", "0.005",
+            "0.0005",
+        ];
+        assert_eq!(steps, half);
         let edges: Vec<_> = set.series.iter().map(|s| format!("{} {}", s.first, s.last())).collect();
         assert_eq!(edges, ["1.001 1.009", "1.01 1.49", "0.5 9.5", "10 100"]);
     }

@@ -23,7 +23,7 @@ impl GaugeSet {
     /// nearest to a height below half the thinnest block. A height above all blocks together gets all of them.
     pub fn nearest(&self, height: Mm) -> Stack {
         let blocks = self.blocks();
-        let grid = blocks.iter().fold(0, |grid, block| common_divisor(grid, block.0));
+        let grid = self.step().0;
         let steps: Vec<usize> = blocks.iter().map(|block| (block.0 / grid) as usize).collect();
         let wanted = (height.0 * 2000.0 / f64::from(grid)).max(0.0);
         // Nothing at all is nearer than what is twice too high.
@@ -127,10 +127,6 @@ impl Sums {
     fn contains(&self, sum: usize) -> bool {
         sum <= self.most && self.words[sum / 64] >> (sum % 64) & 1 == 1
     }
-}
-
-fn common_divisor(one: u32, other: u32) -> u32 {
-    if other == 0 { one } else { common_divisor(other, one % other) }
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 mod chord;
 mod ellipse;
 mod runout;
+mod sine;
 
 use gcode_sim::diag::Severity;
 use gcode_sim::exec::{Outcome, Value};
@@ -34,6 +35,7 @@ const TRIALS: &[(u32, Trial)] = &[
     (alignment::CHORD, chord::tried),
     (alignment::RUNOUT, runout::tried),
     (alignment::ELLIPSE, ellipse::tried),
+    (alignment::SINE_TABLE, sine::tried),
 ];
 
 pub(super) fn check(job: &Alignment, package: &Package) -> Result<Checked, CheckError> {

@@ -8,6 +8,7 @@ mod ellipse;
 mod machine_file;
 mod resident;
 mod runout;
+mod sine;
 
 use gcode_sim::job::Alignment;
 
@@ -19,6 +20,7 @@ use crate::package::{Package, Program};
 pub use chord::MAIN as CHORD;
 pub use ellipse::MAIN as ELLIPSE;
 pub use runout::MAIN as RUNOUT;
+pub use sine::MAIN as SINE_TABLE;
 
 pub const FAMILY: Family =
     Family { name: "alignment", new_job: include_str!("new.toml"), resident: resident::of_the_defaults };
@@ -35,7 +37,8 @@ struct Measurement {
 }
 
 /// Every measurement there is.
-const ALL: &[Measurement] = &[chord::MEASUREMENT, runout::MEASUREMENT, ellipse::MEASUREMENT];
+const ALL: &[Measurement] =
+    &[chord::MEASUREMENT, runout::MEASUREMENT, ellipse::MEASUREMENT, sine::MEASUREMENT];
 
 /// The main programs, the resident macros and the machine file of a job.
 pub fn emit(job: &Alignment) -> Package {

@@ -6,7 +6,7 @@ use super::ellipse::FileEllipse;
 use super::{Alignment, Chord, Runout, SineTable};
 use crate::gauge::{self, GaugeSet};
 use crate::job::pin_holes::{FileMachine, FileSurface};
-use crate::job::sections::{FileControl, length, within};
+use crate::job::sections::{FileControl, length, sign, within};
 use crate::job::sheet::FileSheet;
 use crate::job::{JobError, Reader, Surface};
 use crate::units::{Deg, Mm};
@@ -42,6 +42,7 @@ struct FileSineTable {
     length: Spanned<f64>,
     phi: Spanned<f64>,
     gauge_blocks: Spanned<String>,
+    sign: Option<Spanned<i64>>,
 }
 
 #[derive(Deserialize)]
@@ -104,6 +105,7 @@ impl FileSineTable {
             // A sine bar loses its accuracy towards the upright.
             phi: reader.number("sine_table.phi", &self.phi, "0 to 45 degrees", within(0.0, 45.0))?,
             gauge_blocks: reader.choice("sine_table.gauge_blocks", &self.gauge_blocks, &sets)?,
+            sign: self.sign.as_ref().map_or(Ok(1), |value| sign(reader, "sine_table.sign", value))?,
         };
         let (height, most) = (gauge::height(Mm(table.length), Deg(table.phi)).0, table.gauge_blocks.total());
         if height > most.mm() {
@@ -214,6 +216,7 @@ angles = [-25.0, 25.0, 11]
                 "line 12: key 'probe.diameter' is not known; allowed: radius, feed, search",
             ),
             ("phi = 38.5", "phi = 46", "line 15: key 'sine_table.phi' is 46: 0 to 45 degrees"),
+            ("length = 200.0", "sign = 2\nlength = 200.0", "line 14: key 'sine_table.sign' is 2: 1 or -1"),
             ("length = 200.0", "length = 5", "line 14: key 'sine_table.length' is 5: 10 to 2000 mm"),
             (
                 "metric-87",

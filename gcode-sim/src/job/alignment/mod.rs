@@ -33,6 +33,8 @@ pub struct SineTable {
     pub length: f64,
     pub phi: f64,
     pub gauge_blocks: GaugeSet,
+    /// 1 where higher blocks turn the part from x towards y, −1 where they turn it back.
+    pub sign: i8,
 }
 
 /// The chord between two points E and F of the surface in the plane z = 0.

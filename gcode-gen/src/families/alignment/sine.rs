@@ -1,0 +1,69 @@
+//! The sine table: which gauge blocks set φ, and on the control by how much they change for the tilt that the run-out found.
+//!
+//! The macro gives the height and not the blocks: the fewest of a set are a search through all stacks, which is done here for
+//! the job's φ; for the corrected one they are found by the digits of the height, the last one first, as always at the machine.
+use gcode_sim::gauge;
+use gcode_sim::job::Alignment;
+use gcode_sim::units::{Deg, Mm};
+
+use super::{Macro, Measurement};
+use crate::families::control;
+use crate::nc::block::Block;
+use crate::nc::number::number;
+use crate::nc::program::Program as Text;
+
+/// The main program.
+pub const MAIN: u32 = 8230;
+
+/// Height and angle.
+const TABLE: u32 = 8231;
+
+pub(super) const MEASUREMENT: Measurement = Measurement {
+    main: MAIN,
+    title: "SINE TABLE OF A PART TO BE SET UP",
+    write,
+    macros: &[Macro { number: TABLE, file: "O8231_sine_table.nc", text: include_str!("sine.nc") }],
+};
+
+fn write(job: &Alignment, text: &mut Text) {
+    let table = &job.sine_table;
+    let k = control::alarm_thousands(job.control.dialect);
+    let [phi, length] = [table.phi, table.length].map(number);
+    let set = table.gauge_blocks;
+    let setting = gauge::setting(Mm(table.length), Deg(table.phi), &set);
+    text.remark(format!("L {length} PHI {phi}, H = L*SIN[PHI] = {:.5}", setting.height.0));
+    text.remark(format!("GAUGE BLOCKS {}", set.name));
+    for line in stack(&setting.stack) {
+        text.remark(line);
+    }
+    let over = if setting.left < 0.0 { "TOO LITTLE" } else { "TOO MUCH" };
+    text.remark(format!("THEY MAKE {:.2} SECONDS OF ARC {over}", setting.left.abs()));
+    for line in [
+        "AFTER O8210 HAS FOUND THE TILT #583 THIS PROGRAM TELLS".to_owned(),
+        "#590 PHI TO SET, #591 HEIGHT OF THE BLOCKS, #592 ITS CHANGE".to_owned(),
+        "#593 SECONDS OF ARC BY WHICH #591 MAKES TOO MUCH".to_owned(),
+        format!("CONTROL {}", control::remark(job.control)),
+        format!("CALLS O{TABLE}, ALARMS {k}161-{k}166. NOTHING MOVES"),
+    ] {
+        text.remark(line);
+    }
+    text.block(
+        Block::call(TABLE)
+            .word('A', phi)
+            .word('B', length)
+            .word('C', number(set.step().mm()))
+            .word('U', number(f64::from(table.sign)))
+            .comment("SINE TABLE"),
+    );
+    text.block(Block::of("#3006=1(SET SINE TABLE TO H #591)"));
+    text.block(Block::of("M30"));
+}
+
+/// The blocks in lines that a control can show.
+fn stack(stack: &gauge::Stack) -> Vec<String> {
+    if stack.blocks.is_empty() {
+        return vec!["BLOCKS NONE".to_owned()];
+    }
+    let names: Vec<_> = stack.blocks.iter().map(ToString::to_string).collect();
+    names.chunks(8).map(|names| format!("BLOCKS {}", names.join(" + "))).collect()
+}

@@ -1,0 +1,90 @@
+//! The sine table's program on the control: heights worked out by hand, and what it refuses.
+use std::path::Path;
+
+use gcode_gen::families;
+use gcode_gen::package::Package;
+use gcode_sim::alarm::Code;
+use gcode_sim::exec::Outcome;
+use gcode_sim::job::Job;
+use gcode_sim::machine::Machine;
+use gcode_sim::program::Library;
+use gcode_sim::session::{Request, Run, run};
+
+struct Memory<'p>(&'p Package);
+
+impl Library for Memory<'_> {
+    fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)> {
+        Some((format!("O{number}.nc"), self.0.program(number)?.text.clone().into_bytes()))
+    }
+}
+
+fn package() -> Package {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/alignment/job.toml");
+    families::emit(&Job::parse(&std::fs::read_to_string(path).unwrap()).unwrap())
+}
+
+/// O8230 with a word changed, after a run-out that found this tilt.
+fn ran(change: (&str, &str), tilt: Option<f64>) -> Run {
+    let package = package();
+    let text = &package.program(8230).unwrap().text;
+    assert!(text.contains(change.0), "{} isn't in\n{text}", change.0);
+    let text = text.replace(change.0, change.1);
+    let mut request = Request::new("O8230.nc", text.into_bytes(), Machine::parse(&package.machine).unwrap());
+    request.variables.extend(tilt.map(|tilt| (583, tilt)));
+    run(&request, &mut Memory(&package), &mut ()).unwrap()
+}
+
+/// L = 200: 200·sin 38.4° = 124.229 56, 200·sin 38.5° = 124.502 93, 200·sin 38.6° = 124.775 92. A micron at 38.4° is
+/// 206 265/(200 000·cos 38.4°) = 1.316 seconds, at 38.6° 1.320: 0.444 microns are 0.584, 0.081 are 0.106.
+#[test]
+fn the_height_follows_the_tilt_the_way_that_u_says() {
+    let cases = [
+        ("U1.", 0.1, 38.4, 124.23, 124.23 - 124.502_927, 0.584),
+        ("U-1.", 0.1, 38.6, 124.776, 124.776 - 124.502_927, 0.106),
+        ("U-1.", -0.1, 38.4, 124.23, 124.23 - 124.502_927, 0.584),
+        ("U1.", 0.0, 38.5, 124.503, 124.503 - 124.502_927, 0.096),
+    ];
+    for (sign, tilt, angle, height, change, left) in cases {
+        let ran = ran(("U1.", sign), Some(tilt));
+        assert!(matches!(ran.outcome, Outcome::End), "{:?}", ran.outcome);
+        let value = |number: u32| ran.control.variable(number).unwrap().number();
+        let found = [value(590), value(591), value(592), value(593)];
+        for (found, (wanted, by)) in
+            found.into_iter().zip([(angle, 1e-9), (height, 1e-9), (change, 1e-6), (left, 2e-3)])
+        {
+            assert!((found - wanted).abs() < by, "{found} is not {wanted}, {sign} {tilt}");
+        }
+        assert_eq!(ran.control.stops().len(), 1, "the operator is told");
+    }
+}
+
+/// 200·sin 38.5° is 124.503 by the set of 87: 1.003 for the last digit, which leaves 123.5, and no block is as thick.
+#[test]
+fn the_program_names_the_blocks() {
+    let package = package();
+    let text = &package.program(8230).unwrap().text;
+    assert!(text.contains("(GAUGE BLOCKS METRIC-87)\n(BLOCKS 100 + 20 + 3.5 + 1.003)\n"), "{text}");
+    assert!(text.contains("(THEY MAKE 0.10 SECONDS OF ARC TOO MUCH)"), "{text}");
+}
+
+#[test]
+fn what_no_table_can_be_set_to_is_refused() {
+    let cases = [
+        ("A38.5", "", Some(0.1), 3161),
+        ("A38.5", "A-1.", Some(0.1), 3161),
+        ("A38.5", "A45.1", Some(0.1), 3161),
+        ("B200.", "", Some(0.1), 3162),
+        ("C0.001", "C0.", Some(0.1), 3163),
+        ("U1.", "", Some(0.1), 3164),
+        ("U1.", "U2.", Some(0.1), 3164),
+        ("U1.", "U1.", None, 3165),
+        ("U1.", "U1.", Some(-6.6), 3166),
+        ("U1.", "U1.", Some(38.6), 3166),
+    ];
+    for (from, to, tilt, number) in cases {
+        let ran = ran((from, to), tilt);
+        let Outcome::Alarm(stopped) = &ran.outcome else { panic!("{to} in place of {from} runs") };
+        assert_eq!(stopped.alarm.row().code, Code::Mc(number), "{to} in place of {from}, {tilt:?}");
+        assert!(ran.control.variable(590).unwrap().is_vacant());
+    }
+}
