@@ -92,7 +92,7 @@ pub fn line_length(text: &[u8]) -> usize {
     const TOPS: u64 = ONES << 7;
     // The lowest bit set marks the first byte that is `byte`.
     let marks = |word: u64, byte: u8| {
-        let differs = word ^ ONES * u64::from(byte);
+        let differs = word ^ (ONES * u64::from(byte));
         differs.wrapping_sub(ONES) & !differs & TOPS
     };
     let (words, rest) = text.as_chunks::<8>();
