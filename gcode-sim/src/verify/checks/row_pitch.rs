@@ -7,13 +7,13 @@ use crate::verify::rows::Rows;
 pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>) {
     let Some(pattern) = comparison.pattern else { return };
     let Some((spacing, row)) = Rows::of(comparison, pattern).and_then(|rows| rows.spacing) else { return };
-    let holes = (pattern.length / pattern.pitch).floor();
-    let sum = (spacing - pattern.pitch).abs() * holes;
+    let pitches = (pattern.length / pattern.pitch).floor();
+    let sum = (spacing - pattern.pitch).abs() * pitches;
     if sum <= comparison.tolerances.position / 2.0 {
         return;
     }
     let message = format!(
-        "the holes of a row stand {spacing:.4} mm apart, {:.4} wanted: over {holes:.0} holes that is {sum:.2} mm",
+        "the holes of a row stand {spacing:.4} mm apart, {:.4} wanted: over {pitches:.0} pitches that is {sum:.2} mm",
         pattern.pitch
     );
     let mut finding = Diagnostic::error("row-pitch", message).at(comparison.found[row.first].place.clone());

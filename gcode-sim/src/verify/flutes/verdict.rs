@@ -194,6 +194,8 @@ fn not_checked(unseen: usize) -> Vec<String> {
          isn't known"
             .to_owned(),
         "which side of the wheel's swivel B is right: only its angle is held against the helix angle".to_owned(),
+        "which way and how fast the wheel turns, and the speed along the flute: S, M03 or M04 and F aren't held against the job"
+            .to_owned(),
     ];
     if 0 < unseen {
         let moves = if unseen == 1 { "1 move" } else { &format!("{unseen} moves") };
