@@ -33,7 +33,7 @@ use crate::syntax::ast::{PrintKind, ProgramName};
 /// The place of an operation in its program.
 pub type OpIndex = usize;
 
-/// One O-program: where its blocks are, and the operations of those that were asked for (see [`Blocks`]).
+/// One O-program: where its blocks are, and the operations of those that were asked for.
 #[derive(Debug)]
 pub struct Program {
     pub name: ProgramName,
@@ -158,7 +158,7 @@ impl Program {
         }
     }
 
-    /// Its operations in order; none before [`Memory::lower_all`] has lowered them.
+    /// Its operations in order; none before `Memory::lower_all` has lowered them.
     pub fn ops(&self) -> &[Op] {
         self.blocks.all()
     }
