@@ -1,7 +1,7 @@
 //! A part that is to be set up: programs that measure on the control how it stands, and what they call.
 //!
 //! The method is that of *Improved Processing Technology of Positioning Pin Hole on Melon Mold*; see
-//! `docs/methods/alignment.md`. Each measurement is a file here and a row in [`ALL`]; what its program has to find on a
+//! `docs/methods/alignment.md`. Each measurement is a file here and a row in `ALL`; what its program has to find on a
 //! simulated part before it is written is a file and a row in `check/alignment`.
 mod chord;
 mod ellipse;
