@@ -4,15 +4,15 @@ use std::path::Path;
 use nalgebra::{Point3, Rotation3, Translation3, Vector3};
 use proptest::prelude::*;
 
+use gcode_gen::check::Programs;
 use gcode_gen::families;
-use gcode_gen::package::{Package, file_name};
+use gcode_gen::package::file_name;
 use gcode_sim::exec::{Outcome, Value};
 use gcode_sim::holes::Extractor;
 use gcode_sim::job::Job;
 use gcode_sim::machine::{Frame, Machine, Placement};
 use gcode_sim::part::surface::Surface;
 use gcode_sim::part::wanted::Wanted;
-use gcode_sim::program::Library;
 use gcode_sim::session::{Request, Run, run, simulate};
 use gcode_sim::units::Deg;
 use gcode_sim::verify::{Answer, Tolerances, Verdict};
@@ -20,14 +20,6 @@ use gcode_sim::verify::{Answer, Tolerances, Verdict};
 fn example(name: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples").join(name);
     std::fs::read_to_string(path.join("job.toml")).unwrap()
-}
-
-struct Programs<'p>(&'p Package);
-
-impl Library for Programs<'_> {
-    fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)> {
-        Some((file_name(number), self.0.program(number)?.text.clone().into_bytes()))
-    }
 }
 
 /// Runs one of a job's main programs on a misplaced part; `more` stands behind the machine file.

@@ -3,38 +3,26 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
 
+use gcode_gen::check::Programs;
 use gcode_gen::families;
 use gcode_gen::package::file_name;
 use gcode_sim::exec::{Control, Outcome};
 use gcode_sim::job::Job;
 use gcode_sim::machine::Machine;
 use gcode_sim::part::wanted::Wanted;
-use gcode_sim::program::{Library, Memory};
+use gcode_sim::program::Memory;
 use gcode_sim::session::Request;
-
-/// The emitted files by the number in their names.
-struct Files(BTreeMap<String, String>);
-
-impl Library for Files {
-    fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)> {
-        let name = file_name(number);
-        let text = self.0.get(&name)?;
-        Some((name, text.clone().into_bytes()))
-    }
-}
 
 /// Blocks executed of each program, by the name of its file.
 fn blocks(job: &Job) -> BTreeMap<String, u64> {
     let package = families::emit(job);
-    let files: BTreeMap<_, _> =
-        package.files().into_iter().map(|(name, text)| (name, text.to_owned())).collect();
-    let main = file_name(package.mains[0]);
-    let request =
-        Request::new(main.clone(), files[&main].as_bytes(), Machine::parse(&package.machine).unwrap());
+    let main = package.program(package.mains[0]).unwrap();
+    let name = file_name(main.number);
+    let request = Request::new(name.clone(), main.text.as_bytes(), Machine::parse(&package.machine).unwrap());
     let mut memory = Memory::default();
-    memory.load(main, request.bytes);
+    memory.load(name, request.bytes);
     let mut control = Control::new(memory, request.settings);
-    let mut library = Files(files);
+    let mut library = Programs(&package);
     let mut counted = BTreeMap::new();
     let outcome = loop {
         let outcome = control.step(&mut library, &mut ());

@@ -1,5 +1,5 @@
 //! Burrs from job to verdict: random jobs, both forms of the program, how many moves there are, what the macro refuses.
-use gcode_gen::check::check;
+use gcode_gen::check::{Programs, check};
 use gcode_gen::families;
 use gcode_gen::package::{Package, file_name};
 use gcode_sim::exec::Outcome;
@@ -7,7 +7,6 @@ use gcode_sim::job::Job;
 use gcode_sim::machine::Machine;
 use gcode_sim::motion::{Event, EventKind, Position, Sink};
 use gcode_sim::part::wanted::Wanted;
-use gcode_sim::program::Library;
 use gcode_sim::session::{Request, grind, run};
 use gcode_sim::units::{Deg, ln};
 use gcode_sim::verify::Answer;
@@ -178,15 +177,6 @@ impl Sink for Path {
     }
 }
 
-struct Memory<'p>(&'p Package);
-
-impl Library for Memory<'_> {
-    fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)> {
-        let program = self.0.program(number)?;
-        Some((file_name(number), program.text.as_bytes().to_vec()))
-    }
-}
-
 fn request(package: &Package) -> Request {
     let main = package.main().unwrap();
     let machine = Machine::parse(&package.machine).unwrap();
@@ -196,7 +186,7 @@ fn request(package: &Package) -> Request {
 fn path(wish: &Wish) -> Path {
     let package = families::emit(&wish.job());
     let mut path = Path::default();
-    let done = run(&request(&package), &mut Memory(&package), &mut path).unwrap();
+    let done = run(&request(&package), &mut Programs(&package), &mut path).unwrap();
     assert!(matches!(done.outcome, Outcome::End), "{:?}", done.outcome);
     path
 }
@@ -279,7 +269,7 @@ fn each_axis_sign_counts() {
         let turned = after.replacen("sign = 1", "sign = -1", 1);
         let machine = format!("{before}letter = \"{letter}\"{turned}");
         let package = Package { machine, ..package.clone() };
-        let verdict = grind(&request(&package), &mut Memory(&package), &wanted).unwrap().verify();
+        let verdict = grind(&request(&package), &mut Programs(&package), &wanted).unwrap().verify();
         assert!(verdict.verdict == Answer::Fail, "{letter} turned round isn't noticed");
     }
 }
@@ -289,7 +279,7 @@ fn without_a_wheel_there_is_no_verdict() {
     let job = example().job();
     let Wanted::Flutes(wanted) = Wanted::of_job(&job).unwrap() else { panic!("a burr has flutes") };
     let package = Package { machine: String::new(), ..families::emit(&job) };
-    let error = grind(&request(&package), &mut Memory(&package), &wanted).unwrap_err().to_string();
+    let error = grind(&request(&package), &mut Programs(&package), &wanted).unwrap_err().to_string();
     assert!(error.starts_with("the machine file has no [wheel]"), "{error}");
 }
 
@@ -326,7 +316,7 @@ fn the_macro_refuses_what_can_not_be_ground() {
         let mut request = request(&package);
         request.bytes = text.replacen(from, to, 1).into_bytes().into();
         let mut path = Path::default();
-        let done = run(&request, &mut Memory(&package), &mut path).unwrap();
+        let done = run(&request, &mut Programs(&package), &mut path).unwrap();
         let Outcome::Alarm(stopped) = &done.outcome else { panic!("{to} raises nothing") };
         assert_eq!(stopped.alarm.code().to_string(), format!("MC{}", 3000 + number), "{from} -> {to}");
         assert!(path.0.is_empty(), "{to} is refused after a move");
@@ -343,7 +333,7 @@ fn with(blocks: &str) -> FluteVerdict {
     let main = package.programs.iter_mut().find(|program| program.number == 8400).unwrap();
     assert!(main.text.contains(" G00 C0.\n"));
     main.text = main.text.replace(" G00 C0.\n", &format!(" G00 C0.\n{blocks}"));
-    grind(&request(&package), &mut Memory(&package), &wanted).unwrap().verify()
+    grind(&request(&package), &mut Programs(&package), &wanted).unwrap().verify()
 }
 
 /// The blank stands `depth` above the tooth bottom at Y 0; the wheel goes along it from X -19 to X 0.

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use gcode_gen::check::Programs;
 use gcode_gen::families;
 use gcode_gen::package::Package;
 use gcode_sim::exec::Outcome;
@@ -11,18 +12,9 @@ use gcode_sim::machine::random::Draw;
 use gcode_sim::machine::{Machine, Setup};
 use gcode_sim::motion::Position;
 use gcode_sim::part::surface::Surface;
-use gcode_sim::program::Library;
 use gcode_sim::session::{Request, follow, run};
 use gcode_sim::units::Deg;
 use nalgebra::{Point3, distance};
-
-struct Memory<'p>(&'p Package);
-
-impl Library for Memory<'_> {
-    fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)> {
-        Some((format!("O{number}.nc"), self.0.program(number)?.text.clone().into_bytes()))
-    }
-}
 
 fn workspace() -> std::path::PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
@@ -81,7 +73,7 @@ fn matched(job: &Alignment, package: &Package, draw: Draw) -> Matched {
         let values = points.iter().flat_map(|point| [point.x, point.y, point.z]);
         request.variables.extend((first..).zip(values));
     }
-    let ran = run(&request, &mut Memory(package), &mut ()).unwrap();
+    let ran = run(&request, &mut Programs(package), &mut ()).unwrap();
     assert!(matches!(ran.outcome, Outcome::End), "{:?}", ran.outcome);
     let value = |number: u32| ran.control.variable(number).unwrap().number();
     let [e, f] = ends.map(|x| on_surface(job, x, 0.0));
@@ -155,7 +147,7 @@ fn the_ellipse_sees_three_of_six() {
             "0.01°"
         };
         let request = Request::new("O8220.nc", package.program(8220).unwrap().text.as_bytes(), machine);
-        let following = follow(&request, &mut Memory(&package), surface, job.probe_radius).unwrap();
+        let following = follow(&request, &mut Programs(&package), surface, job.probe_radius).unwrap();
         let readings = &following.followed.passes[0].readings;
         let ends = [&readings[0], &readings[readings.len() - 1]].map(|reading| {
             let normal = surface.nearest(&reading.at).normal;

@@ -1,5 +1,6 @@
 //! The ellipse program of an alignment: the ball's distance from the surface along the emitted path, the count of moves, what
 //! is refused, and the reading on a misplaced part.
+use gcode_gen::check::Programs;
 use gcode_gen::families;
 use gcode_gen::package::Package;
 use gcode_sim::alarm::Code;
@@ -9,18 +10,9 @@ use gcode_sim::machine::Machine;
 use gcode_sim::motion::{Event, EventKind, Sink};
 use gcode_sim::part::indicator::tilted;
 use gcode_sim::part::surface::Surface;
-use gcode_sim::program::Library;
 use gcode_sim::session::{Following, Request, follow, run};
 use gcode_sim::units::{Deg, Mm};
 use nalgebra::Vector3;
-
-struct Memory<'p>(&'p Package);
-
-impl Library for Memory<'_> {
-    fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)> {
-        Some((format!("O{number}.nc"), self.0.program(number)?.text.clone().into_bytes()))
-    }
-}
 
 /// An ellipsoid, the ends of the path, the ball, the chord error, the control.
 #[derive(Clone, Copy)]
@@ -78,7 +70,7 @@ impl Path {
         let mut request = self.request(&package);
         request.machine.part.shift = Vector3::from(shift);
         request.machine.part.tilt[2] = Deg(tilt);
-        follow(&request, &mut Memory(&package), self.surface(), self.radius).unwrap()
+        follow(&request, &mut Programs(&package), self.surface(), self.radius).unwrap()
     }
 }
 
@@ -99,7 +91,7 @@ impl Sink for Points {
 fn points(path: &Path) -> Vec<[f64; 2]> {
     let package = path.package();
     let mut points = Points::default();
-    let ran = run(&path.request(&package), &mut Memory(&package), &mut points).unwrap();
+    let ran = run(&path.request(&package), &mut Programs(&package), &mut points).unwrap();
     assert!(matches!(ran.outcome, Outcome::End), "{:?}", ran.outcome);
     points.all
 }
@@ -219,7 +211,7 @@ fn what_can_not_be_followed_is_refused() {
         let mut request = MELON.request(&package);
         request.bytes = text.replace(from, to).into_bytes().into();
         let mut points = Points::default();
-        let ran = run(&request, &mut Memory(&package), &mut points).unwrap();
+        let ran = run(&request, &mut Programs(&package), &mut points).unwrap();
         let Outcome::Alarm(stopped) = &ran.outcome else { panic!("{to} in place of {from} runs") };
         assert_eq!(stopped.alarm.row().code, Code::Mc(3000 + number), "{to} in place of {from}");
         assert!(points.all.is_empty(), "nothing is fed before: {to} in place of {from}");
@@ -237,7 +229,7 @@ fn it_ends_clear_of_the_part_with_the_modes_it_found() {
         .text
         .replace("N60 M30", "#500=#4001\n#501=#4003\n#502=#5001\n#503=#5002\nM30");
     request.bytes = text.replace("G90 G94", "G91 G94").replace("B0.", "G90 B0.\nG91").into_bytes().into();
-    let ran = run(&request, &mut Memory(&package), &mut ()).unwrap();
+    let ran = run(&request, &mut Programs(&package), &mut ()).unwrap();
     assert!(matches!(ran.outcome, Outcome::End), "{:?}", ran.outcome);
     let value = |number: u32| ran.control.variable(number).unwrap().number();
     assert_eq!((value(500), value(501)), (0.0, 91.0));
@@ -282,7 +274,7 @@ fn the_machine_finds_what_the_formula_of_figure_5_says() {
         request.settings.increment = gcode_sim::control::Increment::IsC;
         let surface = MELON.surface();
         let mut probe = gcode_sim::holes::Extractor::new(&request.machine).with_surface(Some(surface));
-        let ran = run(&request, &mut Memory(&MELON.package()), &mut probe).unwrap();
+        let ran = run(&request, &mut Programs(&MELON.package()), &mut probe).unwrap();
         let x = ran.control.variable(500).unwrap().number();
         let said = tilted(Mm(1158.8), Mm(724.3), Mm(200.0), Deg(tilt)).unwrap();
         // The ball's radius, and half an increment.

@@ -1,7 +1,7 @@
 //! The emitted honeycomb programs on the control: random jobs, called wrongly, with faults put in, counted.
 use std::path::Path;
 
-use gcode_gen::check::check;
+use gcode_gen::check::{Programs, check};
 use gcode_gen::families;
 use gcode_gen::package::Package;
 use gcode_sim::alarm::Alarm;
@@ -9,23 +9,9 @@ use gcode_sim::exec::Outcome;
 use gcode_sim::job::Job;
 use gcode_sim::machine::Machine;
 use gcode_sim::motion::{Event, EventKind, Position, Sink};
-use gcode_sim::program::Library;
 use gcode_sim::session::{Request, Run, run};
 use gcode_sim::verify::{Answer, Verdict};
 use proptest::prelude::*;
-
-struct Programs(Vec<(u32, String)>);
-
-impl Library for Programs {
-    fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)> {
-        let (_, text) = self.0.iter().find(|(known, _)| *known == number)?;
-        Some((format!("O{number}.nc"), text.clone().into_bytes()))
-    }
-}
-
-fn programs(package: &Package) -> Programs {
-    Programs(package.programs.iter().map(|program| (program.number, program.text.clone())).collect())
-}
 
 /// A small job: diameter 100, pitch 20, length 90: 9 rows of each group, 5 and 4 holes.
 const SMALL: &str = r#"family = "honeycomb"
@@ -72,7 +58,7 @@ fn verdict(text: &str, changes: &[(&str, &str)]) -> Verdict {
 fn ran(package: &Package, sink: &mut impl Sink) -> Run {
     let main = package.main().unwrap();
     let machine = Machine::parse(&package.machine).unwrap();
-    run(&Request::new("O8300.nc", main.text.as_bytes(), machine), &mut programs(package), sink).unwrap()
+    run(&Request::new("O8300.nc", main.text.as_bytes(), machine), &mut Programs(package), sink).unwrap()
 }
 
 /// π·100/(20·√3) = 9.07 rows; π·100/18/cos 30° = 20.153; 90/20.153 = 4.47: 5 holes in even rows, and with half a pitch
@@ -240,7 +226,7 @@ fn called(changes: &[(&str, &str)], modes: &str) -> (u32, String) {
     let machine = Machine::parse(&package.machine).unwrap();
     let mut moves = Count(0);
     let done =
-        run(&Request::new("O1.nc", text.as_bytes(), machine), &mut programs(&package), &mut moves).unwrap();
+        run(&Request::new("O1.nc", text.as_bytes(), machine), &mut Programs(&package), &mut moves).unwrap();
     match &done.outcome {
         Outcome::Alarm(stopped) => match &stopped.alarm {
             Alarm::Raised { number, text, .. } => {

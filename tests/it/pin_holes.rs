@@ -1,7 +1,7 @@
 //! The emitted pin-hole programs on the control: edited by hand, called wrongly, with the printed equation, counted.
 use std::path::Path;
 
-use gcode_gen::check::check;
+use gcode_gen::check::{Programs, check};
 use gcode_gen::families;
 use gcode_gen::package::Package;
 use gcode_sim::alarm::Alarm;
@@ -10,22 +10,8 @@ use gcode_sim::job::Job;
 use gcode_sim::machine::Machine;
 use gcode_sim::motion::{Event, EventKind, Position, Sink};
 use gcode_sim::part::wanted::Wanted;
-use gcode_sim::program::Library;
 use gcode_sim::session::{Request, Run, run, simulate};
 use gcode_sim::verify::{Answer, Tolerances, Verdict};
-
-struct Programs(Vec<(u32, String)>);
-
-impl Library for Programs {
-    fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)> {
-        let (_, text) = self.0.iter().find(|(known, _)| *known == number)?;
-        Some((format!("O{number}.nc"), text.clone().into_bytes()))
-    }
-}
-
-fn programs(package: &Package) -> Programs {
-    Programs(package.programs.iter().map(|program| (program.number, program.text.clone())).collect())
-}
 
 /// The main job of the examples.
 fn melon() -> String {
@@ -92,7 +78,7 @@ fn ran(package: &Package, change: impl Fn(&mut Request)) -> Run {
     let machine = Machine::parse(&package.machine).unwrap();
     let mut request = Request::new("O8100.nc", main.text.as_bytes(), machine);
     change(&mut request);
-    run(&request, &mut programs(package), &mut ()).unwrap()
+    run(&request, &mut Programs(package), &mut ()).unwrap()
 }
 
 /// Equation (8) as printed has √(1 − r²/a²)/b, a number in 1/mm: every hole lies far too low.
@@ -127,7 +113,7 @@ fn neither_the_machine_file_nor_the_range_of_atan_changes_the_verdict() {
         for signed in [false, true] {
             let mut request = Request::new("O8100.nc", main.text.as_bytes(), machine.clone());
             request.settings.signed_angles = signed;
-            let done = simulate(&request, &mut programs(&package), reference.surface).unwrap();
+            let done = simulate(&request, &mut Programs(&package), reference.surface).unwrap();
             let verdict = done.verify(&reference, Tolerances::of(&reference, None), &machine);
             assert_eq!(verdict.verdict, Answer::Pass, "{:?}", verdict.findings);
             assert_eq!(verdict.holes.len(), 5);
@@ -235,7 +221,7 @@ fn no_rapid_can_touch_the_part_whatever_path_it_takes() {
         text.push_str("M30\n");
         let mut sink = Rectangles { at: Position::default(), a, b, begun: false, lowest: 9.0, rapids: 0 };
         let request = Request::new("O1.nc", text.as_bytes(), Machine::default());
-        let done = run(&request, &mut programs(&package), &mut sink).unwrap();
+        let done = run(&request, &mut Programs(&package), &mut sink).unwrap();
         assert!(matches!(done.outcome, Outcome::End), "{:?}", done.outcome);
         assert!(sink.rapids > 40, "{} rapids", sink.rapids);
         assert!(sink.lowest > 1.0, "a rapid of a = {a}, b = {b} can reach {} of the surface", sink.lowest);
@@ -252,7 +238,7 @@ fn refused(before: &str, call: &str, from: &str, to: &str) -> (u16, String) {
     let package = families::emit(&job(&melon()));
     let text = format!("O1\n{before}\n{changed}\nM30\n");
     let request = Request::new("O1.nc", text.as_bytes(), Machine::default());
-    let done = run(&request, &mut programs(&package), &mut ()).unwrap();
+    let done = run(&request, &mut Programs(&package), &mut ()).unwrap();
     assert_eq!(done.control.moves(), 0, "{changed} moves something before it is refused");
     match done.outcome {
         Outcome::Alarm(stopped) => match stopped.alarm {
@@ -322,14 +308,11 @@ fn a_head_setting_is_refused_on_the_control_with_a_number_and_a_text() {
 /// Another O8102 in the control, from another maker: the hole is not drilled at its angle.
 #[test]
 fn a_hole_is_refused_where_the_head_does_not_come_to_its_angle() {
-    let mut programs = programs(&families::emit(&job(&melon())));
-    for (number, text) in &mut programs.0 {
-        if *number == 8102 {
-            *text = "O8102\n#141=12.\nM99\n".to_owned();
-        }
-    }
+    let mut package = families::emit(&job(&melon()));
+    let head = package.programs.iter_mut().find(|program| program.number == 8102).unwrap();
+    head.text = "O8102\n#141=12.\nM99\n".to_owned();
     let request = Request::new("O1.nc", format!("O1\nG21\n{CALL}\nM30\n").into_bytes(), Machine::default());
-    let done = run(&request, &mut programs, &mut ()).unwrap();
+    let done = run(&request, &mut Programs(&package), &mut ()).unwrap();
     let Outcome::Alarm(stopped) = done.outcome else { panic!("{:?}", done.outcome) };
     let Alarm::Raised { number, text, .. } = stopped.alarm else { panic!("{}", stopped.alarm) };
     assert_eq!((number, text.as_str()), (16, "HEAD NOT AT ANGLE FOR R"));
@@ -353,7 +336,7 @@ fn a_call_leaves_the_callers_modes_feed_and_locals() {
     );
     let request = Request::new("O1.nc", text.into_bytes(), Machine::default());
     let package = families::emit(&job(&melon()));
-    let done = run(&request, &mut programs(&package), &mut ()).unwrap();
+    let done = run(&request, &mut Programs(&package), &mut ()).unwrap();
     let found: Vec<_> = done.control.variables().filter(|(number, _)| (100..140).contains(number)).collect();
     assert_eq!(found, [(100, 1.0), (101, 91.0), (102, 77.0), (103, 5.0)], "#104 stays vacant");
 }

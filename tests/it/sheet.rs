@@ -1,7 +1,7 @@
 //! The set-up sheet: whole in one file, no text of a job becomes markup, its hashes are those of the files written.
 use std::path::Path;
 
-use gcode_gen::sheet::encode::sha256;
+use gcode_sim::report::encode::sha256;
 use gcode_tests::programs;
 use gcode_tests::sheet::html;
 

@@ -1,22 +1,14 @@
 //! The sine table's program on the control: heights worked out by hand, and what it refuses.
 use std::path::Path;
 
+use gcode_gen::check::Programs;
 use gcode_gen::families;
 use gcode_gen::package::Package;
 use gcode_sim::alarm::Code;
 use gcode_sim::exec::Outcome;
 use gcode_sim::job::Job;
 use gcode_sim::machine::Machine;
-use gcode_sim::program::Library;
 use gcode_sim::session::{Request, Run, run};
-
-struct Memory<'p>(&'p Package);
-
-impl Library for Memory<'_> {
-    fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)> {
-        Some((format!("O{number}.nc"), self.0.program(number)?.text.clone().into_bytes()))
-    }
-}
 
 fn package() -> Package {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/alignment/job.toml");
@@ -31,7 +23,7 @@ fn ran(change: (&str, &str), tilt: Option<f64>) -> Run {
     let text = text.replace(change.0, change.1);
     let mut request = Request::new("O8230.nc", text.into_bytes(), Machine::parse(&package.machine).unwrap());
     request.variables.extend(tilt.map(|tilt| (583, tilt)));
-    run(&request, &mut Memory(&package), &mut ()).unwrap()
+    run(&request, &mut Programs(&package), &mut ()).unwrap()
 }
 
 /// L = 200: 200·sin 38.4° = 124.229 56, 200·sin 38.5° = 124.502 93, 200·sin 38.6° = 124.775 92. A micron at 38.4° is

@@ -90,7 +90,7 @@ fn main_program(package: &Package) -> Result<&Program, CheckError> {
 }
 
 /// The package's programs as the control's program memory.
-pub(crate) struct Programs<'p>(pub(crate) &'p Package);
+pub struct Programs<'p>(pub &'p Package);
 
 impl Library for Programs<'_> {
     fn program(&mut self, number: u32) -> Option<(String, Vec<u8>)> {

@@ -1,17 +1,10 @@
 //! What the programs and machine files of all families say of the control.
-use gcode_sim::control::{Dialect, Increment};
-use gcode_sim::job::JobControl;
-
-fn names(control: JobControl) -> (&'static str, &'static str) {
-    let dialect = Dialect::ALL.iter().find(|(_, d)| *d == control.dialect).map_or("", |(name, _)| name);
-    let increment = Increment::ALL.iter().find(|(_, i)| *i == control.increment).map_or("", |(name, _)| name);
-    (dialect, increment)
-}
+use gcode_sim::control::Dialect;
+use gcode_sim::job::{JobControl, Rotary};
 
 /// `FANUC-31I, INCREMENT IS-B`, for a comment.
 pub(super) fn remark(control: JobControl) -> String {
-    let (dialect, increment) = names(control);
-    format!("{dialect}, INCREMENT {increment}")
+    format!("{}, INCREMENT {}", control.dialect.name(), control.increment.name())
 }
 
 /// What the control adds to n of `#3000=n`, in thousands: a Fanuc shows 3000 + n, a Haas 1000 + n.
@@ -24,11 +17,24 @@ pub(super) fn alarm_thousands(dialect: Dialect) -> &'static str {
 
 /// How every machine file begins.
 pub(super) fn machine_file(control: JobControl) -> String {
-    let (dialect, increment) = names(control);
+    let (dialect, increment) = (control.dialect.name(), control.increment.name());
     format!(
         "# The machine and control that the programs beside this file are for; lengths in mm, angles in degrees.\n\
          [control]\n\
          dialect = \"{dialect}\"\n\
          increment = \"{increment}\"\n"
+    )
+}
+
+/// The rotary table of a machine file: it carries the part about `about`, x or y.
+pub(super) fn rotary_table(rotary: Rotary, about: char, axis: &str) -> String {
+    format!(
+        "\n\
+         # The rotary table carries the part about {about}; {axis}.\n\
+         [[table]]\n\
+         letter = \"{}\"\n\
+         turns = \"{about}\"\n\
+         sign = {}\n",
+        rotary.letter, rotary.sign
     )
 }

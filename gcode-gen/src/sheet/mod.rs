@@ -4,7 +4,6 @@
 //! and what isn't known stands empty, to be filled in by hand. Results of measurements always do.
 pub mod cost;
 pub mod duty;
-pub mod encode;
 mod html;
 pub mod measure;
 pub mod record;

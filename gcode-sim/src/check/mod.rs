@@ -61,8 +61,7 @@ fn gather(memory: &mut Memory, settings: &Settings, library: &mut impl Library) 
     let mut known: BTreeSet<_> = found.iter().copied().collect();
     let mut next = 0;
     while let Some(id) = found.get(next) {
-        memory.lower_all(*id);
-        for target in calls::targets(memory.get(*id), settings) {
+        for target in calls::targets(memory.lowered(*id), settings) {
             let called = match target {
                 CalledAs::Number(number) => memory.fetch(number, library),
                 CalledAs::Name(name) => memory.fetch_name(&name, library),

@@ -30,6 +30,10 @@ impl Increment {
     pub const ALL: [(&'static str, Self); 3] =
         [("IS-A", Self::IsA), ("IS-B", Self::IsB), ("IS-C", Self::IsC)];
 
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(_, increment)| *increment == self).map_or("", |(name, _)| name)
+    }
+
     /// How many increments make a millimetre or a degree.
     pub fn per_unit(self) -> f64 {
         match self {
@@ -62,6 +66,10 @@ pub enum Dialect {
 impl Dialect {
     pub const ALL: [(&'static str, Self); 3] =
         [("fanuc-31i", Self::Fanuc31i), ("fanuc-0i-f", Self::Fanuc0iF), ("haas-ngc", Self::HaasNgc)];
+
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(_, dialect)| *dialect == self).map_or("", |(name, _)| name)
+    }
 }
 
 /// Whose G and M codes a control has.

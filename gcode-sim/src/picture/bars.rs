@@ -5,6 +5,7 @@ use super::palette;
 use super::scene::Standing;
 use super::sheet::Sheet;
 use super::size::Size;
+use super::words::Words;
 use super::{PictureError, paint, png};
 
 /// A picture of bars.
@@ -39,25 +40,11 @@ impl Bars {
         let font = Font::embedded();
         let text = size.text();
         let page = Rect::new(0.0, 0.0, f64::from(size.width()), f64::from(size.height())).grown(-2.0 * text);
-        let mut inks = Vec::new();
-        let mut labels = Vec::new();
-        let mut write = |left: f64, base: f64, size: f64, words: &str, width: f64, soft: bool| {
-            let words = font.fitted(words, size, width);
-            let place = Rect::new(left, base - size, font.width(&words, size), 1.2 * size);
-            labels.push((place, vec![words.clone()]));
-            let color = if soft { palette::SOFT_TEXT } else { palette::TEXT };
-            Ink::Text { at: px(left, base), align: Align::Left, size, text: words, color }
-        };
-        let mut y = page.top + 1.4 * text;
-        inks.push(write(page.left, y, 1.4 * text, &self.title, page.width(), false));
-        for note in &self.notes {
-            y += 1.6 * text;
-            inks.push(write(page.left, y, text, note, page.width(), true));
-        }
-        y += 1.5 * text;
+        let mut words = Words::new(&font, text);
+        let mut y = words.head(&page, &self.title, &self.notes) + 1.5 * text;
         let begin = y - 0.3 * text;
-        let longest = |words: &dyn Fn(&Bar) -> String| {
-            self.bars.iter().map(|bar| font.width(&words(bar), text)).fold(0.0, f64::max)
+        let longest = |of: &dyn Fn(&Bar) -> String| {
+            self.bars.iter().map(|bar| font.width(&of(bar), text)).fold(0.0, f64::max)
         };
         let names = longest(&|bar| bar.name.clone()).min(0.3 * page.width());
         let numbers = longest(&|bar| bar.text.clone()).min(0.3 * page.width());
@@ -70,19 +57,23 @@ impl Bars {
             let (top, bottom) = (y, y + 1.3 * text);
             let corners =
                 [px(left, top), px(left + length, top), px(left + length, bottom), px(left, bottom)];
-            inks.push(Ink::Area { points: corners.to_vec(), color: palette::standing(Standing::Good) });
+            words.inks.push(Ink::Area { points: corners.to_vec(), color: palette::standing(Standing::Good) });
             let base = y + 1.05 * text;
-            inks.push(write(page.left, base, text, &bar.name, names, false));
-            inks.push(write(left + length + 0.5 * text, base, text, &bar.text, numbers, false));
+            let dark = palette::TEXT;
+            words.write(px(page.left, base), Align::Left, text, dark, &bar.name, names);
+            let behind = px(left + length + 0.5 * text, base);
+            words.write(behind, Align::Left, text, dark, &bar.text, numbers);
             y += 2.0 * text;
         }
         let mut notes = Vec::new();
         if shown < self.bars.len() {
             let note = format!("{} smaller ones not shown", self.bars.len() - shown);
-            inks.push(write(page.left, y + 1.05 * text, text, &note, page.width(), true));
+            let below = px(page.left, y + 1.05 * text);
+            words.write(below, Align::Left, text, palette::SOFT_TEXT, &note, page.width());
             notes.push(note);
         }
-        inks.push(Ink::line(px(left, begin), px(left, y), 1.0, palette::RULE));
+        words.inks.push(Ink::line(px(left, begin), px(left, y), 1.0, palette::RULE));
+        let Words { inks, labels, .. } = words;
         Sheet { size, inks, labels, notes, magnification: None }
     }
 }

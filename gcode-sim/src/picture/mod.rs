@@ -24,6 +24,7 @@ mod sheet;
 mod size;
 mod symbol;
 mod views;
+mod words;
 
 pub use bars::{Bar, Bars};
 pub use compare::{Difference, compare};

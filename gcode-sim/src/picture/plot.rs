@@ -5,6 +5,7 @@ use super::palette;
 use super::scene::{Pen, Point, Standing};
 use super::sheet::Sheet;
 use super::size::Size;
+use super::words::Words;
 use super::{PictureError, paint, png};
 
 /// A picture of curves.
@@ -37,15 +38,10 @@ impl Plot {
         let font = Font::embedded();
         let text = size.text();
         let page = Rect::new(0.0, 0.0, f64::from(size.width()), f64::from(size.height())).grown(-2.0 * text);
-        let mut words = Words { font: &font, text, inks: Vec::new(), labels: Vec::new() };
-        let mut y = page.top + 1.4 * text;
-        words.write(px(page.left, y), Align::Left, 1.4 * text, &self.title, page.width());
-        for note in &self.notes {
-            y += 1.6 * text;
-            words.write(px(page.left, y), Align::Left, text, note, page.width());
-        }
-        y += 2.4 * text;
-        words.write(px(page.left, y), Align::Left, text, &self.up, page.width());
+        let mut words = Words::new(&font, text);
+        let soft = palette::SOFT_TEXT;
+        let y = words.head(&page, &self.title, &self.notes) + 2.4 * text;
+        words.write(px(page.left, y), Align::Left, text, soft, &self.up, page.width());
         let all = || self.curves.iter().flatten();
         let (right, left) = spread(all().map(|p| p[0]), 1.0);
         let (high, low) =
@@ -92,6 +88,7 @@ impl Plot {
                 px(frame.left - 0.5 * text, base.y + 0.36 * text),
                 Align::Right,
                 text,
+                soft,
                 &upwards.name(at),
                 widest,
             );
@@ -102,12 +99,13 @@ impl Plot {
                 px(base.x, frame.bottom + 1.4 * text),
                 Align::Centre,
                 text,
+                soft,
                 &across.name(at),
                 frame.width(),
             );
         }
         let middle = px(frame.centre().x, page.bottom);
-        words.write(middle, Align::Centre, text, &self.across, frame.width());
+        words.write(middle, Align::Centre, text, soft, &self.across, frame.width());
         for curve in &self.curves {
             let points = curve.iter().map(|point| place(*point)).collect();
             let color = palette::standing(Standing::Good);
@@ -170,30 +168,6 @@ impl Ticks {
         let places = usize::try_from(-power).unwrap_or(0);
         let name = format!("{at:.places$}");
         if name.bytes().all(|b| matches!(b, b'-' | b'0' | b'.')) { "0".to_owned() } else { name }
-    }
-}
-
-/// Texts with the places they take.
-struct Words<'f> {
-    font: &'f Font,
-    text: f64,
-    inks: Vec<Ink>,
-    labels: Vec<(Rect, Vec<String>)>,
-}
-
-impl Words<'_> {
-    fn write(&mut self, at: Px, align: Align, size: f64, words: &str, width: f64) {
-        let words = self.font.fitted(words, size, width);
-        let wide = self.font.width(&words, size);
-        let part = match align {
-            Align::Left => 0.0,
-            Align::Centre => 0.5,
-            Align::Right => 1.0,
-        };
-        let place = Rect::new(at.x - part * wide, at.y - size, wide, 1.2 * size);
-        self.labels.push((place, vec![words.clone()]));
-        let color = if self.text < size { palette::TEXT } else { palette::SOFT_TEXT };
-        self.inks.push(Ink::Text { at, align, size, text: words, color });
     }
 }
 

@@ -58,8 +58,9 @@ impl Blocks {
         self.ops.get(self.entries.get(place)?.op as usize)
     }
 
-    /// All operations; none unless all are lowered, in order.
+    /// All operations; to ask before all are lowered, in order, is a mistake of ours.
     pub(super) fn all(&self) -> &[Op] {
+        debug_assert_eq!(self.ops.len(), self.entries.len(), "all blocks are lowered");
         if self.ops.len() == self.entries.len() { &self.ops } else { &[] }
     }
 

@@ -121,11 +121,13 @@ impl Memory {
         program.op(place).map(|op| (program, op))
     }
 
-    /// Lowers all blocks of a program: [`Program::ops`].
-    pub(crate) fn lower_all(&mut self, id: ProgramId) {
+    /// A program with all of its blocks lowered: [`Program::ops`].
+    pub(crate) fn lowered(&mut self, id: ProgramId) -> &Program {
         let Self { sources, programs, .. } = self;
-        let Program { blocks, span, loops, .. } = &mut programs[id.0 as usize];
+        let program = &mut programs[id.0 as usize];
+        let Program { blocks, span, loops, .. } = program;
         blocks.lower_all(span.source, &sources.get(span.source).bytes, loops);
+        program
     }
 
     /// The place of a block, read anew.

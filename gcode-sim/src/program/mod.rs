@@ -158,7 +158,7 @@ impl Program {
         }
     }
 
-    /// Its operations in order; none before `Memory::lower_all` has lowered them.
+    /// Its operations in order, of a program that `Memory::lowered` gave.
     pub fn ops(&self) -> &[Op] {
         self.blocks.all()
     }

@@ -3,6 +3,7 @@ pub mod budget;
 pub mod changes;
 pub mod check;
 pub mod diagnostic;
+pub mod encode;
 pub mod explain;
 pub mod figures;
 pub mod flute_table;

@@ -7,17 +7,11 @@ use crate::families::control;
 
 /// The text of `machine.toml`.
 pub(super) fn machine_file(job: &Honeycomb) -> String {
-    let rotary = job.machine.rotary;
     let mut text = control::machine_file(job.control);
+    text += &control::rotary_table(job.machine.rotary, 'x', "its axis is the cylinder's");
     let _ = write!(
         text,
         "\n\
-         # The rotary table carries the part about x; its axis is the cylinder's.\n\
-         [[table]]\n\
-         letter = \"{}\"\n\
-         turns = \"x\"\n\
-         sign = {}\n\
-         \n\
          # The spindle stands along z.\n\
          [head]\n\
          kind = \"fixed\"\n\
@@ -30,8 +24,6 @@ pub(super) fn machine_file(job: &Honeycomb) -> String {
          [[tool]]\n\
          number = {}\n\
          diameter = {:?}\n",
-        rotary.letter,
-        rotary.sign,
         -job.cylinder.outer / 2.0,
         job.drill.number,
         job.drill.diameter

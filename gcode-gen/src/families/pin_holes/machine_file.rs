@@ -7,22 +7,10 @@ use crate::families::control;
 
 /// The text of `machine.toml`.
 pub(super) fn machine_file(job: &PinHoles) -> String {
-    let rotary = job.machine.rotary;
     let head = job.machine.head;
     let mut text = control::machine_file(job.control);
-    let _ = write!(
-        text,
-        "\n\
-         # The rotary table carries the part about y; its axis goes through the part's origin.\n\
-         [[table]]\n\
-         letter = \"{}\"\n\
-         turns = \"y\"\n\
-         sign = {}\n\
-         \n\
-         # The head tilts the tool in the xy plane; its angle counts from x towards y.\n\
-         [head]\n",
-        rotary.letter, rotary.sign
-    );
+    text += &control::rotary_table(job.machine.rotary, 'y', "its axis goes through the part's origin");
+    text += "\n# The head tilts the tool in the xy plane; its angle counts from x towards y.\n[head]\n";
     match head.kind {
         HeadKind::Manual => text.push_str("kind = \"manual\"\n"),
         HeadKind::Axis(letter) => {

@@ -1,18 +1,16 @@
 //! The head of the sheet: what part, on what machine, which programs, and what the simulation says of them.
-use gcode_sim::control::{Dialect, Increment};
+use gcode_sim::report::encode::sha256;
 use gcode_sim::report::figures::{count, near};
 use maud::{Markup, html};
 
 use super::{blank, cell, kind, mains, table};
 use crate::check::Judgement;
-use crate::sheet::encode::sha256;
 use crate::sheet::{BASIS, Sheet};
 
 pub(super) fn facts(sheet: &Sheet<'_>) -> Markup {
     let words = sheet.job.sheet();
     let control = sheet.job.control();
-    let dialect = Dialect::ALL.iter().find(|(_, d)| *d == control.dialect).map_or("", |(name, _)| name);
-    let increment = Increment::ALL.iter().find(|(_, i)| *i == control.increment).map_or("", |(name, _)| name);
+    let (dialect, increment) = (control.dialect.name(), control.increment.name());
     let said = |word: &Option<String>| word.as_ref().map_or_else(blank, |word| html! { (word) });
     html! {
         h1 { "Set-up sheet" }

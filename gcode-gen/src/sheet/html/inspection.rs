@@ -1,11 +1,11 @@
 //! What to measure: requirements, room for results, and beside them what the simulation says.
+use gcode_sim::report::encode::base64;
 use gcode_sim::report::figures::{near, signed, signed_to};
 use gcode_sim::verify::{HoleVerdict, Verdict};
 use maud::{Markup, html};
 
 use super::{cell, table};
 use crate::check::Judgement;
-use crate::sheet::encode::png_address;
 use crate::sheet::measure::{LISTED, characteristics};
 use crate::sheet::{BASIS, Sheet};
 
@@ -91,7 +91,7 @@ pub(super) fn pictures(sheet: &Sheet<'_>) -> Markup {
         h2 { "The part as the simulated program makes it" }
         @for (name, png) in &sheet.pictures {
             figure {
-                img src=(png_address(png)) alt=(name);
+                img src={ "data:image/png;base64," (base64(png)) } alt=(name);
                 figcaption { (name) ": " (BASIS) "." }
             }
         }

@@ -36,8 +36,8 @@ fn uncalled(programs: &[PathBuf]) -> Result<Vec<&PathBuf>, Refusal> {
     for path in programs {
         let mut memory = Memory::default();
         memory.load(path.display().to_string(), input::bytes(path)?);
-        memory.ids().collect::<Vec<_>>().into_iter().for_each(|id| memory.lower_all(id));
-        let calls: Vec<CalledAs> = memory.programs().iter().flat_map(|p| called(p, &settings)).collect();
+        let calls: Vec<CalledAs> =
+            memory.ids().flat_map(|id| called(memory.lowered(id), &settings)).collect();
         let names: Vec<ProgramName> = memory.programs().iter().map(|p| p.name.clone()).collect();
         files.push((path, names, calls));
     }

@@ -1,17 +1,14 @@
 //! What the result rests on: the conditions of the run, the digests of all files, and who answers for it.
 use maud::{Markup, html};
 
-use super::document::sha256;
 use super::words::{count, shown};
 use super::{Page, Side};
-use crate::control::{Dialect, Increment};
+use crate::report::encode::sha256;
 
 pub(super) fn proof(page: &Page<'_>, sides: &[Side<'_>]) -> Markup {
     let settings = &page.new.request.settings;
-    let dialect =
-        Dialect::ALL.iter().find(|(_, known)| *known == settings.dialect).map_or("", |(name, _)| name);
-    let increment =
-        Increment::ALL.iter().find(|(_, known)| *known == settings.increment).map_or("", |(name, _)| name);
+    let dialect = settings.dialect.name();
+    let increment = settings.increment.name();
     html! {
         p {
             "gcode-sim " (env!("CARGO_PKG_VERSION")) ", control " (dialect)

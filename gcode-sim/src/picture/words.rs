@@ -1,0 +1,44 @@
+//! The words of a chart, each with the place it takes: title and notes above, names and numbers in it.
+use super::font::Font;
+use super::ink::{Align, Ink, Px, Rect, Rgb, px};
+use super::palette;
+
+pub(super) struct Words<'f> {
+    pub(super) font: &'f Font,
+    /// Height of the plain text, pixels.
+    pub(super) text: f64,
+    pub(super) inks: Vec<Ink>,
+    pub(super) labels: Vec<(Rect, Vec<String>)>,
+}
+
+impl<'f> Words<'f> {
+    pub(super) fn new(font: &'f Font, text: f64) -> Self {
+        Self { font, text, inks: Vec::new(), labels: Vec::new() }
+    }
+
+    /// A larger title and a line for each note, from the page's top; where the last line stands.
+    pub(super) fn head(&mut self, page: &Rect, title: &str, notes: &[String]) -> f64 {
+        let text = self.text;
+        let mut y = page.top + 1.4 * text;
+        self.write(px(page.left, y), Align::Left, 1.4 * text, palette::TEXT, title, page.width());
+        for note in notes {
+            y += 1.6 * text;
+            self.write(px(page.left, y), Align::Left, text, palette::SOFT_TEXT, note, page.width());
+        }
+        y
+    }
+
+    /// Words on the line through `at`, shortened to `width`.
+    pub(super) fn write(&mut self, at: Px, align: Align, size: f64, color: Rgb, words: &str, width: f64) {
+        let words = self.font.fitted(words, size, width);
+        let wide = self.font.width(&words, size);
+        let part = match align {
+            Align::Left => 0.0,
+            Align::Centre => 0.5,
+            Align::Right => 1.0,
+        };
+        let place = Rect::new(at.x - part * wide, at.y - size, wide, 1.2 * size);
+        self.labels.push((place, vec![words.clone()]));
+        self.inks.push(Ink::Text { at, align, size, text: words, color });
+    }
+}
