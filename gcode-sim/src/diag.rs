@@ -1,4 +1,6 @@
 //! Findings and messages as plain data: what, where, why and what to do. Drawing them is `report`'s business.
+use nalgebra::Point3;
+
 use crate::motion::Place;
 use crate::source::Span;
 
@@ -26,6 +28,13 @@ impl Severity {
     }
 }
 
+/// A place on the part, and which pass of the tool it is on, counted from 0; mm, in the part's frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Site {
+    pub pass: Option<usize>,
+    pub at: Point3<f64>,
+}
+
 /// One thing to tell. The message alone makes sense on a narrow screen: both numbers with units, wanted and found.
 #[derive(Clone, Debug)]
 pub struct Diagnostic {
@@ -37,6 +46,8 @@ pub struct Diagnostic {
     pub place: Option<Place>,
     /// The exact part of the block, where known.
     pub span: Option<Span>,
+    /// Where that is on the part, the worst first.
+    pub sites: Vec<Site>,
     /// Second places: "the loop starts here".
     pub labels: Vec<(Span, String)>,
     pub notes: Vec<String>,
@@ -52,6 +63,7 @@ impl Diagnostic {
             message: message.into(),
             place: None,
             span: None,
+            sites: Vec::new(),
             labels: Vec::new(),
             notes: Vec::new(),
             help: None,
@@ -69,6 +81,12 @@ impl Diagnostic {
     #[must_use]
     pub fn at(mut self, place: Place) -> Self {
         self.place = Some(place);
+        self
+    }
+
+    #[must_use]
+    pub fn on(mut self, sites: impl IntoIterator<Item = Site>) -> Self {
+        self.sites.extend(sites);
         self
     }
 

@@ -19,6 +19,7 @@ mod docs;
 mod ellipse;
 mod emitted;
 mod explain;
+mod flute_sites;
 mod honeycomb;
 mod limits;
 mod misplaced;

@@ -26,6 +26,8 @@ pub enum Kind {
 pub struct Dive {
     pub place: Place,
     pub kind: Kind,
+    /// Where on the burr it was deepest, mm.
+    pub at: Point3<f64>,
     /// Where it was nearest: below the tooth bottom if that is what's wrong, else below the blank's surface, mm.
     pub depth: f64,
     /// How often the block did it; the depth is the greatest.
@@ -35,6 +37,13 @@ pub struct Dive {
 /// Motion is straight in or out if it goes no more than this part of its way sideways: 3°.
 const STRAIGHT: f64 = 0.05;
 
+/// How deep, mm, and where on the burr.
+#[derive(Clone, Copy, Debug)]
+struct Depth {
+    depth: f64,
+    at: Point3<f64>,
+}
+
 /// How the wheel stands.
 #[derive(Clone, Debug, Default)]
 enum Stand {
@@ -42,7 +51,7 @@ enum Stand {
     #[default]
     Off,
     /// Fed straight in here, so far below the blank's surface, and no pass has begun yet.
-    Plunged(Place, f64),
+    Plunged(Place, Depth),
     /// In the cut of a pass that began here, or of a dive that is told already.
     Ground,
 }
@@ -79,7 +88,7 @@ impl Dives {
     }
 
     /// The deepest of each block: a loop makes all of its dives alike.
-    fn add(&mut self, place: Place, kind: Kind, depth: f64) {
+    fn add(&mut self, place: Place, kind: Kind, Depth { depth, at }: Depth) {
         let which = match kind {
             Kind::Rapid => 0,
             Kind::Below => 1,
@@ -89,11 +98,11 @@ impl Dives {
         let key = (place.block.source.0, place.block.start, which);
         let index = *self.index.entry(key).or_insert(self.found.len());
         match self.found.get_mut(index) {
-            None => self.found.push(Dive { place, kind, depth, times: 1 }),
+            None => self.found.push(Dive { place, kind, at, depth, times: 1 }),
             Some(dive) => {
                 dive.times += 1;
                 if dive.depth < depth {
-                    (dive.depth, dive.kind) = (depth, kind);
+                    (dive.depth, dive.kind, dive.at) = (depth, kind, at);
                 }
             }
         }
@@ -107,7 +116,7 @@ impl Dives {
         if !way.starts {
             self.stand = Stand::Off;
         }
-        let depth = (flutes.tooth_depth - way.nearest).max(0.0);
+        let depth = Depth { depth: (flutes.tooth_depth - way.nearest).max(0.0), at: way.deepest };
         if rapid {
             self.pit();
             self.stand = if way.ends { Stand::Ground } else { Stand::Off };
@@ -121,7 +130,7 @@ impl Dives {
             return;
         }
         if way.nearest < -flutes.surface_tolerance - ARITHMETIC {
-            self.add(place.clone(), Kind::Below, -way.nearest);
+            self.add(place.clone(), Kind::Below, Depth { depth: -way.nearest, at: way.deepest });
         }
         if !way.straight {
             self.add(place, Kind::Sideways(way.sideways), depth);
@@ -143,6 +152,7 @@ struct Way {
     first: f64,
     last: f64,
     nearest: f64,
+    deepest: Point3<f64>,
     /// Whether it starts and ends in the cut.
     starts: bool,
     ends: bool,
@@ -172,10 +182,15 @@ impl Way {
             length += by.norm();
         }
         let far = f64::INFINITY;
+        let nearer = |best: (f64, Point3<f64>), (off, at): (&f64, &Point3<f64>)| {
+            if *off < best.0 { (*off, *at) } else { best }
+        };
+        let (nearest, deepest) = distances.iter().zip(path).fold((far, Point3::origin()), nearer);
         Self {
             first: first.unwrap_or(far),
             last: last.unwrap_or(far),
-            nearest: distances.iter().copied().fold(far, f64::min),
+            nearest,
+            deepest,
             starts: first.is_some_and(|first| first < cut),
             ends: last.is_some_and(|last| last < cut),
             leaves: distances.windows(2).all(|pair| pair[0] < pair[1]),

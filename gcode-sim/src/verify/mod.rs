@@ -14,7 +14,7 @@ mod verdict;
 pub use matching::{Comparison, Pair};
 pub use neighbours::{Around, Distance, Neighbours};
 pub use rounding::{Rounding, Share};
-pub use verdict::{Answer, Extra, Finding, HoleVerdict, Placed, Verdict};
+pub use verdict::{Answer, Extra, Finding, HoleVerdict, OnPart, Placed, Verdict};
 
 use crate::diag::{Diagnostic, Severity};
 use crate::holes::Extracted;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::{Around, Comparison, Neighbours, Objection, Rounding};
-use crate::diag::{Diagnostic, Severity};
+use crate::diag::{Diagnostic, Severity, Site};
 use crate::motion::{Call, Calls};
 use crate::part::hole::{Hole, Origin};
 use crate::source::Span;
@@ -110,6 +110,23 @@ pub struct Finding {
     /// The wanted hole it is about.
     pub hole: Option<String>,
     pub from: Option<Origin>,
+    /// Of a finding on flutes: where on the part, the worst first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub sites: Vec<OnPart>,
+}
+
+/// A place on the part, mm.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct OnPart {
+    /// Counted from 1; null where no pass is: a missing flute, a rapid between two of them.
+    pub pass: Option<usize>,
+    pub at: [f64; 3],
+}
+
+impl From<&Site> for OnPart {
+    fn from(site: &Site) -> Self {
+        Self { pass: site.pass.map(|pass| pass + 1), at: site.at.coords.into() }
+    }
 }
 
 pub(super) fn verdict(
@@ -165,6 +182,7 @@ pub(super) fn verdict(
                 from_motion,
                 hole: wanted.map(|index| comparison.id(index).to_owned()),
                 from: origin(finding),
+                sites: Vec::new(),
             })
             .collect(),
         neighbours: None,

@@ -8,6 +8,8 @@ mod verdict;
 pub use round::Round;
 pub use verdict::{Angles, FluteVerdict, Law, WantedFlutes};
 
+use nalgebra::Point3;
+
 use crate::diag::Diagnostic;
 use crate::flutes::{Ground, Trace};
 use crate::motion::Place;
@@ -25,12 +27,13 @@ pub struct Inspection<'g> {
 }
 
 /// The helix angles along all flutes.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct HelixRange {
     pub least: Deg,
     pub most: Deg,
-    /// Off the wanted angle.
+    /// Off the wanted angle, of all passes and of each.
     pub worst: Option<WorstHelix>,
+    pub of_passes: Vec<WorstHelix>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -38,6 +41,8 @@ pub struct WorstHelix {
     /// Counted from 0.
     pub pass: usize,
     pub polar: Deg,
+    /// On the burr, mm.
+    pub at: Point3<f64>,
     pub found: Deg,
     pub wanted: Deg,
     /// The first and the last sample of the stretch, counted from 0.
@@ -47,6 +52,11 @@ pub struct WorstHelix {
 impl WorstHelix {
     pub fn off(&self) -> Deg {
         (self.found - self.wanted).abs()
+    }
+
+    /// By more than the arithmetic's own rounding.
+    fn is_worse(&self, than: &Self) -> bool {
+        than.off().0 + 1e-6 < self.off().0
     }
 
     /// The block that goes farthest off the law there, or a gauge length beside it. One point out of place makes two
@@ -70,23 +80,34 @@ impl WorstHelix {
 }
 
 impl HelixRange {
+    fn only(angle: Deg) -> Self {
+        Self { least: angle, most: angle, worst: None, of_passes: Vec::new() }
+    }
+
     fn of(wanted: &Flutes, ground: &Ground) -> Option<Self> {
         let gauge = wanted.gauge;
         let mut range: Option<Self> = None;
         for (pass, ground) in ground.passes.iter().enumerate() {
+            let mut worst: Option<WorstHelix> = None;
             for window in ground.trace.windows(gauge) {
                 let here = WorstHelix {
                     pass,
                     polar: window.middle.polar,
+                    at: window.middle.at,
                     found: window.helix,
                     wanted: window.wanted,
                     ends: window.ends,
                 };
-                let range =
-                    range.get_or_insert(Self { least: window.helix, most: window.helix, worst: None });
+                let range = range.get_or_insert_with(|| Self::only(window.helix));
                 range.least = if window.helix < range.least { window.helix } else { range.least };
                 range.most = if range.most < window.helix { window.helix } else { range.most };
-                if range.worst.is_none_or(|worst| worst.off().0 + 1e-6 < here.off().0) {
+                if worst.is_none_or(|worst| here.is_worse(&worst)) {
+                    worst = Some(here);
+                }
+            }
+            if let Some((range, here)) = range.as_mut().zip(worst) {
+                range.of_passes.push(here);
+                if range.worst.is_none_or(|worst| here.is_worse(&worst)) {
                     range.worst = Some(here);
                 }
             }
@@ -101,13 +122,12 @@ pub fn verify_flutes(
     ground: &Ground,
     locate: &dyn Fn(Span) -> (String, u32),
 ) -> FluteVerdict {
-    let none = HelixRange { least: Deg::ZERO, most: Deg::ZERO, worst: None };
     let measured = HelixRange::of(wanted, ground);
     let inspection = Inspection {
         wanted,
         ground,
         round: Round::of(wanted, &ground.passes),
-        helix: measured.unwrap_or(none),
+        helix: measured.clone().unwrap_or_else(|| HelixRange::only(Deg::ZERO)),
     };
     let mut findings: Vec<Diagnostic> = ground.findings.clone();
     for check in checks::ALL {

@@ -1,13 +1,13 @@
 //! The least distance between two paths, in a straight line: of the paths themselves, whatever was wanted.
 use nalgebra::{Point3, Vector3};
 
-/// Between two paths of straight pieces, their ends counted in; `None` where one has no piece.
+/// Between two paths of straight pieces, their ends counted in, and on which piece of the first; `None` where one has none.
 ///
 /// From a piece `d` away the path has to run on by `d` less the best so far before it can come nearer: so far the search
 /// goes on without looking.
-pub(super) fn distance(one: &[Point3<f64>], other: &[Point3<f64>]) -> Option<f64> {
+pub(super) fn distance(one: &[Point3<f64>], other: &[Point3<f64>]) -> Option<(f64, usize)> {
     let (here, there) = (lengths(one), lengths(other));
-    let mut best: Option<f64> = None;
+    let mut best: Option<(f64, usize)> = None;
     let mut i = 0;
     while i + 1 < one.len() {
         let mut near: Option<f64> = None;
@@ -18,8 +18,8 @@ pub(super) fn distance(one: &[Point3<f64>], other: &[Point3<f64>]) -> Option<f64
             j = skip(&there, j, apart - near.unwrap_or(apart));
         }
         let near = near?;
-        best = Some(best.map_or(near, |best| best.min(near)));
-        i = skip(&here, i, near - best.unwrap_or(near));
+        let (least, _) = *best.insert(best.filter(|(least, _)| *least <= near).unwrap_or((near, i)));
+        i = skip(&here, i, near - least);
     }
     best
 }
@@ -86,12 +86,12 @@ mod tests {
     fn between_the_points_too() {
         let line = path(&[[-10.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [10.0, 0.0, 0.0]]);
         let over = path(&[[1.0, -7.0, 3.0], [1.0, 9.0, 3.0]]);
-        assert_eq!(distance(&line, &over), Some(3.0));
-        assert_eq!(distance(&over, &line), Some(3.0));
+        assert_eq!(distance(&line, &over), Some((3.0, 1)));
+        assert_eq!(distance(&over, &line), Some((3.0, 0)));
         let beyond = path(&[[13.0, 4.0, 0.0], [20.0, 4.0, 0.0], [20.0, 40.0, 0.0]]);
-        assert_eq!(distance(&line, &beyond), Some(5.0));
+        assert_eq!(distance(&line, &beyond), Some((5.0, 1)));
         let beside = path(&[[-3.0, 2.0, 0.0], [3.0, 2.0, 0.0]]);
-        assert_eq!(distance(&line, &beside), Some(2.0));
+        assert_eq!(distance(&line, &beside), Some((2.0, 0)));
         assert_eq!(distance(&line, &line[..1]), None);
     }
 
@@ -100,7 +100,7 @@ mod tests {
     fn what_is_skipped_was_farther() {
         let line = path(&[[0.0, 0.0, 0.0], [100.0, 0.0, 0.0]]);
         let bent = path(&[[0.0, 30.0, 0.0], [30.0, 30.0, 0.0], [50.0, 0.5, 0.0], [60.0, 30.0, 0.0]]);
-        assert_eq!(distance(&line, &bent), Some(0.5));
-        assert_eq!(distance(&bent, &line), Some(0.5));
+        assert_eq!(distance(&line, &bent), Some((0.5, 0)));
+        assert_eq!(distance(&bent, &line), Some((0.5, 1)));
     }
 }

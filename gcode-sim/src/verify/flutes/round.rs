@@ -17,7 +17,17 @@ pub struct Round {
     /// The gap that is most off, of the wanted number of flutes, anywhere along them.
     pub worst_gap: Option<Gap>,
     /// The least distance between the paths of neighbours, in a straight line, mm.
-    pub nearest: Option<f64>,
+    pub nearest: Option<Near>,
+}
+
+/// Where neighbours come nearest to each other.
+#[derive(Clone, Copy, Debug)]
+pub struct Near {
+    /// In a straight line, mm.
+    pub apart: f64,
+    /// One of the two, counted from 0, and the place on it.
+    pub pass: usize,
+    pub at: Point3<f64>,
 }
 
 /// From one flute to the next one round the burr, at one place along them.
@@ -50,8 +60,7 @@ struct Course {
 
 impl Round {
     pub(super) fn of(wanted: &Flutes, passes: &[Pass]) -> Self {
-        let end = wanted.profile.at_polar(wanted.tip_angle).x;
-        let middle = (wanted.start + end) / 2.0;
+        let middle = middle(wanted);
         let pitch = 360.0 / f64::from(wanted.count);
         let angle = |pass: &Pass| {
             let first = pass.trace.samples.first()?;
@@ -116,7 +125,24 @@ impl Round {
         worst
     }
 
-    fn nearest(&self, passes: &[Pass]) -> Option<f64> {
+    /// Where flutes would have to be so that none is missing, halfway along the burr: so many to a gap as it is wider
+    /// than an even one.
+    pub(super) fn absent(&self, wanted: &Flutes) -> Vec<Point3<f64>> {
+        let pitch = 360.0 / f64::from(wanted.count);
+        let outside = Point3::new(middle(wanted), -wanted.profile.radius(), 0.0);
+        let foot = wanted.profile.foot(&outside);
+        let (x, radius) = (foot.x, -foot.y);
+        let next = self.flutes.iter().skip(1).map(|(_, angle)| angle.0);
+        let ends = next.chain(self.flutes.first().map(|(_, angle)| angle.0 + 360.0));
+        let gaps = self.flutes.iter().map(|(_, angle)| angle.0).zip(ends);
+        let places = gaps.flat_map(|(from, to)| {
+            let pieces = ((to - from) / pitch).round().max(1.0);
+            (1..pieces as u32).map(move |n| Deg(from + (to - from) * f64::from(n) / pieces))
+        });
+        places.map(|angle| Point3::new(x, radius * angle.cos(), -radius * angle.sin())).collect()
+    }
+
+    fn nearest(&self, passes: &[Pass]) -> Option<Near> {
         let paths: Vec<Vec<Point3<f64>>> = self
             .flutes
             .iter()
@@ -125,9 +151,17 @@ impl Round {
         let pairs = (0..paths.len()).map(|from| (from, (from + 1) % paths.len()));
         pairs
             .filter(|(from, to)| from != to)
-            .filter_map(|(from, to)| near::distance(&paths[from], &paths[to]))
-            .reduce(f64::min)
+            .filter_map(|(from, to)| {
+                let (apart, piece) = near::distance(&paths[from], &paths[to])?;
+                Some(Near { apart, pass: self.flutes[from].0, at: paths[from][piece] })
+            })
+            .reduce(|best, near| if near.apart < best.apart { near } else { best })
     }
+}
+
+/// Halfway along the flutes, by x.
+fn middle(wanted: &Flutes) -> f64 {
+    (wanted.start + wanted.profile.at_polar(wanted.tip_angle).x) / 2.0
 }
 
 impl Gap {

@@ -173,7 +173,7 @@ pub(super) fn verdict(
         gauge,
         index_error: inspection.round.worst_gap.map(|gap| gap.off.0),
         index_tolerance: wanted.index_tolerance.0,
-        nearest: inspection.round.nearest,
+        nearest: inspection.round.nearest.map(|near| near.apart),
         passes: ground.passes.len(),
         moves: ground.passes.iter().map(|pass| pass.moves).sum(),
         holes: [],
@@ -240,5 +240,6 @@ fn shown(finding: &Diagnostic, locate: &dyn Fn(Span) -> (String, u32)) -> Findin
         from_motion: false,
         hole: None,
         from,
+        sites: finding.sites.iter().map(Into::into).collect(),
     }
 }

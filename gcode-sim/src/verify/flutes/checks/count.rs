@@ -1,6 +1,6 @@
 //! As many flutes as are wanted, no more and no fewer.
 use super::super::Inspection;
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Site};
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
     let (found, wanted) = (inspection.round.flutes.len(), inspection.wanted.count as usize);
@@ -24,15 +24,20 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
                 ))
                 .at(inspection.ground.passes[pass].place.clone());
         }
-        findings.push(finding.help("the loop over the flutes ends too early, or an index move is missing"));
+        let sites = inspection.round.absent(inspection.wanted).into_iter().map(|at| Site { pass: None, at });
+        let help = "the loop over the flutes ends too early, or an index move is missing";
+        findings.push(finding.help(help).on(sites));
     }
     if wanted < found {
         let message = format!("{found} flutes where {wanted} are wanted");
         let last = inspection.round.flutes.iter().map(|(pass, _)| *pass).max().unwrap_or(0);
+        let pass = &inspection.ground.passes[last];
+        let middle = pass.trace.samples.get(pass.trace.samples.len() / 2);
         findings.push(
             Diagnostic::error("flute-extra", message)
                 .help("the loop over the flutes goes on too long, or the index is too small")
-                .at(inspection.ground.passes[last].place.clone()),
+                .at(pass.place.clone())
+                .on(middle.map(|sample| Site { pass: Some(last), at: sample.at })),
         );
     }
 }

@@ -1,7 +1,7 @@
 //! Between the passes the wheel's contact stays off the burr: off the blank in rapid motion, and in a feed too but
 //! straight in where a pass begins and straight out where one ends.
 use super::super::Inspection;
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Site};
 use crate::flutes::Kind;
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
@@ -24,7 +24,8 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
         };
         let finding = Diagnostic::error("wheel-into-burr", message)
             .help("move Y clear of the burr first, then turn A and C")
-            .at(dive.place.clone());
+            .at(dive.place.clone())
+            .on([Site { pass: None, at: dive.at }]);
         let again = dive.times - 1;
         findings.push(if again == 0 {
             finding

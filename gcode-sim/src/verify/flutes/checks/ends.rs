@@ -1,6 +1,8 @@
 //! Every flute reaches from the shank's end to the tip angle.
+use nalgebra::Point3;
+
 use super::super::Inspection;
-use super::one_and_others;
+use super::on_passes;
 use crate::diag::Diagnostic;
 use crate::flutes::Pass;
 
@@ -9,25 +11,25 @@ const AT_SHANK: f64 = 0.05;
 const AT_TIP: f64 = 0.1;
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
-    let wrong = inspection.ground.passes.iter().filter_map(|pass| Some((pass, wrong(inspection, pass)?)));
-    let Some(((pass, message), others)) = one_and_others(wrong) else { return };
-    let finding = Diagnostic::error("flute-end", message)
-        .help("check the length of the cylinder (X) and the last C, 90° less the tip angle")
-        .at(pass.place.clone());
-    findings.push(others.into_iter().fold(finding, Diagnostic::note));
+    let finding = on_passes(inspection, "flute-end", |pass| wrong(inspection, pass));
+    let help = "check the length of the cylinder (X) and the last C, 90° less the tip angle";
+    findings.extend(finding.map(|finding| finding.help(help)));
 }
 
-fn wrong(inspection: &Inspection<'_>, pass: &Pass) -> Option<String> {
+/// What is wrong with a pass, and the end where it is.
+fn wrong(inspection: &Inspection<'_>, pass: &Pass) -> Option<(String, Point3<f64>)> {
     let wanted = inspection.wanted;
-    let samples = pass.trace.samples.iter();
-    let start = samples.clone().map(|s| s.at.x).fold(f64::NEG_INFINITY, f64::max);
-    let tip = samples.map(|s| s.polar.0).fold(f64::INFINITY, f64::min);
-    if AT_SHANK < (start - wanted.start).abs() {
-        return Some(format!(
-            "a flute begins {start:.3} mm behind the end of the cylinder where {:.3} mm are wanted",
-            wanted.start
-        ));
+    let samples = || pass.trace.samples.iter();
+    let start = samples().max_by(|a, b| a.at.x.total_cmp(&b.at.x))?;
+    let tip = samples().min_by(|a, b| a.polar.0.total_cmp(&b.polar.0))?;
+    if AT_SHANK < (start.at.x - wanted.start).abs() {
+        let message = format!(
+            "a flute begins {:.3} mm behind the end of the cylinder where {:.3} mm are wanted",
+            start.at.x, wanted.start
+        );
+        return Some((message, start.at));
     }
-    (AT_TIP < (tip - wanted.tip_angle.0).abs())
-        .then(|| format!("a flute ends at polar angle {tip:.3}° where {:.3}° is wanted", wanted.tip_angle.0))
+    let message =
+        format!("a flute ends at polar angle {:.3}° where {:.3}° is wanted", tip.polar.0, wanted.tip_angle.0);
+    (AT_TIP < (tip.polar - wanted.tip_angle).abs().0).then_some((message, tip.at))
 }

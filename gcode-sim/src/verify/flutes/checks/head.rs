@@ -1,16 +1,20 @@
 //! B stands at the helix angle and doesn't move during a pass.
+use nalgebra::Point3;
+
 use super::super::Inspection;
-use super::one_and_others;
+use super::on_passes;
 use crate::diag::Diagnostic;
 use crate::flutes::Pass;
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
-    let wrong = inspection.ground.passes.iter().filter_map(|pass| Some((pass, wrong(inspection, pass)?)));
-    let Some(((pass, message), others)) = one_and_others(wrong) else { return };
-    let finding = Diagnostic::error("flute-head", message)
-        .help("set B once before each pass, to the helix angle on the cylinder")
-        .at(pass.place.clone());
-    findings.push(others.into_iter().fold(finding, Diagnostic::note));
+    let wrong = |pass| Some((wrong(inspection, pass)?, start(pass)?));
+    let finding = on_passes(inspection, "flute-head", wrong);
+    findings
+        .extend(finding.map(|f| f.help("set B once before each pass, to the helix angle on the cylinder")));
+}
+
+fn start(pass: &Pass) -> Option<Point3<f64>> {
+    pass.trace.samples.first().map(|sample| sample.at)
 }
 
 fn wrong(inspection: &Inspection<'_>, pass: &Pass) -> Option<String> {

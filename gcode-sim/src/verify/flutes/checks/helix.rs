@@ -1,6 +1,6 @@
 //! The helix angle along every flute is that of the law asked for.
 use super::super::{Inspection, WorstHelix};
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Site};
 use crate::flutes::Window;
 use crate::job::FluteLaw;
 
@@ -14,7 +14,10 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
     );
     let place = worst.place(&pass.trace, inspection.wanted.gauge).unwrap_or(&pass.place);
     let finding = Diagnostic::error("flute-helix", message).at(place.clone());
-    findings.push(finding.help(help(inspection, &worst)));
+    let mut all: Vec<_> = inspection.helix.of_passes.iter().filter(|w| tolerance < w.off()).collect();
+    all.sort_by(|one, other| other.off().0.total_cmp(&one.off().0));
+    let sites = all.into_iter().map(|worst| Site { pass: Some(worst.pass), at: worst.at });
+    findings.push(finding.help(help(inspection, &worst)).on(sites));
 }
 
 /// Another law or the other hand is named only where the whole flute has it, not one place by chance.

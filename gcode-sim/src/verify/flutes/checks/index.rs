@@ -1,6 +1,6 @@
 //! The flutes are evenly spaced all along.
 use super::super::Inspection;
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Site};
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
     let wanted = inspection.wanted;
@@ -23,6 +23,7 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
         Diagnostic::error("flute-index", message)
             .note("of the two flutes this one is farther from the middle between its neighbours")
             .help("check A in this block, and where the flute begins")
-            .at(trace.place(&trace.samples[gap.sample]).clone()),
+            .at(trace.place(&trace.samples[gap.sample]).clone())
+            .on([Site { pass: Some(gap.pass), at: trace.samples[gap.sample].at }]),
     );
 }

@@ -8,8 +8,10 @@ mod index;
 mod spacing;
 mod surface;
 
+use nalgebra::Point3;
+
 use super::Inspection;
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, Site};
 use crate::flutes::Pass;
 
 type Check = fn(&Inspection<'_>, &mut Vec<Diagnostic>);
@@ -25,11 +27,21 @@ pub(super) const ALL: &[Check] = &[
     dive::check,
 ];
 
-/// The first of what is wrong with passes, and in words how many more there are: a loop makes every flute wrong alike.
-fn one_and_others<'g>(
-    mut wrong: impl Iterator<Item = (&'g Pass, String)>,
-) -> Option<((&'g Pass, String), Option<String>)> {
-    let first = wrong.next()?;
-    let others = wrong.count();
-    Some((first, (0 < others).then(|| format!("and so with {others} more of the passes"))))
+/// One finding on all passes that are wrong, in the words of the first: a loop makes every flute wrong alike. `wrong` says
+/// what of a pass is, and where on the burr.
+fn on_passes<'g>(
+    inspection: &Inspection<'g>,
+    code: &str,
+    wrong: impl Fn(&'g Pass) -> Option<(String, Point3<f64>)>,
+) -> Option<Diagnostic> {
+    let passes = inspection.ground.passes.iter().enumerate();
+    let mut all = passes.filter_map(|(index, pass)| Some((index, pass, wrong(pass)?)));
+    let (index, pass, (message, at)) = all.next()?;
+    let others: Vec<Site> = all.map(|(index, _, (_, at))| Site { pass: Some(index), at }).collect();
+    let finding = Diagnostic::error(code, message).at(pass.place.clone());
+    let finding = match others.len() {
+        0 => finding,
+        more => finding.note(format!("and so with {more} more of the passes")),
+    };
+    Some(finding.on([Site { pass: Some(index), at }]).on(others))
 }

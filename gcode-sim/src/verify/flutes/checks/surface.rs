@@ -1,19 +1,20 @@
 //! The contact stays on the tooth bottom, between the programmed points too.
 use super::super::Inspection;
-use crate::diag::Diagnostic;
-use crate::flutes::ARITHMETIC;
+use crate::diag::{Diagnostic, Site};
+use crate::flutes::{ARITHMETIC, Pass, Sample};
 
-pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
+pub(super) fn check<'g>(inspection: &Inspection<'g>, findings: &mut Vec<Diagnostic>) {
     let allowed = inspection.wanted.surface_tolerance;
-    let samples = inspection
-        .ground
-        .passes
-        .iter()
-        .flat_map(|pass| pass.trace.samples.iter().map(move |sample| (pass, sample)));
-    let Some((pass, worst)) = samples.max_by(|a, b| a.1.off.abs().total_cmp(&b.1.off.abs())) else { return };
-    if worst.off.abs() <= allowed + ARITHMETIC {
-        return;
-    }
+    // Of every pass its worst place.
+    let of_pass = |(index, pass): (usize, &'g Pass)| {
+        let worst = pass.trace.samples.iter().max_by(|a, b| a.off.abs().total_cmp(&b.off.abs()))?;
+        (allowed + ARITHMETIC < worst.off.abs()).then_some((index, worst))
+    };
+    let mut all: Vec<(usize, &Sample)> =
+        inspection.ground.passes.iter().enumerate().filter_map(of_pass).collect();
+    all.sort_by(|a, b| b.1.off.abs().total_cmp(&a.1.off.abs()));
+    let Some((pass, worst)) = all.first().copied() else { return };
+    let pass = &inspection.ground.passes[pass];
     let (side, off) = if worst.off < 0.0 { ("below", -worst.off) } else { ("above", worst.off) };
     let finding = Diagnostic::error(
         "flute-surface",
@@ -30,5 +31,6 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
         ),
         false => finding.help("the moves are too long, or the increment is too coarse for this chord error"),
     };
-    findings.push(finding.at(pass.trace.place(worst).clone()));
+    let sites = all.iter().map(|(pass, sample)| Site { pass: Some(*pass), at: sample.at });
+    findings.push(finding.at(pass.trace.place(worst).clone()).on(sites));
 }
