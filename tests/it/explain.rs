@@ -32,8 +32,8 @@ fn alarms() -> BTreeSet<String> {
 fn findings() -> BTreeSet<String> {
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("../gcode-sim/src");
     let mut codes = BTreeSet::new();
-    for path in
-        ["holes", "verify/checks", "verify/flutes/checks", "exec/notes.rs"].map(|path| source.join(path))
+    for path in ["holes", "verify/checks", "verify/flutes/checks", "exec/notes.rs", "session/slips.rs"]
+        .map(|path| source.join(path))
     {
         let files = match path.is_dir() {
             true => std::fs::read_dir(path).unwrap().map(|entry| entry.unwrap().path()).collect(),

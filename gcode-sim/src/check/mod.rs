@@ -49,6 +49,11 @@ pub fn check(
 ) -> Checked {
     let mut memory = Memory::default();
     memory.load(name, bytes);
+    check_loaded(memory, settings, library)
+}
+
+/// As [`check`], of programs that have been loaded.
+pub fn check_loaded(mut memory: Memory, settings: &Settings, library: &mut impl Library) -> Checked {
     let programs = gather(&mut memory, settings, library);
     let subject = Subject::new(&memory, settings, &programs, rules::names());
     let findings = rules::findings(&subject);

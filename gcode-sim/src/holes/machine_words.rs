@@ -27,11 +27,16 @@ impl Extractor<'_> {
     pub(super) fn known_tool(&mut self, event: &Event<'_>, number: u32) {
         if number != 0 && !self.machine.tools.is_empty() && self.machine.find_tool(number).is_none() {
             self.findings.add("tool-unknown", &event.place(), number, || {
+                let known: Vec<_> = self.machine.tools.iter().map(|tool| format!("T{}", tool.number)).collect();
                 Diagnostic::warning(
                     "tool-unknown",
-                    format!("T{number} isn't in the machine file's tool table: its length is taken from the length offset, its diameter isn't known"),
+                    format!(
+                        "T{number} is put in, which the machine file doesn't describe (it has {}): the diameter of what it \
+                         makes isn't checked, its length is taken from the length offset",
+                        known.join(", ")
+                    ),
                 )
-                .help(format!("add a [[tool]] with number = {number}"))
+                .help(format!("is it the right tool? If so, give it a [[tool]] with number = {number} and its diameter"))
             });
         }
     }

@@ -5,6 +5,7 @@ mod judge;
 mod line;
 mod machine_words;
 pub mod near;
+mod passing;
 mod probing;
 mod rapids;
 #[cfg(test)]
@@ -17,8 +18,10 @@ use nalgebra::Point3;
 pub use group::Found;
 use group::Pass;
 use line::{After, Line};
+pub use passing::{CONTACT, Passing, Way};
 
 use self::findings::Findings;
+use self::passing::Passings;
 use self::rapids::Curved;
 use crate::diag::{Diagnostic, Severity};
 use crate::machine::path::Travel;
@@ -38,6 +41,8 @@ pub struct Extracted {
     /// In the order in which they were begun.
     pub holes: Vec<Found>,
     pub findings: Vec<Diagnostic>,
+    /// What passes near the part, where the part's surface is known.
+    pub passings: Vec<Passing>,
 }
 
 /// Listens to a run and collects the holes it makes.
@@ -61,6 +66,7 @@ pub struct Extractor<'m> {
     /// The first of the passes that were too many.
     too_many: Option<Place>,
     findings: Findings,
+    passings: Passings,
     /// How many times a probe was sent to the part.
     touches: u64,
 }
@@ -94,6 +100,7 @@ impl<'m> Extractor<'m> {
             most: PASSES,
             too_many: None,
             findings: Findings::default(),
+            passings: Passings::default(),
             touches: 0,
         }
     }
@@ -117,7 +124,8 @@ impl<'m> Extractor<'m> {
             let finding = Diagnostic::new(Severity::Alarm, "limit", message).at(place);
             finding.help("does a loop never end? else split the program")
         }));
-        Extracted { holes: group::holes(&self.passes, self.machine), findings }
+        let holes = group::holes(&self.passes, self.machine);
+        Extracted { holes, findings, passings: self.passings.finish() }
     }
 
     fn keep(&mut self, passes: impl IntoIterator<Item = Pass>) {

@@ -67,7 +67,12 @@ impl Extractor<'_> {
         let Some(surface) = self.surface else { return };
         let deepest = surface.deepest_between(from, to);
         let depth = surface.depth(&deepest);
-        if depth > TOUCH && self.outside {
+        if !self.outside {
+            return;
+        }
+        if depth <= TOUCH {
+            self.note_straight(event, &surface, from, to);
+        } else {
             self.findings.add("rapid-into-part", &event.place(), 0, || {
                 Diagnostic::error(
                     "rapid-into-part",
@@ -100,6 +105,11 @@ impl Extractor<'_> {
                 )
                 .help("holes are fed along a straight line while the table stands")
             }),
+            Curved::Rapid | Curved::Feed if self.outside => {
+                if let Some(surface) = self.surface {
+                    self.note_turn(event, &surface, travel);
+                }
+            }
             Curved::Feed if self.surface.is_none() => {
                 self.findings.add("feed-no-hole", &event.place(), 0, || {
                     Diagnostic::warning("feed-no-hole", "a curved feed on the part: not taken for a hole")

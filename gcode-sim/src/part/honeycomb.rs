@@ -113,6 +113,7 @@ pub(super) fn reference(job: &Honeycomb) -> Result<Reference, ReferenceError> {
         position: Some(job.position_tolerance),
         depth: Some(job.depth_tolerance),
         surface: Some(Surface::Cylinder { radius: outer }),
+        clearance: Some(job.machine.clearance),
         pattern: Some(pattern),
     })
 }

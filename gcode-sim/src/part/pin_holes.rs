@@ -18,6 +18,7 @@ pub(super) fn reference(job: &PinHoles) -> Result<Reference, ReferenceError> {
         position: Some(job.position_tolerance),
         depth: Some(job.depth_tolerance),
         surface: Some(surface),
+        clearance: Some(job.machine.clearance),
         pattern: None,
     })
 }

@@ -15,6 +15,8 @@ pub struct Reference {
     /// How far a depth may be off, in mm, where the reference says it.
     pub depth: Option<f64>,
     pub surface: Option<Surface>,
+    /// From so far above the surface the tool feeds, in mm, where the reference says it.
+    pub clearance: Option<f64>,
     /// What the holes' neighbours must be like, of a part where that matters.
     pub pattern: Option<Pattern>,
 }
@@ -27,6 +29,7 @@ impl Reference {
             position: None,
             depth: None,
             surface: None,
+            clearance: None,
             pattern: None,
         })
     }

@@ -171,6 +171,7 @@ pub const PAGES: &[Page] = pages![
     "parameter-without-effect"
     "rapid-beyond-cut"
     "rapid-into-part"
+    "rapid-near-part"
     "rotary-sign"
     "row-angle"
     "row-group"
@@ -179,8 +180,10 @@ pub const PAGES: &[Page] = pages![
     "spindle-stopped"
     "tangent-of-90"
     "tool-unknown"
+    "turns-near-part"
     "wheel-into-burr"
     "words-passed-on"
+    "work-offset"
 ];
 
 /// The rules of `check`, each a section of their page.

@@ -1,4 +1,5 @@
 //! One program through the whole chain: what the command line, the generator and tests call.
+mod slips;
 mod still;
 mod trace;
 
@@ -232,7 +233,11 @@ pub fn simulate_beside<S: Sink>(
 impl Simulation {
     /// The holes against the wanted ones.
     pub fn verify(&self, reference: &Reference, tolerances: Tolerances, machine: &Machine) -> Verdict {
-        verify(&self.extracted, reference, tolerances, machine, &|span| self.run.locate(span))
+        let locate = |span| self.run.locate(span);
+        let mut verdict = verify(&self.extracted, reference, tolerances, machine, &locate);
+        let told = verdict.stands();
+        verdict.add_slips(slips::slips(&self.run, machine, told), &locate);
+        verdict
     }
 
     /// The document that `holes` writes.

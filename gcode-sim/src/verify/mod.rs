@@ -11,6 +11,8 @@ mod rows;
 mod tests;
 mod verdict;
 
+use std::collections::BTreeMap;
+
 pub use matching::{Comparison, Pair};
 pub use neighbours::{Around, Distance, Neighbours};
 pub use rounding::{Rounding, Share};
@@ -73,7 +75,9 @@ pub fn verify(
             objection.finding.help = Some("the run stopped before its end: see why first".to_owned());
         }
     }
-    let mut verdict = verdict::verdict(&comparison, rounding, objections, &extracted.findings, locate);
+    let mut motion = extracted.findings.clone();
+    motion.extend(checks::clearance::findings(&extracted.passings, reference.clearance));
+    let mut verdict = verdict::verdict(&comparison, rounding, objections, &motion, locate);
     if let Some(pattern) = pattern {
         verdict.say_neighbours(neighbours::neighbours(&comparison, pattern));
     }
@@ -84,12 +88,7 @@ pub fn verify(
 /// What a pass says nothing about, in words: nobody should take it for checked.
 fn not_checked(comparison: &Comparison<'_>, reference: &Reference, machine: &Machine) -> Vec<String> {
     let mut all = Vec::new();
-    let unknown = |pair: &&Pair| {
-        comparison.wanted[pair.wanted].diameter.is_some() && comparison.found[pair.found].diameter.is_none()
-    };
-    if comparison.pairs.iter().any(|pair| unknown(&pair)) {
-        all.push("diameters: the machine has no tool table, or not these tools".to_owned());
-    }
+    all.extend(diameters(comparison, machine));
     let along_feed = comparison.pairs.iter().all(|pair| comparison.found[pair.found].off_tool == Deg::ZERO);
     if machine.head.kind == HeadKind::Free && along_feed {
         all.push("head angles: the head is not known, each axis is taken along its feed".to_owned());
@@ -98,4 +97,33 @@ fn not_checked(comparison: &Comparison<'_>, reference: &Reference, machine: &Mac
         all.push("rapid motion through the part: the reference has no surface, as a job file has".to_owned());
     }
     all
+}
+
+/// Whose diameters aren't checked: by which tools, where the tool table has others.
+fn diameters(comparison: &Comparison<'_>, machine: &Machine) -> Vec<String> {
+    let unknown = |pair: &&Pair| {
+        comparison.wanted[pair.wanted].diameter.is_some() && comparison.found[pair.found].diameter.is_none()
+    };
+    let mut made: BTreeMap<Option<u32>, Vec<&str>> = BTreeMap::new();
+    for pair in comparison.pairs.iter().filter(unknown) {
+        let tool = comparison.found[pair.found].tool.filter(|_| !machine.tools.is_empty());
+        made.entry(tool).or_default().push(comparison.id(pair.wanted));
+    }
+    let words = |(tool, ids): (Option<u32>, Vec<&str>)| match (tool, ids.as_slice()) {
+        (None, _) if machine.tools.is_empty() => "diameters: the machine has no tool table".to_owned(),
+        (None, ids) => format!("the diameter of {} made before any tool was put in", some(ids)),
+        (Some(tool), ids) => {
+            format!("the diameter of {} made by T{tool}, which the machine file doesn't describe", some(ids))
+        }
+    };
+    made.into_iter().map(words).collect()
+}
+
+/// `hole 1,` or `63 holes (r0h0 the first),`.
+fn some(ids: &[&str]) -> String {
+    match ids {
+        [one] => format!("hole {one},"),
+        [first, ..] => format!("{} holes ({first} the first),", ids.len()),
+        [] => String::new(),
+    }
 }

@@ -154,12 +154,6 @@ pub(super) fn verdict(
         .collect();
     let fails = objections.iter().any(|o| failed(&o.finding)) || findings.iter().any(failed);
     let worst = (0..holes.len()).max_by(|a, b| holes[*a].phi.total_cmp(&holes[*b].phi).then(b.cmp(a)));
-    let origin = |finding: &Diagnostic| {
-        finding.place.as_ref().map(|place| {
-            let (program, line) = locate(place.block);
-            Origin { program, line, tool: None }
-        })
-    };
     let about_holes = objections.iter().map(|o| (o.wanted, &o.finding, false));
     let told = about_holes.chain(findings.iter().map(|f| (None, f, true)));
     Verdict {
@@ -173,16 +167,8 @@ pub(super) fn verdict(
         missing: comparison.missing.iter().map(|index| comparison.id(*index).to_owned()).collect(),
         extra: comparison.extra.iter().map(|index| extra(comparison, *index, locate)).collect(),
         findings: told
-            .map(|(wanted, finding, from_motion)| Finding {
-                code: finding.code.clone(),
-                severity: finding.severity.name(),
-                message: finding.message.clone(),
-                help: finding.help.clone(),
-                notes: finding.notes.clone(),
-                from_motion,
-                hole: wanted.map(|index| comparison.id(index).to_owned()),
-                from: origin(finding),
-                sites: Vec::new(),
+            .map(|(wanted, finding, from_motion)| {
+                finding_of(finding, wanted.map(|index| comparison.id(index)), from_motion, locate)
             })
             .collect(),
         neighbours: None,
@@ -192,7 +178,41 @@ pub(super) fn verdict(
     }
 }
 
+/// A finding as data, about the wanted hole of this id.
+fn finding_of(
+    finding: &Diagnostic,
+    hole: Option<&str>,
+    from_motion: bool,
+    locate: &dyn Fn(Span) -> (String, u32),
+) -> Finding {
+    let origin = finding.place.as_ref().map(|place| locate(place.block));
+    Finding {
+        code: finding.code.clone(),
+        severity: finding.severity.name(),
+        message: finding.message.clone(),
+        help: finding.help.clone(),
+        notes: finding.notes.clone(),
+        from_motion,
+        hole: hole.map(str::to_owned),
+        from: origin.map(|(program, line)| Origin { program, line, tool: None }),
+        sites: Vec::new(),
+    }
+}
+
 impl Verdict {
+    /// Whether anything but notes is told.
+    pub fn stands(&self) -> bool {
+        self.diagnostics.iter().any(|finding| Severity::Warning <= finding.severity)
+    }
+
+    /// Adds what is told of the program's text, which leaves the answer as it is: before all that it may explain.
+    pub(crate) fn add_slips(&mut self, slips: Vec<Diagnostic>, locate: &dyn Fn(Span) -> (String, u32)) {
+        self.findings.splice(0..0, slips.iter().map(|slip| finding_of(slip, None, true, locate)));
+        let alarms =
+            self.diagnostics.iter().take_while(|finding| finding.severity == Severity::Alarm).count();
+        self.diagnostics.splice(alarms..alarms, readable(slips.into_iter()));
+    }
+
     /// Adds what is round each hole, and the summary.
     pub(super) fn say_neighbours(&mut self, (around, summary): (Vec<Option<Around>>, Neighbours)) {
         for hole in &mut self.holes {

@@ -71,6 +71,9 @@ pub const ALL: &[Rule] = &[
     Rule { name: unknown_check::NAME, about: "CHECK-OFF with a name that no rule has", find: unknown_check::find },
 ];
 
+/// The name of the rule about numbers without a point.
+pub(crate) const MISSING_POINT: &str = missing_point::NAME;
+
 /// The names of all rules.
 pub(super) fn names() -> Vec<&'static str> {
     ALL.iter().map(|rule| rule.name).collect()

@@ -1,5 +1,6 @@
 //! The checks: one file each, one line here.
 mod aside;
+pub(super) mod clearance;
 mod depth;
 mod diameter;
 mod mirrored;
