@@ -109,7 +109,7 @@ pub struct Place {
 /// What the machine is told by one block, or by one step of a cycle.
 #[derive(Clone, Debug)]
 pub struct Event<'a> {
-    pub kind: EventKind,
+    pub kind: &'a EventKind,
     /// How long it takes: path over feed, rapid rates of the control's parameters, no acceleration.
     pub seconds: Seconds,
     pub block: Span,

@@ -115,15 +115,15 @@ impl Deg {
 /// Beyond it a double has no fraction.
 const WHOLE: f64 = 4_503_599_627_370_496.0;
 
-/// Half away from 0: `f64::round` in a few instructions on processors that round by themselves only in other ways.
+/// Half away from 0: `f64::round` without a branch, so that several numbers can be rounded at once.
 #[inline]
 pub fn round(value: f64) -> f64 {
-    if !(-WHOLE..WHOLE).contains(&value) {
-        return value;
-    }
-    let cut = value as i64 as f64;
-    let away: f64 = if (value - cut).abs() >= 0.5 { 1.0 } else { 0.0 };
-    (cut + away.copysign(value)).copysign(value)
+    let size = value.abs();
+    // In the sum there is no room for a fraction: it is the nearest whole number, of two the even one.
+    let even = (size + WHOLE) - WHOLE;
+    let up = if size - even == 0.5 { 1.0 } else { 0.0 };
+    let rounded = (even + up).copysign(value);
+    if size < WHOLE { rounded } else { value }
 }
 
 /// The natural logarithm, the same bits everywhere like the sines.
@@ -133,7 +133,18 @@ pub fn ln(value: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
+
+    proptest! {
+        #[test]
+        fn any_double_is_rounded_as_the_standard_library_does(value in any::<f64>(), near in -4e15..4e15) {
+            for value in [value, near, near / 1e9] {
+                prop_assert_eq!(round(value).to_bits(), value.round().to_bits());
+            }
+        }
+    }
 
     #[test]
     fn rounding_is_that_of_the_standard_library_bit_for_bit() {

@@ -313,6 +313,9 @@ pub enum Alarm {
     },
 }
 
+/// An alarm with its place. Nearly every step of a run hands on that there is none, so it takes no more than a pointer.
+pub type Placed = Box<Spanned<Alarm>>;
+
 /// What the table says about an alarm.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Row {
@@ -327,8 +330,9 @@ impl Alarm {
         self.row().code
     }
 
-    pub fn at(self, span: Span) -> Spanned<Self> {
-        Spanned::new(self, span)
+    #[cold]
+    pub fn at(self, span: Span) -> Placed {
+        Box::new(Spanned::new(self, span))
     }
 }
 

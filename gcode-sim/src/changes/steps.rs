@@ -194,7 +194,7 @@ impl Recorder {
 impl Sink for Recorder {
     fn event(&mut self, event: &Event<'_>) {
         let here = self.at;
-        match &event.kind {
+        match event.kind {
             EventKind::Rapid { to } => self.go(Kind::Rapid, *to, event),
             EventKind::Feed { to, rate } => self.go(Kind::Feed(rate.0), *to, event),
             EventKind::Arc { to, arc, rate } => self.go(Kind::Arc(*arc, rate.0), *to, event),

@@ -105,9 +105,7 @@ impl Flow {
             Statement::IfThen { then, .. } => Ways { falls: true, ..self.of_statement(program, block, then) },
             Statement::While { end, .. } => Ways { falls: true, jumps: vec![end + 1], ..Ways::default() },
             Statement::End { start, .. } => Ways { jumps: vec![*start], ..Ways::default() },
-            Statement::Assign { target, .. } if literal::of_operand(*target) == Some(3000.0) => {
-                Ways { leaves: true, ..Ways::default() }
-            }
+            Statement::Assign { target, .. } if target.is(3000) => Ways { leaves: true, ..Ways::default() },
             Statement::Several(all) if all.iter().any(is_raise) => Ways { leaves: true, ..Ways::default() },
             Statement::Assign { .. }
             | Statement::Several(_)
@@ -193,7 +191,7 @@ pub(crate) fn raises(kind: &OpKind) -> bool {
 
 fn is_raise(statement: &Statement) -> bool {
     match statement {
-        Statement::Assign { target, .. } => literal::of_operand(*target) == Some(3000.0),
+        Statement::Assign { target, .. } => target.is(3000),
         Statement::Several(all) => all.iter().any(is_raise),
         _ => false,
     }

@@ -5,7 +5,7 @@ mod parameters;
 mod table;
 mod unsure;
 
-use crate::motion::{Axes, MAX_AXES, Position};
+use crate::motion::{Axes, Axis, MAX_AXES, Position};
 use crate::units::{MmPerMin, nearest};
 
 pub use code_calls::{AddressCall, Called, CodeCallKind, CodeCalls, FAMILIES, RANGES};
@@ -319,6 +319,14 @@ impl Default for Settings {
             time: 120_000,
             unsure: Unsure::default(),
         }
+    }
+}
+
+impl Settings {
+    /// The axes that roll over: mostly none.
+    pub fn rolling(&self) -> impl Iterator<Item = Axis> + '_ {
+        let some = self.roll_over != [false; MAX_AXES];
+        (0..if some { self.axes.len() } else { 0 }).filter(|axis| self.roll_over[*axis])
     }
 }
 

@@ -13,8 +13,10 @@ use super::Core;
 use super::eval::Checked;
 use super::notes::Note;
 use super::plan::Plan;
+use super::state::State;
 use super::words::Given;
 use crate::alarm::Alarm;
+use crate::program::modes::CutterSide;
 use crate::program::{Calling, Program, Words};
 use crate::source::Span;
 
@@ -33,15 +35,20 @@ impl Core {
             _ => words,
         };
         plan.begin(&self.state);
-        if self.macro_by_code(program, words, plan)? {
-            return Ok(());
+        let mut calling = None;
+        if !self.settings.code_calls.is_empty() {
+            if self.macro_by_code(program, words, plan)? {
+                return Ok(());
+            }
+            calling = self.subprogram_by_code(program, words)?;
         }
-        let calling = self.subprogram_by_code(program, words)?;
         self.collect(program, words, calling.as_ref(), given)?;
         self.beside_return(words)?;
         let act = self.modal_codes(given, plan, span)?;
-        self.codes(given, plan, span)?;
-        self.m_codes(given, plan)?;
+        if self.has_codes(given, &plan.state) {
+            self.codes(given, plan, span)?;
+            self.m_codes(given, plan)?;
+        }
         let lengthened = self.length(given, plan, span)?;
         match act {
             Some(act) => {
@@ -62,9 +69,20 @@ impl Core {
             plan.state.ended = None;
             self.check_modal_call(&plan.flow, span)?;
         }
-        self.look_ahead(act, given, plan, span)?;
+        if self.reads_ahead(given, &plan.state) {
+            self.look_ahead(act, given, plan, span)?;
+        }
         self.check_unread(given, plan)?;
-        self.check_stroke(plan, span)
+        if self.settings.stroke.is_none() { Ok(()) } else { self.check_stroke(plan, span) }
+    }
+
+    /// Whether a block has anything else than axis words and codes of group 01, or the state depends on D and F alone.
+    #[inline]
+    fn has_codes(&self, given: &Given, state: &State) -> bool {
+        given.has_of(!self.settings.axes.mask())
+            || given.has_more_than_moves()
+            || given.m_count > 0
+            || state.modal.cutter != CutterSide::Off
     }
 
     /// What nothing has read may still mean something to a control: it isn't passed over in silence. In a block
@@ -83,11 +101,12 @@ impl Core {
     /// Only N, P and L may stand beside M99 while G66 is on.
     fn beside_return(&self, words: &Words) -> Checked<()> {
         let returns = words.call.as_ref().is_some_and(|call| call.kind == Calling::Return);
+        if !returns || self.modal_calls.is_empty() {
+            return Ok(());
+        }
         match words.list.iter().find(|word| word.letter != b'L') {
-            Some(word) if returns && !self.modal_calls.is_empty() => {
-                Err(Alarm::WordsWithReturn { letter: char::from(word.letter) }.at(word.span))
-            }
-            _ => Ok(()),
+            Some(word) => Err(Alarm::WordsWithReturn { letter: char::from(word.letter) }.at(word.span)),
+            None => Ok(()),
         }
     }
 

@@ -31,9 +31,6 @@ impl CallingWord {
 impl Core {
     /// A code that calls a macro: it stands first, and the block's other words are the arguments.
     pub(super) fn macro_by_code(&self, program: &Program, words: &Words, plan: &mut Plan) -> Checked<bool> {
-        if self.settings.code_calls.is_empty() {
-            return Ok(false);
-        }
         for (place, word) in words.list.iter().enumerate() {
             let Some(called) = self.called_by(program, word)? else { continue };
             if called.kind == CodeCallKind::Subprogram {
@@ -100,9 +97,6 @@ impl Core {
         program: &Program,
         words: &Words,
     ) -> Checked<Option<CallingWord>> {
-        if self.settings.code_calls.is_empty() {
-            return Ok(None);
-        }
         let mut found = None;
         for (place, word) in words.list.iter().enumerate() {
             let Some(calling) = self.calling_word(program, place, word)? else { continue };

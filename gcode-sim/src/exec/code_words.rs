@@ -3,7 +3,7 @@ use super::Core;
 use super::eval::Checked;
 use super::patterns::takes_l;
 use super::plan::Plan;
-use super::words::Given;
+use super::words::{Given, letters};
 use crate::alarm::Alarm;
 use crate::program::codes::{Effect, OneShot};
 use crate::program::modes::{CutterSide, Scaling, StrokeCheck};
@@ -45,7 +45,7 @@ impl Core {
     /// Words that need a code which the block doesn't have, or must not stand beside one it has.
     fn misplaced_words(&self, given: &Given, plan: &Plan, span: Span) -> Checked<()> {
         let smooth = given.has_code(|effect| effect == Effect::Smoothness);
-        for letter in [b'E', b'N', b'O'] {
+        for letter in b"ENO".iter().copied().filter(|_| given.has_any(b"ENO")) {
             if given.has(letter) && !(smooth && letter == b'E') {
                 return Err(Alarm::ImproperAddress { letter: char::from(letter) }.at(given.span(letter)));
             }
@@ -65,12 +65,18 @@ impl Core {
         if given.has(b'T') && given.has_code(keeps_tool) {
             return Err(Alarm::TNotAllowed.at(given.span(b'T')));
         }
-        let repeats = given.g_codes().any(takes_l)
-            || self.settings.cycle_repeats == b'L' && plan.state.modal.cycle.is_some();
-        if given.has(b'L') && !repeats {
+        let repeats = || {
+            given.g_codes().any(takes_l)
+                || self.settings.cycle_repeats == b'L' && plan.state.modal.cycle.is_some()
+        };
+        if given.has(b'L') && !repeats() {
             return Err(Alarm::ImproperAddress { letter: 'L' }.at(given.span(b'L')));
         }
         let dwells = given.has_code(|effect| effect == Effect::OneShot(OneShot::Dwell));
+        let axes = letters(b"ABCUVWXYZ") & !self.settings.axes.mask();
+        if !given.has_of(axes) {
+            return Ok(());
+        }
         for letter in [b'A', b'B', b'C', b'U', b'V', b'W', b'X', b'Y', b'Z'] {
             let known = || self.settings.axes.find(letter).is_some() || (letter == b'U' && dwells);
             if given.has(letter) && !known() {

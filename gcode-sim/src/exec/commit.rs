@@ -10,21 +10,22 @@ use crate::units::Seconds;
 impl Core {
     /// Everything a plan says, in the order it says it.
     pub(super) fn commit<S: Sink>(&mut self, plan: &mut Plan, sink: &mut S) {
-        self.state = plan.state;
+        // The plan's next block begins with a copy of it.
+        std::mem::swap(&mut self.state, &mut plan.state);
         if plan.reads_ahead {
             self.advance(&mut plan.ahead, sink);
         }
-        for (kind, seconds) in plan.events.drain(..) {
-            self.tell(kind, seconds, sink);
+        for (kind, seconds) in &plan.events {
+            self.tell(kind, *seconds, sink);
         }
         if let Some(drill) = plan.drill.take() {
             self.tell_drill(&drill, sink);
         }
-        for (kind, seconds) in plan.after.drain(..) {
-            self.tell(kind, seconds, sink);
+        for (kind, seconds) in &plan.after {
+            self.tell(kind, *seconds, sink);
         }
-        for write in plan.writes.drain(..) {
-            match write {
+        for write in &plan.writes {
+            match *write {
                 Write::Work { system, axis, value } => self.offsets.work_mut(system)[axis] = value,
                 Write::Tool { register, number, value } => {
                     self.offsets.register(register)[number as usize] = value;
@@ -38,14 +39,15 @@ impl Core {
             }
             self.offsets_changed();
         }
-        for kind in plan.stops.drain(..) {
-            self.tell(EventKind::Stop { kind, text: String::new(), named: Vec::new() }, 0.0, sink);
+        for kind in &plan.stops {
+            let stop = EventKind::Stop { kind: *kind, text: String::new(), named: Vec::new() };
+            self.tell(&stop, 0.0, sink);
         }
-        for note in plan.notes.drain(..) {
-            self.notes.entry(note).or_insert(self.block);
+        for note in &plan.notes {
+            self.notes.entry(*note).or_insert(self.block);
         }
-        for code in plan.passed_on.drain(..) {
-            self.passed_on.entry(code).or_insert(self.block);
+        for code in &plan.passed_on {
+            self.passed_on.entry(*code).or_insert(self.block);
         }
     }
 
@@ -56,15 +58,15 @@ impl Core {
         self.drill(drill, &mut |kind, time| {
             seconds += time;
             moves += u64::from(kind.end().is_some());
-            sink.event(&Event { kind, seconds: Seconds(time), block, calls: &calls });
+            sink.event(&Event { kind: &kind, seconds: Seconds(time), block, calls: &calls });
         });
         self.seconds += seconds;
         self.moves += moves;
     }
 
     /// Tells the machine one thing and counts it.
-    pub(super) fn tell<S: Sink>(&mut self, kind: EventKind, seconds: f64, sink: &mut S) {
-        self.count(&kind, seconds);
+    pub(super) fn tell<S: Sink>(&mut self, kind: &EventKind, seconds: f64, sink: &mut S) {
+        self.count(kind, seconds);
         let block = self.block;
         sink.event(&Event { kind, seconds: Seconds(seconds), block, calls: &self.frame().calls });
     }

@@ -61,7 +61,7 @@ impl Core {
         let stretch = at(stretch_along(plan, cycle, axis), span)?;
         let repeats = self.cycle_repeats(given, pattern)?;
         let incremental = plan.state.modal.distance == Distance::Incremental;
-        let from = plan.state;
+        let from = *plan.state;
         // The block's own depth words are not a move.
         let mut goal = self.goal(given, &mut plan.state)?.programmed;
         goal[axis] = from.programmed[axis];
@@ -101,7 +101,7 @@ impl Core {
         let circle = self.circle(plan, given, incremental, repeats)?;
         let drill = Drill {
             cycle,
-            from: State { machine: from.machine, ..plan.state },
+            from: State { machine: from.machine, ..*plan.state },
             hole: goal,
             step,
             circle,

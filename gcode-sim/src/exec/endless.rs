@@ -138,7 +138,7 @@ impl Watch {
 impl Copy {
     fn of(core: &Core) -> Self {
         Self {
-            state: core.state,
+            state: *core.state,
             vars: core.vars.clone(),
             offsets: core.offsets.clone(),
             ahead: core.ahead.clone(),
@@ -161,7 +161,7 @@ impl Copy {
         let frames = self.frames.len() == core.frames.len()
             && self.frames.iter().zip(&core.frames).all(|(a, b)| a.goes_on_like(b));
         frames
-            && self.state == core.state
+            && self.state == *core.state
             && self.vars.same(&core.vars)
             && self.offsets == core.offsets
             && self.ahead == core.ahead

@@ -1,42 +1,47 @@
 //! Evaluates expressions and conditions.
+use std::cell::Cell;
+
 use super::Core;
 use super::functions::{atan2, binary, compare, function, power};
 use super::notes::Note;
 use super::vars::{Kind, Value};
-use crate::alarm::Alarm;
-use crate::program::{Code, Instruction, Operand, Operation, Program};
-use crate::source::{Span, Spanned};
+use crate::alarm::{Alarm, Placed};
+use crate::program::{Code, Instruction, Operand, Operation, Program, STACK, Slot, Source};
+use crate::source::Span;
 use crate::syntax::ast::{BinaryOp, Function};
 use crate::units::round;
 
-/// As many as [`crate::program`] lets an expression need.
-const STACK: usize = crate::program::STACK;
+pub(super) type Checked<T> = Result<T, Placed>;
 
-pub(super) type Checked<T> = Result<T, Spanned<Alarm>>;
+/// Places for the values that wait for their operators: as many as [`crate::program`] lets an expression need. They
+/// are part of the control, so that an evaluation has none to clear.
+#[derive(Clone, Debug)]
+pub(super) struct Places([Cell<Value>; STACK]);
 
-/// Values waiting for their operator, the last one apart: most operators need no other.
-struct Stack {
-    last: Value,
-    below: [Value; STACK],
+impl Default for Places {
+    fn default() -> Self {
+        Self([const { Cell::new(Value::Vacant) }; STACK])
+    }
+}
+
+/// Values waiting for their operators. Lowering refuses what would need more places than there are; going round in them
+/// saves the question at every step.
+struct Stack<'a> {
+    places: &'a [Cell<Value>; STACK],
     used: usize,
 }
 
-impl Stack {
+impl Stack<'_> {
     #[inline]
     fn push(&mut self, value: Value) {
-        if let Some(place) = self.below.get_mut(self.used) {
-            *place = self.last;
-            self.used += 1;
-        }
-        self.last = value;
+        self.places[self.used % STACK].set(value);
+        self.used += 1;
     }
 
     #[inline]
     fn pop(&mut self) -> Value {
-        let last = self.last;
-        self.used = self.used.saturating_sub(1);
-        self.last = self.below.get(self.used).copied().unwrap_or_default();
-        last
+        self.used = self.used.wrapping_sub(1);
+        self.places[self.used % STACK].get()
     }
 }
 
@@ -60,7 +65,7 @@ impl Core {
     fn value(&self, program: &Program, operand: Operand, rounds: RoundsTo) -> Checked<Value> {
         match operand {
             Operand::Number(number) => Ok(Value::Number(number)),
-            Operand::Variable { number, span } => self.read(number).map_err(|alarm| alarm.at(span)),
+            Operand::Variable { slot, span } => self.load(slot).map_err(|alarm| alarm.at(span)),
             Operand::Code(code) => self.run_code(program, code, rounds),
         }
     }
@@ -70,8 +75,33 @@ impl Core {
         self.run_code(program, condition, RoundsTo::Whole).map(|value| value.number() != 0.0)
     }
 
-    /// The value of a variable of any kind.
     #[inline]
+    fn fetch(&self, source: Source, stack: &mut Stack<'_>) -> Value {
+        match source {
+            Source::Stack => stack.pop(),
+            Source::Number(number) => Value::Number(number),
+            Source::Local(index) => self.vars.locals()[usize::from(index)],
+            Source::Common(index) => self.vars.common(usize::from(index)),
+        }
+    }
+
+    /// Two values, of which the second waits above the first.
+    #[inline]
+    fn fetch_two(&self, [left, right]: [Source; 2], stack: &mut Stack<'_>) -> [Value; 2] {
+        let right = self.fetch(right, stack);
+        [self.fetch(left, stack), right]
+    }
+
+    #[inline]
+    fn load(&self, slot: Slot) -> Result<Value, Alarm> {
+        match slot {
+            Slot::Local(index) => Ok(self.vars.locals()[usize::from(index)]),
+            Slot::Common(index) => Ok(self.vars.common(usize::from(index))),
+            Slot::Other(number) => self.read(number),
+        }
+    }
+
+    /// The value of a variable of any kind.
     pub(super) fn read(&self, number: u32) -> Result<Value, Alarm> {
         match self.vars.kind(number) {
             Kind::Local(index) => Ok(self.vars.locals()[index]),
@@ -82,7 +112,7 @@ impl Core {
     }
 
     fn run_code(&self, program: &Program, code: Code, rounds: RoundsTo) -> Checked<Value> {
-        let mut stack = Stack { last: Value::Vacant, below: [Value::Vacant; STACK], used: 0 };
+        let mut stack = Stack { places: &self.waiting.0, used: 0 };
         for instruction in program.code(code) {
             let value = self
                 .instruction(program, instruction, &mut stack, rounds)
@@ -97,13 +127,13 @@ impl Core {
         &self,
         program: &Program,
         code: &Instruction,
-        stack: &mut Stack,
+        stack: &mut Stack<'_>,
         rounds: RoundsTo,
     ) -> Result<Value, Alarm> {
         let unsure = &self.settings.unsure;
         Ok(match code.operation {
-            Operation::Push(number) => Value::Number(number),
-            Operation::Load(number) => self.read(number)?,
+            Operation::Load(source) => self.fetch(source, stack),
+            Operation::Read(number) => self.read(number)?,
             Operation::LoadIndirect => self.read(index(stack.pop())?)?,
             Operation::Negate => match stack.pop() {
                 Value::Vacant if unsure.minus_keeps_vacancy => Value::Vacant,
@@ -118,36 +148,35 @@ impl Core {
                 Value::Vacant if !unsure.brackets_keep_vacancy => Value::Number(0.0),
                 value => value,
             },
-            Operation::Binary(op) => {
-                let right = stack.pop().number();
-                Value::Number(binary(op, stack.pop().number(), right, unsure)?)
+            Operation::Binary(op, values) => {
+                let [left, right] = self.fetch_two(values, stack).map(Value::number);
+                Value::Number(binary(op, left, right, unsure)?)
             }
-            Operation::Function(name) => {
-                let argument = stack.pop().number();
+            Operation::Function(name, value) => {
+                let argument = self.fetch(value, stack).number();
                 let value = function(name, argument, &self.settings)?;
                 if name == Function::Tan && (argument % 180.0).abs() == 90.0 {
                     self.told.set(Some(Note::TangentOf90));
                 }
                 Value::Number(value)
             }
-            Operation::Atan2 => {
-                let right = stack.pop().number();
-                let left = stack.pop().number();
+            Operation::Atan2(values) => {
+                let [left, right] = self.fetch_two(values, stack).map(Value::number);
                 let value = atan2(left, right, &self.settings)?;
                 if left == 0.0 && right == 0.0 {
                     self.told.set(Some(Note::AtanOf0));
                 }
                 Value::Number(value)
             }
-            Operation::Power => {
-                let right = stack.pop().number();
-                Value::Number(power(stack.pop().number(), right)?)
+            Operation::Power(values) => {
+                let [base, exponent] = self.fetch_two(values, stack).map(Value::number);
+                Value::Number(power(base, exponent)?)
             }
             Operation::RoundTo(_) if rounds == RoundsTo::Whole => Value::Number(round(stack.pop().number())),
             Operation::RoundTo(letter) => Value::Number(self.round_to(letter, stack.pop().number())),
-            Operation::Compare(relation) => {
-                let right = stack.pop();
-                Value::Number(f64::from(u8::from(compare(relation, stack.pop(), right))))
+            Operation::Compare(relation, values) => {
+                let [left, right] = self.fetch_two(values, stack);
+                Value::Number(f64::from(u8::from(compare(relation, left, right))))
             }
             Operation::Logic(op) => {
                 let right = stack.pop().number() != 0.0;

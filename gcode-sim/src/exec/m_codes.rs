@@ -60,8 +60,8 @@ impl Core {
                 }
             }
         }
-        let told = plan.events.iter().any(|(kind, _)| matches!(kind, EventKind::Spindle { .. }));
-        if given.has(b'S') && plan.state.spindle != Spindle::Off && !told {
+        let told = || plan.events.iter().any(|(kind, _)| matches!(kind, EventKind::Spindle { .. }));
+        if given.has(b'S') && plan.state.spindle != Spindle::Off && !told() {
             self.turn(plan, plan.state.spindle, Rpm(plan.state.codes.s));
         }
         Ok(())

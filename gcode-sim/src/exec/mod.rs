@@ -64,6 +64,7 @@ pub use watch::Watcher;
 
 use self::ahead::Ahead;
 use self::endless::{Endless, Watch};
+use self::eval::Places;
 use self::frames::Frame;
 use self::modal_calls::ModalCall;
 use self::offsets::Offsets;
@@ -71,7 +72,7 @@ use self::plan::Plan;
 use self::words::Given;
 use crate::alarm::Alarm;
 use crate::control::{ParameterPlace, Settings};
-use crate::program::{Memory, ProgramId};
+use crate::program::{Memory, ProgramId, Slot};
 use crate::source::Span;
 
 /// As many operator stops are kept; a program that loops over M00 must not fill the memory.
@@ -95,7 +96,7 @@ pub struct Control {
 #[derive(Clone, Debug)]
 pub(crate) struct Core {
     settings: Settings,
-    state: State,
+    state: Box<State>,
     vars: Vars,
     offsets: Offsets,
     /// What has been read and waits for the next move.
@@ -118,6 +119,8 @@ pub(crate) struct Core {
     idle: f64,
     /// A clock was read since the last jump back.
     clock_read: Cell<bool>,
+    /// For values that wait for their operators.
+    waiting: Places,
     /// What a function of the block at hand has to tell.
     told: Cell<Option<Note>>,
     blocks: u64,
@@ -139,7 +142,7 @@ impl Control {
         let vars = Vars::new(settings.more_commons, settings.aliased_commons);
         let core = Core {
             settings,
-            state: State::default(),
+            state: Box::default(),
             vars,
             offsets,
             ahead: Ahead::default(),
@@ -154,6 +157,7 @@ impl Control {
             seconds: 0.0,
             idle: 0.0,
             clock_read: Cell::new(false),
+            waiting: Places::default(),
             told: Cell::new(None),
             blocks: 0,
             moves: 0,
@@ -198,7 +202,7 @@ impl Control {
 
     /// Sets a variable before the run, as the operator would on the screen.
     pub fn set(&mut self, number: u32, value: f64) -> Result<(), Alarm> {
-        let written = self.core.write(number, Value::Number(value), None, Span::default(), &mut ());
+        let written = self.core.write(Slot::of(number), Value::Number(value), None, Span::default(), &mut ());
         written.map_err(|alarm| alarm.node)
     }
 }

@@ -42,6 +42,10 @@ impl Core {
                 latched = false;
             }
         }
+        // Those of group 01 change nothing of what follows, and most blocks have no others.
+        if !given.has_more_than_moves() {
+            return Ok(act);
+        }
         let modal = state.modal;
         if modal.plane != before.plane && self.ahead.is_beside() {
             return Err(Alarm::PlaneInCompensation.at(span));

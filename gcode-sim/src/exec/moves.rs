@@ -62,7 +62,10 @@ impl Core {
         }
         // Some controls round corners by R or read I J K here; the end of cutter compensation takes a vector.
         let vector = given.has_code(|effect| effect == Effect::Cutter(CutterSide::Off));
-        if let Some(letter) = b"IJKR".iter().find(|l| given.has(**l) && !arcs && !vector && !overruled) {
+        if given.has_any(b"IJKR")
+            && !(arcs || vector || overruled)
+            && let Some(letter) = b"IJKR".iter().find(|letter| given.has(**letter))
+        {
             let what = format!("{} beside a straight move", char::from(*letter));
             return Err(Alarm::NotSimulated { what }.at(given.span(*letter)));
         }

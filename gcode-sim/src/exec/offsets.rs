@@ -103,17 +103,18 @@ impl Core {
 
     /// A programmed point in machine coordinates, tool length included.
     pub(super) fn to_machine(&self, state: &State, point: Position) -> Position {
-        let mut machine = state.transform.forward(point);
+        let work = state.transform.forward(point);
         let (system, grid) = (self.offsets.system(state.modal.work), self.grid());
-        for axis in 0..self.settings.axes.len() {
-            if self.settings.roll_over[axis] {
-                // From where the axis stands, the shorter way: turns already made stay made.
-                let work = state.machine[axis] - self.zero(state, axis) - state.length[axis];
-                machine[axis] = self.clean(state.machine[axis] + shorter_way(work, machine[axis]));
-                continue;
-            }
+        let mut machine = Position::default();
+        // All places alike, those without an axis too: they are computed several at a time.
+        for axis in 0..MAX_AXES {
             let zero = self.offsets.zero(system, state, axis);
-            machine[axis] = cleaned(machine[axis] + zero + state.length[axis], grid);
+            machine[axis] = cleaned(work[axis] + zero + state.length[axis], grid);
+        }
+        for axis in self.settings.rolling() {
+            // From where the axis stands, the shorter way: turns already made stay made.
+            let from = state.machine[axis] - self.zero(state, axis) - state.length[axis];
+            machine[axis] = self.clean(state.machine[axis] + shorter_way(from, work[axis]));
         }
         machine
     }

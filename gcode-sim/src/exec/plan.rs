@@ -16,7 +16,7 @@ use crate::units::MmPerMin;
 /// Everything one block of words changes. Kept between blocks, so that none of them allocates.
 #[derive(Debug, Default)]
 pub(super) struct Plan {
-    pub(super) state: State,
+    pub(super) state: Box<State>,
     /// What the machine is told, with the seconds it takes.
     pub(super) events: Vec<(EventKind, f64)>,
     /// G31: its motion is planned to the end and may stop before.
@@ -134,7 +134,7 @@ pub(super) enum Target {
 
 impl Plan {
     pub(super) fn begin(&mut self, state: &State) {
-        self.state = *state;
+        *self.state = *state;
         self.events.clear();
         self.probing = None;
         self.after.clear();

@@ -5,10 +5,10 @@ use super::modal_codes::not_simulated;
 use super::notes::Note;
 use super::plan::{Plan, Probing};
 use super::words::Given;
-use crate::alarm::Alarm;
+use crate::alarm::{Alarm, Placed};
 use crate::motion::{EventKind, MAX_AXES, Position, Signal, Sink, SkipFeed};
 use crate::program::modes::CutterSide;
-use crate::source::{Span, Spanned};
+use crate::source::Span;
 use crate::units::Seconds;
 
 impl Core {
@@ -48,7 +48,7 @@ impl Core {
     }
 
     /// Asks where the signal comes and ends the planned motion there. The alarm, if any, is raised after the motion.
-    pub(super) fn ask_for_signal<S: Sink>(&self, plan: &mut Plan, sink: &mut S) -> Option<Spanned<Alarm>> {
+    pub(super) fn ask_for_signal<S: Sink>(&self, plan: &mut Plan, sink: &mut S) -> Option<Placed> {
         let probing = plan.probing.take()?;
         let Probing { from, to, rate, seconds, span, .. } = probing;
         let signal = match self.settings.skip_signal {

@@ -15,6 +15,7 @@ pub(super) const POWERS: [f64; 8] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7];
 
 impl Core {
     /// How many decimals the least increment of an address has in the unit in force.
+    #[inline]
     pub(super) fn decimals(&self, letter: u8, unit: Unit) -> usize {
         let metric = match self.settings.increment {
             Increment::IsA => 2,
@@ -25,6 +26,7 @@ impl Core {
     }
 
     /// Whole increments: literals are cut off (or rounded, by setting), computed values rounded half away from 0.
+    #[inline]
     fn increments(&self, raw: Raw, decimals: usize) -> Result<f64, Alarm> {
         let number = match raw {
             Raw::Computed(value) => nearest(value, POWERS[decimals]),
@@ -50,6 +52,7 @@ impl Core {
     }
 
     /// A length in mm or an angle in degrees, a multiple of the increment of its address.
+    #[inline]
     pub(super) fn dimension(&self, given: &Given, letter: u8, state: &State) -> Checked<Option<f64>> {
         let Some((raw, span)) = given.get(letter) else { return Ok(None) };
         let decimals = self.decimals(letter, state.modal.unit);

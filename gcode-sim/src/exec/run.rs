@@ -129,7 +129,7 @@ impl Control {
             }
             OpKind::Empty if op.number.is_some() => core.pass_number(op.span, sink)?,
             OpKind::Empty | OpKind::If { .. } => {}
-            OpKind::Alarm(alarm) => return Err((**alarm).clone()),
+            OpKind::Alarm(alarm) => return Err(alarm.clone()),
             OpKind::Statement(statement) => {
                 core.statement(program, statement, op.span, sink)?;
                 if core.frame().next <= place {

@@ -5,7 +5,7 @@ use super::notes::Note;
 use super::vars::{Kind, Value};
 use crate::alarm::Alarm;
 use crate::motion::{EventKind, Place, Sink, StopKind};
-use crate::program::{OpIndex, Operand, Program, Statement};
+use crate::program::{OpIndex, Operand, Program, Slot, Statement, Target};
 use crate::source::{Span, Spanned};
 
 /// No control has numbers beyond this for alarms of its programs.
@@ -22,9 +22,9 @@ impl Core {
     ) -> Checked<()> {
         match statement {
             Statement::Assign { target, target_span, value, text } => {
-                let number = self.target(program, *target).map_err(|a| a.at(*target_span))?;
+                let slot = self.target(program, *target).map_err(|a| a.at(*target_span))?;
                 let value = self.operand(program, *value)?;
-                self.write(number, value, text.as_deref(), *target_span, sink)?;
+                self.write(slot, value, text.as_deref(), *target_span, sink)?;
             }
             Statement::Several(assignments) => {
                 for one in assignments {
@@ -70,14 +70,19 @@ impl Core {
             Statement::Print { kind, parts } => self.print(program, *kind, parts, span)?,
             Statement::OpenOutput => self.open_output(true),
             Statement::CloseOutput => self.open_output(false),
-            Statement::Alarm(alarm) => return Err((**alarm).clone()),
+            Statement::Alarm(alarm) => return Err(alarm.clone()),
         }
         Ok(())
     }
 
-    pub(super) fn target(&self, program: &Program, target: Operand) -> Result<u32, Alarm> {
-        let value = self.operand(program, target).map_err(|alarm| alarm.node)?;
-        index(value)
+    pub(super) fn target(&self, program: &Program, target: Target) -> Result<Slot, Alarm> {
+        match target {
+            Target::Slot(slot) => Ok(slot),
+            Target::Computed(number) => {
+                let value = self.operand(program, number).map_err(|alarm| alarm.node)?;
+                index(value).map(Slot::of)
+            }
+        }
     }
 
     fn goto(&mut self, program: &Program, to: &Spanned<Operand>) -> Checked<()> {
@@ -124,12 +129,23 @@ impl Core {
     /// Writes a variable of any kind.
     pub(super) fn write<S: Sink>(
         &mut self,
-        number: u32,
+        slot: Slot,
         value: Value,
         text: Option<&[u8]>,
         span: Span,
         sink: &mut S,
     ) -> Checked<()> {
+        let number = match slot {
+            Slot::Local(index) => {
+                self.vars.set_local(usize::from(index), value);
+                return Ok(());
+            }
+            Slot::Common(index) => {
+                self.vars.set_common(usize::from(index), value);
+                return Ok(());
+            }
+            Slot::Other(number) => number,
+        };
         match self.vars.kind(number) {
             Kind::Local(index) => self.vars.set_local(index, value),
             Kind::Common(index) => self.vars.set_common(index, value),
@@ -177,7 +193,7 @@ impl Core {
             let place = Place { block: self.block, calls: self.frame().calls.clone() };
             return self.ahead.wait_behind(stop, place);
         }
-        self.tell(stop, 0.0, sink);
+        self.tell(&stop, 0.0, sink);
     }
 }
 

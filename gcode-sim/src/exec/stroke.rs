@@ -11,9 +11,6 @@ use crate::units::Deg;
 impl Core {
     /// Looks at every move of a block before it happens. A real control stops on the way; here nothing has moved.
     pub(super) fn check_stroke(&self, plan: &Plan, span: Span) -> Checked<()> {
-        if self.settings.stroke.is_none() {
-            return Ok(());
-        }
         for (kind, _) in &plan.events {
             at(self.within_stroke(kind), span)?;
         }

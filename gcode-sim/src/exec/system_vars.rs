@@ -320,9 +320,9 @@ impl Core {
 
     /// The active system's zero has moved, the machine hasn't.
     pub(super) fn offsets_changed(&mut self) {
-        let mut state = self.state;
+        let mut state = *self.state;
         self.recompute(&mut state);
-        self.state = state;
+        *self.state = state;
     }
 
     fn register(&self, register: Register) -> Register {

@@ -40,8 +40,8 @@ impl Core {
     /// The end point of the block's axis words, from where `state` stands.
     pub(super) fn goal(&self, given: &Given, state: &mut State) -> Checked<Goal> {
         let mut programmed = state.programmed;
-        let mut turned = [None; MAX_AXES];
-        for (axis, letter) in self.settings.axes.iter() {
+        let mut turned = [0.0; MAX_AXES];
+        for (axis, letter) in self.settings.axes.iter().filter(|(_, letter)| given.has(*letter as u8)) {
             if state.modal.polar == Polar::On && self.in_plane(state, axis) {
                 continue;
             }
@@ -50,7 +50,7 @@ impl Core {
             let incremental = state.modal.distance == Distance::Incremental;
             if self.settings.roll_over[axis] {
                 let way = if incremental { value } else { shorter_way(from, value) };
-                turned[axis] = Some(way);
+                turned[axis] = way;
                 programmed[axis] = self.rolled(axis, from + way);
             } else {
                 programmed[axis] = if incremental { self.clean(from + value) } else { value };
@@ -67,10 +67,8 @@ impl Core {
             self.told.set(Some(Note::AxisLeftOut));
         }
         let mut machine = self.to_machine(state, programmed);
-        for (axis, way) in turned.iter().enumerate() {
-            if let Some(way) = way {
-                machine[axis] = self.clean(state.machine[axis] + way);
-            }
+        for axis in self.settings.rolling().filter(|axis| given.has(self.settings.axes.letter(*axis) as u8)) {
+            machine[axis] = self.clean(state.machine[axis] + turned[axis]);
         }
         self.in_range(given, &machine)?;
         Ok(Goal { programmed, machine })
@@ -79,6 +77,9 @@ impl Core {
     /// A position has nine digits in increments, as a word has; an axis that rolls over begins anew with each turn.
     fn in_range(&self, given: &Given, machine: &Position) -> Checked<()> {
         let most = 999_999_999.0 / self.settings.increment.per_unit();
+        if machine.0.iter().fold(true, |all, value| all & (value.abs() <= most)) {
+            return Ok(());
+        }
         for (axis, letter) in self.settings.axes.iter() {
             if machine[axis].abs() > most && !self.settings.roll_over[axis] {
                 let alarm = Alarm::PositionOverflow { letter, value: machine[axis] };

@@ -76,9 +76,10 @@ const COMMONS: usize = 1000;
 /// All variables that a program may use freely.
 #[derive(Clone, Debug)]
 pub struct Vars {
-    /// One set per level; sets above the current level are kept to be used again.
-    levels: Vec<Locals>,
-    level: usize,
+    /// The locals of the current level.
+    locals: Locals,
+    /// Those of the levels that wait for it, the main program's first.
+    outer: Vec<Locals>,
     commons: Vec<Value>,
     /// The numbers of further commons, which follow the others in `commons`.
     more: (u32, u32),
@@ -94,8 +95,8 @@ impl Vars {
         let count = more.map_or(0, |(from, to)| (to - from + 1) as usize);
         let more = more.unwrap_or((1, 0));
         Self {
-            levels: vec![VACANT],
-            level: 0,
+            locals: VACANT,
+            outer: Vec::new(),
             commons: vec![Value::Vacant; COMMONS + count],
             more,
             aliased,
@@ -122,19 +123,19 @@ impl Vars {
 
     #[inline]
     pub fn locals(&self) -> &Locals {
-        &self.levels[self.level]
+        &self.locals
     }
 
     #[inline]
     pub(super) fn set_local(&mut self, index: usize, value: Value) {
-        let locals = &mut self.levels[self.level];
-        self.digest ^= mix(self.level + 1, index, locals[index]) ^ mix(self.level + 1, index, value);
-        locals.set(index, value, 0);
+        let place = place(self.level() + 1, index);
+        self.digest ^= mix(place, self.locals[index]) ^ mix(place, value);
+        self.locals.set(index, value, 0);
     }
 
     pub(super) fn set_locals(&mut self, locals: &Locals) {
-        self.digest ^= mix_all(self.level + 1, self.locals()) ^ mix_all(self.level + 1, locals);
-        self.levels[self.level] = *locals;
+        self.digest ^= mix_all(self.level() + 1, &self.locals) ^ mix_all(self.level() + 1, locals);
+        self.locals = *locals;
     }
 
     /// Differs almost surely where any value differs.
@@ -142,15 +143,13 @@ impl Vars {
         self.digest
     }
 
-    /// Whether all values in force are the same; sets above the level don't count.
+    /// Whether all values in force are the same.
     pub(super) fn same(&self, other: &Self) -> bool {
-        self.level == other.level
-            && self.levels[..=self.level] == other.levels[..=other.level]
-            && self.commons == other.commons
+        self.locals == other.locals && self.outer == other.outer && self.commons == other.commons
     }
 
     pub fn level(&self) -> usize {
-        self.level
+        self.outer.len()
     }
 
     pub fn common(&self, index: usize) -> Value {
@@ -160,29 +159,28 @@ impl Vars {
     #[inline]
     pub(super) fn set_common(&mut self, index: usize, value: Value) {
         let place = &mut self.commons[index];
-        self.digest ^= mix(0, index, *place) ^ mix(0, index, value);
+        let mixed = self::place(0, index);
+        self.digest ^= mix(mixed, *place) ^ mix(mixed, value);
         *place = value;
     }
 
     /// A macro call: a new level with these locals.
     pub(super) fn enter(&mut self, locals: &Locals) {
-        self.level += 1;
-        self.digest ^= mix_all(self.level + 1, locals);
-        match self.levels.get_mut(self.level) {
-            Some(set) => *set = *locals,
-            None => self.levels.push(*locals),
-        }
+        self.outer.push(std::mem::replace(&mut self.locals, *locals));
+        self.digest ^= mix_all(self.level() + 1, locals);
     }
 
     /// Back to the caller's locals.
     pub(super) fn leave(&mut self) {
-        self.digest ^= mix_all(self.level + 1, self.locals());
-        self.level = self.level.saturating_sub(1);
+        self.digest ^= mix_all(self.level() + 1, &self.locals);
+        if let Some(callers) = self.outer.pop() {
+            self.locals = callers;
+        }
     }
 
     /// The variables that aren't vacant, by number: the locals of the main program and the commons.
     pub fn known(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
-        let locals = self.levels[0].values.iter().enumerate();
+        let locals = self.outer.first().unwrap_or(&self.locals).values.iter().enumerate();
         let (commons, more) = self.commons.split_at(COMMONS);
         let more = (self.more.0 as usize..).zip(more);
         let all = locals.chain(commons.iter().enumerate()).chain(more);
@@ -190,14 +188,19 @@ impl Vars {
     }
 }
 
-fn mix(level: usize, index: usize, value: Value) -> u64 {
+/// What stands for a variable in the digest.
+fn place(level: usize, index: usize) -> u64 {
+    ((level << 16 | index) as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15)
+}
+
+fn mix(place: u64, value: Value) -> u64 {
     let Value::Number(number) = value else { return 0 };
-    let place = ((level << 16 | index) as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15);
     (number.to_bits() ^ place).wrapping_mul(0xD6E8_FEB8_6659_FD93).rotate_left(29) ^ place
 }
 
 fn mix_all(level: usize, locals: &Locals) -> u64 {
-    locals.values.iter().enumerate().fold(0, |digest, (index, value)| digest ^ mix(level, index, *value))
+    let values = locals.values.iter().enumerate();
+    values.fold(0, |digest, (index, value)| digest ^ mix(place(level, index), *value))
 }
 
 #[cfg(test)]

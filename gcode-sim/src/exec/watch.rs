@@ -1,6 +1,6 @@
 //! Looking on while a control runs: at what stands in it before and after every block.
 use super::{Control, Core};
-use crate::program::{OpKind, Program, Statement};
+use crate::program::{OpKind, Program, Slot, Statement};
 use crate::source::Span;
 
 /// Looks at a control between its blocks.
@@ -79,7 +79,9 @@ impl Core {
 
     fn assigned(&self, program: &Program, statement: &Statement, numbers: &mut Vec<u32>) {
         match statement {
-            Statement::Assign { target, .. } => numbers.extend(self.target(program, *target)),
+            Statement::Assign { target, .. } => {
+                numbers.extend(self.target(program, *target).map(Slot::number));
+            }
             Statement::Several(all) => all.iter().for_each(|one| self.assigned(program, one, numbers)),
             Statement::IfThen { condition, then } if self.holds(program, *condition).unwrap_or(false) => {
                 self.assigned(program, then, numbers);

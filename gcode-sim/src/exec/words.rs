@@ -21,6 +21,16 @@ pub(super) enum Raw {
     Computed(f64),
 }
 
+/// Letters as bits, A the lowest.
+pub(super) const fn letters(some: &[u8]) -> u32 {
+    let (mut bits, mut place) = (0, 0);
+    while place < some.len() {
+        bits |= 1 << (some[place] - b'A');
+        place += 1;
+    }
+    bits
+}
+
 const G_CODES: usize = 12;
 const M_CODES: usize = 3;
 
@@ -119,13 +129,19 @@ impl Given {
         self.present >> (letter - b'A') & 1 == 1
     }
 
-    /// Whether it has one of some letters, given as bits.
-    pub(super) fn has_of(&self, mask: u32) -> bool {
-        self.present & mask != 0
+    /// Whether it has one of some [`letters`].
+    pub(super) fn has_of(&self, letters: u32) -> bool {
+        self.present & letters != 0
     }
 
-    pub(super) fn has_any(&self, letters: &[u8]) -> bool {
-        letters.iter().any(|letter| self.has(*letter))
+    #[inline]
+    pub(super) fn has_any(&self, some: &[u8]) -> bool {
+        self.has_of(letters(some))
+    }
+
+    /// Whether a G code stands in it that is not of group 01.
+    pub(super) fn has_more_than_moves(&self) -> bool {
+        self.beyond_moves
     }
 
     /// The value of a word, which is asked for with this.

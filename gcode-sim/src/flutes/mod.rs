@@ -205,7 +205,7 @@ impl<'m> Follower<'m> {
 
 impl Sink for Follower<'_> {
     fn event(&mut self, event: &Event<'_>) {
-        match &event.kind {
+        match event.kind {
             EventKind::Rapid { to } => self.motion(event, true, to, None),
             EventKind::Feed { to, .. } | EventKind::Skip { to, .. } => self.motion(event, false, to, None),
             EventKind::Arc { to, arc, .. } => self.motion(event, false, to, Some(arc)),

@@ -249,7 +249,7 @@ impl Sink for Extractor<'_> {
     }
 
     fn event(&mut self, event: &Event<'_>) {
-        match &event.kind {
+        match event.kind {
             EventKind::Rapid { to } => self.motion(event, Pace::Rapid, to, None),
             EventKind::Feed { to, .. } => self.motion(event, Pace::Feed, to, None),
             EventKind::Arc { to, arc, .. } => self.motion(event, Pace::Feed, to, Some(arc)),

@@ -53,7 +53,7 @@ impl Script {
     pub(crate) fn play(&self, sink: &mut impl Sink) {
         for (line, kind) in (1..).zip(&self.events) {
             let block = Span { source: SourceId(0), start: line, end: line };
-            sink.event(&Event { kind: kind.clone(), seconds: Seconds::ZERO, block, calls: &None });
+            sink.event(&Event { kind, seconds: Seconds::ZERO, block, calls: &None });
         }
     }
 }

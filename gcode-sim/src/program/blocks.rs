@@ -3,23 +3,44 @@
 use std::collections::BTreeMap;
 
 use super::loops::Loops;
-use super::lower::Lowering;
+use super::lower::{Lowering, lower_case};
 use super::{Code, Instruction, Op, OpIndex, OpKind, Statement};
 use crate::alarm::Alarm;
 use crate::source::SourceId;
-use crate::syntax::{ast, block_at};
+use crate::syntax::{ast, block_at, plain_block_at};
 
 /// As many operations are kept. Loops are shorter; some megabytes at most.
 const KEPT: usize = 8192;
 
-/// Stands for a block that isn't lowered.
-const UNREAD: u32 = u32::MAX;
-
 /// Where a block begins, and where its operation is.
 #[derive(Clone, Copy, Debug)]
-struct Entry {
+pub(super) struct Entry {
     start: u32,
+    /// The place of its operation, [`Entry::UNREAD`] where it isn't lowered; [`Entry::PLAIN`] as the highest bit.
     op: u32,
+}
+
+impl Entry {
+    /// It is alone in its line and can be read as [`plain_block_at`] does.
+    const PLAIN: u32 = 1 << 31;
+    const UNREAD: u32 = !Self::PLAIN;
+
+    pub(super) fn new(start: u32, plain: bool) -> Self {
+        Self { start, op: Self::UNREAD | if plain { Self::PLAIN } else { 0 } }
+    }
+
+    fn is_plain(self) -> bool {
+        self.op & Self::PLAIN != 0
+    }
+
+    /// The place of its operation; that of none where it isn't lowered.
+    fn op(self) -> usize {
+        (self.op & Self::UNREAD) as usize
+    }
+
+    fn set_op(&mut self, op: u32) {
+        self.op = self.op & Self::PLAIN | op;
+    }
 }
 
 /// All blocks of a program, and the operations of some.
@@ -33,13 +54,15 @@ pub(super) struct Blocks {
     /// Operations with the places of their blocks.
     ops: Vec<Op>,
     places: Vec<u32>,
+    /// The tree of the block that was lowered last.
+    tree: ast::Block,
     lowering: Lowering,
 }
 
 impl Blocks {
-    pub(super) fn new(starts: Vec<u32>, apart: BTreeMap<u32, ast::Block>, length: u32) -> Self {
-        let entries = starts.into_iter().map(|start| Entry { start, op: UNREAD }).collect();
-        Self { entries, apart, length, ops: Vec::new(), places: Vec::new(), lowering: Lowering::default() }
+    pub(super) fn new(entries: Vec<Entry>, apart: BTreeMap<u32, ast::Block>, length: u32) -> Self {
+        let (ops, places, tree) = (Vec::new(), Vec::new(), ast::Block::default());
+        Self { entries, apart, length, ops, places, tree, lowering: Lowering::default() }
     }
 
     /// The tree of a block, read anew.
@@ -55,7 +78,7 @@ impl Blocks {
 
     #[inline]
     pub(super) fn op(&self, place: OpIndex) -> Option<&Op> {
-        self.ops.get(self.entries.get(place)?.op as usize)
+        self.ops.get(self.entries.get(place)?.op())
     }
 
     /// All operations; to ask before all are lowered, in order, is a mistake of ours.
@@ -91,17 +114,27 @@ impl Blocks {
 
     fn forget(&mut self) {
         for place in self.places.drain(..) {
-            self.entries[place as usize].op = UNREAD;
+            self.entries[place as usize].set_op(Entry::UNREAD);
         }
-        self.ops.clear();
+        for op in self.ops.drain(..) {
+            self.lowering.give_up(op);
+        }
         self.lowering.forget();
     }
 
     fn lower(&mut self, place: OpIndex, source: SourceId, bytes: &[u8], loops: &Loops) {
-        let Some(tree) = self.tree(place, source, bytes) else { return };
-        let mut op = self.lowering.block(&tree, bytes);
+        let Some(entry) = self.entries.get(place) else { return };
+        let plain = entry.is_plain();
+        if plain {
+            plain_block_at(source, &bytes[..self.length as usize], entry.start, &mut self.tree);
+        } else {
+            let Some(tree) = self.tree(place, source, bytes) else { return };
+            self.tree = tree;
+        }
+        let small = if plain { None } else { lower_case(&self.tree, bytes) };
+        let mut op = self.lowering.block(&self.tree, small);
         join(&mut op, place, loops);
-        self.entries[place].op = self.ops.len() as u32;
+        self.entries[place].set_op(self.ops.len() as u32);
         self.places.push(place as u32);
         self.ops.push(op);
     }
@@ -128,5 +161,5 @@ fn join(op: &mut Op, place: OpIndex, loops: &Loops) {
         },
         _ => return,
     };
-    op.kind = OpKind::Alarm(Box::new(alarm.at(op.span)));
+    op.kind = OpKind::Alarm(alarm.at(op.span));
 }

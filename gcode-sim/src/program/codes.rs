@@ -335,10 +335,25 @@ impl Found {
 
 /// What is known of a code × 10.
 pub fn find(code: u32) -> Found {
-    let first = CODES.partition_point(|row| row.code < code);
-    let behind = CODES.partition_point(|row| row.code <= code);
-    Found(&CODES[first..behind])
+    let place = |code: u32| PLACES.get(code as usize).map_or(CODES.len(), |place| usize::from(*place));
+    Found(&CODES[place(code)..place(code.saturating_add(1))])
 }
+
+/// The place of the first row whose code is not less, for each code × 10 up to the last one.
+const PLACES: [u16; LAST_CODE + 1] = {
+    let mut places = [0; LAST_CODE + 1];
+    let (mut code, mut place) = (0, 0);
+    while code <= LAST_CODE {
+        while CODES[place].code < code as u32 {
+            place += 1;
+        }
+        places[code] = place as u16;
+        code += 1;
+    }
+    places
+};
+
+const LAST_CODE: usize = CODES[CODES.len() - 1].code as usize;
 
 /// A code × 10 as it is written: `54.1`.
 pub fn spelled(code: u32) -> String {

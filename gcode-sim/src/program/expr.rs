@@ -1,78 +1,17 @@
-//! Expressions in postfix order, so that evaluating one needs neither recursion nor memory of its own.
+//! Expressions lowered to postfix code.
 use super::Form;
+use super::code::{Code, Instruction, Operand, Operation, STACK, Slot, Source, Target};
 use super::lower::Lowering;
-use super::names::{self, NameRow, OTHER_MEMORIES};
-use crate::alarm::Alarm;
-use crate::source::{Span, Spanned};
-use crate::syntax::ast::{BinaryOp, CallForm, Condition, Expr, ExprKind, Function, Name, Relation, Written};
-
-/// A value: known, one variable, or code to evaluate. The first two are most of what programs contain.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Operand {
-    Number(f64),
-    /// `#n` with a literal n.
-    Variable {
-        number: u32,
-        span: Span,
-    },
-    Code(Code),
-}
-
-/// A range of a program's instructions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Code {
-    pub start: u32,
-    pub end: u32,
-    pub span: Span,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Instruction {
-    pub operation: Operation,
-    pub span: Span,
-}
-
-/// Acts on a stack of values. Conditions are numbers here, 0 or 1; the tree keeps them apart.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Operation {
-    Push(f64),
-    Load(u32),
-    /// Takes a variable's number, gives its value.
-    LoadIndirect,
-    Negate,
-    /// The sign between an address and its value: `X-#1`. Unlike a minus in an expression it keeps vacancy.
-    Reverse,
-    Plus,
-    Bracket,
-    Binary(BinaryOp),
-    Function(Function),
-    /// ATAN of two values.
-    Atan2,
-    Power,
-    /// ROUND in a word: to the increment of that address.
-    RoundTo(u8),
-    Compare(Relation),
-    Logic(BinaryOp),
-    /// PRM: takes the axis, the bit and the number, the last of them always.
-    Parameter {
-        bit: bool,
-        axis: bool,
-    },
-    /// `AXNUM[X]`.
-    AxisNumber(u8),
-    /// ADP: takes a variable's number, gives its value as if it had been passed with a point.
-    AddPoint,
-    /// The number of a variable named by SETVN: an index into the program's names.
-    NameNumber(u32),
-    /// Takes a suffix, gives the number of the system variable; of `[#_NAME]` without a suffix it takes nothing.
-    SystemNumber(NameRow),
-}
+use super::names::{self, OTHER_MEMORIES};
+use crate::alarm::{Alarm, Placed};
+use crate::source::Span;
+use crate::syntax::ast::{BinaryOp, CallForm, Condition, Expr, ExprKind, Function, Name, Written};
 
 /// How deep brackets may stand in one another (operator's manual, custom macro: five levels).
 pub(super) const BRACKETS: usize = 5;
 
-/// What an expression can need on the stack: five brackets, each with a sum, a product and an index pending.
-pub const STACK: usize = 32;
+/// Beyond it no number is a variable's.
+const MOST_WRITTEN: f64 = 999_999_999.0;
 
 /// What an expression stands in.
 #[derive(Clone, Copy)]
@@ -82,7 +21,7 @@ pub(super) enum Context {
     Address(u8),
 }
 
-type Lowered<T> = Result<T, Spanned<Alarm>>;
+type Lowered<T> = Result<T, Placed>;
 
 impl Lowering {
     pub(super) fn operand(&mut self, expr: &Expr, context: Context) -> Lowered<Operand> {
@@ -90,7 +29,7 @@ impl Lowering {
             ExprKind::Literal(number) => return Ok(Operand::Number(number.value())),
             ExprKind::Variable(index) => {
                 if let Some(number) = self.literal_index(index) {
-                    return Ok(Operand::Variable { number, span: expr.span });
+                    return Ok(Operand::Variable { slot: Slot::of(number), span: expr.span });
                 }
             }
             _ => {}
@@ -127,25 +66,59 @@ impl Lowering {
 
     /// Writes the code of `expr`; the answer is how many values it needs on the stack at once.
     fn expr(&mut self, expr: &Expr, context: Context, brackets: usize) -> Lowered<usize> {
-        let span = expr.span;
-        if brackets > BRACKETS {
-            return Err(Alarm::TooManyBrackets.at(span));
+        let (source, depth) = self.source(expr, context, brackets)?;
+        if source != Source::Stack {
+            self.emit(Operation::Load(source), expr.span);
         }
-        Ok(match &expr.kind {
-            ExprKind::Literal(number) => {
-                self.emit(Operation::Push(number.value()), span);
-                1
-            }
+        Ok(depth)
+    }
+
+    /// Where an operator finds the value of `expr`, and how many places on the stack it needs at once. Only what has
+    /// to be computed gets code, and what may alarm, so that the first alarm stays the first.
+    fn source(&mut self, expr: &Expr, context: Context, brackets: usize) -> Lowered<(Source, usize)> {
+        if brackets > BRACKETS {
+            return Err(Alarm::TooManyBrackets.at(expr.span));
+        }
+        match &expr.kind {
+            ExprKind::Literal(number) => return Ok((Source::Number(number.value()), 1)),
             ExprKind::Variable(index) => {
                 if let Some(number) = self.literal_index(index) {
-                    self.emit(Operation::Load(number), span);
-                    1
-                } else {
-                    let depth = self.expr(index, Context::Macro, brackets)?;
-                    self.emit(Operation::LoadIndirect, span);
-                    depth
+                    let source = match Slot::of(number) {
+                        Slot::Local(local) => Source::Local(local),
+                        Slot::Common(common) => Source::Common(common),
+                        Slot::Other(number) => {
+                            self.emit(Operation::Read(number), expr.span);
+                            Source::Stack
+                        }
+                    };
+                    return Ok((source, 1));
                 }
+                let depth = self.expr(index, Context::Macro, brackets)?;
+                self.emit(Operation::LoadIndirect, expr.span);
+                return Ok((Source::Stack, depth));
             }
+            _ => {}
+        }
+        self.computed(expr, context, brackets).map(|depth| (Source::Stack, depth))
+    }
+
+    /// The sources of an operator's two values. The second may have to wait for the first.
+    fn sources(
+        &mut self,
+        [left, right]: [&Expr; 2],
+        context: Context,
+        brackets: usize,
+    ) -> Lowered<([Source; 2], usize)> {
+        let (left, left_depth) = self.source(left, context, brackets)?;
+        let (right, right_depth) = self.source(right, context, brackets)?;
+        Ok(([left, right], left_depth.max(right_depth + 1)))
+    }
+
+    /// Writes the code of what is no number and no variable.
+    fn computed(&mut self, expr: &Expr, context: Context, brackets: usize) -> Lowered<usize> {
+        let span = expr.span;
+        Ok(match &expr.kind {
+            ExprKind::Literal(_) | ExprKind::Variable(_) => self.expr(expr, context, brackets)?,
             ExprKind::Named(name) => {
                 let depth = self.named(name, span, brackets)?;
                 self.emit(Operation::LoadIndirect, span);
@@ -158,10 +131,9 @@ impl Lowering {
                 if *op == BinaryOp::Mod {
                     self.note(Form::NewFunction("MOD"), span);
                 }
-                let left = self.expr(left, context, brackets)?;
-                let right = self.expr(right, context, brackets)?;
-                self.emit(Operation::Binary(*op), span);
-                left.max(right + 1)
+                let (values, depth) = self.sources([left, right], context, brackets)?;
+                self.emit(Operation::Binary(*op, values), span);
+                depth
             }
             ExprKind::Call(function, form) => self.call(*function, form, span, context, brackets + 1)?,
             ExprKind::Parameter { number, bit, axis } => {
@@ -202,11 +174,10 @@ impl Lowering {
         context: Context,
         brackets: usize,
     ) -> Lowered<usize> {
-        let two = |this: &mut Self, a: &Expr, b: &Expr, operation| {
-            let first = this.expr(a, context, brackets)?;
-            let second = this.expr(b, context, brackets)?;
-            this.emit(operation, span);
-            Ok(first.max(second + 1))
+        let two = |this: &mut Self, a: &Expr, b: &Expr, operation: fn([Source; 2]) -> Operation| {
+            let (values, depth) = this.sources([a, b], context, brackets)?;
+            this.emit(operation(values), span);
+            Ok(depth)
         };
         let new = match (function, form) {
             (Function::Pow, _) => Some("POW"),
@@ -235,7 +206,9 @@ impl Lowering {
                 self.unary(index, Operation::AddPoint, span, Context::Macro, brackets)
             }
             (_, CallForm::One(inner), _) => {
-                self.unary(inner, Operation::Function(function), span, context, brackets)
+                let (value, depth) = self.source(inner, context, brackets)?;
+                self.emit(Operation::Function(function, value), span);
+                Ok(depth)
             }
             (_, CallForm::Slash(..) | CallForm::Comma(..), _) => {
                 Err(Alarm::ArgumentFormat { function: format!("{function:?}").to_uppercase() }.at(span))
@@ -243,12 +216,19 @@ impl Lowering {
         }
     }
 
-    /// The number of the variable that an assignment writes.
-    pub(super) fn target(&mut self, target: &Expr) -> Lowered<Operand> {
+    /// The variable that an assignment writes.
+    pub(super) fn target(&mut self, target: &Expr) -> Lowered<Target> {
         match &target.kind {
-            ExprKind::Variable(index) => self.operand(index, Context::Macro),
+            ExprKind::Variable(index) => match self.operand(index, Context::Macro)? {
+                // The nearest whole number, as of any index.
+                Operand::Number(number) if (0.0..=MOST_WRITTEN).contains(&number.round()) => {
+                    Ok(Target::Slot(Slot::of(number.round() as u32)))
+                }
+                operand => Ok(Target::Computed(operand)),
+            },
             ExprKind::Named(name) => {
-                self.code(target.span, |this| this.named(name, target.span, 0)).map(Operand::Code)
+                let code = self.code(target.span, |this| this.named(name, target.span, 0))?;
+                Ok(Target::Computed(Operand::Code(code)))
             }
             _ => Err(Alarm::Expression { text: String::new() }.at(target.span)),
         }
@@ -288,7 +268,7 @@ impl Lowering {
             self.note(Form::Fraction, index.span);
         }
         let value = value.round();
-        (0.0..=999_999_999.0).contains(&value).then_some(value as u32)
+        (0.0..=MOST_WRITTEN).contains(&value).then_some(value as u32)
     }
 
     fn test(&mut self, condition: &Condition) -> Lowered<usize> {
@@ -297,10 +277,9 @@ impl Lowering {
                 if *written == Written::Sign {
                     self.note(Form::Signs, *span);
                 }
-                let left = self.expr(left, Context::Macro, 1)?;
-                let right = self.expr(right, Context::Macro, 1)?;
-                self.emit(Operation::Compare(*relation), *span);
-                Ok(left.max(right + 1))
+                let (values, depth) = self.sources([left, right], Context::Macro, 1)?;
+                self.emit(Operation::Compare(*relation, values), *span);
+                Ok(depth)
             }
             Condition::Logic(op, written, first, second) => {
                 let left = self.test(first)?;

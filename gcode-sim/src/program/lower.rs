@@ -1,9 +1,10 @@
 //! Lowers a tree to operations, block by block; what can't run becomes the alarm it raises when it is reached.
 use std::collections::BTreeMap;
 
-use super::expr::{Context, Instruction};
-use super::{Form, Op, OpKind, PrintPart, Statement};
-use crate::alarm::Alarm;
+use super::code::Instruction;
+use super::expr::Context;
+use super::{Coded, Form, Op, OpKind, PrintPart, Statement, Words};
+use crate::alarm::{Alarm, Placed};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast;
 
@@ -21,9 +22,11 @@ pub(super) struct Lowering {
     named: BTreeMap<String, u32>,
     /// What the block at hand has that not every control takes.
     forms: Vec<Spanned<Form>>,
+    /// Empty lists of words from blocks that were given up, to be filled again.
+    spare: Vec<Vec<Coded>>,
 }
 
-type Lowered<T> = Result<T, Spanned<Alarm>>;
+type Lowered<T> = Result<T, Placed>;
 
 impl Lowering {
     /// Gives up what was written for the blocks so far.
@@ -31,6 +34,19 @@ impl Lowering {
         self.instructions.clear();
         self.names.clear();
         self.named.clear();
+    }
+
+    /// Gives up a block; its list of words can be used again.
+    pub(super) fn give_up(&mut self, op: Op) {
+        if let OpKind::Words(Words { mut list, .. }) = op.kind {
+            list.clear();
+            self.spare.push(list);
+        }
+    }
+
+    /// An empty list of words.
+    pub(super) fn spare_words(&mut self) -> Vec<Coded> {
+        self.spare.pop().unwrap_or_default()
     }
 
     /// The place of a name.
@@ -49,19 +65,20 @@ impl Lowering {
         self.forms.push(Spanned::new(form, span));
     }
 
-    pub(super) fn block(&mut self, block: &ast::Block, bytes: &[u8]) -> Op {
-        if let Some(span) = lower_case(block, bytes) {
+    /// A block; `small` is the first of its letters in lower case, as [`lower_case`] finds it.
+    pub(super) fn block(&mut self, block: &ast::Block, small: Option<Span>) -> Op {
+        if let Some(span) = small {
             self.note(Form::LowerCase, span);
         }
         if let Some(span) = block.short {
             self.note(Form::ShortWord, span);
         }
-        let kind = self.kind(block).unwrap_or_else(|alarm| OpKind::Alarm(Box::new(alarm)));
+        let kind = self.kind(block).unwrap_or_else(|alarm| OpKind::Alarm(alarm));
         Op {
             span: block.span,
             skip: block.skip.as_ref().map(|s| s.node),
             number: block.number.as_ref().map(|n| n.node),
-            forms: self.forms.drain(..).collect(),
+            forms: if self.forms.is_empty() { Box::default() } else { self.forms.drain(..).collect() },
             kind,
         }
     }
@@ -89,7 +106,7 @@ impl Lowering {
             match item {
                 ast::Item::Word(_) => words += 1,
                 ast::Item::Skip(switch) => skips.push((switch.node, place)),
-                ast::Item::Unreadable(unreadable) => return Err(unreadable.alarm.clone()),
+                ast::Item::Unreadable(unreadable) => return Err(Box::new(unreadable.alarm.clone())),
                 ast::Item::Statement(_) if statement.is_some() => {
                     let what = "two statements in one block".into();
                     return Err(Alarm::MacroFormat { what }.at(block.span));
@@ -149,7 +166,7 @@ impl Lowering {
                         self.note(Form::ThenGoto, span);
                         self.statement(then, span, block)?
                     }
-                    _ => Statement::Alarm(Box::new(Alarm::IfFormat.at(span))),
+                    _ => Statement::Alarm(Alarm::IfFormat.at(span)),
                 };
                 Statement::IfThen { condition, then: Box::new(then) }
             }
@@ -220,7 +237,7 @@ fn sixteen_digits(text: &[u8]) -> Option<u64> {
 }
 
 /// The first letter in lower case outside comments, and what follows it. What can't be read has an alarm of its own.
-fn lower_case(block: &ast::Block, bytes: &[u8]) -> Option<Span> {
+pub(super) fn lower_case(block: &ast::Block, bytes: &[u8]) -> Option<Span> {
     if matches!(block.items.last(), Some(ast::Item::Unreadable(_))) {
         return None;
     }

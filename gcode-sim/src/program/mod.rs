@@ -5,6 +5,7 @@
 //! (`blocks`), so that a long file takes little more memory than its text.
 mod arguments;
 mod blocks;
+mod code;
 pub mod codes;
 pub mod cycles;
 mod expr;
@@ -19,14 +20,14 @@ mod outline;
 mod words;
 
 pub use arguments::{ArgumentLocals, argument_letter};
-pub use expr::{Code, Instruction, Operand, Operation, STACK};
+pub use code::{Code, Instruction, Operand, Operation, STACK, Slot, Source, Target};
 pub use forms::Form;
 pub use memory::{Library, Memory, NoLibrary, ProgramId};
 pub use words::{CallOp, CallTarget, Calling, Coded, Input, Words};
 
 use self::blocks::Blocks;
 use self::loops::Loops;
-use crate::alarm::Alarm;
+use crate::alarm::Placed;
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{PrintKind, ProgramName};
 
@@ -74,14 +75,13 @@ pub enum OpKind {
         then: Box<Self>,
     },
     /// The control stops here if it gets here.
-    Alarm(Box<Spanned<Alarm>>),
+    Alarm(Placed),
 }
 
 #[derive(Debug)]
 pub enum Statement {
     Assign {
-        /// The number of the variable.
-        target: Operand,
+        target: Target,
         target_span: Span,
         value: Operand,
         /// The first comment of the block: the text of `#3000=` and `#3006=`.
@@ -124,7 +124,7 @@ pub enum Statement {
     OpenOutput,
     CloseOutput,
     /// `IF[…]THEN` of something that must not stand there.
-    Alarm(Box<Spanned<Alarm>>),
+    Alarm(Placed),
 }
 
 #[derive(Debug)]

@@ -1,7 +1,7 @@
 //! What is known of a program when its file is loaded: where its blocks begin, its sequence numbers, its loops.
 use std::collections::BTreeMap;
 
-use super::blocks::Blocks;
+use super::blocks::{Blocks, Entry};
 use super::loops::{Loops, Part};
 use super::lower::Lowering;
 use super::{OpIndex, OpKind, Program, Statement};
@@ -24,13 +24,13 @@ struct Growing {
 /// Outlines the programs of a file.
 pub(super) fn programs(source: SourceId, bytes: &[u8]) -> Vec<Program> {
     let length = written(bytes).len() as u32;
-    let programs = outline(source, bytes, |growing: &mut Growing, block| growing.block(block, bytes));
+    let programs = outline(source, bytes, Growing::block);
     programs.into_iter().map(|parts| finish(parts, length)).collect()
 }
 
 impl Growing {
-    /// Notes a block; the answer is where it begins.
-    fn block(&mut self, block: Outlined, bytes: &[u8]) -> u32 {
+    /// Notes a block.
+    fn block(&mut self, block: Outlined) -> Entry {
         let place = self.blocks;
         self.blocks += 1;
         self.end = block.span().end;
@@ -38,9 +38,9 @@ impl Growing {
             self.numbers.push((number, place));
             self.first_number = self.first_number.or(Some(number).filter(|number| *number > 0));
         }
-        let start = block.span().start;
+        let entry = Entry::new(block.span().start, matches!(block, Outlined::Words { plain: true, .. }));
         if let Outlined::Read(block) | Outlined::Apart(block) = &block {
-            let part = match Lowering::default().block(block, bytes).kind {
+            let part = match Lowering::default().block(block, None).kind {
                 OpKind::Statement(Statement::While { number, .. } | Statement::Do { number, .. }) => {
                     Some((Part::Begin, number))
                 }
@@ -52,11 +52,11 @@ impl Growing {
         if let Outlined::Apart(block) = block {
             self.apart.insert(place, *block);
         }
-        start
+        entry
     }
 }
 
-fn finish(Parts { name, span, context, blocks, closed }: Parts<Growing, u32>, length: u32) -> Program {
+fn finish(Parts { name, span, context, blocks, closed }: Parts<Growing, Entry>, length: u32) -> Program {
     let Growing { end, mut numbers, first_number, loops, apart, .. } = context;
     let number = match name {
         ProgramName::Number(number) => Some(number),

@@ -4,14 +4,14 @@ use super::codes::{self, Found};
 use super::expr::Context;
 use super::lower::Lowering;
 use super::{OpKind, Operand};
-use crate::alarm::Alarm;
-use crate::source::{Span, Spanned};
+use crate::alarm::{Alarm, Placed};
+use crate::source::Span;
 use crate::syntax::ast::{AX, Decimal, Item, Word, WordValue};
 
 /// The words of one block.
 #[derive(Debug)]
 pub struct Words {
-    pub list: Box<[Coded]>,
+    pub list: Vec<Coded>,
     pub call: Option<Box<CallOp>>,
     /// `/n` inside the block: what is left of it while switch n is on.
     pub short: Option<(u8, Box<Words>)>,
@@ -83,7 +83,7 @@ pub struct CallOp {
 
 impl Lowering {
     /// A block of words; `skips` are the switches inside it with their places among the items.
-    pub(super) fn words(&mut self, items: &[Item], skips: &[(u8, usize)]) -> Result<Words, Spanned<Alarm>> {
+    pub(super) fn words(&mut self, items: &[Item], skips: &[(u8, usize)]) -> Result<Words, Placed> {
         let Some(((switch, place), before)) = skips.split_last() else { return self.plain_words(items) };
         let short = self.words(&items[..*place], before)?;
         let mut whole = self.plain_words(items)?;
@@ -91,15 +91,22 @@ impl Lowering {
         Ok(whole)
     }
 
-    fn plain_words(&mut self, items: &[Item]) -> Result<Words, Spanned<Alarm>> {
+    fn plain_words(&mut self, items: &[Item]) -> Result<Words, Placed> {
         let words =
             items.iter().filter_map(|item| if let Item::Word(word) = item { Some(word) } else { None });
-        let mut list = Vec::with_capacity(items.len());
+        let mut list = self.spare_words();
+        // Macro calls begin with a G code, all others with an M code; names stand in calls.
+        let (mut by_g, mut by_m) = (false, false);
         for word in words.clone() {
-            list.push(self.word(word)?);
+            let coded = self.word(word)?;
+            by_g |= matches!(coded.value, Input::G(650 | 660 | 661 | 670, _));
+            by_m |= coded.letter == b'M' || matches!(word.value, WordValue::Name(_));
+            list.push(coded);
         }
-        if !list.iter().any(|word| matches!(word.value, Input::G(650 | 660 | 661 | 670, _))) {
-            return subprogram(list, words);
+        match (by_g, by_m) {
+            (false, false) => return Ok(Words { list, call: None, short: None, punched: None }),
+            (false, true) => return subprogram(list, words),
+            (true, _) => {}
         }
         let is = |coded: &Coded, code: u32| matches!(coded.value, Input::G(c, _) if c == code);
         let call = [(650, Calling::Macro), (660, Calling::AfterMoves), (661, Calling::EveryBlock)];
@@ -120,12 +127,12 @@ impl Lowering {
                 arguments: Vec::new(),
                 span,
             };
-            return Ok(Words { list: list.into(), call: Some(Box::new(call)), short: None, punched: None });
+            return Ok(Words { list, call: Some(Box::new(call)), short: None, punched: None });
         }
         subprogram(list, words)
     }
 
-    fn word(&mut self, word: &Word) -> Result<Coded, Spanned<Alarm>> {
+    fn word(&mut self, word: &Word) -> Result<Coded, Placed> {
         let letter = word.address.letter;
         let value = match &word.value {
             WordValue::Literal(number) if letter == b'G' => match g_code(*number) {
@@ -174,7 +181,7 @@ fn macro_call<'a>(
     at: usize,
     kind: Calling,
     words: impl Iterator<Item = &'a Word>,
-) -> Result<Words, Spanned<Alarm>> {
+) -> Result<Words, Placed> {
     let span = list[at].span;
     if at > 0 {
         let what = "words before the macro call".into();
@@ -201,14 +208,11 @@ fn macro_call<'a>(
             _ => call.arguments.push(coded),
         }
     }
-    Ok(Words { list: Box::default(), call: Some(Box::new(call)), short: None, punched: None })
+    Ok(Words { list: Vec::new(), call: Some(Box::new(call)), short: None, punched: None })
 }
 
 /// M97 P, M98, M99 and M198 with their P, L and Q; the other words act first.
-fn subprogram<'a>(
-    list: Vec<Coded>,
-    words: impl Iterator<Item = &'a Word> + Clone,
-) -> Result<Words, Spanned<Alarm>> {
+fn subprogram<'a>(list: Vec<Coded>, words: impl Iterator<Item = &'a Word> + Clone) -> Result<Words, Placed> {
     let code = |word: &Word| match word.value {
         WordValue::Literal(Decimal { negative: false, digits, places: None })
             if word.address.letter == b'M' =>
@@ -231,7 +235,7 @@ fn subprogram<'a>(
         if let Some(word) = words.clone().find(|w| matches!(w.value, WordValue::Name(_))) {
             return Err(Alarm::NotAWord { text: "a name without M98 or G65".into() }.at(word.span));
         }
-        return Ok(Words { list: list.into(), call: None, short: None, punched: None });
+        return Ok(Words { list, call: None, short: None, punched: None });
     };
     if let Some((second, _)) = calls.next() {
         return Err(Alarm::TwoSubprogramCalls.at(second.span));
@@ -261,7 +265,7 @@ fn subprogram<'a>(
             _ => left.push(coded),
         }
     }
-    Ok(Words { list: left.into(), call: Some(Box::new(op)), short: None, punched: None })
+    Ok(Words { list: left, call: Some(Box::new(op)), short: None, punched: None })
 }
 
 impl From<Words> for OpKind {

@@ -142,7 +142,7 @@ pub struct Moves {
 
 impl Sink for Moves {
     fn event(&mut self, event: &Event<'_>) {
-        let (kind, to, feed) = match &event.kind {
+        let (kind, to, feed) = match event.kind {
             EventKind::Rapid { to } => ("rapid", *to, None),
             EventKind::Feed { to, rate } | EventKind::Skip { to, rate, .. } => ("feed", *to, Some(rate.0)),
             EventKind::Arc { to, rate, .. } => ("arc", *to, Some(rate.0)),

@@ -178,7 +178,7 @@ impl<'m> Stylus<'m> {
 
 impl Sink for Stylus<'_> {
     fn event(&mut self, event: &Event<'_>) {
-        match &event.kind {
+        match event.kind {
             EventKind::Rapid { to } | EventKind::Skip { to, .. } => self.motion(event, false, to, None),
             EventKind::Feed { to, .. } => self.motion(event, true, to, None),
             EventKind::Arc { to, arc, .. } => self.motion(event, true, to, Some(arc)),

@@ -37,7 +37,7 @@ impl ProgramName {
 }
 
 /// One line.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Block {
     pub span: Span,
     /// `/` or `/n` at the start: the switch, 1 to 9.
@@ -120,7 +120,7 @@ pub struct Address {
 pub enum WordValue {
     Literal(Decimal),
     /// `#1`, `[…]`, and `-#1`, `-[…]` as a negation of it. The bracket itself is kept as [`ExprKind::Bracket`].
-    Expr(Expr),
+    Expr(Box<Expr>),
     /// `G65 P<NAME>` or `M98 <NAME>`.
     Name(String),
 }

@@ -9,16 +9,17 @@ use super::word::{name_word, word};
 use crate::alarm::Alarm;
 use crate::source::Spanned;
 
-/// Reads one line, its end not included. What can't be read is the block's last item.
+/// Reads one line, its end not included, into a block that may have been used for another. What can't be read is the
+/// block's last item.
 ///
 /// `%`, and an O word after M02, M30 or M99 (`M99O0810(TEXT)`), end the block; they and the rest are handed back.
-pub(super) fn block(line: Line, input: Input<'_>) -> (Block, Input<'_>) {
-    let span = line.span(input, input);
-    let mut block =
-        Block { span, skip: None, number: None, short: None, items: Vec::new(), comments: Vec::new() };
+pub(super) fn read_block<'a>(line: Line, input: Input<'a>, block: &mut Block) -> Input<'a> {
+    (block.skip, block.number, block.short) = (None, None, None);
+    block.items.clear();
+    block.comments.clear();
     let mut rest = spaces(input);
-    while !rest.is_empty() && !ends_block(rest, &block) {
-        match item(line, rest, &mut block) {
+    while !rest.is_empty() && !ends_block(rest, block) {
+        match item(line, rest, block) {
             Ok((after, ())) => rest = spaces(after),
             Err(error) => {
                 block.items.push(Item::Unreadable(Box::new(unreadable(line, rest, error))));
@@ -27,7 +28,7 @@ pub(super) fn block(line: Line, input: Input<'_>) -> (Block, Input<'_>) {
         }
     }
     block.span = line.span(input, rest);
-    (block, rest)
+    rest
 }
 
 fn ends_block(rest: Input<'_>, block: &Block) -> bool {
@@ -53,7 +54,10 @@ pub(super) fn begins_program(input: Input<'_>) -> bool {
 
 fn unreadable(line: Line, from: Input<'_>, error: Err<Fault>) -> Unreadable {
     let (alarm, left) = match error {
-        Err::Error(fault) | Err::Failure(fault) => (fault.alarm, fault.left),
+        Err::Error(fault) | Err::Failure(fault) => {
+            let left = fault.left;
+            (fault.into_alarm(), left)
+        }
         Err::Incomplete(_) => (Alarm::NotAWord { text: String::new() }, from.len()),
     };
     let at = &from[from.len() - left.min(from.len())..];
@@ -97,7 +101,8 @@ fn item<'a>(line: Line, at: Input<'a>, block: &mut Block) -> Read<'a, ()> {
             }
             None => {
                 let (rest, word) = word(line, at)?;
-                (rest, Item::Word(word))
+                block.items.push(Item::Word(word));
+                return Ok((rest, ()));
             }
         },
         [b']', ..] => return fail(at, Alarm::MissingOpenBracket),
@@ -129,7 +134,7 @@ pub(super) fn sequence_number(line: Line, at: Input<'_>) -> Read<'_, Spanned<u32
             Some(b'-') => return fail(start, Alarm::IllegalMinus { letter: 'N' }),
             _ => return fail(at, Alarm::NoDataAfterAddress { letter: 'N' }),
         },
-        Err(Err::Failure(Fault { alarm: Alarm::IllegalPoint { .. }, .. })) => {
+        Err(Err::Failure(fault)) if matches!(fault.alarm(), Some(Alarm::IllegalPoint { .. })) => {
             return fail(at, Alarm::IllegalPoint { letter: Some('N') });
         }
         read => read?,

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use proptest::sample::select;
 
 use super::ast::*;
-use super::{Outlined, block_at, outline, parse, print, written};
+use super::{Outlined, block_at, outline, parse, plain_block_at, print, written};
 use crate::source::{SourceId, Span, Spanned};
 
 const NOWHERE: Span = Span { source: SourceId(0), start: 0, end: 0 };
@@ -183,7 +183,7 @@ fn word() -> impl Strategy<Value = Item> {
         matches!(e.kind, ExprKind::Variable(_) | ExprKind::Named(_) | ExprKind::Bracket(_))
     });
     let value = (single, any::<bool>()).prop_map(|(value, negative)| {
-        WordValue::Expr(if negative { expr(ExprKind::Negate(boxed(value))) } else { value })
+        WordValue::Expr(boxed(if negative { expr(ExprKind::Negate(boxed(value))) } else { value }))
     });
     let value = prop_oneof![3 => literal, 1 => value];
     let word = ("[A-MQ-Z]", any::<bool>(), value).prop_map(|(letter, comma, value)| {
@@ -284,7 +284,14 @@ proptest! {
         let whole = written(text.as_bytes());
         let tree = parse(SourceId(0), text.as_bytes());
         let outlined = outline(SourceId(0), text.as_bytes(), |(), block| match block {
-            Outlined::Words { span, number } => (number, block_at(span.source, whole, span.start)),
+            Outlined::Words { span, number, plain: false } => {
+                (number, block_at(span.source, whole, span.start))
+            }
+            Outlined::Words { span, number, plain: true } => {
+                let mut block = Block { short: Some(span), ..parse(SourceId(0), b"/N5 X1 (A)")[0].blocks[0].clone() };
+                plain_block_at(span.source, whole, span.start, &mut block);
+                (number, Some(block))
+            }
             Outlined::Read(block) => {
                 (block.number.as_ref().map(|n| n.node), block_at(block.span.source, whole, block.span.start))
             }

@@ -21,6 +21,6 @@ mod token;
 mod word;
 
 pub use file::{Parts, parse};
-pub use outline::{Outlined, block_at, outline};
+pub use outline::{Outlined, block_at, outline, plain_block_at};
 pub use pieces::{Piece, Pieces, written};
 pub use print::print;

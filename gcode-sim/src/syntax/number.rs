@@ -1,6 +1,6 @@
 //! Literal numbers: digits with at most one point, spaces anywhere between them.
 use super::ast::Decimal;
-use super::token::{Input, Read, fail, is_space, other};
+use super::token::{Input, Read, fail, is_space, other, unspaced};
 use crate::alarm::Alarm;
 
 /// A literal in a macro expression has twelve digits at most, and nine after an address: what has more.
@@ -11,24 +11,30 @@ const MOST_PLACES: usize = 18;
 
 /// An unsigned literal below `limit`, were its point left out.
 pub(super) fn decimal(input: Input<'_>, negative: bool, limit: u64) -> Read<'_, Decimal> {
-    let (mut digits, mut count, mut used, mut at) = (0u64, 0, 0, 0);
+    let (mut digits, mut count, mut rest) = (0u64, 0, input);
     let mut before_point = None;
     loop {
-        while let Some(byte @ b'0'..=b'9') = input.get(at) {
-            digits = digits * 10 + u64::from(byte - b'0');
-            (count, at) = (count + 1, at + 1);
+        let mut length = 0;
+        for byte in rest {
+            let digit = byte.wrapping_sub(b'0');
+            if digit > 9 {
+                break;
+            }
+            digits = digits * 10 + u64::from(digit);
             if digits >= limit {
                 return fail(input, Alarm::TooManyDigits);
             }
-            used = at;
+            length += 1;
         }
-        match input.get(at) {
-            Some(b'.') if before_point.is_some() => return fail(input, Alarm::IllegalPoint { letter: None }),
-            Some(b'.') => {
-                (before_point, at) = (Some(count), at + 1);
-                used = at;
-            }
-            Some(byte) if is_space(*byte) => at += 1,
+        (count, rest) = (count + length, &rest[length..]);
+        match rest {
+            [b'.', ..] if before_point.is_some() => return fail(input, Alarm::IllegalPoint { letter: None }),
+            [b'.', after @ ..] => (before_point, rest) = (Some(count), after),
+            [byte, ..] if is_space(*byte) => match unspaced(rest) {
+                // Spaces behind the number aren't its own.
+                behind @ [b'0'..=b'9' | b'.', ..] => rest = behind,
+                _ => break,
+            },
             _ => break,
         }
     }
@@ -37,7 +43,7 @@ pub(super) fn decimal(input: Input<'_>, negative: bool, limit: u64) -> Read<'_, 
         return fail(input, Alarm::TooManyDigits);
     }
     let places = places.map(|places| places as u8);
-    if count > 0 { Ok((&input[used..], Decimal { negative, digits, places })) } else { other(input) }
+    if count > 0 { Ok((rest, Decimal { negative, digits, places })) } else { other(input) }
 }
 
 /// A whole number without a point, as after N, O, DO and `/`.
@@ -51,11 +57,29 @@ pub(super) fn integer(input: Input<'_>) -> Read<'_, u64> {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
 
     fn read(text: &str) -> Option<(u64, Option<u8>, usize)> {
         let (rest, number) = decimal(text.as_bytes(), false, WORD_LIMIT).ok()?;
         Some((number.digits, number.places, rest.len()))
+    }
+
+    proptest! {
+        #[test]
+        fn a_number_is_the_double_nearest_to_what_is_written(
+            text in "[0-9]{0,11}\\.[0-9]{1,11}|[0-9]{1,12}\\.?|[0-9]{0,3}\\.0{0,6}[0-9]{1,9}",
+        ) {
+            let wanted: f64 = text.parse().unwrap();
+            match decimal(text.as_bytes(), false, EXPRESSION_LIMIT) {
+                Ok((rest, number)) => {
+                    prop_assert!(rest.is_empty());
+                    prop_assert_eq!(number.value().to_bits(), wanted.to_bits());
+                }
+                Err(_) => prop_assert!(text.replace('.', "").trim_start_matches('0').len() > 12),
+            }
+        }
     }
 
     #[test]

@@ -5,7 +5,7 @@
 use super::ast::Block;
 use super::block::sequence_number;
 use super::file::{Parts, programs};
-use super::pieces::{Piece, Pieces, says_nothing};
+use super::pieces::{Piece, Pieces, read_plain, says_nothing};
 use super::token::Line;
 use crate::source::{SourceId, Span};
 
@@ -16,6 +16,8 @@ pub enum Outlined {
     Words {
         span: Span,
         number: Option<u32>,
+        /// [`plain_block_at`] reads it.
+        plain: bool,
     },
     Read(Box<Block>),
     /// Something else stands before it in its line: it can't be read from its own beginning on.
@@ -56,6 +58,11 @@ pub fn block_at(source: SourceId, bytes: &[u8], start: u32) -> Option<Block> {
     })
 }
 
+/// Reads a plain block from where an outline has it into one that may have been used for another.
+pub fn plain_block_at(source: SourceId, bytes: &[u8], start: u32, block: &mut Block) {
+    read_plain(source, bytes, start, block);
+}
+
 /// The pieces of a file, most blocks unread.
 struct Outlines<'a> {
     pieces: Pieces<'a>,
@@ -69,7 +76,7 @@ impl Iterator for Outlines<'_> {
     fn next(&mut self) -> Option<Piece<Outlined>> {
         loop {
             if self.told
-                && let Some((span, text)) = self.pieces.plain_line()
+                && let Some((span, text, plain)) = self.pieces.plain_line()
             {
                 if text.is_empty() {
                     continue;
@@ -79,7 +86,7 @@ impl Iterator for Outlines<'_> {
                     [b'N' | b'n', ..] => sequence_number(line, text).ok().map(|(_, number)| number.node),
                     _ => None,
                 };
-                return Some(Piece::Block(Outlined::Words { span, number }));
+                return Some(Piece::Block(Outlined::Words { span, number, plain }));
             }
             let begins = self.pieces.begins_line();
             match self.pieces.piece() {

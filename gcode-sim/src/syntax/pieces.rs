@@ -2,10 +2,10 @@
 use std::collections::VecDeque;
 
 use super::ast::{Block, Comment, Item, ProgramName, Unreadable};
-use super::block::{begins_program, block};
+use super::block::{begins_program, read_block};
 use super::comment::blank;
 use super::number::integer;
-use super::token::{Input, Line, is_space, spaces};
+use super::token::{Input, Line, is_space, spaces, unspaced};
 use super::word::program_name;
 use crate::alarm::Alarm;
 use crate::source::{SourceId, Span, end_of_line, line_length};
@@ -27,6 +27,8 @@ pub enum Piece<B = Block> {
 const REMARK: u8 = 1;
 /// May end a block before its line does (`%`, `O`, `:`, `<`), or be of DO, END or EN, or of a folder line.
 const DIVIDES: u8 = 2;
+/// A letter in lower case.
+const SMALL: u8 = 4;
 
 const MEANINGS: [u8; 256] = {
     let mut all = [0; 256];
@@ -34,7 +36,9 @@ const MEANINGS: [u8; 256] = {
     while byte < all.len() {
         all[byte] = match byte as u8 {
             b'(' | b';' | b'/' => REMARK,
-            b'%' | b'O' | b'o' | b':' | b'<' | b'D' | b'd' | b'E' | b'e' | b'&' => DIVIDES,
+            b'%' | b'O' | b':' | b'<' | b'D' | b'E' | b'&' => DIVIDES,
+            b'o' | b'd' | b'e' => DIVIDES | SMALL,
+            b'a'..=b'z' => SMALL,
             _ => 0,
         };
         byte += 1;
@@ -132,7 +136,8 @@ impl<'a> Pieces<'a> {
     fn blank_comments(&mut self, text: &[u8]) {
         let Self { source, at, code, comments, .. } = self;
         blank(*source, *at as u32, text, code, comments, |text| {
-            let (block, left) = block(Line { source: SourceId(0), end: text.len() as u32 }, text);
+            let mut block = Block::default();
+            let left = read_block(Line { source: SourceId(0), end: text.len() as u32 }, text, &mut block);
             !left.is_empty() || !says_nothing(&block) && !block.items.iter().any(is_unreadable)
         });
         self.code_end = *at + code.len();
@@ -169,22 +174,22 @@ impl<'a> Pieces<'a> {
             self.at = left(rest);
             return Some(Piece::Program { name, span });
         }
-        let (mut block, rest) = block(line, text);
-        let to = left(rest);
+        let mut block = Block::default();
+        let to = left(read_block(line, text, &mut block));
         self.at = to;
         self.finish(&mut block, from, to);
         Some(Piece::Block(block))
     }
 
     /// The line in hand without spaces around it, where it is one block whatever stands in it: nothing divides it and
-    /// nothing in it is a remark. It counts as read then.
-    pub(super) fn plain_line(&mut self) -> Option<(Span, &'a [u8])> {
-        if self.meanings != 0 || self.at == self.end {
+    /// nothing in it is a remark. It counts as read then. The last answer is whether all of its letters are capitals.
+    pub(super) fn plain_line(&mut self) -> Option<(Span, &'a [u8], bool)> {
+        if self.meanings & !SMALL != 0 || self.at == self.end {
             return None;
         }
         let span = trimmed(self.source, self.bytes, self.at, self.end);
         self.at = self.end;
-        Some((span, &self.bytes[span.start as usize..span.end as usize]))
+        Some((span, &self.bytes[span.start as usize..span.end as usize], self.meanings == 0))
     }
 
     /// Whether nothing of the line in hand has been read.
@@ -224,6 +229,18 @@ impl Iterator for Pieces<'_> {
     }
 }
 
+/// Reads a block that is alone in its line from its beginning on, of a text as [`written`]: one without comments and
+/// without letters in lower case.
+pub(super) fn read_plain(source: SourceId, bytes: &[u8], start: u32, block: &mut Block) {
+    let start = start as usize;
+    let end = start + line_length(&bytes[start..]);
+    read_block(Line { source, end: end as u32 }, &bytes[start..end], block);
+    block.span = trimmed(source, bytes, start, end);
+    if let Some(Item::Unreadable(unreadable)) = block.items.last_mut() {
+        show(unreadable, bytes, end);
+    }
+}
+
 /// The text without what senders end a file with: 0x1A or blank tape.
 pub fn written(bytes: &[u8]) -> &[u8] {
     let kept = bytes.iter().rposition(|b| !matches!(b, 0 | 0x1a | b' ' | b'\t' | b'\r' | b'\n'));
@@ -241,11 +258,6 @@ fn trimmed(source: SourceId, bytes: &[u8], from: usize, to: usize) -> Span {
     let start = from + text.len() - unspaced(text).len();
     let end = text.iter().rposition(|b| !is_space(*b)).map_or(start, |last| from + last + 1);
     Span { source, start: start as u32, end: end as u32 }
-}
-
-/// Spaces, but no comment, left out.
-fn unspaced(text: &[u8]) -> &[u8] {
-    &text[text.iter().take_while(|b| is_space(**b)).count()..]
 }
 
 /// Fills in what is shown of a text that can't be read.

@@ -51,12 +51,17 @@ pub(super) struct Begun<'a> {
 
 /// The statement word that the input begins with. Two letters one after the other are never words, so a single look
 /// at the second one settles most blocks.
+#[inline]
 pub(super) fn keyword(input: Input<'_>) -> Option<Begun<'_>> {
     let (_, after) = input.split_first()?;
-    let second = after.iter().find(|b| !is_space(**b))?;
-    if !second.is_ascii_alphabetic() {
+    if let [b'0'..=b'9' | b'-' | b'.' | b'#' | b'[', ..] = after {
         return None;
     }
+    let second = after.iter().find(|b| !is_space(**b))?;
+    if second.is_ascii_alphabetic() { written_keyword(input) } else { None }
+}
+
+fn written_keyword(input: Input<'_>) -> Option<Begun<'_>> {
     KEYWORDS.iter().find_map(|(text, keyword)| {
         let (rest, count) = letters(input, text);
         (count >= 2).then_some(Begun { rest, keyword: *keyword, short: count < text.len() })

@@ -16,13 +16,24 @@ pub(super) const COMMENT: u8 = b'(';
 /// once it is known that the line can't be read in another way.
 #[derive(Debug)]
 pub(super) struct Fault {
-    pub alarm: Alarm,
-    pub left: usize,
+    /// `None` where the text is neither this nor that. Faults are handed on at every step, so they are small.
+    alarm: Option<Box<Alarm>>,
+    pub(super) left: usize,
+}
+
+impl Fault {
+    pub(super) fn alarm(&self) -> Option<&Alarm> {
+        self.alarm.as_deref()
+    }
+
+    pub(super) fn into_alarm(self) -> Alarm {
+        self.alarm.map_or(Alarm::NotAWord { text: String::new() }, |alarm| *alarm)
+    }
 }
 
 impl ParseError<Input<'_>> for Fault {
     fn from_error_kind(input: Input<'_>, _: ErrorKind) -> Self {
-        Self { alarm: Alarm::NotAWord { text: String::new() }, left: input.len() }
+        Self { alarm: None, left: input.len() }
     }
 
     fn append(_: Input<'_>, _: ErrorKind, other: Self) -> Self {
@@ -31,8 +42,9 @@ impl ParseError<Input<'_>> for Fault {
 }
 
 /// Reading can't go on in any other way.
+#[cold]
 pub(super) fn fail<T>(input: Input<'_>, alarm: Alarm) -> Read<'_, T> {
-    Err(Err::Failure(Fault { alarm, left: input.len() }))
+    Err(Err::Failure(Fault { alarm: Some(Box::new(alarm)), left: input.len() }))
 }
 
 /// Neither a number nor anything else an expression may have here.
@@ -84,6 +96,11 @@ impl Line {
 /// file with, which stands inside one where files were put together.
 pub(super) fn is_space(byte: u8) -> bool {
     matches!(byte, b' ' | b'\t' | 0 | 0x1a | 0x7f)
+}
+
+/// Spaces, but no comment, left out.
+pub(super) fn unspaced(text: Input<'_>) -> Input<'_> {
+    &text[text.iter().take_while(|b| is_space(**b)).count()..]
 }
 
 /// What is left after spaces and comments.

@@ -9,6 +9,7 @@ use crate::alarm::Alarm;
 const LONGEST_NAME: usize = 32;
 
 /// `X10.`, `X-#1`, `F[#7/3.]`, `,R10.`, `P<NAME>`. The input begins with the letter or the comma.
+#[inline]
 pub(super) fn word(line: Line, input: Input<'_>) -> Read<'_, Word> {
     let (comma, from) = match input {
         [b',', rest @ ..] => (true, spaces(rest)),
@@ -45,6 +46,7 @@ fn axis_word<'a>(line: Line, input: Input<'a>, inside: Input<'a>) -> Read<'a, Wo
 }
 
 /// What stands behind an address.
+#[inline]
 fn word_value<'a>(line: Line, input: Input<'a>, behind: Input<'a>, letter: u8) -> Read<'a, WordValue> {
     let start = spaces(behind);
     let (negative, unsigned) = match start {
@@ -67,7 +69,7 @@ fn word_value<'a>(line: Line, input: Input<'a>, behind: Input<'a>, letter: u8) -
             if negative {
                 value = Expr { kind: ExprKind::Negate(Box::new(value)), span: line.span(start, rest) };
             }
-            Ok((rest, WordValue::Expr(value)))
+            Ok((rest, WordValue::Expr(Box::new(value))))
         }
         Some(b'<') if letter == b'P' => {
             let (rest, name) = program_name(unsigned)?;

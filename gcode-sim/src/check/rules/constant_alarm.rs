@@ -1,10 +1,9 @@
 //! Arithmetic of numbers written out that always alarms: `SQRT[-4]`, `5/0`, `ACOS[1.5]`.
-use crate::alarm::Alarm;
+use crate::alarm::{Alarm, Placed};
 use crate::check::expressions;
 use crate::check::subject::{Finding, Subject, Unit};
 use crate::control::Settings;
 use crate::exec::known::{atan2, binary, function, power};
-use crate::source::Spanned;
 use crate::syntax::ast::{BinaryOp, CallForm, Expr, ExprKind, Function};
 
 use super::unreadable::finding;
@@ -26,7 +25,7 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
 /// Computes what needs no variable, and keeps the alarms.
 struct Numbers<'a> {
     settings: &'a Settings,
-    alarms: Vec<Spanned<Alarm>>,
+    alarms: Vec<Placed>,
 }
 
 impl Numbers<'_> {

@@ -7,7 +7,7 @@ use crate::check::literal;
 use crate::check::subject::{Finding, Subject, Unit};
 use crate::check::vacancy::{Locals, truth};
 use crate::check::variables::{self, Uses};
-use crate::program::{OpIndex, OpKind, Operand};
+use crate::program::{OpIndex, OpKind};
 use crate::syntax::ast::{Condition, Statement};
 
 pub(super) const NAME: &str = "endless-loop";
@@ -142,9 +142,7 @@ fn waits(kind: &OpKind) -> bool {
         OpKind::Words(words) => {
             words.list.iter().any(|w| w.letter == b'M' && matches!(literal::count(w), Some(0 | 1)))
         }
-        OpKind::Statement(crate::program::Statement::Assign { target, .. }) => {
-            matches!(target, Operand::Number(number) if *number == 3006.0)
-        }
+        OpKind::Statement(crate::program::Statement::Assign { target, .. }) => target.is(3006),
         _ => false,
     }
 }

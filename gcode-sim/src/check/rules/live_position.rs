@@ -10,7 +10,7 @@ use std::ops::RangeInclusive;
 
 use crate::control::Settings;
 use crate::program::codes::{Effect, OneShot};
-use crate::program::{Input, OpIndex, OpKind, Operand, Statement, Words};
+use crate::program::{Input, OpIndex, OpKind, Statement, Words};
 
 pub(super) const NAME: &str = "live-position";
 
@@ -76,7 +76,7 @@ fn effect(settings: &Settings, kind: &OpKind) -> Option<bool> {
     match kind {
         OpKind::Words(words) => of_words(settings, words),
         // A message stops until the operator starts again.
-        OpKind::Statement(Statement::Assign { target: Operand::Number(3006.0), .. }) => Some(false),
+        OpKind::Statement(Statement::Assign { target, .. }) if target.is(3006) => Some(false),
         _ => None,
     }
 }

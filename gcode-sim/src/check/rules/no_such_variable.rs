@@ -1,9 +1,8 @@
 //! A variable that the control doesn't have (PS0115), can't write (PS0116) or can't read (PS1115).
-use crate::alarm::Alarm;
+use crate::alarm::{Alarm, Placed};
 use crate::check::subject::{Finding, Subject, Unit};
 use crate::check::{literal, variables};
 use crate::exec::known::Variables;
-use crate::source::Spanned;
 
 use super::unreadable::finding;
 
@@ -13,7 +12,7 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     let known = Variables::new(subject.settings);
     let mut found = Vec::new();
     for (index, block) in unit.blocks.iter().enumerate().filter(|(index, _)| unit.reached[*index]) {
-        let mut tell = |alarm: Spanned<Alarm>| {
+        let mut tell = |alarm: Placed| {
             // What a run here lacks is no fault of the program.
             if !matches!(alarm.node, Alarm::NotSimulated { .. }) {
                 found.push(finding(subject, unit, NAME, index, &alarm));

@@ -1,5 +1,5 @@
 //! Blocks that stop the control as soon as it reads them: text it can't read, words that can't stand together.
-use crate::alarm::{Alarm, remedy};
+use crate::alarm::{Alarm, Placed, remedy};
 use crate::check::flow::is_loop_alarm;
 use crate::check::subject::{Finding, Subject, Unit};
 use crate::program::{OpKind, Statement};
@@ -19,7 +19,7 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
 pub(super) fn refused<'a>(
     subject: &'a Subject<'_>,
     unit: &'a Unit<'_>,
-) -> impl Iterator<Item = (usize, Spanned<Alarm>)> + 'a {
+) -> impl Iterator<Item = (usize, Placed)> + 'a {
     let ops = unit.program.ops().iter().enumerate().filter(|(block, _)| unit.reached[*block]);
     ops.filter_map(|(block, op)| {
         let form = op.forms.iter().find(|form| !form.node.is_taken(subject.settings))?;
@@ -28,12 +28,12 @@ pub(super) fn refused<'a>(
 }
 
 /// The blocks that raise an alarm as they are read and that something reaches.
-pub(super) fn alarms<'a>(unit: &'a Unit<'_>) -> impl Iterator<Item = (usize, &'a Spanned<Alarm>)> {
+pub(super) fn alarms<'a>(unit: &'a Unit<'_>) -> impl Iterator<Item = (usize, &'a Placed)> {
     unit.program.ops().iter().enumerate().filter(|(block, _)| unit.reached[*block]).filter_map(
         |(block, op)| match &op.kind {
-            OpKind::Alarm(alarm) => Some((block, &**alarm)),
+            OpKind::Alarm(alarm) => Some((block, alarm)),
             OpKind::Statement(Statement::IfThen { then, .. }) => match &**then {
-                Statement::Alarm(alarm) => Some((block, &**alarm)),
+                Statement::Alarm(alarm) => Some((block, alarm)),
                 _ => None,
             },
             _ => None,

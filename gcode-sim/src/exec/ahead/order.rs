@@ -43,6 +43,13 @@ pub(in crate::exec) struct Order {
 }
 
 impl Core {
+    /// Whether compensation, a corner word or a move that waits could concern a block.
+    #[inline]
+    pub(in crate::exec) fn reads_ahead(&self, given: &Given, state: &State) -> bool {
+        let commanded = state.modal.cutter != CutterSide::Off || given.has_corner();
+        commanded || given.has_any(b"IJK") || !self.ahead.is_idle()
+    }
+
     /// Lets a block's plan go by way of what is read ahead, where compensation or a corner word is in use.
     pub(in crate::exec) fn look_ahead(
         &self,
@@ -51,10 +58,6 @@ impl Core {
         plan: &mut Plan,
         span: Span,
     ) -> Checked<()> {
-        let commanded = plan.state.modal.cutter != CutterSide::Off || given.has_corner();
-        if !commanded && self.ahead.is_idle() && !given.has_any(b"IJK") {
-            return Ok(());
-        }
         if given.has_corner() && plan.corner.is_none() {
             plan.notes.push(Note::CornerIgnored);
         }
@@ -207,7 +210,8 @@ impl Core {
         let told: Vec<Told> = std::mem::take(&mut self.ahead.told);
         for (kind, seconds, place) in told {
             self.count(&kind, seconds);
-            sink.event(&Event { kind, seconds: Seconds(seconds), block: place.block, calls: &place.calls });
+            let (seconds, block) = (Seconds(seconds), place.block);
+            sink.event(&Event { kind: &kind, seconds, block, calls: &place.calls });
         }
         if self.ahead.is_idle() {
             self.ahead = Ahead::default();

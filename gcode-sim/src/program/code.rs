@@ -1,0 +1,124 @@
+//! What expressions are to a run: postfix code, so that evaluating one needs neither recursion nor memory of its own.
+use super::names::NameRow;
+use crate::source::Span;
+use crate::syntax::ast::{BinaryOp, Function, Relation};
+
+/// A value: known, one variable, or code to evaluate. The first two are most of what programs contain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Operand {
+    Number(f64),
+    /// `#n` with a literal n.
+    Variable {
+        slot: Slot,
+        span: Span,
+    },
+    Code(Code),
+}
+
+/// A variable whose number is written out, found as far as no setting of the control decides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Slot {
+    /// #1 to #33.
+    Local(u8),
+    /// #100 to #199 and #500 to #999.
+    Common(u16),
+    /// #0, system variables, and commons that not every control has.
+    Other(u32),
+}
+
+impl Slot {
+    pub fn of(number: u32) -> Self {
+        match number {
+            1..=33 => Self::Local(number as u8),
+            100..=199 | 500..=999 => Self::Common(number as u16),
+            _ => Self::Other(number),
+        }
+    }
+
+    pub fn number(self) -> u32 {
+        match self {
+            Self::Local(number) => u32::from(number),
+            Self::Common(number) => u32::from(number),
+            Self::Other(number) => number,
+        }
+    }
+}
+
+/// The variable that an assignment writes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Target {
+    Slot(Slot),
+    /// Its number is computed, or no variable's.
+    Computed(Operand),
+}
+
+impl Target {
+    /// Whether it is the variable of this number, written out.
+    pub fn is(self, number: u32) -> bool {
+        self == Self::Slot(Slot::of(number))
+    }
+}
+
+/// A range of a program's instructions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Code {
+    pub start: u32,
+    pub end: u32,
+    pub span: Span,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Instruction {
+    pub operation: Operation,
+    pub span: Span,
+}
+
+/// Where an operator finds a value that it needs. Most are numbers and variables, which then needn't wait on the stack.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Source {
+    /// The last of the values that wait, which it takes away.
+    Stack,
+    Number(f64),
+    Local(u8),
+    Common(u16),
+}
+
+/// Acts on a stack of values, on which it leaves its own. Conditions are numbers here, 0 or 1; the tree keeps them apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Operation {
+    Load(Source),
+    /// A variable that may not be read.
+    Read(u32),
+    /// Takes a variable's number, gives its value.
+    LoadIndirect,
+    Negate,
+    /// The sign between an address and its value: `X-#1`. Unlike a minus in an expression it keeps vacancy.
+    Reverse,
+    Plus,
+    Bracket,
+    Binary(BinaryOp, [Source; 2]),
+    Function(Function, Source),
+    /// ATAN of two values.
+    Atan2([Source; 2]),
+    Power([Source; 2]),
+    /// ROUND in a word: to the increment of that address.
+    RoundTo(u8),
+    Compare(Relation, [Source; 2]),
+    Logic(BinaryOp),
+    /// PRM: takes the axis, the bit and the number, the last of them always.
+    Parameter {
+        bit: bool,
+        axis: bool,
+    },
+    /// `AXNUM[X]`.
+    AxisNumber(u8),
+    /// ADP: takes a variable's number, gives its value as if it had been passed with a point.
+    AddPoint,
+    /// The number of a variable named by SETVN: an index into the program's names.
+    NameNumber(u32),
+    /// Takes a suffix, gives the number of the system variable; of `[#_NAME]` without a suffix it takes nothing.
+    SystemNumber(NameRow),
+}
+
+/// What an expression can need on the stack: five brackets, each with a sum, a product and an index pending.
+pub const STACK: usize = 32;
