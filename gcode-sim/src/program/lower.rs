@@ -73,7 +73,7 @@ impl Lowering {
         if let Some(span) = block.short {
             self.note(Form::ShortWord, span);
         }
-        let kind = self.kind(block).unwrap_or_else(|alarm| OpKind::Alarm(alarm));
+        let kind = self.kind(block).unwrap_or_else(OpKind::Alarm);
         Op {
             span: block.span,
             skip: block.skip.as_ref().map(|s| s.node),
