@@ -10,7 +10,7 @@ use gcode_sim::part::probed::Probed;
 use gcode_sim::part::wanted::Wanted;
 use gcode_sim::program::NoLibrary;
 use gcode_sim::report::explain::{self, PAGES, Page};
-use gcode_sim::session::{Request, grind, simulate};
+use gcode_sim::session::{Request, follow, grind, simulate};
 use gcode_sim::verify::Tolerances;
 use gcode_tests::expect;
 
@@ -32,8 +32,9 @@ fn alarms() -> BTreeSet<String> {
 fn findings() -> BTreeSet<String> {
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("../gcode-sim/src");
     let mut codes = BTreeSet::new();
-    for path in ["holes", "verify/checks", "verify/flutes/checks", "exec/notes.rs", "session/slips.rs"]
-        .map(|path| source.join(path))
+    for path in
+        ["holes", "stylus", "verify/checks", "verify/flutes/checks", "exec/notes.rs", "session/slips.rs"]
+            .map(|path| source.join(path))
     {
         let files = match path.is_dir() {
             true => std::fs::read_dir(path).unwrap().map(|entry| entry.unwrap().path()).collect(),
@@ -152,6 +153,9 @@ fn found(page: &Page, program: &str) -> Vec<Diagnostic> {
     let reference = wanted.and_then(Wanted::into_holes);
     // Of a job on these pages only the surface counts, or the pattern.
     let surface = reference.as_ref().and_then(|reference| reference.surface);
+    if let (Some(surface), Some(probe)) = (surface, &machine.probe) {
+        return follow(&request, &mut NoLibrary, surface, probe.radius).unwrap().followed.findings;
+    }
     let simulation = simulate(&request, &mut NoLibrary, surface).unwrap();
     match reference {
         Some(reference) if surface.is_none() || reference.pattern.is_some() => {

@@ -7,7 +7,8 @@ use super::args::{ProgramArguments, TextFormat};
 use super::{Refusal, Status, options, output, progress, unused_machine};
 use crate::holes::Extractor;
 use crate::report::run::{MOST_MOVES, Moves, RunReport};
-use crate::session;
+use crate::session::{self, SessionError};
+use crate::stylus::Rapids;
 
 #[derive(Debug, Args)]
 pub(super) struct RunArguments {
@@ -40,9 +41,12 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Status, Refusal> {
         // Follows the tool only where there is a part that it could touch.
         let follow = |part| Extractor::new(&request.machine).with_surface(Some(part));
         let mut probe = request.part.map(follow);
-        session::run(request, &mut folders, &mut (&mut moves, &mut probe))
+        let ball = request.part.zip(request.machine.probe.as_ref());
+        let mut rapids = ball.map(|(part, probe)| Rapids::new(&request.machine, part, probe.radius));
+        let run = session::run(request, &mut folders, &mut (&mut moves, &mut (&mut probe, &mut rapids)))?;
+        Ok::<_, SessionError>((run, rapids.map_or_else(Vec::new, Rapids::finish)))
     });
-    let run = done.map_err(|error| Refusal::new(error.to_string()))?;
+    let (run, rapids) = done.map_err(|error| Refusal::new(error.to_string()))?;
     let mut system = Vec::new();
     for number in wanted {
         let value = run.control.variable(number);
@@ -58,6 +62,7 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Status, Refusal> {
         TextFormat::Text => output::print(&report.text())?,
         TextFormat::Json => output::json(&report)?,
     }
+    let in_part = super::findings(&rapids, &run);
     let stopped = super::stopped(&run);
     if moves.is_some_and(|moves| moves.too_many) {
         output::tell(&format!(
@@ -65,5 +70,5 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Status, Refusal> {
         ));
         return Ok(Status::Stopped);
     }
-    Ok(stopped.unwrap_or(Status::Holds))
+    Ok(stopped.unwrap_or(in_part))
 }

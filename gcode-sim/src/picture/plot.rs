@@ -20,6 +20,8 @@ pub struct Plot {
     pub up: String,
     /// Each drawn as one line.
     pub curves: Vec<Vec<Point>>,
+    /// From where to where nothing is known, marked as such.
+    pub gaps: Vec<[f64; 2]>,
     /// Dashed lines so far above and below zero.
     pub limit: Option<f64>,
 }
@@ -43,7 +45,7 @@ impl Plot {
         let y = words.head(&page, &self.title, &self.notes) + 2.4 * text;
         words.write(px(page.left, y), Align::Left, text, soft, &self.up, page.width());
         let all = || self.curves.iter().flatten();
-        let (right, left) = spread(all().map(|p| p[0]), 1.0);
+        let (right, left) = spread(all().map(|p| p[0]).chain(self.gaps.iter().flatten().copied()), 1.0);
         let (high, low) =
             spread(all().map(|p| p[1]).chain(self.limit.into_iter().flat_map(|l| [l, -l])), 1e-3);
         let room = 0.05 * (high - low);
@@ -81,6 +83,14 @@ impl Plot {
                 place([right, limit]),
                 (color, 0.12 * text, Dash::Pattern([0.8 * text, 0.5 * text])),
             );
+        }
+        for [from, to] in &self.gaps {
+            let color = palette::standing(Standing::Bad);
+            let dash = Dash::Pattern([0.25 * text, 0.35 * text]);
+            for at in [*from, *to] {
+                rule(place([at, low]), place([at, high]), (color, 0.1 * text, dash));
+            }
+            rule(place([*from, 0.0]), place([*to, 0.0]), (color, 0.4 * text, Dash::Solid));
         }
         for at in upwards.all() {
             let base = place([left, at]);
@@ -183,6 +193,7 @@ mod tests {
             across: "Way of the ball, mm".to_owned(),
             up: "Reading, mm".to_owned(),
             curves: vec![curve.collect()],
+            gaps: vec![[length / 3.0, length / 2.0]],
             limit: Some(high / 2.0),
         }
     }

@@ -3,9 +3,12 @@ use std::fmt::Write;
 
 use serde::Serialize;
 
+use crate::diag::Severity;
+use crate::exec::Outcome;
 use crate::picture::Plot;
+use crate::report::figures::count;
 use crate::session::Following;
-use crate::stylus::{Pass, Reading};
+use crate::stylus::{Gap, Pass, Reading};
 use crate::verify::Answer;
 
 /// Lengths in mm.
@@ -16,12 +19,30 @@ pub struct ReadingsReport {
     radius: f64,
     /// How far a reading may be from 0, where that was asked.
     tolerance: Option<f64>,
+    /// Only of a run to its end, on which the whole path was read, can it be a pass.
     verdict: Option<Answer>,
+    /// As `run` has it.
+    outcome: &'static str,
     least: Option<f64>,
     greatest: Option<f64>,
     passes: Vec<PassRow>,
+    findings: Vec<FindingRow>,
+    #[serde(skip)]
+    gaps: Vec<Gap>,
+    /// Feeds to the surface and from it.
+    #[serde(skip)]
+    ways: [usize; 2],
     #[serde(skip)]
     name: String,
+}
+
+#[derive(Debug, Serialize)]
+struct FindingRow {
+    code: String,
+    severity: &'static str,
+    message: String,
+    program: Option<String>,
+    line: Option<u32>,
 }
 
 #[derive(Debug, Serialize)]
@@ -71,15 +92,32 @@ impl ReadingsReport {
         let greatest = passes.iter().map(|pass| pass.greatest).reduce(f64::max);
         let worst = least.zip(greatest).map(|(least, greatest)| greatest.max(-least));
         let within = |tolerance: f64| worst.is_some_and(|worst| worst <= tolerance);
-        let verdict = tolerance.map(|t| if within(t) { Answer::Pass } else { Answer::Fail });
+        let findings = &following.followed.findings;
+        let ended = matches!(following.run.outcome, Outcome::End);
+        let whole = ended && findings.iter().all(|finding| finding.severity < Severity::Error);
+        let verdict = tolerance.map(|t| if whole && within(t) { Answer::Pass } else { Answer::Fail });
+        let told = findings.iter().map(|finding| {
+            let at = finding.place.as_ref().map(|place| following.run.locate(place.block));
+            let (program, line) = at.unzip();
+            let (code, message) = (finding.code.clone(), finding.message.clone());
+            FindingRow { code, severity: finding.severity.name(), message, program, line }
+        });
         Self {
             basis: "predicted by simulation, not measured",
             radius,
             tolerance,
             verdict,
+            outcome: match following.run.outcome {
+                Outcome::End => "end",
+                Outcome::Alarm(_) => "alarm",
+                Outcome::Limit => "limit",
+            },
             least,
             greatest,
             passes,
+            findings: told.collect(),
+            gaps: following.followed.gaps.clone(),
+            ways: following.followed.ways,
             name: name.to_owned(),
         }
     }
@@ -104,14 +142,23 @@ impl ReadingsReport {
         for (index, pass) in self.passes.iter().enumerate() {
             let _ = writeln!(text, "\npass {}: {} moves along {:.3} mm", index + 1, pass.moves, pass.length);
             let _ = writeln!(text, "{:>10}{:>11}{:>11}{:>11}{:>10}", "along", "x", "y", "z", "reading");
+            let mut shown = f64::NEG_INFINITY;
             for tenth in 0..=10 {
                 let along = pass.length * f64::from(tenth) / 10.0;
                 let distance = |row: &&Row| (row.along - along).abs();
                 let nearest = |one: &&Row, other: &&Row| distance(one).total_cmp(&distance(other));
                 let Some(row) = pass.readings.iter().min_by(nearest) else { continue };
+                if row.along <= shown {
+                    continue;
+                }
+                shown = row.along;
                 let [x, y, z, reading] = [row.x, row.y, row.z, row.reading].map(|v| plain(v, 5e-5));
                 let _ = writeln!(text, "{:>10.3}{x:>11.4}{y:>11.4}{z:>11.4}{reading:>10.4}", row.along);
             }
+        }
+        if self.ways != [0, 0] {
+            let [to, from] = self.ways.map(|n| count(n, "feed"));
+            let _ = writeln!(text, "\nnot read: {to} to the surface, {from} from it");
         }
         let _ = writeln!(text, "\n{}", self.sentence());
         text
@@ -130,6 +177,18 @@ impl ReadingsReport {
         );
         match (self.verdict, self.tolerance) {
             (Some(Answer::Pass), Some(t)) => format!("PASS: {range}, all within {t} of 0"),
+            (Some(Answer::Fail), Some(_)) if self.outcome != "end" => {
+                format!("FAIL: the program did not end; {range}")
+            }
+            (Some(Answer::Fail), Some(_)) if !self.gaps.is_empty() => {
+                format!(
+                    "FAIL: {} in the path without a reading; elsewhere {range}",
+                    count(self.gaps.len(), "gap")
+                )
+            }
+            (Some(Answer::Fail), Some(t)) if self.greatest <= Some(t) && self.least >= Some(-t) => {
+                format!("FAIL: {range}; see the findings")
+            }
             (Some(Answer::Fail), Some(t)) => format!("FAIL: {range}, not all within {t} of 0"),
             _ => range,
         }
@@ -148,15 +207,20 @@ impl ReadingsReport {
         text
     }
 
-    /// The readings over the way, one pass behind the other.
+    /// The readings over the way, one pass behind the other, with the stretches between that have none.
     pub fn plot(&self) -> Plot {
         let mut begun = 0.0;
-        let curve = |pass: &PassRow| {
-            let points = pass.readings.iter().map(|row| [begun + row.along, row.reading]).collect();
-            begun += pass.length;
-            points
-        };
-        let curves = self.passes.iter().map(curve).collect();
+        let (mut curves, mut gaps) = (Vec::new(), Vec::new());
+        for behind in 0..=self.passes.len() {
+            for gap in self.gaps.iter().filter(|gap| gap.behind == behind) {
+                gaps.push([begun, begun + gap.length]);
+                begun += gap.length;
+            }
+            if let Some(pass) = self.passes.get(behind) {
+                curves.push(pass.readings.iter().map(|row| [begun + row.along, row.reading]).collect());
+                begun += pass.length;
+            }
+        }
         let end = |row: Option<&Row>| {
             row.map(|row| format!("x {:.3}, y {:.3}, z {:.3}", row.x, row.y, plain(row.z, 5e-4)))
         };
@@ -169,6 +233,8 @@ impl ReadingsReport {
             title: format!("Edge finder along the surface, {}", self.name),
             notes: [
                 Some(self.sentence()),
+                (!self.gaps.is_empty())
+                    .then(|| "Between dotted lines, a thick line at 0: fed there, but no reading".to_owned()),
                 ends,
                 Some("Predicted by simulation, not measured; below 0 the ball is pushed in".to_owned()),
             ]
@@ -178,6 +244,7 @@ impl ReadingsReport {
             across: "Way of the ball's centre, mm".to_owned(),
             up: "Reading: distance of the ball from the surface, mm".to_owned(),
             curves,
+            gaps,
             limit: self.tolerance,
         }
     }

@@ -21,7 +21,7 @@ use crate::part::reference::Reference;
 use crate::part::surface::Surface;
 use crate::program::{Library, Memory};
 use crate::source::Span;
-use crate::stylus::{Followed, Stylus};
+use crate::stylus::{Followed, Rapids, Stylus};
 use crate::verify::flutes::{FluteVerdict, verify_flutes};
 use crate::verify::{Tolerances, Verdict, verify};
 
@@ -188,9 +188,11 @@ pub fn follow(
     radius: f64,
 ) -> Result<Following, SessionError> {
     let mut stylus = Stylus::new(&request.machine, surface, radius);
+    let mut rapids = Rapids::new(&request.machine, surface, radius);
     let mut extractor = Extractor::new(&request.machine).with_surface(Some(surface));
-    let run = run(request, library, &mut (&mut stylus, &mut extractor))?;
+    let run = run(request, library, &mut (&mut (&mut stylus, &mut rapids), &mut extractor))?;
     let mut followed = stylus.finish();
+    followed.findings.extend(rapids.finish());
     followed.findings.extend(run.notes());
     followed.findings.extend(run.stopped());
     Ok(Following { run, followed })

@@ -1,9 +1,11 @@
 //! Motion → readings: what an edge finder shows whose ball is fed along the part's surface.
 //!
-//! Feeds along the surface are a pass; approach and retract cross it, and whatever is farther away than [`REACH`] follows
-//! something else.
+//! Feeds along the surface are a pass; approach and retract cross it. What is farther away than [`REACH`] or lies across
+//! has no reading: where the path should have gone on there, that is an error.
+mod rapids;
 #[cfg(test)]
 mod tests;
+mod unread;
 
 use nalgebra::{Point3, Unit};
 
@@ -13,6 +15,11 @@ use crate::machine::{Head, Machine, Placement, Setup};
 use crate::motion::{Arc2, Event, EventKind, Place, Position, Sink, StopKind};
 use crate::part::surface::Surface;
 use crate::units::Deg;
+
+use self::unread::{Missed, Unread, Way};
+
+pub use self::rapids::Rapids;
+pub use self::unread::Gap;
 
 /// From how far the ball may stand off the surface, mm: more than any part is misplaced after a coarse alignment.
 pub const REACH: f64 = 5.0;
@@ -24,6 +31,15 @@ const PARTS: u32 = 4;
 const KEPT: usize = 500_000;
 /// The sine of the angle to the surface up to which a feed goes along it: 30°.
 const ALONG: f64 = 0.5;
+
+/// How a feed goes.
+enum Course {
+    /// Along the surface, near to it: it is read.
+    Along,
+    /// The ball doesn't move against the part.
+    Still,
+    Off(Way),
+}
 
 /// One point of a pass; lengths in mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,6 +79,10 @@ impl Pass {
 #[derive(Clone, Debug, Default)]
 pub struct Followed {
     pub passes: Vec<Pass>,
+    /// Where the path has no reading though it should, in order.
+    pub gaps: Vec<Gap>,
+    /// How many feeds go to the surface, and how many from it; they have no reading.
+    pub ways: [usize; 2],
     pub findings: Vec<Diagnostic>,
 }
 
@@ -78,6 +98,7 @@ pub struct Stylus<'m> {
     at: Position,
     setup: Setup,
     open: Option<Pass>,
+    missed: Missed,
     followed: Followed,
     kept: usize,
 }
@@ -94,6 +115,7 @@ impl<'m> Stylus<'m> {
             at: Position::default(),
             setup: Setup::default(),
             open: None,
+            missed: Missed::default(),
             followed: Followed::default(),
             kept: 0,
         }
@@ -101,7 +123,10 @@ impl<'m> Stylus<'m> {
 
     pub fn finish(mut self) -> Followed {
         self.close();
-        self.followed
+        self.missed.leave(self.followed.passes.len());
+        let Missed { gaps, ways, mut findings, .. } = self.missed;
+        findings.extend(self.followed.findings);
+        Followed { gaps, ways, findings, ..self.followed }
     }
 
     fn close(&mut self) {
@@ -115,8 +140,21 @@ impl<'m> Stylus<'m> {
             return;
         }
         let travel = Travel { from: &from, to, arc };
-        if !feed || !self.goes_along(&travel) {
-            return self.close();
+        if !feed {
+            self.close();
+            return self.missed.leave(self.followed.passes.len());
+        }
+        match self.course(&travel) {
+            Course::Along => {}
+            Course::Still => return,
+            Course::Off(way) => {
+                self.close();
+                let unread = self.unread(event, &travel, way);
+                return self.missed.feed(unread);
+            }
+        }
+        if self.open.is_none() {
+            self.missed.read(self.followed.passes.len());
         }
         let mut pass = self.open.take().unwrap_or_default();
         let before = pass.readings.len();
@@ -137,17 +175,43 @@ impl<'m> Stylus<'m> {
         }
     }
 
-    /// Whether the ball goes along the surface, near to it, all the way.
-    fn goes_along(&self, travel: &Travel<'_>) -> bool {
+    /// How the ball goes, all the way.
+    fn course(&self, travel: &Travel<'_>) -> Course {
         let tip = |t: f64| self.machine.forward(&travel.position(t), &self.setup).tip;
-        [0.0, 0.5, 1.0].into_iter().all(|t| {
+        // The distance from the surface where it is looked at, and the sine of the angle at which the way leaves it.
+        let looks = [0.0, 0.5, 1.0].map(|t| {
             let (near, here) = (1e-3, tip(t));
             let back = if t < 1.0 { tip(t + near) - here } else { here - tip(t - near) };
             let nearest = self.surface.nearest(&here);
-            let direction = Unit::try_new(back, 1e-12);
-            (nearest.distance - self.radius).abs() <= REACH
-                && direction.is_some_and(|direction| direction.dot(&nearest.normal).abs() <= ALONG)
-        })
+            let rise = Unit::try_new(back, 1e-12).map(|direction| direction.dot(&nearest.normal));
+            ((nearest.distance - self.radius).abs() <= REACH, rise)
+        });
+        let all = |holds: fn(f64) -> bool| looks.iter().all(|(_, rise)| rise.is_some_and(holds));
+        if looks.iter().all(|(_, rise)| rise.is_none()) {
+            Course::Still
+        } else if looks.iter().all(|(near, _)| *near) && all(|rise| rise.abs() <= ALONG) {
+            Course::Along
+        } else if all(|rise| rise < -ALONG) {
+            Course::Off(Way::Nearer)
+        } else if all(|rise| rise > ALONG) {
+            Course::Off(Way::Farther)
+        } else {
+            Course::Off(Way::Astray)
+        }
+    }
+
+    /// A feed on which the dial isn't read.
+    fn unread(&self, event: &Event<'_>, travel: &Travel<'_>, way: Way) -> Unread {
+        let tip = |t: f64| self.machine.forward(&travel.position(t), &self.setup).tip;
+        let (mut length, mut last) = (0.0, tip(0.0));
+        let far = |tip: &Point3<f64>| self.surface.nearest(tip).distance - self.radius;
+        let (mut least, mut greatest) = (far(&last), far(&last));
+        for here in self.stations(travel).into_iter().map(tip) {
+            length += (here - last).norm();
+            last = here;
+            (least, greatest) = (least.min(far(&here)), greatest.max(far(&here)));
+        }
+        Unread { place: event.place(), way, length, least, greatest }
     }
 
     /// Where along a motion the ball is read: beyond 0, up to 1.

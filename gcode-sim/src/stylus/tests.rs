@@ -71,3 +71,81 @@ fn a_turning_table_is_read_as_well() {
     );
     assert_eq!(least.along, 0.0);
 }
+
+/// What is told of a way in feeds from a rapid place above the sphere, and how many feeds have a reading.
+fn told(feeds: &[&str]) -> (Vec<String>, usize) {
+    let begin = Script::new().rapid("X-20 Y110");
+    let script = feeds.iter().fold(begin, |script, words| script.feed(words)).rapid("Y200");
+    let found = followed(&Machine::default(), SPHERE, &script);
+    let codes = found.findings.iter().map(|finding| finding.code.clone());
+    (codes.collect(), found.passes.iter().map(|pass| pass.places.len()).sum())
+}
+
+/// The path of the ball is a sphere of 103; these points lie on it, but for what a name says.
+#[test]
+fn a_feed_of_the_path_without_a_reading_is_told() {
+    let on = |x: f64| format!("X{x} Y{}", libm::sqrt(103.0 * 103.0 - x * x));
+    let [a, b, c, d] = [-20.0, -10.0, 0.0, 10.0].map(on);
+    let (far_b, far_c) = ("X-12 Y122", "X0 Y123");
+    let lost_sign = b.replace('Y', "Y-");
+    let path_not_read = vec!["path-not-read".to_owned()];
+    let into_part = vec!["ball-into-part".to_owned()];
+    for (feeds, wanted) in [
+        // The first feed goes to the surface, and the retract may be fed.
+        (vec![&*a, &b, &c, &d], (vec![], 3)),
+        (vec![&a, &b, &c, "X0 Y150"], (vec![], 2)),
+        // 20 mm off: one point, two points, those at the beginning, those at the end.
+        (vec![&a, far_b, &c, &d], (path_not_read.clone(), 1)),
+        (vec![&a, far_b, far_c, &d], (path_not_read.clone(), 0)),
+        (vec![far_b, far_c, &c, &d], (path_not_read.clone(), 1)),
+        (vec![&a, &b, far_b, far_c], (path_not_read.clone(), 1)),
+        // 8 mm deep in the middle and at the end; a Y that has lost its sign.
+        (vec![&a, &b, "X0 Y95", &d], (into_part.clone(), 1)),
+        (vec![&a, &b, "X0 Y95"], (into_part.clone(), 1)),
+        (vec![&a, &lost_sign, &c, &d], (into_part.clone(), 1)),
+        (vec!["X-20 Y90"], (into_part.clone(), 0)),
+    ] {
+        let found = told(&feeds);
+        // A path of which nothing was read at all is told by the command.
+        let none = found.1 == 0 && wanted.1 == 0 && found.0.is_empty();
+        assert!(found == wanted || none, "{feeds:?}: {found:?}, and {wanted:?} is wanted");
+    }
+}
+
+/// Between two contacts the ball is fed past the part: that way belongs to no path, but nothing says so.
+#[test]
+fn what_is_fed_between_two_passes_is_told_and_what_comes_after_them_is_not() {
+    let over = |script: Script| {
+        let x = 103.0 * Deg(10.0).sin();
+        let y = 103.0 * Deg(10.0).cos();
+        script.rapid(&format!("X{} Y200", -x)).feed(&format!("Y{y}")).feed(&format!("X{x}")).rapid("Y200")
+    };
+    let after = over(Script::new()).feed("X50");
+    assert!(followed(&Machine::default(), SPHERE, &after).findings.is_empty());
+    let found = followed(&Machine::default(), SPHERE, &over(after));
+    let [finding] = found.findings.as_slice() else { panic!("{:?}", found.findings) };
+    assert_eq!(finding.code, "path-not-read");
+    assert_eq!((found.gaps.len(), found.gaps[0].behind, found.passes.len()), (1, 1, 2));
+}
+
+/// A sphere of 100 that stands 15 mm farther out than is believed: a rapid to 10 mm before the ball's contact ends 5 mm
+/// in the part; and one that passes the pole at 101 pushes a ball of 3 in by 2 mm.
+#[test]
+fn a_rapid_with_the_ball_into_the_part_is_told() {
+    let mut machine = Machine::default();
+    machine.part.shift.x = 15.0;
+    for (machine, ways, deepest) in [
+        (&machine, vec!["X150 Y0", "X113", "X150"], Some("5.000")),
+        (&machine, vec!["X150 Y0", "X119", "X150"], None),
+        (&Machine::default(), vec!["X-30 Y101", "X30"], Some("2.000")),
+        (&Machine::default(), vec!["X-30 Y103", "X30"], None),
+    ] {
+        let mut rapids = Rapids::new(machine, SPHERE, 3.0);
+        let script = ways.iter().fold(Script::new(), |script, way| script.rapid(way));
+        script.play(&mut rapids);
+        let found = rapids.finish();
+        let told = found.iter().map(|finding| finding.message.as_str()).collect::<Vec<_>>().join("; ");
+        assert_eq!(found.len(), usize::from(deepest.is_some()), "{ways:?}: {told}");
+        assert!(deepest.is_none_or(|deepest| told.contains(deepest)), "{ways:?}: {told}");
+    }
+}

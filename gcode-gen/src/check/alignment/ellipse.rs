@@ -1,7 +1,9 @@
 //! The ellipse program on a part that stands where it should: the ball has to keep its distance from the surface all the way,
 //! between the programmed points too.
+use gcode_sim::diag::Severity;
 use gcode_sim::machine::Placement;
 use gcode_sim::part::surface::Surface;
+use gcode_sim::report::diagnostic;
 use gcode_sim::session::follow;
 use gcode_sim::stylus::{Pass, Reading};
 
@@ -14,7 +16,9 @@ pub(super) fn tried(bench: &Bench<'_>) -> Result<Tried, CheckError> {
     let following =
         follow(&request, &mut bench.programs(), surface, job.probe_radius).map_err(|e| bench.broken(&e))?;
     let mut tried = Tried { seconds: following.run.control.seconds().0, ..Tried::default() };
-    tried.refusals.extend(bench.stopped(&following.run));
+    let sources = following.run.control.memory().sources();
+    let findings = following.followed.findings.iter().filter(|finding| Severity::Warning <= finding.severity);
+    tried.refusals.extend(findings.map(|finding| diagnostic::render(finding, sources)));
     let passes = following.followed.passes.as_slice();
     let [pass] = passes else {
         let message = format!("{} ways along the surface, and one is wanted", passes.len());

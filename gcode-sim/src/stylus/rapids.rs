@@ -1,0 +1,87 @@
+//! Rapids on which a stylus' ball meets the part: no probe is asked there, and nothing gives.
+use crate::diag::Diagnostic;
+use crate::machine::path::Travel;
+use crate::machine::{Machine, Setup};
+use crate::motion::{Event, EventKind, Position, Sink};
+use crate::part::surface::Surface;
+
+/// A curved way is taken as chords that stray from it by no more than this, mm; nor is less than this told.
+const STRAY: f64 = 0.001;
+
+/// Listens to a run and tells of rapids into the part.
+#[derive(Debug)]
+pub struct Rapids<'m> {
+    machine: &'m Machine,
+    surface: Surface,
+    /// Of the ball, mm.
+    radius: f64,
+    at: Position,
+    setup: Setup,
+    /// Whether the ball has been outside: a run begins at machine zero, where no ball is.
+    outside: bool,
+    findings: Vec<Diagnostic>,
+}
+
+impl<'m> Rapids<'m> {
+    /// Starts with every axis at machine zero.
+    pub fn new(machine: &'m Machine, surface: Surface, radius: f64) -> Self {
+        let (at, setup) = (Position::default(), Setup::default());
+        Self { machine, surface, radius, at, setup, outside: false, findings: Vec::new() }
+    }
+
+    /// One for each block, the first time.
+    pub fn finish(self) -> Vec<Diagnostic> {
+        self.findings
+    }
+
+    fn rapid(&mut self, event: &Event<'_>, to: &Position) {
+        let travel = Travel { from: &self.at, to, arc: None };
+        let tip = |t: f64| self.machine.forward(&travel.position(t), &self.setup).tip;
+        let pushed = |t: f64| self.radius - self.surface.nearest(&tip(t)).distance;
+        let steps = self.machine.steps(&travel, &self.setup, STRAY);
+        let deepest = (0..steps)
+            .map(|step| {
+                let part = |t: f64| (f64::from(step) + t) / f64::from(steps);
+                let nearest = self.surface.nearest_between(&tip(part(0.0)), &tip(part(1.0)));
+                pushed(part(nearest))
+            })
+            .fold(f64::NEG_INFINITY, f64::max);
+        // A retract begins where a feed has pushed the ball in.
+        let begins = pushed(0.0);
+        self.outside |= begins <= 0.0;
+        if !self.outside || deepest <= begins.max(0.0) + STRAY {
+            return;
+        }
+        let place = event.place();
+        let known = |finding: &Diagnostic| finding.place.as_ref().is_some_and(|at| at.block == place.block);
+        if self.findings.iter().any(known) {
+            return;
+        }
+        let message =
+            format!("rapid with the stylus' ball {deepest:.3} mm into the part, which no probe hears");
+        let help =
+            "the part stands farther out than the touch allows: begin farther away, look at the first touch";
+        self.findings.push(Diagnostic::error("rapid-into-part", message).at(place).help(help));
+    }
+}
+
+impl Sink for Rapids<'_> {
+    fn event(&mut self, event: &Event<'_>) {
+        match &event.kind {
+            EventKind::Rapid { to } => {
+                self.rapid(event, to);
+                self.at = *to;
+            }
+            EventKind::Skip { to, .. } | EventKind::Feed { to, .. } | EventKind::Arc { to, .. } => {
+                self.at = *to;
+            }
+            EventKind::Tool { number } => self.setup.tool = Some(*number),
+            EventKind::ToolLength { offset } => self.setup.offset = *offset,
+            EventKind::Stop { .. }
+            | EventKind::Dwell { .. }
+            | EventKind::Spindle { .. }
+            | EventKind::Coolant { .. }
+            | EventKind::Auxiliary { .. } => {}
+        }
+    }
+}
