@@ -51,4 +51,6 @@ pub mod changes;
 
 pub mod report;
 
+pub mod schema;
+
 pub mod cli;

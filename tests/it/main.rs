@@ -29,6 +29,7 @@ mod pin_holes;
 mod real_files;
 mod results;
 mod round_trip;
+mod schemas;
 mod sheet;
 mod sine_table;
 mod tidy;

@@ -13,11 +13,13 @@ mod store;
 
 use std::borrow::Cow;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use holes::Paired;
 pub use path::Leg;
 pub use record::{MOST_STEPS, Record, Revision, Totals, Where};
+pub(crate) use store::File as AcceptedFile;
 pub use store::StoreError;
 
 use self::align::{Link, align};
@@ -57,10 +59,10 @@ pub const CODES: [&str; 30] = [
 ];
 
 /// One difference that matters.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Change {
-    /// One of [`CODES`].
+    /// What it is called: docs/changes.md has a section for each.
     pub code: Cow<'static, str>,
     /// What is different, with numbers and units; makes sense alone.
     pub message: String,

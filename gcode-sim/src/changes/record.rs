@@ -2,6 +2,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::steps::{Kind, Recorder, Step};
@@ -33,7 +34,7 @@ pub struct Record {
 }
 
 /// A block as people find it, and the calls that led to it, innermost first.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Where {
     pub program: String,
@@ -44,7 +45,7 @@ pub struct Where {
 }
 
 /// One revision in numbers.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Totals {
     pub holes: usize,
@@ -54,7 +55,7 @@ pub struct Totals {
 }
 
 /// How a run ended and what it leaves behind.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Ending {
     /// `end`, `alarm` or `limit`.
@@ -70,7 +71,7 @@ pub(super) struct Ending {
 }
 
 /// A value that outlives the run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Left {
     /// What a change of it is called.

@@ -3,6 +3,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use nalgebra::{Point3, Unit, Vector3};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::record::{Ending, Record, Totals, Where};
@@ -14,9 +15,9 @@ use crate::units::Deg;
 /// What a file of this kind begins with; another number is another form of it.
 const VERSION: u32 = 1;
 
-#[derive(Serialize, Deserialize)]
+#[derive(Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-struct File {
+pub(crate) struct File {
     version: u32,
     axes: String,
     totals: Totals,
@@ -27,7 +28,7 @@ struct File {
 }
 
 /// A step: what is done, where the axes that it moves stand then (mm and degrees), and the number of its block.
-#[derive(Serialize, Deserialize)]
+#[derive(Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "do", rename_all = "lowercase", deny_unknown_fields)]
 enum Line {
     Rapid { to: BTreeMap<char, f64>, place: usize },
@@ -43,7 +44,7 @@ enum Line {
     Stop { kind: Waiting, text: String, named: Vec<(u32, f64)>, place: usize },
 }
 
-#[derive(Clone, Copy, Serialize, Deserialize)]
+#[derive(Clone, Copy, Serialize, Deserialize, JsonSchema)]
 enum Turning {
     #[serde(rename = "off")]
     Off,
@@ -53,7 +54,7 @@ enum Turning {
     Counterclockwise,
 }
 
-#[derive(Clone, Copy, Serialize, Deserialize)]
+#[derive(Clone, Copy, Serialize, Deserialize, JsonSchema)]
 enum Waiting {
     M00,
     M01,
@@ -62,7 +63,7 @@ enum Waiting {
 }
 
 /// A hole in the part's frame, and the steps that cut it.
-#[derive(Serialize, Deserialize)]
+#[derive(Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct Hole {
     entry: [f64; 3],

@@ -16,6 +16,7 @@ use super::readings::ReadingsArguments;
 use super::reference::ReferenceArguments;
 use super::render::RenderArguments;
 use super::run::RunArguments;
+use super::schema::SchemaArguments;
 use super::test::TestArguments;
 use super::verify::VerifyArguments;
 
@@ -148,6 +149,15 @@ Examples:
   gcode-sim explain hole-position
   gcode-sim explain --list")]
     Explain(ExplainArguments),
+
+    /// Write the JSON Schema (draft 2020-12) of a file or of a result to standard output
+    #[command(after_help = "\
+Examples:
+  gcode-sim schema job > job.schema.json
+  gcode-sim schema verify
+
+The first line of a job file that editors check by it: #:schema ./job.schema.json (see docs/schemas.md)")]
+    Schema(SchemaArguments),
 
     /// Write the completions of a shell to standard output
     #[command(after_help = "\

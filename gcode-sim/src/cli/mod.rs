@@ -18,6 +18,7 @@ mod readings;
 mod reference;
 mod render;
 mod run;
+mod schema;
 mod settings;
 mod test;
 mod unused_machine;
@@ -86,6 +87,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Status {
         Command::Test(arguments) => test::run(&arguments),
         Command::Budget(arguments) => budget::run(&arguments),
         Command::Settings => settings::run(),
+        Command::Schema(arguments) => schema::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Completions(shell) => packaging::completions::<Arguments>(&shell),
         Command::Man(folder) => packaging::man::<Arguments>(&folder),

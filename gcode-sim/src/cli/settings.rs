@@ -7,7 +7,7 @@ use crate::control::{CodeCallKind, FAMILIES, RANGES, ROWS};
 pub(super) fn run() -> Result<Status, Refusal> {
     let mut text = String::new();
     for row in ROWS {
-        let _ = writeln!(text, "{:<16} {} [{}]", row.key, row.meaning, row.allowed);
+        let _ = writeln!(text, "{:<16} {} [{}]", row.key, row.meaning, row.values);
     }
     text.push_str("#1000 to #1031   an input signal [0 or 1]\n");
     text.push_str(

@@ -1,5 +1,7 @@
 //! Calls by codes: the G, M, T, S and B codes and the addresses that call a program, by the parameters that say so.
 
+use std::ops::RangeInclusive;
+
 /// What a code calls, and as what.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Called {
@@ -28,6 +30,11 @@ pub struct Family {
 }
 
 impl Family {
+    /// What each of its parameters may hold: a G code below 0 is a modal call.
+    pub fn codes(&self) -> RangeInclusive<i64> {
+        if self.letter == b'G' { -9999..=9999 } else { 0..=99_999_999 }
+    }
+
     /// The parameter that makes a code of this letter such a call.
     fn parameter(&self, letter: u8, called: Called) -> Option<u16> {
         let same = (self.kind == CodeCallKind::Subprogram) == (called.kind == CodeCallKind::Subprogram);
@@ -78,7 +85,7 @@ const BY_ADDRESS: [AddressCall; 2] =
 const FIRST_ADDRESS: u16 = 6090;
 
 /// Addresses that 6090 and 6091 may name.
-const ADDRESSES: &[u8] = b"ABDFHIJKMPQRSTVXYZ";
+pub const ADDRESSES: &[u8] = b"ABDFHIJKMPQRSTVXYZ";
 
 /// Codes that are calls or ends themselves.
 const TAKEN: [(u8, u32); 13] = [
@@ -183,14 +190,25 @@ impl CodeCalls {
         self.addresses.get(place).map(|address| address.map_or(0, i64::from))
     }
 
+    /// The codes of a letter that no parameter makes calls: they are calls or ends themselves.
+    pub fn taken(letter: u8) -> impl Iterator<Item = u32> {
+        TAKEN.iter().filter(move |(taken, _)| *taken == letter).map(|(_, code)| code / 10)
+    }
+
+    /// The programs that an address may call, its own and those of 6090 and 6091.
+    pub fn programs_of(letter: u8) -> impl Iterator<Item = u32> {
+        let own =
+            [(b'T', BY_T), (b'S', BY_S), (b'B', BY_B)].into_iter().filter(move |(own, _)| *own == letter);
+        own.map(|(_, call)| call).chain(BY_ADDRESS).map(|call| call.program)
+    }
+
     /// Sets one of the parameters here; `None` where it is none of them, or can't have this value.
     pub fn set_parameter(&mut self, number: u16, value: i64) -> Option<()> {
         if let Some(family) = family_of(number) {
-            let modal = value < 0 && family.letter == b'G';
-            if value < 0 && !modal {
+            if !family.codes().contains(&value) {
                 return None;
             }
-            let kind = if modal { CodeCallKind::Modal } else { family.kind };
+            let kind = if value < 0 { CodeCallKind::Modal } else { family.kind };
             let code = u32::try_from(value.unsigned_abs()).ok()?.checked_mul(10)?;
             if value != 0 && TAKEN.contains(&(family.letter, code)) {
                 return None;

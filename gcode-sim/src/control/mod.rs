@@ -8,10 +8,10 @@ mod unsure;
 use crate::motion::{Axes, Axis, MAX_AXES, Position};
 use crate::units::{MmPerMin, nearest};
 
-pub use code_calls::{AddressCall, Called, CodeCallKind, CodeCalls, FAMILIES, RANGES};
+pub use code_calls::{ADDRESSES, AddressCall, Called, CodeCallKind, CodeCalls, FAMILIES, RANGES};
 pub use dialect::{DIALECTS, DialectRow};
 pub use parameters::{ParameterError, ParameterPlace, is_without_effect};
-pub use table::{ROWS, Row, SettingError};
+pub use table::{ROWS, Row, SettingError, Values};
 pub use unsure::{ArgumentScale, Unsure};
 
 /// The least input increment (parameter 1013).

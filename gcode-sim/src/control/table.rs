@@ -9,7 +9,7 @@ pub enum SettingError {
     #[error("no setting '{key}': `gcode-sim settings` lists them")]
     Unknown { key: String },
     #[error("setting {key} can't be '{value}': {allowed}")]
-    Value { key: String, value: String, allowed: &'static str },
+    Value { key: String, value: String, allowed: String },
 }
 
 /// One setting that has a name.
@@ -17,37 +17,97 @@ pub struct Row {
     pub key: &'static str,
     /// What it decides, with the parameter's number where a control has one.
     pub meaning: &'static str,
-    /// The values it takes, for the message.
-    pub allowed: &'static str,
+    pub values: Values,
     set: fn(&mut Settings, &str) -> Option<()>,
 }
 
+/// What values a setting takes.
+#[derive(Clone, Copy)]
+pub enum Values {
+    /// On or off, 1 or 0.
+    Switch,
+    /// One of a few words.
+    Words(fn() -> Vec<&'static str>),
+    /// A whole number from one to the other.
+    Whole(usize, usize),
+    /// A number from one to the other, and how that is said.
+    Number(f64, f64, &'static str),
+    /// What a regular expression describes, and how that is said.
+    Text(&'static str, &'static str),
+}
+
 impl Row {
-    /// Whether it is on or off, 1 or 0.
     pub fn is_switch(&self) -> bool {
-        self.allowed == SWITCH
+        matches!(self.values, Values::Switch)
+    }
+}
+
+/// As a message and the list of settings say it.
+impl std::fmt::Display for Values {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Switch => f.write_str(SWITCH),
+            Self::Words(words) => match words().as_slice() {
+                [] => Ok(()),
+                [only] => f.write_str(only),
+                [others @ .., last] => write!(f, "{} or {last}", others.join(", ")),
+            },
+            Self::Whole(least, most) => write!(f, "{least} to {most}"),
+            Self::Number(_, _, said) | Self::Text(_, said) => f.write_str(said),
+        }
     }
 }
 
 const SWITCH: &str = "0 or 1";
 const LENGTH: &str = "a length in mm, 0 or more";
-const POINT: &str = "axes and their machine coordinates, as in X10,Z-5";
-const SCALE: &str = "whole, feed (as the word F) or increments";
-const COUNT: &str = "a whole number";
+
+/// `X10,Z-5.5`.
+const POINT: &str = "^ *[A-Ca-cU-Zu-z][+-]?([0-9]+[.]?[0-9]*|[.][0-9]+)( *, *[A-Ca-cU-Zu-z][+-]?([0-9]+[.]?[0-9]*|[.][0-9]+))* *$";
+const PLACE: Values = Values::Text(POINT, "axes and their machine coordinates, as in X10,Z-5");
 
 macro_rules! switch {
     ($key:literal, $meaning:literal, $($field:ident).+) => {
-        Row { key: $key, meaning: $meaning, allowed: SWITCH, set: |s, v| { s.$($field).+ = switch(v)?; Some(()) } }
+        switch!($key, $meaning, |s, on| s.$($field).+ = on)
+    };
+    ($key:literal, $meaning:literal, |$s:ident, $on:ident| $set:expr) => {
+        row!($key, $meaning, Values::Switch, |$s, text| { let $on = switch(text)?; $set; })
+    };
+}
+
+macro_rules! choice {
+    ($key:literal, $meaning:literal, $all:expr, |$s:ident, $v:ident| $set:expr) => {
+        row!($key, $meaning, Values::Words(|| $all.iter().map(|(name, _)| *name).collect()), |$s, text| {
+            let $v = choice(text, &$all)?;
+            $set;
+        })
+    };
+}
+
+macro_rules! whole {
+    ($key:literal, $meaning:literal, $least:literal, $most:literal, |$s:ident, $v:ident| $set:expr) => {
+        row!($key, $meaning, Values::Whole($least, $most), |$s, text| {
+            let $v = whole(text, $least, $most)?;
+            $set;
+        })
     };
 }
 
 macro_rules! number {
-    ($key:literal, $meaning:literal, $allowed:expr, |$s:ident, $v:ident| $set:expr) => {
+    ($key:literal, $meaning:literal, $least:expr, $most:expr, $said:expr, |$s:ident, $v:ident| $set:expr) => {
+        row!($key, $meaning, Values::Number($least, $most, $said), |$s, text| {
+            let $v = between(text, $least, $most)?;
+            $set;
+        })
+    };
+}
+
+macro_rules! row {
+    ($key:literal, $meaning:literal, $values:expr, |$s:ident, $text:ident| $set:expr) => {
         Row {
             key: $key,
             meaning: $meaning,
-            allowed: $allowed,
-            set: |$s, $v| {
+            values: $values,
+            set: |$s, $text| {
                 $set;
                 Some(())
             },
@@ -55,12 +115,14 @@ macro_rules! number {
     };
 }
 
+const REPEATS: [(&str, u8); 2] = [("K", b'K'), ("L", b'L')];
+
 /// Every setting with a name, in the order they are listed.
 #[rustfmt::skip]
 pub const ROWS: &[Row] = &[
-    number!("DIALECT", "the family of controls", "fanuc-31i, fanuc-0i-f or haas-ngc", |s, v| s.become_dialect(choice(v, &Dialect::ALL)?)),
-    number!("CODES", "whose G and M codes there are", "fanuc-31i, fanuc-0i-f or haas-ngc", |s, v| s.codes = choice(v, &CodeSet::ALL)?),
-    number!("INCREMENT", "1013: the least input increment", "IS-A, IS-B or IS-C", |s, v| s.increment = choice(v, &Increment::ALL)?),
+    choice!("DIALECT", "the family of controls", Dialect::ALL, |s, v| s.become_dialect(v)),
+    choice!("CODES", "whose G and M codes there are", CodeSet::ALL, |s, v| s.codes = v),
+    choice!("INCREMENT", "1013: the least input increment", Increment::ALL, |s, v| s.increment = v),
     switch!("DPI", "3401#0, setting 162 of a Haas: numbers without a point are mm, degrees, seconds", calculator_input),
     switch!("NAT", "6004#0: ASIN -90 to 90, ATAN -180 to 180", signed_angles),
     switch!("MFZ", "6004#1: SIN, COS, TAN below 1e-8 become 0", zero_residues),
@@ -76,58 +138,58 @@ pub const ROWS: &[Row] = &[
     switch!("AD2", "3403#6: an address twice in a block alarms", no_repeated_address),
     switch!("M3B", "3404#7: up to three M codes in a block", three_m_codes),
     switch!("PLURAL-M-ALARM", "more M codes in a block than it may have alarm", plural_m_alarms),
-    number!("1241", "the second reference position", POINT, |s, v| s.references[0] = point(s, v)?),
-    number!("1242", "the third reference position", POINT, |s, v| s.references[1] = point(s, v)?),
-    number!("1243", "the fourth reference position", POINT, |s, v| s.references[2] = point(s, v)?),
-    number!("1320", "stroke limits on the plus side: OT0500 beyond them", POINT, |s, v| s.stroke.get_or_insert_default().most = limits(&s.axes, v)?),
-    number!("1321", "stroke limits on the minus side: OT0501 beyond them", POINT, |s, v| s.stroke.get_or_insert_default().least = limits(&s.axes, v)?),
-    number!("MCA", "6008#1: #3000=n shows MC n", SWITCH, |s, v| (s.macro_alarm_base, s.macro_alarm_most) = if switch(v)? { (0, 4095) } else { (3000, 200) }),
-    number!("ALARM-BASE", "what #3000=n adds to n", "0 to 9000", |s, v| s.macro_alarm_base = whole(v, 0, 9000)? as u16),
-    number!("ALARM-MOST", "the largest n that the manual names for #3000=n", "1 to 4095", |s, v| s.macro_alarm_most = whole(v, 1, 4095)? as u16),
-    number!("MORE-COMMONS", "common variables beyond #999", "a range as 98000-98499, or 0", |s, v| s.more_commons = range(v)?),
-    number!("OFFSET-VARIABLES", "how the variables of tool offsets are numbered", "fanuc or haas", |s, v| s.offset_variables = choice(v, &OffsetVariables::ALL)?),
+    row!("1241", "the second reference position", PLACE, |s, v| s.references[0] = point(s, v)?),
+    row!("1242", "the third reference position", PLACE, |s, v| s.references[1] = point(s, v)?),
+    row!("1243", "the fourth reference position", PLACE, |s, v| s.references[2] = point(s, v)?),
+    row!("1320", "stroke limits on the plus side: OT0500 beyond them", PLACE, |s, v| s.stroke.get_or_insert_default().most = limits(&s.axes, v)?),
+    row!("1321", "stroke limits on the minus side: OT0501 beyond them", PLACE, |s, v| s.stroke.get_or_insert_default().least = limits(&s.axes, v)?),
+    switch!("MCA", "6008#1: #3000=n shows MC n", |s, on| (s.macro_alarm_base, s.macro_alarm_most) = if on { (0, 4095) } else { (3000, 200) }),
+    whole!("ALARM-BASE", "what #3000=n adds to n", 0, 9000, |s, v| s.macro_alarm_base = v as u16),
+    whole!("ALARM-MOST", "the largest n that the manual names for #3000=n", 1, 4095, |s, v| s.macro_alarm_most = v as u16),
+    row!("MORE-COMMONS", "common variables beyond #999", Values::Text("^(0|[0-9]{4,5} *- *[0-9]{4,6})$", "a range as 98000-98499, or 0"), |s, v| s.more_commons = range(v)?),
+    choice!("OFFSET-VARIABLES", "how the variables of tool offsets are numbered", OffsetVariables::ALL, |s, v| s.offset_variables = v),
     switch!("PLAIN-IF", "IF[..] takes an assignment or words without THEN", plain_if),
     switch!("THEN-WORDS", "IF[..]THEN takes words", then_takes_words),
     switch!("PRT", "6001#1: DPRNT leaves the blanks before a number out", print_without_blanks),
     switch!("PRINT-EXPANDS", "DPRNT prints a number whole that has more digits than its format", print_expands),
     switch!("PRINT-NEEDS-POPEN", "DPRNT and BPRNT without POPEN alarm", print_needs_open),
-    number!("PRINT-DIGITS", "digits that DPRNT's format may ask for", "1 to 15", |s, v| s.print_digits = whole(v, 1, 15)?),
+    whole!("PRINT-DIGITS", "digits that DPRNT's format may ask for", 1, 15, |s, v| s.print_digits = v),
     switch!("ODI", "5004#2: the offsets of D are diameters", offsets_are_diameters),
     switch!("EVR", "5001#4: a changed offset of D counts from the next block on", new_radius_at_once),
     switch!("SUP", "5003#0: cutter compensation starts and ends by type B", start_up_b),
-    number!("19625", "blocks read in cutter compensation", "3 to 8", |s, v| s.blocks_read = whole(v, 3, 8)?),
+    whole!("19625", "blocks read in cutter compensation", 3, 8, |s, v| s.blocks_read = v),
     switch!("SCR", "5400#7: G51 counts in 0.001", coarse_scaling),
-    number!("ROA", "1008#0: axes that roll over at 360 degrees", "letters of axes that turn", |s, v| roll_over(s, v)?),
-    number!("BDT", "block skip switches that are on", "switches 1 to 9, as in 1+2", |s, v| skip_switches(s, v)?),
+    row!("ROA", "1008#0: axes that roll over at 360 degrees", Values::Text("^[A-Ca-c+]*$", "letters of axes that turn"), |s, v| roll_over(s, v)?),
+    row!("BDT", "block skip switches that are on", Values::Text("^[1-9]([+][1-9])*$", "switches 1 to 9, as in 1+2"), |s, v| skip_switches(s, v)?),
     switch!("OPTIONAL-STOP", "M01 stops", optional_stop),
-    number!("SKIP", "the skip signal comes after this part of a G31 path", "0 to 1", |s, v| s.skip_signal = Some(between(v, 0.0, 1.0)?)),
+    number!("SKIP", "the skip signal comes after this part of a G31 path", 0.0, 1.0, "0 to 1", |s, v| s.skip_signal = Some(v)),
     switch!("SKIP-ALARM", "a G31 that ends without its signal alarms", missed_skip_alarms),
-    number!("CYCLES", "the main program's M99 of this number ends the run", COUNT, |s, v| s.cycles = Some(v.parse().ok()?)),
-    number!("RAPID", "1420: rapid rate of sliding axes, mm/min", "more than 0", |s, v| s.rapid = MmPerMin(positive(v)?)),
-    number!("RAPID-ROTARY", "1420: rapid rate of turning axes, degrees/min", "more than 0", |s, v| s.rapid_rotary = positive(v)?),
-    number!("3410", "how far an arc's end may be off its radius", LENGTH, |s, v| s.arc_tolerance = length(v)?),
-    number!("5440", "the last way of G60, with the sign of its direction", "axes and lengths, as in X0.5,Z-0.2", |s, v| s.overrun = point(s, v)?),
+    whole!("CYCLES", "the main program's M99 of this number ends the run", 0, 999_999_999, |s, v| s.cycles = u32::try_from(v).ok()),
+    number!("RAPID", "1420: rapid rate of sliding axes, mm/min", f64::MIN_POSITIVE, 1e9, "more than 0", |s, v| s.rapid = MmPerMin(v)),
+    number!("RAPID-ROTARY", "1420: rapid rate of turning axes, degrees/min", f64::MIN_POSITIVE, 1e9, "more than 0", |s, v| s.rapid_rotary = v),
+    number!("3410", "how far an arc's end may be off its radius", 0.0, 1e6, LENGTH, |s, v| s.arc_tolerance = v),
+    row!("5440", "the last way of G60, with the sign of its direction", Values::Text(POINT, "axes and lengths, as in X0.5,Z-0.2"), |s, v| s.overrun = point(s, v)?),
     switch!("M97-CALLS", "M97 P calls the subprogram at N of its own program", local_calls),
-    number!("5114", "retract of G73; setting 22 of a Haas", LENGTH, |s, v| s.g73_retract = length(v)?),
-    number!("5115", "clearance of G83", LENGTH, |s, v| s.g83_clearance = length(v)?),
-    number!("SETTING-52", "setting 52 of a Haas: how far above R G83 retracts", LENGTH, |s, v| s.g83_above_r = length(v)?),
+    number!("5114", "retract of G73; setting 22 of a Haas", 0.0, 1e6, LENGTH, |s, v| s.g73_retract = v),
+    number!("5115", "clearance of G83", 0.0, 1e6, LENGTH, |s, v| s.g83_clearance = v),
+    number!("SETTING-52", "setting 52 of a Haas: how far above R G83 retracts", 0.0, 1e6, LENGTH, |s, v| s.g83_above_r = v),
     switch!("FEED-INCREMENTS", "setting 77 of a Haas: F without a point counts 0.001 mm/min", feed_in_increments),
-    number!("WORK-SYSTEMS", "additional work coordinate systems, G54.1 P or G154 P", "1 to 300", |s, v| s.work_systems = whole(v, 1, 300)?),
+    whole!("WORK-SYSTEMS", "additional work coordinate systems, G54.1 P or G154 P", 1, 300, |s, v| s.work_systems = v),
     switch!("ALIASED-COMMONS", "#10100.. and #10500.. are #100.. and #500..", aliased_commons),
     switch!("VARIABLE-BITS", "#n.m is bit m of #n", bits_of_variables),
     switch!("NEW-WORDS", "<NAME>, SETVN, [#NAME], [#_NAME], PRM, AX, AXNUM are known", new_words),
     switch!("MORE-FUNCTIONS", "FUP, LN, EXP, BIN, BCD, POW, ADP, ATAN[a,b] are known", more_functions),
     switch!("G10-PARAMETERS", "G10 takes L3, L14, L50, L52 and L85", parameter_input),
     switch!("REPEATS-IN-P", "M98 P of more than four digits is repeats and program", repeats_in_p),
-    number!("CYCLE-REPEATS", "the letter that repeats a drilling block", "K or L", |s, v| s.cycle_repeats = letter(v, b"KL")?),
+    choice!("CYCLE-REPEATS", "the letter that repeats a drilling block", REPEATS, |s, v| s.cycle_repeats = v),
     switch!("HOME-ALL", "G28 without an axis sends all axes home", home_all),
     switch!("DWELL-SECONDS", "P of a dwell with a point is seconds; G04 takes no X and U", dwell_in_seconds),
     switch!("PECK-IJK", "G73 and G83 take I, J, K for pecks that become smaller", shrinking_pecks),
-    number!("OFFSETS", "pairs of tool offsets", "1 to 999", |s, v| s.tool_offsets = whole(v, 1, 999)?),
-    number!("MACRO-LEVELS", "macro calls inside one another", "1 to 15", |s, v| s.macro_levels = whole(v, 1, 15)?),
-    number!("CALL-LEVELS", "calls inside one another", "1 to 30", |s, v| s.call_levels = whole(v, 1, 30)?),
-    number!("DATE", "#3011", "yyyymmdd", |s, v| s.date = whole(v, 0, 99_991_231)? as u32),
-    number!("TIME", "#3012", "hhmmss", |s, v| s.time = whole(v, 0, 235_959)? as u32),
+    whole!("OFFSETS", "pairs of tool offsets", 1, 999, |s, v| s.tool_offsets = v),
+    whole!("MACRO-LEVELS", "macro calls inside one another", 1, 15, |s, v| s.macro_levels = v),
+    whole!("CALL-LEVELS", "calls inside one another", 1, 30, |s, v| s.call_levels = v),
+    whole!("DATE", "#3011, as yyyymmdd", 0, 99_991_231, |s, v| s.date = v as u32),
+    whole!("TIME", "#3012, as hhmmss", 0, 235_959, |s, v| s.time = v as u32),
     switch!("VACANT-MINUS", "-#1 of a vacant #1 stays vacant in an expression", unsure.minus_keeps_vacancy),
     switch!("VACANT-BRACKETS", "[#1] of a vacant #1 stays vacant", unsure.brackets_keep_vacancy),
     switch!("ROUND-LITERALS", "literals finer than the increment are rounded, not cut off", unsure.round_literals),
@@ -156,34 +218,37 @@ pub const ROWS: &[Row] = &[
     switch!("LOWER-CASE", "lower case is read as capitals, not refused", unsure.lower_case),
     switch!("LARGE-ALARMS", "#3000=n shows an n that is too large", unsure.large_alarm_numbers),
     switch!("M98-NO-P-311", "M98 without P is PS0311, not PS0076", unsure.missing_p_is_311),
-    number!("ARGUMENT-E", "what E without a point is as an argument", SCALE, |s, v| s.unsure.argument_e = choice(v, &ArgumentScale::ALL)?),
-    number!("ARGUMENT-F", "what F without a point is as an argument", SCALE, |s, v| s.unsure.argument_f = choice(v, &ArgumentScale::ALL)?),
+    choice!("ARGUMENT-E", "what E without a point is as an argument", ArgumentScale::ALL, |s, v| s.unsure.argument_e = v),
+    choice!("ARGUMENT-F", "what F without a point is as an argument", ArgumentScale::ALL, |s, v| s.unsure.argument_f = v),
 ];
 
 impl Settings {
     /// Sets one setting by its key (`NAT`, `5115`), an input by its variable (`#1005`), or a code that calls a
     /// program (`G201`, `M50`, `T`), by itself or by its parameter (`6050`).
     pub fn set(&mut self, key: &str, value: &str) -> Result<(), SettingError> {
-        let bad = |allowed| SettingError::Value { key: key.to_owned(), value: value.to_owned(), allowed };
+        let bad = |allowed: &dyn std::fmt::Display| {
+            let allowed = allowed.to_string();
+            SettingError::Value { key: key.to_owned(), value: value.to_owned(), allowed }
+        };
         if let Some(row) = ROWS.iter().find(|row| row.key.eq_ignore_ascii_case(key)) {
-            return (row.set)(self, value.trim()).ok_or_else(|| bad(row.allowed));
+            return (row.set)(self, value.trim()).ok_or_else(|| bad(&row.values));
         }
         if let Some(number) = key.strip_prefix('#') {
             let bit = number.parse().ok().filter(|n| (1000..=1031).contains(n)).map(|n: u32| n - 1000);
             let bit = bit.ok_or_else(|| SettingError::Unknown { key: key.to_owned() })?;
-            let on = switch(value).ok_or_else(|| bad(SWITCH))?;
+            let on = switch(value).ok_or_else(|| bad(&Values::Switch))?;
             self.inputs = if on { self.inputs | 1 << bit } else { self.inputs & !(1 << bit) };
             return Ok(());
         }
         let unknown = || SettingError::Unknown { key: key.to_owned() };
         if let Some(number) = key.parse().ok().filter(|n| self.code_calls.parameter(*n).is_some()) {
             let set = value.trim().parse().ok().and_then(|v| self.code_calls.set_parameter(number, v));
-            return set.ok_or_else(|| bad("the code that calls, 0 for none"));
+            return set.ok_or_else(|| bad(&"the code that calls, 0 for none"));
         }
         if !key.starts_with(|c: char| c.is_ascii_alphabetic()) {
             return Err(unknown());
         }
-        let program = whole(value, 1, 99_999_999).ok_or_else(|| bad("a program number"))? as u32;
+        let program = whole(value, 1, 99_999_999).ok_or_else(|| bad(&"a program number"))? as u32;
         self.code_calls.set_code(key, program).ok_or_else(unknown)?;
         Ok(())
     }
@@ -205,21 +270,8 @@ fn between(value: &str, least: f64, most: f64) -> Option<f64> {
     value.parse().ok().filter(|v| (least..=most).contains(v))
 }
 
-fn length(value: &str) -> Option<f64> {
-    between(value, 0.0, 1e6)
-}
-
-fn positive(value: &str) -> Option<f64> {
-    between(value, f64::MIN_POSITIVE, 1e9)
-}
-
 fn whole(value: &str, least: usize, most: usize) -> Option<usize> {
     value.parse().ok().filter(|v| (least..=most).contains(v))
-}
-
-/// One of a few letters.
-fn letter(value: &str, of: &[u8]) -> Option<u8> {
-    of.iter().copied().find(|letter| value.as_bytes() == [*letter])
 }
 
 /// `X10,Z-5`; axes not named are at 0.

@@ -11,8 +11,10 @@ mod sections;
 mod sheet;
 mod wording;
 
+use std::borrow::Cow;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
-use toml::Spanned;
 
 pub use alignment::{Alignment, Chord, EllipsePath, Runout, SineTable};
 pub use burr::{
@@ -23,7 +25,8 @@ pub use pin_holes::{
     AxisDirection, Head, HeadKind, HoleWanted, MacroSettings, PinHoles, PinMachine, Surface, Tool,
 };
 pub use reader::JobError;
-use reader::Reader;
+use reader::{Reader, Spanned};
+pub(crate) use sheet::FileRates;
 pub use sheet::{Beside, Minutes, Rates, SheetWords};
 
 use crate::control::{Dialect, Increment};
@@ -54,6 +57,27 @@ pub struct Rotary {
 #[derive(Deserialize)]
 struct Family {
     family: Spanned<String>,
+}
+
+/// A job file as it is written: the schema of one of the families.
+pub(crate) struct JobFile;
+
+impl JsonSchema for JobFile {
+    fn schema_name() -> Cow<'static, str> {
+        "Job".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "description": "What to make, on which machine and control.",
+            "oneOf": [
+                generator.subschema_for::<pin_holes::File>(),
+                generator.subschema_for::<honeycomb::File>(),
+                generator.subschema_for::<burr::File>(),
+                generator.subschema_for::<alignment::File>(),
+            ],
+        })
+    }
 }
 
 pub const FAMILIES: [&str; 4] = ["pin-holes", "honeycomb", "burr", "alignment"];

@@ -1,8 +1,8 @@
 //! Sections that job files of several families have: `[control]`, `[tolerance]`, the rotary table, and bounds of lengths.
+use schemars::JsonSchema;
 use serde::Deserialize;
-use toml::Spanned;
 
-use super::reader::{JobError, Reader};
+use super::reader::{JobError, Reader, Spanned, names};
 use super::{JobControl, Rotary};
 use crate::control::{Dialect, Increment};
 
@@ -53,10 +53,15 @@ pub(super) fn sign(reader: &Reader<'_>, key: &str, value: &Spanned<i64>) -> Resu
     }
 }
 
-#[derive(Deserialize)]
+/// The control the programs are for.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileControl {
+    /// The family of controls.
+    #[schemars(extend("enum" = names(&Dialect::ALL)))]
     dialect: Spanned<String>,
+    /// The least input increment: IS-A 0.01, IS-B 0.001, IS-C 0.0001 (mm and degrees).
+    #[schemars(extend("enum" = names(&Increment::ALL)))]
     increment: Spanned<String>,
 }
 
@@ -69,11 +74,15 @@ impl FileControl {
     }
 }
 
-/// `[machine] rotary`.
-#[derive(Deserialize)]
+/// `[machine] rotary`: the axis that turns the part. sign · azimuth brings a hole to the plane z = 0.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileRotary {
+    /// Its letter.
+    #[schemars(extend("enum" = names(&ROTARY_LETTERS)))]
     letter: Spanned<String>,
+    /// 1, or -1 where a positive command turns the part the other way.
+    #[schemars(extend("enum" = [1, -1]))]
     sign: Spanned<i64>,
 }
 
@@ -87,10 +96,14 @@ impl FileRotary {
 }
 
 /// `[tolerance]` of a part with holes.
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileTolerance {
+    /// Diameter of the zone in which the axis of a hole has to lie (ISO 1101), mm.
+    #[schemars(range(min = 0.000_1, max = 1000.0))]
     position: Spanned<f64>,
+    /// How far the depth of a hole may be off, either way, mm [default: 0.1].
+    #[schemars(range(min = 0.000_1, max = 1000.0))]
     depth: Option<Spanned<f64>>,
 }
 

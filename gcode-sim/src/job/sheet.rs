@@ -1,8 +1,8 @@
 //! The section `[sheet]` that a job of any family may have: what its set-up sheet says of people, time and money.
+use schemars::JsonSchema;
 use serde::Deserialize;
-use toml::Spanned;
 
-use super::reader::{JobError, Reader};
+use super::reader::{JobError, Reader, Spanned};
 use super::sections::within;
 
 /// What only people know of a job. Whatever is left out stands empty on the sheet, to be filled in by hand.
@@ -61,36 +61,66 @@ impl Rates {
     }
 }
 
-#[derive(Deserialize)]
+/// What the set-up sheet says of people, time and money. Whatever is left out is filled in by hand.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileSheet {
+    /// The part's name.
     part: Option<String>,
+    /// The number of its drawing.
     drawing: Option<String>,
+    /// The revision of its drawing.
     revision: Option<String>,
+    /// What it is made of.
     material: Option<String>,
+    /// The machine's name in the shop.
     machine: Option<String>,
+    /// Set-up and alignment of one part, minutes.
+    #[schemars(range(min = 0.0, max = 1_000_000.0))]
     setup_minutes: Option<Spanned<f64>>,
+    /// An operator stop, from standstill to start, minutes.
+    #[schemars(range(min = 0.0, max = 1_000_000.0))]
     stop_minutes: Option<Spanned<f64>>,
+    /// A tool change, minutes.
+    #[schemars(range(min = 0.0, max = 1_000_000.0))]
     tool_change_minutes: Option<Spanned<f64>>,
+    /// What machine hours cost.
     rates: Option<FileRates>,
 }
 
-#[derive(Deserialize)]
+/// What an hour of the machine costs, and of others that could do the same.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-struct FileRates {
+pub(crate) struct FileRates {
+    /// Printed as it stands.
     currency: String,
+    /// A machine hour, in that currency.
+    #[schemars(range(min = 0.01, max = 1e9))]
     rate: Spanned<f64>,
+    /// Other machines that the part could be made on.
     beside: Option<Vec<FileBeside>>,
 }
 
-#[derive(Deserialize)]
+/// The same part on another machine. Times that are left out are taken to be the same.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileBeside {
+    /// Its name in the shop.
     machine: String,
+    /// A machine hour, in the same currency.
+    #[schemars(range(min = 0.01, max = 1e9))]
     rate: Spanned<f64>,
+    /// The program, minutes.
+    #[schemars(range(min = 0.0, max = 1_000_000.0))]
     run_minutes: Option<Spanned<f64>>,
+    /// Set-up and alignment of one part, minutes.
+    #[schemars(range(min = 0.0, max = 1_000_000.0))]
     setup_minutes: Option<Spanned<f64>>,
+    /// An operator stop, from standstill to start, minutes.
+    #[schemars(range(min = 0.0, max = 1_000_000.0))]
     stop_minutes: Option<Spanned<f64>>,
+    /// A tool change, minutes.
+    #[schemars(range(min = 0.0, max = 1_000_000.0))]
     tool_change_minutes: Option<Spanned<f64>>,
 }
 

@@ -19,6 +19,11 @@ pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> S
         let allowed = allowed.trim_start_matches("one of ").replace('`', "").replace(" or ", ", ");
         return format!("key '{}' is not known; allowed: {allowed}", place.beside(field));
     }
+    if let Some((found, wanted)) =
+        message.strip_prefix("invalid length ").and_then(|rest| rest.split_once(", expected "))
+    {
+        return format!("key '{}' has {found} values: {wanted} are needed", place.name());
+    }
     let Some(mismatch) = message.strip_prefix("invalid type: ") else { return message.to_owned() };
     let Some((found, expected)) = mismatch.split_once(", expected ") else { return message.to_owned() };
     let expected = match expected {

@@ -17,6 +17,7 @@ use nalgebra::{IsometryMatrix3, Point3, Translation3, Unit, Vector3};
 
 pub use chain::{Chain, Link, LinkMotion};
 pub use file::error_file;
+pub(crate) use file::{ErrorFile, File as MachineFile};
 pub use head::{Head, HeadKind, HeadMessage};
 pub use probe::Probe;
 pub use wheel::Wheel;

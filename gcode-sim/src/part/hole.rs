@@ -1,8 +1,9 @@
 //! A hole as the drawing and the simulator both write it down, and a list of them: one schema for both.
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Which block of which program made a hole.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Origin {
     pub program: String,
@@ -11,7 +12,7 @@ pub struct Origin {
 }
 
 /// A hole in the part's frame, lengths in mm.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Hole {
     #[serde(default)]
@@ -21,14 +22,16 @@ pub struct Hole {
     /// Unit vector out of the part.
     pub axis: [f64; 3],
     /// From the entry, along the axis, to the deepest point.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub depth: f64,
     #[serde(default)]
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub diameter: Option<f64>,
     #[serde(default)]
     pub from: Option<Origin>,
 }
 
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Unit {
     #[default]
     #[serde(rename = "mm")]
@@ -36,7 +39,7 @@ pub enum Unit {
 }
 
 /// The document that `holes` and `reference` write and `verify` reads.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct HoleList {
     pub unit: Unit,

@@ -1,6 +1,7 @@
 //! An error budget as JSON, as a table, and as bars.
 use std::fmt::Write;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::budget::{Budget, Question, Share, Statistics};
@@ -8,7 +9,7 @@ use crate::machine::error::Spread;
 use crate::picture::{Bar, Bars};
 
 /// Diameters and lengths in mm.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub struct BudgetReport {
     basis: &'static str,
     samples: usize,
@@ -20,7 +21,7 @@ pub struct BudgetReport {
     sources: Vec<SourceRow>,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct Row {
     mean: f64,
     p50: f64,
@@ -30,7 +31,7 @@ struct Row {
     within: f64,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct HoleRow {
     id: String,
     #[serde(flatten)]
@@ -40,7 +41,7 @@ struct HoleRow {
     sources: Vec<SourceRow>,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct SourceRow {
     source: String,
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -2,12 +2,13 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::changes::{Change, Record, Totals, Where};
 
 /// The document of `diff --format json`.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub struct ChangesReport {
     /// Says what kind of numbers these are.
     pub basis: &'static str,
@@ -21,7 +22,7 @@ pub struct ChangesReport {
 }
 
 /// One revision in numbers.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub struct Side {
     pub name: String,
     pub outcome: String,

@@ -1,4 +1,5 @@
 //! What `check` answers: the findings with their places, and a line that counts them.
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::check::Checked;
@@ -7,14 +8,14 @@ use crate::report::diagnostic;
 use crate::source::Span;
 
 /// The document of `check --format json`.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub struct CheckReport {
     /// How many programs were looked at, the called ones included.
     pub programs: usize,
     pub findings: Vec<FindingReport>,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub struct FindingReport {
     /// The rule's name.
     pub code: String,
@@ -31,7 +32,7 @@ pub struct FindingReport {
     pub labels: Vec<LabelReport>,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub struct LabelReport {
     pub file: String,
     pub line: u32,

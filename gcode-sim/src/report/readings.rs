@@ -1,6 +1,7 @@
 //! What an edge finder shows along the surface: as JSON, as a table, as CSV, and as a curve.
 use std::fmt::Write;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::diag::Severity;
@@ -12,7 +13,7 @@ use crate::stylus::{Gap, Pass, Reading};
 use crate::verify::Answer;
 
 /// Lengths in mm.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub struct ReadingsReport {
     basis: &'static str,
     /// Of the ball.
@@ -36,7 +37,7 @@ pub struct ReadingsReport {
     name: String,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct FindingRow {
     code: String,
     severity: &'static str,
@@ -45,7 +46,7 @@ struct FindingRow {
     line: Option<u32>,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct PassRow {
     moves: usize,
     length: f64,
@@ -54,7 +55,7 @@ struct PassRow {
     readings: Vec<Row>,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 struct Row {
     along: f64,
     x: f64,

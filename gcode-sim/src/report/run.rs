@@ -1,6 +1,8 @@
 //! What `run` answers: the end state of a control, its operator stops, and if asked for every move.
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use schemars::JsonSchema;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
@@ -12,7 +14,7 @@ use crate::session::Run;
 use crate::source::Span;
 
 /// The document of `run --format json`.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub struct RunReport {
     pub outcome: &'static str,
     pub alarm: Option<AlarmReport>,
@@ -24,9 +26,11 @@ pub struct RunReport {
     /// What the control did without a word.
     pub notes: Vec<NoteReport>,
     #[serde(serialize_with = "variables")]
+    #[schemars(with = "BTreeMap<String, f64>")]
     pub variables: Vec<(u32, f64)>,
     /// What `--show` asked for; null is vacant.
     #[serde(skip_serializing_if = "Vec::is_empty", serialize_with = "shown")]
+    #[schemars(with = "BTreeMap<String, Option<f64>>")]
     pub system: Vec<(u32, Option<f64>)>,
     /// The end point in the active work coordinate system.
     pub position: Coordinates,
@@ -38,7 +42,7 @@ pub struct RunReport {
     pub path: Option<Vec<MoveReport>>,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub struct AlarmReport {
     pub number: u32,
     pub code: String,
@@ -52,14 +56,14 @@ pub struct AlarmReport {
     pub calls: Vec<Where>,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub struct StopReport {
     pub kind: &'static str,
     pub text: String,
 }
 
 /// An M code without an effect on the control, and the first block that has it.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub struct PassedOnReport {
     pub code: String,
     pub program: String,
@@ -67,7 +71,7 @@ pub struct PassedOnReport {
 }
 
 /// One kind of thing that is no alarm and hardly meant, and the first block that has it.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub struct NoteReport {
     pub code: &'static str,
     pub message: String,
@@ -75,7 +79,7 @@ pub struct NoteReport {
     pub line: u32,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, JsonSchema)]
 pub struct MoveReport {
     pub kind: &'static str,
     pub to: Coordinates,
@@ -86,7 +90,8 @@ pub struct MoveReport {
 }
 
 /// Letter and value of every axis, in the order of the control's axis table.
-#[derive(Debug)]
+#[derive(Debug, JsonSchema)]
+#[schemars(with = "BTreeMap<char, f64>")]
 pub struct Coordinates(pub Vec<(char, f64)>);
 
 impl Coordinates {

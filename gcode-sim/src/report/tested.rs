@@ -2,6 +2,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::changes::{counted, entries};
@@ -10,7 +11,7 @@ use crate::changes::{Change, Totals, Where};
 use crate::diag::Severity;
 
 /// The document of `test --format json`, and what `test --merge` reads.
-#[derive(Debug, Serialize, Deserialize)]
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TestReport {
     /// Says what kind of numbers these are.
@@ -23,7 +24,7 @@ pub struct TestReport {
 }
 
 /// One of several parts of the cases, run on machines side by side.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Shard {
     /// Counts from 1.
@@ -33,7 +34,7 @@ pub struct Shard {
     pub cases: usize,
 }
 
-#[derive(Debug, Serialize, Deserialize)]
+#[derive(Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CaseReport {
     pub name: String,
@@ -52,7 +53,7 @@ pub struct CaseReport {
     pub files: BTreeMap<String, String>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Answer {
     /// As accepted.
@@ -65,7 +66,7 @@ pub enum Answer {
 }
 
 /// The first thing that a failed verdict has against a program.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Against {
     /// The code of the finding.

@@ -1,5 +1,6 @@
 //! How far each hole's neighbours stand: in a honeycomb every hole inside has six, all at the pitch.
 use nalgebra::{Point3, Vector3};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Comparison;
@@ -10,7 +11,7 @@ use crate::part::honeycomb::{Pattern, azimuth};
 const SIX: usize = 6;
 
 /// The neighbours of all holes, lengths in mm.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Neighbours {
     /// How distances count: `arc` or `chord`.
     pub metric: &'static str,
@@ -25,7 +26,7 @@ pub struct Neighbours {
 }
 
 /// Between two holes.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Distance {
     pub distance: f64,
     /// The holes by their ids; one nobody asked for by its place.
@@ -33,7 +34,7 @@ pub struct Distance {
 }
 
 /// Of one hole.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Around {
     pub count: usize,
     pub min: f64,

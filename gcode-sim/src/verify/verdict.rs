@@ -1,6 +1,7 @@
 //! The answer: every hole with its numbers, what is missing and what is too many, and why.
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Around, Comparison, Neighbours, Objection, Rounding};
@@ -9,7 +10,7 @@ use crate::motion::{Call, Calls};
 use crate::part::hole::{Hole, Origin};
 use crate::source::Span;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Answer {
     Pass,
@@ -17,7 +18,7 @@ pub enum Answer {
 }
 
 /// As `verify --format json` writes it. Nothing is rounded.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Verdict {
     /// Says what kind of numbers these are.
     pub basis: &'static str,
@@ -48,7 +49,7 @@ pub struct Verdict {
 }
 
 /// One wanted hole that was found.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct HoleVerdict {
     pub id: String,
     pub phi: f64,
@@ -78,7 +79,7 @@ pub struct HoleVerdict {
 }
 
 /// A hole as an inspector writes it down; the actual one where its axis crosses the plane of the nominal entry.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Placed {
     pub entry: [f64; 3],
     pub axis: [f64; 3],
@@ -87,7 +88,7 @@ pub struct Placed {
 }
 
 /// A hole nobody asked for.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Extra {
     #[serde(flatten)]
     pub hole: Hole,
@@ -98,7 +99,7 @@ pub struct Extra {
 }
 
 /// A finding as data.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Finding {
     pub code: String,
     pub severity: &'static str,
@@ -116,7 +117,7 @@ pub struct Finding {
 }
 
 /// A place on the part, mm.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
 pub struct OnPart {
     /// Counted from 1; null where no pass is: a missing flute, a rapid between two of them.
     pub pass: Option<usize>,

@@ -1,17 +1,27 @@
 //! `[ellipse]` of an alignment job: the outline that an edge finder follows. It may be left out, and so may each key.
+use schemars::JsonSchema;
 use serde::Deserialize;
-use toml::Spanned;
 
 use super::{Chord, EllipsePath};
+use crate::job::reader::Spanned;
 use crate::job::sections::within;
 use crate::job::{JobControl, JobError, Reader, Surface};
 
-#[derive(Default, Deserialize)]
+/// The outline in the plane z = 0 that an edge finder follows.
+#[derive(Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileEllipse {
+    /// x where it begins, mm [default: that of F].
+    #[schemars(range(min = 0.0, max = 99_999.0))]
     from: Option<Spanned<f64>>,
+    /// x where it ends, mm [default: that of E].
+    #[schemars(range(min = 0.0, max = 99_999.0))]
     to: Option<Spanned<f64>>,
+    /// How far the ball may be off, mm: no less than the least increment [default: 0.002, or two increments].
+    #[schemars(range(min = 0.000_1, max = 1.0))]
     chord_error: Option<Spanned<f64>>,
+    /// mm/min [default: 200].
+    #[schemars(range(min = 1.0, max = 10_000.0))]
     feed: Option<Spanned<f64>>,
 }
 

@@ -1,64 +1,107 @@
 //! Reads the job file of the family `alignment`: every key checked, its line named.
+use schemars::JsonSchema;
 use serde::Deserialize;
-use toml::Spanned;
 
 use super::ellipse::FileEllipse;
 use super::{Alignment, Chord, Runout, SineTable};
 use crate::gauge::{self, GaugeSet};
 use crate::job::pin_holes::{FileMachine, FileSurface};
+use crate::job::reader::{Exactly, Spanned};
 use crate::job::sections::{FileControl, length, sign, within};
 use crate::job::sheet::FileSheet;
 use crate::job::{JobError, Reader, Surface};
 use crate::units::{Deg, Mm};
 
-#[derive(Deserialize)]
+/// Measurements that tell how a part stands on its machine.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-struct File {
+pub(in crate::job) struct File {
+    /// What kind of part it is: decides which keys there are.
     #[serde(rename = "family")]
+    #[schemars(extend("enum" = ["alignment"]))]
     _family: String,
+    /// The control the programs are for.
     control: FileControl,
+    /// The machine.
     machine: FileMachine,
+    /// The surface that is measured.
     surface: FileSurface,
+    /// The touch probe.
     probe: FileProbe,
+    /// The table that sets the angle of the part's axis.
     sine_table: FileSineTable,
+    /// The chord between two points of the surface.
     chord: FileChord,
+    /// An indicator against the part while the table turns.
     runout: FileRunout,
+    /// The outline that an edge finder follows.
     #[serde(default)]
     ellipse: FileEllipse,
+    /// What the set-up sheet says of people, time and money.
     sheet: Option<FileSheet>,
 }
 
-#[derive(Deserialize)]
+/// The touch probe.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileProbe {
+    /// Of the stylus ball, mm.
+    #[schemars(range(min = 0.01, max = 1000.0))]
     radius: Spanned<f64>,
+    /// Of a touch, mm/min [default: 100].
+    #[schemars(range(min = 0.01, max = 1000.0))]
     feed: Option<Spanned<f64>>,
+    /// How far before and behind the surface a touch begins and ends, mm [default: 10].
+    #[schemars(range(min = 0.01, max = 1000.0))]
     search: Option<Spanned<f64>>,
 }
 
-#[derive(Deserialize)]
+/// The table that sets the angle of the part's axis.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileSineTable {
+    /// Between the rollers, mm.
+    #[schemars(range(min = 10.0, max = 2000.0))]
     length: Spanned<f64>,
+    /// The angle, degrees.
+    #[schemars(range(min = 0.0, max = 45.0))]
     phi: Spanned<f64>,
+    /// The set of gauge blocks.
+    #[schemars(extend("enum" = GaugeSet::ALL.map(|set| set.name)))]
     gauge_blocks: Spanned<String>,
+    /// 1 where higher blocks turn the part from x towards y, -1 where they turn it back [default: 1].
+    #[schemars(extend("enum" = [1, -1]))]
     sign: Option<Spanned<i64>>,
 }
 
-#[derive(Deserialize)]
+/// The chord between two points E and F of the surface in the plane z = 0.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileChord {
+    /// x of E, mm: at most the equatorial radius.
+    #[schemars(range(min = 0.0, max = 99_999.0))]
     e_radius: Spanned<f64>,
+    /// x of F, mm, another one than that of E.
+    #[schemars(range(min = 0.0, max = 99_999.0))]
     f_radius: Spanned<f64>,
+    /// Radius of the circle of candidates round each, mm.
+    #[schemars(range(min = 0.01, max = 99_999.0))]
     circle: Spanned<f64>,
+    /// How many there are round each.
+    #[schemars(range(min = 1, max = 10))]
     candidates: Spanned<i64>,
 }
 
-#[derive(Deserialize)]
+/// An indicator against the part while the table turns.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileRunout {
+    /// Two different y of the indicator, mm.
+    #[schemars(length(equal = 2))]
     heights: Spanned<Vec<f64>>,
-    angles: Spanned<(f64, f64, f64)>,
+    /// From, to, and the number of readings (3 to 100): degrees.
+    #[schemars(inner(range(min = -360.0, max = 360.0)))]
+    angles: Spanned<Exactly<f64, 3>>,
 }
 
 /// Reads the text of a job of this family.
@@ -154,7 +197,7 @@ impl FileRunout {
                 return Err(reader.error(&self.heights, message));
             }
         };
-        let (from, to, readings) = *self.angles.as_ref();
+        let [from, to, readings] = self.angles.as_ref().0;
         let fits = from.abs() <= 360.0 && to.abs() <= 360.0 && from < to;
         if !(fits && (3.0..=100.0).contains(&readings) && readings.fract() == 0.0) {
             let message = "key 'runout.angles' is from, to and the number of readings: degrees, -360 to 360, and 3 to 100";

@@ -2,7 +2,7 @@
 mod ellipse;
 mod file;
 
-pub(super) use file::parse;
+pub(super) use file::{File, parse};
 
 use super::{JobControl, PinMachine, SheetWords, Surface};
 use crate::gauge::GaugeSet;

@@ -1,85 +1,150 @@
 //! Reads the job file of the family `burr`: every key checked, its line named.
+use schemars::JsonSchema;
 use serde::Deserialize;
-use toml::Spanned;
 
 use super::{AxisSigns, Burr, BurrProgram, BurrShape, BurrTolerance, FluteLaw, Grinder, Nose, ProgramForm};
 use crate::control::{Dialect, Increment};
+use crate::job::reader::{Spanned, names};
 use crate::job::sections::{FileControl, sign, within};
 use crate::job::sheet::FileSheet;
 use crate::job::{JobControl, JobError, Reader};
 use crate::units::Deg;
 
-#[derive(Deserialize)]
+/// A rotary burr: its flutes, ground on a machine with a C table.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-struct File {
+pub(in crate::job) struct File {
+    /// What kind of part it is: decides which keys there are.
     #[serde(rename = "family")]
+    #[schemars(extend("enum" = ["burr"]))]
     _family: String,
+    /// The control the programs are for [default: fanuc-31i, IS-B].
     control: Option<FileControl>,
+    /// The burr.
     burr: FileBurr,
+    /// The grinder.
     machine: FileMachine,
+    /// How the program is written.
     program: Option<FileProgram>,
+    /// How far flutes may be off.
     tolerance: Option<FileTolerance>,
+    /// What the set-up sheet says of people, time and money.
     sheet: Option<FileSheet>,
 }
 
-#[derive(Deserialize)]
+/// The burr: a cylinder with a nose.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileBurr {
+    /// Of cylinder and nose, mm.
+    #[schemars(range(min = 0.5, max = 200.0))]
     diameter: Spanned<f64>,
+    /// Of the flutes, mm, nose included: no less than the nose.
+    #[schemars(range(min = 0.0, max = 500.0))]
     length: Spanned<f64>,
+    /// How many: as many as have room at the tip.
+    #[schemars(range(min = 1, max = 360))]
     flutes: Spanned<i64>,
+    /// Degrees, 1 to 60, or -60 to -1 for a left-hand burr.
+    #[schemars(extend("anyOf" = [{ "minimum": 1, "maximum": 60 }, { "minimum": -60, "maximum": -1 }]))]
     helix: Spanned<f64>,
+    /// constant-helix: the same angle everywhere; published: as in the paper.
+    #[schemars(extend("enum" = names(&FluteLaw::ALL)))]
     law: Spanned<String>,
+    /// Polar angle at which a flute ends, before the pole, degrees.
+    #[schemars(range(min = 1.0, max = 85.0))]
     tip_angle: Spanned<f64>,
+    /// Between programmed points, mm: no less than the least increment.
+    #[schemars(range(min = 0.000_1, max = 1.0))]
     chord_error: Spanned<f64>,
+    /// mm, no more than the radius [default: 0].
+    #[schemars(range(min = 0.0, max = 100.0))]
     tooth_depth: Option<Spanned<f64>>,
+    /// Instead of the ball: the tooth-bottom ellipse as two tangent arcs.
     profile: Option<Spanned<FileProfile>>,
 }
 
-#[derive(Deserialize)]
+/// The grinder.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileMachine {
+    /// From the C axis to the end of the cylinder at C = 0, X and Y, mm.
+    #[schemars(length(equal = 2), inner(range(min = -2000.0, max = 2000.0)))]
     c_offset: Spanned<Vec<Spanned<f64>>>,
+    /// Axes that turn or slide the other way.
     signs: Option<FileSigns>,
+    /// How far the wheel stays away between passes, mm [default: 2].
+    #[schemars(range(min = 0.1, max = 500.0))]
     clearance: Option<Spanned<f64>>,
+    /// As in [burr]; once is enough.
     profile: Option<Spanned<FileProfile>>,
 }
 
-#[derive(Deserialize)]
+/// Two tangent arcs, one on the side and one at the tip.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileProfile {
+    /// Radius of the side, mm: above half the diameter.
+    #[schemars(range(min = 0.25, max = 2000.0))]
     large: Spanned<f64>,
+    /// Radius of the tip, mm: below half the diameter.
+    #[schemars(range(min = 0.05, max = 100.0))]
     small: Spanned<f64>,
 }
 
-#[derive(Deserialize)]
+/// 1, or -1 for an axis that goes the other way [default: 1].
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileSigns {
+    /// Of X.
     #[serde(rename = "X")]
+    #[schemars(extend("enum" = [1, -1]))]
     x: Option<Spanned<i64>>,
+    /// Of Y.
     #[serde(rename = "Y")]
+    #[schemars(extend("enum" = [1, -1]))]
     y: Option<Spanned<i64>>,
+    /// Of A.
     #[serde(rename = "A")]
+    #[schemars(extend("enum" = [1, -1]))]
     a: Option<Spanned<i64>>,
+    /// Of B.
     #[serde(rename = "B")]
+    #[schemars(extend("enum" = [1, -1]))]
     b: Option<Spanned<i64>>,
+    /// Of C.
     #[serde(rename = "C")]
+    #[schemars(extend("enum" = [1, -1]))]
     c: Option<Spanned<i64>>,
 }
 
-#[derive(Deserialize)]
+/// How the program is written.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileProgram {
+    /// loop: a macro computes the points; moves: every move is written out, for a control without LN [default: loop where it can be].
+    #[schemars(extend("enum" = names(&FORMS)))]
     form: Option<Spanned<String>>,
+    /// Of the contact along the flute, mm/min [default: 200].
+    #[schemars(range(min = 1.0, max = 20_000.0))]
     speed: Option<Spanned<f64>>,
+    /// Of the approach, mm/min [default: 30].
+    #[schemars(range(min = 0.1, max = 5_000.0))]
     plunge: Option<Spanned<f64>>,
+    /// r/min [default: 3000].
+    #[schemars(range(min = 1.0, max = 99_999.0))]
     wheel: Option<Spanned<f64>>,
 }
 
-#[derive(Deserialize)]
+/// How far flutes may be off, either way.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileTolerance {
+    /// Of the helix angle, degrees [default: 0.3].
+    #[schemars(range(min = 0.001, max = 10.0))]
     helix: Option<Spanned<f64>>,
+    /// Of the gap between neighbours, degrees [default: 0.05].
+    #[schemars(range(min = 0.001, max = 10.0))]
     index: Option<Spanned<f64>>,
 }
 

@@ -1,7 +1,7 @@
 //! The job file of the family `burr`: ball-end rotary burrs on a 5-axis grinder.
 mod file;
 
-pub(super) use file::parse;
+pub(super) use file::{File, parse};
 
 use super::{JobControl, SheetWords};
 

@@ -1,70 +1,125 @@
 //! Reads the job file of the family `honeycomb`: every key checked, its line named.
+use schemars::JsonSchema;
 use serde::Deserialize;
-use toml::Spanned;
 
 use super::{Clamp, CombMachine, Cylinder, Drill, Honeycomb, Metric, Spacing};
+use crate::job::reader::{Spanned, names};
 use crate::job::sections::{FileControl, FileRotary, FileTolerance, heights, length, within};
 use crate::job::sheet::FileSheet;
 use crate::job::{JobError, Reader};
 
-#[derive(Deserialize)]
+/// A hexagonal pattern of radial holes on a cylinder about x.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-struct File {
+pub(in crate::job) struct File {
+    /// What kind of part it is: decides which keys there are.
     #[serde(rename = "family")]
+    #[schemars(extend("enum" = ["honeycomb"]))]
     _family: String,
+    /// The control the programs are for.
     control: FileControl,
+    /// The machine.
     machine: FileMachine,
+    /// How far holes may be off.
     tolerance: FileTolerance,
+    /// The part.
     cylinder: FileCylinder,
+    /// How the holes stand to one another.
     pattern: Spanned<FilePattern>,
+    /// The tool and the holes it makes.
     drill: FileDrill,
+    /// What the set-up sheet says of people, time and money.
     sheet: Option<FileSheet>,
 }
 
-#[derive(Deserialize)]
+/// The machine.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileMachine {
+    /// The axis that turns the part.
     rotary: FileRotary,
+    /// How far above the surface rapid becomes feed, mm [default: 2].
+    #[schemars(range(min = 0.01, max = 9_999.0))]
     clearance: Option<Spanned<f64>>,
+    /// How far above the surface the tool goes between holes, mm, no less than the clearance [default: 50].
+    #[schemars(range(min = 0.01, max = 9_999.0))]
     retract: Option<Spanned<f64>>,
+    /// The M codes that hold the rotary and let it go [default: none].
     clamp: Option<FileClamp>,
 }
 
-#[derive(Deserialize)]
+/// M codes of the machine's own.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileClamp {
+    /// Holds the rotary.
+    #[schemars(range(min = 10, max = 999), extend("not" = { "enum": TAKEN }))]
     on: Spanned<i64>,
+    /// Lets it go.
+    #[schemars(range(min = 10, max = 999), extend("not" = { "enum": TAKEN }))]
     off: Spanned<i64>,
 }
 
-#[derive(Deserialize)]
+/// The part: holes stand at 0 ≤ x ≤ length.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileCylinder {
+    /// On which the pitch is to hold, mm.
+    #[schemars(range(min = 0.01, max = 99_999.0))]
     diameter: Spanned<f64>,
+    /// mm.
+    #[schemars(range(min = 0.01, max = 99_999.0))]
     length: Spanned<f64>,
+    /// Where the holes begin, mm, no less than diameter [default: diameter].
+    #[schemars(range(min = 0.01, max = 99_999.0))]
     outer: Option<Spanned<f64>>,
+    /// Of a tube, mm, no more than diameter [default: 0, solid].
+    #[schemars(range(min = 0.0, max = 99_999.0))]
     bore: Option<Spanned<f64>>,
 }
 
-#[derive(Deserialize)]
+/// How the holes stand to one another: by pitch or by divisions, the other one follows.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("oneOf" = [{ "required": ["pitch"] }, { "required": ["divisions"] }]))]
 struct FilePattern {
+    /// Between neighbours, mm, above the drill's diameter; made to fit, so that the pattern closes.
+    #[schemars(range(min = 0.01, max = 99_999.0))]
     pitch: Option<Spanned<f64>>,
+    /// Rows of one group round the circumference.
+    #[schemars(range(min = 2, max = 100_000))]
     divisions: Option<Spanned<i64>>,
+    /// How the distance of neighbours counts: arc on the surface, or chord.
+    #[schemars(extend("enum" = names(&Metric::ALL)))]
     metric: Spanned<String>,
 }
 
-#[derive(Deserialize)]
+/// The tool and the holes it makes.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileDrill {
+    /// mm.
+    #[schemars(range(min = 0.01, max = 99_999.0))]
     diameter: Spanned<f64>,
+    /// mm, below the radius of the part.
+    #[schemars(range(min = 0.01, max = 99_999.0))]
     depth: Spanned<f64>,
+    /// Of the tool and of its length offset [default: 1].
+    #[schemars(range(min = 1, max = 400))]
     number: Option<Spanned<i64>>,
+    /// A whole number of r/min [default: 1000].
+    #[schemars(range(min = 1.0, max = 99_999.0), extend("multipleOf" = 1))]
     speed: Option<Spanned<f64>>,
+    /// mm/min [default: 60].
+    #[schemars(range(min = 0.01, max = 240_000.0))]
     feed: Option<Spanned<f64>>,
+    /// Of G83, mm, which a hole deeper than three diameters gets [default: the diameter].
+    #[schemars(range(min = 0.01, max = 9_999.0))]
     peck: Option<Spanned<f64>>,
 }
 
+/// M codes that end, call or rigid-tap.
+const TAKEN: [i64; 5] = [19, 29, 30, 98, 99];
 /// mm/min, in the paper.
 const FEED: f64 = 60.0;
 /// r/min; the paper names none.
@@ -100,8 +155,7 @@ impl FileClamp {
     fn check(&self, reader: &Reader<'_>) -> Result<Clamp, JobError> {
         let own = |key: &str, value: &Spanned<i64>| {
             let code = *value.as_ref();
-            let taken = [19, 29, 30, 98, 99].contains(&code);
-            if (10..=999).contains(&code) && !taken {
+            if (10..=999).contains(&code) && !TAKEN.contains(&code) {
                 return Ok(code as u32);
             }
             let allowed = "an M code of the machine's own, 10 to 999 without 19, 29, 30, 98, 99";

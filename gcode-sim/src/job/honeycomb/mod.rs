@@ -1,7 +1,7 @@
 //! The job file of the family `honeycomb`: a hexagonal pattern of radial holes on a cylinder.
 mod file;
 
-pub(super) use file::parse;
+pub(super) use file::{File, parse};
 
 use super::{JobControl, Rotary, SheetWords};
 

@@ -1,72 +1,140 @@
 //! Reads the job file of the family `pin-holes`: every key checked, its line named.
 use std::collections::BTreeSet;
 
+use schemars::{JsonSchema, Schema};
 use serde::Deserialize;
-use toml::Spanned;
+use serde_json::json;
 
 use super::tools::{FileTool, ToolsWanted, assign, default_tools};
 use super::{AxisDirection, Head, HeadKind, HoleWanted, MacroSettings, PinHoles, PinMachine, Surface, Tool};
+use crate::job::reader::{Spanned, names};
 use crate::job::sections::{FileControl, FileRotary, FileTolerance, ROTARY_LETTERS, heights, length, within};
 use crate::job::sheet::FileSheet;
 use crate::job::{JobError, Reader};
 
-#[derive(Deserialize)]
+/// Pin holes in a surface of revolution: drilled along its axis or its normals.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-struct File {
+pub(in crate::job) struct File {
+    /// What kind of part it is: decides which keys there are.
     #[serde(rename = "family")]
+    #[schemars(extend("enum" = ["pin-holes"]))]
     _family: String,
+    /// The control the programs are for.
     control: FileControl,
+    /// The machine.
     machine: FileMachine,
+    /// The surface that the holes begin in.
     surface: FileSurface,
+    /// How far holes may be off.
     tolerance: FileTolerance,
+    /// The holes, in the order in which they are drilled.
+    #[schemars(length(min = 1))]
     hole: Vec<FileHole>,
+    /// The tools in the order of use [default: a drill and an end mill for each diameter].
+    #[schemars(length(min = 1))]
     tool: Option<Vec<FileTool>>,
+    /// Which common variables the macros use.
     #[serde(rename = "macro")]
     macros: Option<FileMacro>,
+    /// What the set-up sheet says of people, time and money.
     sheet: Option<FileSheet>,
 }
 
-#[derive(Deserialize)]
+/// The machine of a job with a rotary table.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::job) struct FileMachine {
+    /// The axis that turns the part.
     rotary: FileRotary,
+    /// How the tool is inclined [default: by hand].
     head: Option<FileHead>,
+    /// How far above the surface rapid becomes feed, mm [default: 2].
+    #[schemars(range(min = 0.01, max = 9_999.0))]
     clearance: Option<Spanned<f64>>,
+    /// How far above the surface the tool goes between holes, mm, no less than the clearance [default: 50].
+    #[schemars(range(min = 0.01, max = 9_999.0))]
     retract: Option<Spanned<f64>>,
 }
 
-#[derive(Deserialize)]
+/// How the tool is inclined.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(transform = letter_goes_with_axis)]
 struct FileHead {
+    /// manual: an operator sets it at a stop; axis: an axis of the control.
+    #[schemars(extend("enum" = names(&HEADS)))]
     kind: Spanned<String>,
+    /// The axis of a head of kind axis.
+    #[schemars(extend("enum" = names(&ROTARY_LETTERS)))]
     letter: Option<Spanned<String>>,
+    /// From the head's pivot to the spindle's gauge line, mm [default: 0].
+    #[schemars(range(min = 0.0, max = 9_999.0))]
     pivot: Option<Spanned<f64>>,
 }
 
-#[derive(Deserialize)]
+/// The surface that the holes begin in.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::job) struct FileSurface {
+    /// An ellipsoid of revolution.
+    #[schemars(extend("enum" = ["ellipsoid"]))]
     kind: Spanned<String>,
+    /// Equatorial radius, mm.
+    #[schemars(range(min = 0.01, max = 99_999.0))]
     a: Spanned<f64>,
+    /// Polar radius, mm.
+    #[schemars(range(min = 0.01, max = 99_999.0))]
     b: Spanned<f64>,
 }
 
-#[derive(Deserialize)]
+/// One hole.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileHole {
+    /// Its name; each has its own.
     id: Spanned<String>,
+    /// Distance of its entry from the axis of revolution, mm: at most the equatorial radius.
+    #[schemars(range(min = 0.0, max = 99_999.0))]
     radius: Spanned<f64>,
+    /// Where it stands round that axis, degrees.
+    #[schemars(range(min = -3600.0, max = 3600.0))]
     azimuth: Spanned<f64>,
+    /// axial: along the axis of revolution; normal: along the surface's normal.
+    #[schemars(extend("enum" = names(&DIRECTIONS)))]
     axis: Spanned<String>,
+    /// mm.
+    #[schemars(range(min = 0.01, max = 99_999.0))]
     diameter: Spanned<f64>,
+    /// From the surface along the axis, mm.
+    #[schemars(range(min = 0.01, max = 9_999.0))]
     depth: Spanned<f64>,
+    /// The numbers of the tools that make it [default: every tool that isn't larger than it].
     tools: Option<Spanned<Vec<i64>>>,
 }
 
-#[derive(Deserialize)]
+/// What the macros use of the control.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileMacro {
+    /// The first of two common variables: 100 to 198 or 500 to 998.
+    #[schemars(extend("anyOf" = [{ "minimum": 100, "maximum": 198 }, { "minimum": 500, "maximum": 998 }]))]
     common: Spanned<i64>,
+}
+
+const HEADS: [(&str, bool); 2] = [("manual", false), ("axis", true)];
+
+const DIRECTIONS: [(&str, AxisDirection); 2] =
+    [("axial", AxisDirection::Axial), ("normal", AxisDirection::Normal)];
+
+/// Of a head of kind axis, and of no other.
+fn letter_goes_with_axis(schema: &mut Schema) {
+    let of = |kind: &str| json!({ "kind": { "enum": [kind] } });
+    let cases = json!([
+        { "properties": of("axis"), "required": ["letter"] },
+        { "properties": of("manual"), "not": { "required": ["letter"] } },
+    ]);
+    schema.insert("oneOf".to_owned(), cases);
 }
 
 /// Reads the text of a job of this family.
@@ -154,7 +222,7 @@ impl FileHead {
             }
             None => 0.0,
         };
-        let by_axis = reader.choice("machine.head.kind", &self.kind, &[("manual", false), ("axis", true)])?;
+        let by_axis = reader.choice("machine.head.kind", &self.kind, &HEADS)?;
         let kind = match (&self.letter, by_axis) {
             (None, false) => HeadKind::Manual,
             (Some(letter), false) => {
@@ -196,11 +264,7 @@ impl FileHole {
                 "-3600 to 3600 degrees",
                 within(-3600.0, 3600.0),
             )?,
-            axis: reader.choice(
-                "hole.axis",
-                &self.axis,
-                &[("axial", AxisDirection::Axial), ("normal", AxisDirection::Normal)],
-            )?,
+            axis: reader.choice("hole.axis", &self.axis, &DIRECTIONS)?,
             diameter: *self.diameter.as_ref(),
             depth: reader.number("hole.depth", &self.depth, "0.01 to 9999 mm", within(0.01, 9_999.0))?,
             tools,

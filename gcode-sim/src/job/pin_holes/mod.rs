@@ -2,7 +2,7 @@
 mod file;
 mod tools;
 
-pub(super) use file::{FileMachine, FileSurface, parse};
+pub(super) use file::{File, FileMachine, FileSurface, parse};
 
 use super::{JobControl, Rotary, SheetWords};
 

@@ -1,20 +1,35 @@
 //! The tools of a pin-hole job, and which of them make which hole.
+use schemars::JsonSchema;
 use serde::Deserialize;
-use toml::Spanned;
 
 use super::Tool;
+use crate::job::reader::Spanned;
 use crate::job::sections::{length, within};
 use crate::job::{JobError, Reader};
 
-#[derive(Deserialize)]
+/// A tool.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileTool {
+    /// Its number, and that of its length offset; each has its own.
+    #[schemars(range(min = 1, max = 9999))]
     number: Spanned<i64>,
+    /// mm.
+    #[schemars(range(min = 0.01, max = 99_999.0))]
     diameter: Spanned<f64>,
+    /// From the gauge line to the tip, mm [default: 0].
+    #[schemars(range(min = 0.0, max = 9_999.0))]
     length: Option<Spanned<f64>>,
+    /// A whole number of r/min.
+    #[schemars(range(min = 1.0, max = 99_999.0), extend("multipleOf" = 1))]
     speed: Spanned<f64>,
+    /// Into the hole, mm/min.
+    #[schemars(range(min = 0.01, max = 240_000.0))]
     feed: Spanned<f64>,
+    /// Out of the hole, mm/min [default: 200, or feed if that is more].
+    #[schemars(range(min = 0.01, max = 240_000.0))]
     retract_feed: Option<Spanned<f64>>,
+    /// What messages and the sheet call it [default: TOOL and its number].
     name: Option<String>,
 }
 

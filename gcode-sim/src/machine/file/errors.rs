@@ -1,39 +1,61 @@
 //! Errors as a file names them: the `[errors]` of a machine file, and the error file of a budget.
+use schemars::{JsonSchema, Schema};
 use serde::Deserialize;
-use toml::Spanned;
+use serde_json::Value;
 
 use super::sections::{Collector, FileHead, FileLinear, FilePart, FileRotary};
 use super::spread::{FileSpread, LENGTH};
 use crate::job::JobError;
-use crate::job::reader::Reader;
+use crate::job::reader::{Reader, Spanned};
 use crate::machine::Machine;
 use crate::machine::sources::{Drawn, Source};
 
-#[derive(Deserialize)]
+/// Of a touch probe.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileProbe {
+    /// How far along its way each touch is noted beyond its place, mm.
+    #[schemars(transform = LENGTH.bounds())]
     noise: Option<Spanned<FileSpread>>,
+    /// Another seed draws other numbers [default: 0].
     seed: Option<Spanned<u64>>,
 }
 
 /// The machine file's `[errors]`.
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileErrors {
+    /// Of the axes that slide.
     linear: Option<FileLinear>,
+    /// Of the axis that turns the part.
     rotary: Option<FileRotary>,
+    /// Of a head of kind manual or axis.
     head: Option<FileHead>,
+    /// Of a touch probe.
     probe: Option<FileProbe>,
 }
 
-/// The error file of a budget.
-#[derive(Deserialize)]
+/// What set-up and machine are off by: a budget draws each of many parts anew from it.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-struct File {
+pub(crate) struct File {
+    /// Of the set-up of the part.
     part: Option<FilePart>,
+    /// Of the axes that slide.
+    #[schemars(transform = without_draws)]
     linear: Option<FileLinear>,
+    /// Of the axis that turns the part.
+    #[schemars(transform = without_draws)]
     rotary: Option<FileRotary>,
+    /// Of a head of kind manual or axis.
+    #[schemars(transform = without_draws)]
     head: Option<FileHead>,
+}
+
+/// A machine's errors are drawn when its file is read, a budget's again and again: what only the first needs is left out.
+fn without_draws(schema: &mut Schema) {
+    let keys = schema.get_mut("properties").and_then(Value::as_object_mut);
+    keys.into_iter().for_each(|keys| keys.retain(|key, _| !["wave", "seed"].contains(&key.as_str())));
 }
 
 fn seed(seed: &Option<Spanned<u64>>) -> u64 {

@@ -1,22 +1,44 @@
 //! `[[table]]`: the axes that carry the part, the outermost last.
 use nalgebra::{Point3, Unit, Vector3};
+use schemars::{JsonSchema, Schema};
 use serde::Deserialize;
-use toml::Spanned;
+use serde_json::json;
 
-use super::{lengths, letter, sign};
+use super::{AXES, lengths, letter, sign};
 use crate::job::JobError;
-use crate::job::reader::Reader;
+use crate::job::reader::{Exactly, Reader, Spanned, names};
 use crate::machine::{Chain, Link};
 use crate::motion::Axes;
 
-#[derive(Deserialize)]
+/// An axis that carries the part.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(transform = turns_or_slides)]
 pub(super) struct FileLink {
+    /// The axis.
+    #[schemars(extend("enum" = AXES))]
     letter: Spanned<String>,
+    /// Turns about x, y or z: A, B and C do.
+    #[schemars(extend("enum" = names(&DIRECTIONS)))]
     turns: Option<Spanned<String>>,
+    /// Slides along x, y or z: all others do.
+    #[schemars(extend("enum" = names(&DIRECTIONS)))]
     slides: Option<Spanned<String>>,
+    /// 1 where a positive command turns the part right-handed, or moves it in the positive direction; else -1.
+    #[schemars(extend("enum" = [1, -1]))]
     sign: Spanned<i64>,
-    centre: Option<[Spanned<f64>; 3]>,
+    /// A point on the axis, machine coordinates, mm [default: the part's origin].
+    #[schemars(inner(range(min = -100_000.0, max = 100_000.0)))]
+    centre: Option<Exactly<Spanned<f64>, 3>>,
+}
+
+/// One of both; what slides has no centre.
+fn turns_or_slides(schema: &mut Schema) {
+    let cases = json!([
+        { "required": ["turns"], "not": { "required": ["slides"] } },
+        { "required": ["slides"], "not": { "anyOf": [{ "required": ["turns"] }, { "required": ["centre"] }] } },
+    ]);
+    schema.insert("oneOf".to_owned(), cases);
 }
 
 const DIRECTIONS: [(&str, Vector3<f64>); 3] = [
@@ -55,7 +77,9 @@ impl FileLink {
         }
         let unit = Unit::new_unchecked(reader.choice(&format!("table.{key}"), direction, &DIRECTIONS)?);
         match (&self.centre, key) {
-            (Some([x, ..]), "slides") => Err(reader.error(x, "key 'table.centre' goes with 'turns' only")),
+            (Some(Exactly([x, ..])), "slides") => {
+                Err(reader.error(x, "key 'table.centre' goes with 'turns' only"))
+            }
             (_, "slides") => Ok(Link::slide(axis, unit, sign)),
             (Some(centre), _) => {
                 Ok(Link::turn(axis, unit, Point3::from(lengths(reader, "table.centre", centre)?), sign))

@@ -12,46 +12,68 @@ mod spread;
 mod tool;
 mod wheel;
 
+pub(crate) use errors::File as ErrorFile;
 use errors::FileErrors;
 pub use errors::error_file;
 use head::FileHead;
 use link::FileLink;
 use nalgebra::Vector3;
-use offsets::work_offsets;
+use offsets::{FileOffsets, work_offsets};
 use part::FilePart;
 use probe::FileProbe;
+use schemars::JsonSchema;
 use serde::Deserialize;
-use toml::{Spanned, Table};
 use tool::FileTool;
 use wheel::FileWheel;
 
 use super::{Chain, Head, HeadKind, Machine, Tool};
 use crate::control::{Dialect, Increment};
 use crate::job::JobError;
-use crate::job::reader::Reader;
+use crate::job::reader::{Exactly, Reader, Spanned, names};
 use crate::motion::{Axes, Axis};
 
-#[derive(Deserialize)]
+/// The machine that a program runs on. Every section may be left out: without any it is that of the paper.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-struct File {
+pub(crate) struct File {
+    /// The control.
     control: Option<FileControl>,
+    /// What carries the part, from the bed outwards.
     table: Option<Vec<FileLink>>,
+    /// How the tool is inclined.
     head: Option<FileHead>,
+    /// A grinder's wheel, which stays where it is while the table moves the part.
     wheel: Option<FileWheel>,
+    /// The tools.
     tool: Option<Vec<FileTool>>,
-    offsets: Option<Spanned<Table>>,
+    /// What the work offsets G54 to G59 hold when the run begins, by axis.
+    offsets: Option<Spanned<FileOffsets>>,
+    /// Where the part lies on the machine, and how far off.
     part: Option<FilePart>,
+    /// A touch probe.
     probe: Option<FileProbe>,
+    /// What the machine is off by.
     errors: Option<FileErrors>,
 }
 
-#[derive(Default, Deserialize)]
+/// The control.
+#[derive(Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileControl {
+    /// The family of controls [default: fanuc-31i].
+    #[schemars(extend("enum" = names(&Dialect::ALL)))]
     dialect: Option<Spanned<String>>,
+    /// The least input increment: IS-A 0.01, IS-B 0.001, IS-C 0.0001 [default: IS-B].
+    #[schemars(extend("enum" = names(&Increment::ALL)))]
     increment: Option<Spanned<String>>,
+    /// Its axis table, axis 1 first: different letters [default: XYZABC].
+    #[schemars(regex(pattern = "^[XYZABCUVW]{1,8}$"))]
     axes: Option<Spanned<String>>,
 }
+
+/// Letters that axes may have, and those of axes that turn.
+const AXES: [&str; 9] = ["X", "Y", "Z", "A", "B", "C", "U", "V", "W"];
+const ROTARY_LETTERS: [&str; 3] = ["A", "B", "C"];
 
 const LENGTH: &str = "mm, from -100000 to 100000";
 impl Machine {
@@ -116,8 +138,12 @@ fn length(reader: &Reader<'_>, key: &str, value: &Spanned<f64>) -> Result<f64, J
     reader.number(key, value, LENGTH, |v| v.abs() <= 100_000.0)
 }
 
-fn lengths(reader: &Reader<'_>, key: &str, values: &[Spanned<f64>; 3]) -> Result<Vector3<f64>, JobError> {
-    let [x, y, z] = values;
+fn lengths(
+    reader: &Reader<'_>,
+    key: &str,
+    values: &Exactly<Spanned<f64>, 3>,
+) -> Result<Vector3<f64>, JobError> {
+    let Exactly([x, y, z]) = values;
     Ok(Vector3::new(length(reader, key, x)?, length(reader, key, y)?, length(reader, key, z)?))
 }
 
@@ -251,6 +277,11 @@ tilt = [0.0, 0.0, 1.0]
                 "line 4: key 'head.pivot' is -1: mm, 0 or more",
             ),
             ("table = []\n[head]\nkind = \"axis\"\n", "line 3: kind = \"axis\" needs the key 'head.letter'"),
+            ("[part]\norigin = [1, 2, 3, 4]\n", "line 2: key 'part.origin' has 4 values: 3 are needed"),
+            (
+                "[head]\nkind = \"fixed\"\ndirection = [0, 1]\n",
+                "line 3: key 'head.direction' has 2 values: 3 are needed",
+            ),
             (
                 "table = []\n[head]\nkind = \"manual\"\ndirection = [0.0, 1.0, 0.0]\n",
                 "line 4: key 'head.direction' goes with kind fixed only",

@@ -1,20 +1,27 @@
 //! `[part]`: where the part lies on the machine, and how far off.
 use nalgebra::Point3;
+use schemars::JsonSchema;
 use serde::Deserialize;
-use toml::Spanned;
 
 use super::lengths;
 use crate::job::JobError;
-use crate::job::reader::Reader;
+use crate::job::reader::{Exactly, Reader, Spanned};
 use crate::machine::Placement;
 use crate::units::Deg;
 
-#[derive(Default, Deserialize)]
+/// Where the part lies on the machine, and how far off.
+#[derive(Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FilePart {
-    origin: Option<[Spanned<f64>; 3]>,
-    shift: Option<[Spanned<f64>; 3]>,
-    tilt: Option<[Spanned<f64>; 3]>,
+    /// The part's origin in machine coordinates with the table at 0, mm.
+    #[schemars(inner(range(min = -100_000.0, max = 100_000.0)))]
+    origin: Option<Exactly<Spanned<f64>, 3>>,
+    /// Where the real part stands against that, mm.
+    #[schemars(inner(range(min = -100_000.0, max = 100_000.0)))]
+    shift: Option<Exactly<Spanned<f64>, 3>>,
+    /// How it is turned, about x, then y, then z, degrees.
+    #[schemars(inner(range(min = -360.0, max = 360.0)))]
+    tilt: Option<Exactly<Spanned<f64>, 3>>,
 }
 
 impl FilePart {
@@ -27,7 +34,7 @@ impl FilePart {
             part.shift = lengths(reader, "part.shift", shift)?;
         }
         if let Some(tilt) = &self.tilt {
-            for (angle, value) in part.tilt.iter_mut().zip(tilt) {
+            for (angle, value) in part.tilt.iter_mut().zip(&tilt.0) {
                 let allowed = "degrees from -360 to 360";
                 *angle = Deg(reader.number("part.tilt", value, allowed, |v| v.abs() <= 360.0)?);
             }

@@ -1,18 +1,27 @@
 //! The machine file's `[probe]`.
+use schemars::JsonSchema;
 use serde::Deserialize;
-use toml::Spanned;
 
 use crate::job::JobError;
-use crate::job::reader::Reader;
+use crate::job::reader::{Reader, Spanned};
 use crate::machine::Probe;
 use crate::units::Seconds;
 
-#[derive(Deserialize)]
+/// A touch probe.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileProbe {
+    /// Of the stylus ball, mm; its centre is the tool's tip.
+    #[schemars(range(min = 0.0, max = 1000.0))]
     radius: Spanned<f64>,
+    /// From the contact until the control notes the position, seconds [default: 0].
+    #[schemars(range(min = 0.0, max = 10.0))]
     delay: Option<Spanned<f64>>,
+    /// From then until the axes stand still, seconds [default: 0].
+    #[schemars(range(min = 0.0, max = 10.0))]
     overrun: Option<Spanned<f64>>,
+    /// How far the stylus can be pushed before it breaks, mm [default: any].
+    #[schemars(range(min = 0.0, max = 1000.0))]
     give: Option<Spanned<f64>>,
 }
 

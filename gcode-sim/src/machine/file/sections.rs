@@ -1,46 +1,74 @@
 //! The sections of errors that a machine file and the error file of a budget share, and the sources in them.
+use schemars::JsonSchema;
 use serde::Deserialize;
-use toml::Spanned;
 
 use super::spread::{ANGLE, FileSpread, FileVector, Kind, LENGTH};
 use crate::job::JobError;
-use crate::job::reader::Reader;
+use crate::job::reader::{Reader, Spanned};
 use crate::machine::sources::{Quantity, Source};
 use crate::machine::{HeadKind, Machine};
 use crate::motion::Axis;
 
 /// The set-up of the part.
-#[derive(Deserialize)]
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FilePart {
+    /// How far it is shifted, mm.
+    #[schemars(transform = LENGTH.bounds())]
     pub(super) shift: Option<FileVector>,
+    /// How far it is tilted, degrees.
+    #[schemars(transform = ANGLE.bounds())]
     pub(super) tilt: Option<FileVector>,
+    /// How far its axis stands aside of the table's, mm, in any direction.
+    #[schemars(transform = LENGTH.bounds())]
     pub(super) runout: Option<Spanned<FileSpread>>,
 }
 
-#[derive(Deserialize)]
+/// Of the axes that slide.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileLinear {
+    /// How far X stands beyond its commanded place, mm.
+    #[schemars(transform = LENGTH.bounds())]
     pub(super) x: Option<Spanned<FileSpread>>,
+    /// How far Y stands beyond its commanded place, mm.
+    #[schemars(transform = LENGTH.bounds())]
     pub(super) y: Option<Spanned<FileSpread>>,
+    /// How far Z stands beyond its commanded place, mm.
+    #[schemars(transform = LENGTH.bounds())]
     pub(super) z: Option<Spanned<FileSpread>>,
+    /// The error swings once on so many mm of the axis [default: 500].
+    #[schemars(range(min = 1.0, max = 100_000.0))]
     pub(super) wave: Option<Spanned<f64>>,
+    /// Another seed is another machine of the same make [default: 0].
     pub(super) seed: Option<Spanned<u64>>,
 }
 
-#[derive(Deserialize)]
+/// Of the axis that turns the part.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileRotary {
+    /// How far it stands beyond its commanded angle, degrees.
+    #[schemars(transform = ANGLE.bounds())]
     pub(super) index: Option<Spanned<FileSpread>>,
+    /// Where it is against its centre, mm.
+    #[schemars(transform = LENGTH.bounds())]
     pub(super) centre: Option<FileVector>,
+    /// How its direction is turned, degrees.
+    #[schemars(transform = ANGLE.bounds())]
     pub(super) tilt: Option<FileVector>,
+    /// Another seed is another machine of the same make [default: 0].
     pub(super) seed: Option<Spanned<u64>>,
 }
 
-#[derive(Deserialize)]
+/// Of a head of kind manual or axis.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileHead {
+    /// How far it stands beyond its angle, degrees.
+    #[schemars(transform = ANGLE.bounds())]
     pub(super) angle: Option<Spanned<FileSpread>>,
+    /// Another seed is another machine of the same make [default: 0].
     pub(super) seed: Option<Spanned<u64>>,
 }
 

@@ -1,25 +1,35 @@
 //! How an error is distributed, as a file writes it: `{ normal = 0.01 }`.
+use schemars::transform::Transform;
+use schemars::{JsonSchema, Schema};
 use serde::Deserialize;
-use toml::Spanned;
+use serde_json::Value;
 
 use crate::job::JobError;
-use crate::job::reader::Reader;
+use crate::job::reader::{Reader, Spanned};
 use crate::machine::error::Spread;
 
-/// One of the three.
-#[derive(Deserialize)]
+/// How an error is distributed: one of the three.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+#[schemars(extend("minProperties" = 1, "maxProperties" = 1))]
 pub(super) struct FileSpread {
+    /// Always this.
     fixed: Option<Spanned<f64>>,
+    /// Gaussian round 0 with this standard deviation.
     normal: Option<Spanned<f64>>,
+    /// Anything from minus to plus this, all alike.
     uniform: Option<Spanned<f64>>,
 }
 
-#[derive(Deserialize)]
+/// By direction.
+#[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileVector {
+    /// Along or about x.
     pub(super) x: Option<Spanned<FileSpread>>,
+    /// Along or about y.
     pub(super) y: Option<Spanned<FileSpread>>,
+    /// Along or about z.
     pub(super) z: Option<Spanned<FileSpread>>,
 }
 
@@ -32,6 +42,27 @@ pub(super) struct Kind {
 
 pub(super) const LENGTH: Kind = Kind { allowed: "mm, 100 at most", most: 100.0 };
 pub(super) const ANGLE: Kind = Kind { allowed: "degrees, 45 at most", most: 45.0 };
+
+impl Kind {
+    /// Puts the bounds into the schema of a spread, or of each spread of a vector.
+    pub(super) fn bounds(self) -> impl Transform {
+        move |schema: &mut Schema| self.bound(schema)
+    }
+
+    fn bound(self, schema: &mut Schema) {
+        let keys = schema.get_mut("properties").and_then(Value::as_object_mut);
+        for (key, value) in keys.into_iter().flatten() {
+            let Ok(inner) = <&mut Schema>::try_from(value) else { continue };
+            if matches!(key.as_str(), "x" | "y" | "z") {
+                self.bound(inner);
+            } else {
+                let least = if key == "fixed" { -self.most } else { 0.0 };
+                inner.insert("minimum".to_owned(), least.into());
+                inner.insert("maximum".to_owned(), self.most.into());
+            }
+        }
+    }
+}
 
 impl FileSpread {
     pub(super) fn check(

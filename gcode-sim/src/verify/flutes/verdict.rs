@@ -1,4 +1,5 @@
 //! The answer on flutes: the numbers of the worst place, both laws side by side, and the findings.
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Inspection;
@@ -12,7 +13,7 @@ use crate::units::Deg;
 use crate::verify::verdict::{Answer, Finding, readable};
 
 /// As `verify --format json` writes it. Lengths in mm, angles in degrees; nothing is rounded.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct FluteVerdict {
     /// Says what kind of numbers these are.
     pub basis: &'static str,
@@ -62,7 +63,7 @@ pub struct FluteVerdict {
 }
 
 /// The helix angle at one polar angle: measured, and by both laws.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
 pub struct Law {
     pub theta: f64,
     /// On the flute that is farthest from the law; null where it isn't measured.
@@ -72,7 +73,7 @@ pub struct Law {
 }
 
 /// What `reference` writes of a burr: what is wanted, without a program.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct WantedFlutes {
     pub unit: &'static str,
     /// A burr has none.

@@ -1,0 +1,79 @@
+//! The JSON Schemas of the files that users write and of the results that are written as JSON.
+//!
+//! They come from the types that files are read into and results are written from, so that neither can drift away.
+mod types;
+
+use schemars::{JsonSchema, Schema};
+use serde_json::Value;
+
+use crate::changes::AcceptedFile;
+use crate::job::control_file::ControlFile;
+use crate::job::{FileRates, JobFile};
+use crate::machine::{ErrorFile, MachineFile};
+use crate::part::hole::HoleList;
+use crate::report::budget::BudgetReport;
+use crate::report::changes::ChangesReport;
+use crate::report::check::CheckReport;
+use crate::report::readings::ReadingsReport;
+use crate::report::run::RunReport;
+use crate::report::tested::TestReport;
+use crate::verify::Verdict;
+use crate::verify::flutes::{FluteVerdict, WantedFlutes};
+
+/// One kind of document.
+pub struct Format {
+    pub name: &'static str,
+    /// What it is, in a line.
+    pub about: &'static str,
+    /// Users write it as TOML; else it is JSON.
+    pub is_toml: bool,
+    schema: fn() -> Schema,
+}
+
+/// Files first, then results by the commands that write them.
+pub const FORMATS: &[Format] = &[
+    file::<JobFile>("job", "a job file, of any family"),
+    file::<MachineFile>("machine", "a machine file: --machine"),
+    file::<ControlFile>("control", "settings of the control: --control-file"),
+    file::<ErrorFile>("errors", "what set-up and machine are off by: budget --errors"),
+    file::<FileRates>("rates", "what machine hours cost: gcode-gen sheet --rates"),
+    Format {
+        name: "reference",
+        about: "a list of holes: --reference",
+        is_toml: false,
+        schema: types::read::<HoleList>,
+    },
+    Format {
+        name: "accepted",
+        about: "what was accepted of a case: accepted.json",
+        is_toml: false,
+        schema: types::read::<AcceptedFile>,
+    },
+    result::<RunReport>("run", "what run answers"),
+    result::<HoleList>("holes", "what holes answers, and reference of a part with holes"),
+    result::<WantedFlutes>("wanted-flutes", "what reference answers of a burr"),
+    result::<Verdict>("verify", "what verify answers of a part with holes"),
+    result::<FluteVerdict>("verify-flutes", "what verify answers of a burr"),
+    result::<ReadingsReport>("readings", "what readings answers"),
+    result::<CheckReport>("check", "what check answers"),
+    result::<ChangesReport>("diff", "what diff answers"),
+    result::<TestReport>("test", "what test answers, and test --merge reads"),
+    result::<BudgetReport>("budget", "what budget answers"),
+];
+
+const fn file<T: JsonSchema>(name: &'static str, about: &'static str) -> Format {
+    Format { name, about, is_toml: true, schema: types::toml::<T> }
+}
+
+const fn result<T: JsonSchema>(name: &'static str, about: &'static str) -> Format {
+    Format { name, about, is_toml: false, schema: types::written::<T> }
+}
+
+impl Format {
+    /// The schema, draft 2020-12.
+    pub fn schema(&self) -> Value {
+        let mut schema = (self.schema)();
+        schema.insert("title".to_owned(), format!("gcode-sim: {}", self.about).into());
+        schema.to_value()
+    }
+}

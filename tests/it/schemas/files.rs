@@ -1,0 +1,271 @@
+//! Schemas of files against their readers: files that are there, and each of them changed in every place.
+use std::path::{Path, PathBuf};
+
+use gcode_sim::control::Settings;
+use gcode_sim::job::control_file;
+use gcode_sim::job::{Job, Rates};
+use gcode_sim::machine::{Machine, error_file};
+use serde_json::Value as Json;
+use toml::{Table, Value};
+
+use super::{schema, validator, walk};
+
+type Read = fn(&str) -> Result<(), String>;
+
+/// The TOML files by the names of their schemas, each with its reader.
+const READERS: [(&str, Read); 5] = [
+    ("job", |text| Job::parse(text).map(drop).map_err(|error| error.to_string())),
+    ("machine", |text| Machine::parse(text).map(drop).map_err(|error| error.to_string())),
+    ("control", |text| {
+        control_file::apply(text, &mut Settings::default()).map_err(|error| error.to_string())
+    }),
+    ("errors", |text| {
+        let machine = Machine::parse("[head]\nkind = \"manual\"\n").unwrap();
+        error_file(text, &machine).map(drop).map_err(|error| error.to_string())
+    }),
+    ("rates", |text| Rates::parse(text).map(drop).map_err(|error| error.to_string())),
+];
+
+fn workspace() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
+}
+
+fn files(dir: &Path, found: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(dir).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            files(&path, found);
+        } else if path.extension().is_some_and(|e| e == "toml") {
+            found.push(path);
+        }
+    }
+}
+
+fn json(table: &Table) -> Json {
+    serde_json::to_value(table).unwrap()
+}
+
+#[test]
+fn what_a_reader_takes_its_schema_takes() {
+    let mut found = Vec::new();
+    for dir in ["examples", "tests/suite", "tests/complete", "gcode-gen/src/families"] {
+        files(&workspace().join(dir), &mut found);
+    }
+    for (name, read) in READERS {
+        let validator = validator(name);
+        let mut count = 0;
+        for path in &found {
+            let text = std::fs::read_to_string(path).unwrap_or_default();
+            if read(&text).is_err() {
+                continue;
+            }
+            count += 1;
+            let document = json(&toml::from_str(&text).unwrap());
+            let against: Vec<_> = validator.iter_errors(&document).map(|e| e.to_string()).collect();
+            assert!(against.is_empty(), "{} as {name}: {against:?}", path.display());
+        }
+        println!("{name}: {count} files");
+        assert!(count > 0, "{name}: no file was looked at");
+    }
+}
+
+/// The complete files, each with its schema.
+fn complete() -> Vec<(PathBuf, &'static str, Read)> {
+    let mut found = Vec::new();
+    files(&workspace().join("tests/complete"), &mut found);
+    let named = |path: PathBuf| {
+        let stem = path.file_stem().unwrap().to_str().unwrap();
+        let known = READERS.iter().skip(1).find(|(name, _)| stem.split('-').next() == Some(name));
+        let (name, read) = *known.unwrap_or(&READERS[0]);
+        (path, name, read)
+    };
+    found.into_iter().map(named).collect()
+}
+
+/// No key is forgotten by what follows: each is in one of the complete files.
+#[test]
+fn the_complete_files_have_every_key() {
+    fn keys(value: &Json, path: &str, found: &mut Vec<String>) {
+        match value {
+            Json::Object(table) => {
+                for (key, inner) in table {
+                    found.push(format!("{path}/{key}"));
+                    keys(inner, &format!("{path}/{key}"), found);
+                }
+            }
+            Json::Array(all) => all.iter().for_each(|inner| keys(inner, &format!("{path}/[]"), found)),
+            _ => {}
+        }
+    }
+    for (name, _) in READERS.iter().filter(|(name, _)| *name != "control") {
+        let mut there = Vec::new();
+        for (path, _, _) in complete().iter().filter(|(_, of, _)| of == name) {
+            let document: Table = toml::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
+            keys(&json(&document), "", &mut there);
+        }
+        let all = schema(name);
+        walk(&all, "", &mut |path, schema| {
+            for (key, _) in schema["properties"].as_object().into_iter().flatten() {
+                let key = format!("{path}/{key}");
+                // A spread has one of three, and a section of rates is the same in every family.
+                let known = there.iter().any(|k| *k == key || k.starts_with(&format!("{key}/")));
+                let spread = ["fixed", "normal", "uniform"].iter().any(|end| key.ends_with(end));
+                assert!(known || spread, "{name}: no complete file has {key}");
+            }
+        });
+    }
+}
+
+/// Every table and value of a file by its path, the root included.
+fn places(value: &Value, path: &[String], found: &mut Vec<Vec<String>>) {
+    found.push(path.to_vec());
+    let below = |key: String| path.iter().cloned().chain([key]).collect::<Vec<_>>();
+    match value {
+        Value::Table(table) => {
+            table.iter().for_each(|(key, inner)| places(inner, &below(key.clone()), found))
+        }
+        Value::Array(all) => {
+            all.iter().enumerate().for_each(|(n, inner)| places(inner, &below(n.to_string()), found));
+        }
+        _ => {}
+    }
+}
+
+fn at<'v>(root: &'v mut Value, path: &[String]) -> &'v mut Value {
+    path.iter().fold(root, |value, key| match value {
+        Value::Array(all) => &mut all[key.parse::<usize>().unwrap()],
+        table => &mut table[key.as_str()],
+    })
+}
+
+/// The numbers just inside and just beyond each bound that a schema has anywhere, and some others.
+fn numbers(name: &str) -> Vec<f64> {
+    let mut all = vec![0.0, -1.0, 1.5, 1e9, -1e9];
+    walk(&schema(name), "", &mut |_, schema| {
+        for word in ["minimum", "maximum"] {
+            if let Some(bound) = schema[word].as_f64() {
+                let little = bound.abs().max(1e-3) * 1e-3;
+                all.extend([bound, bound - little, bound + little]);
+            }
+        }
+    });
+    all.sort_by(f64::total_cmp);
+    all.dedup();
+    all
+}
+
+/// What may stand in the place of a value.
+fn instead(value: &Value, numbers: &[f64]) -> Vec<Value> {
+    let mut all = vec![
+        Value::Boolean(true),
+        Value::String("X".into()),
+        Value::Array(Vec::new()),
+        Value::Table(Table::new()),
+    ];
+    match value {
+        Value::Float(_) => all.extend(numbers.iter().map(|number| Value::Float(*number))),
+        Value::Integer(_) => {
+            let whole = numbers.iter().filter(|number| number.fract() == 0.0 || number.abs() > 1.0);
+            all.extend(
+                whole
+                    .flat_map(|number| [number.floor(), number.ceil()])
+                    .map(|number| Value::Integer(number as i64)),
+            );
+            all.push(Value::Float(1.5));
+        }
+        Value::String(text) => all.push(Value::String(format!("{text}x"))),
+        Value::Array(items) if !items.is_empty() => {
+            all.push(Value::Array(items[1..].to_vec()));
+            all.push(Value::Array(items.iter().chain(items.first()).cloned().collect()));
+        }
+        _ => {}
+    }
+    all
+}
+
+/// The file changed in one place: a key gone, a key more, another value.
+fn changed(root: &Value, numbers: &[f64]) -> Vec<(String, Value)> {
+    let mut all = Vec::new();
+    places(root, &[], &mut all);
+    let mut found = Vec::new();
+    for path in all {
+        let name = path.join(".");
+        let mut copy = root.clone();
+        let here = at(&mut copy, &path).clone();
+        if let Value::Table(table) = at(&mut copy, &path) {
+            table.insert("another".to_owned(), Value::Integer(1));
+            found.push((format!("{name} with another key"), copy.clone()));
+        }
+        let Some((last, above)) = path.split_last() else { continue };
+        let mut copy = root.clone();
+        if let Value::Table(table) = at(&mut copy, above) {
+            table.remove(last);
+            found.push((format!("{name} gone"), copy));
+        }
+        for other in instead(&here, numbers) {
+            let mut copy = root.clone();
+            *at(&mut copy, &path) = other.clone();
+            found.push((format!("{name} = {other}"), copy));
+        }
+    }
+    found
+}
+
+/// What a schema can't say: the words of the readers that compare one key with another.
+const ACROSS: [&str; 27] = [
+    "which is not in [[tool]]",
+    "names tools of [[tool]], and there are none",
+    "no tool of [[tool]] is as small",
+    "the last tool of hole",
+    "is there twice",
+    "(the clearance) to",
+    "from the diameter of",
+    "to the diameter of",
+    "above the drill's diameter",
+    "fewer than two rows fit round",
+    "below the radius of",
+    "which is 'on' too",
+    "(half the diameter)",
+    "(the radius)",
+    "(the nose alone) to",
+    "for they end on a circle",
+    "(the least increment) to",
+    "rounding to the least increment",
+    "to the equatorial radius a =",
+    "each less than b =",
+    "from, to and the number of readings",
+    "all its blocks together",
+    "one of the control's axes",
+    "doesn't go with",
+    "whose direction isn't known",
+    "needs one axis that turns",
+    "needs a [probe]",
+];
+
+#[test]
+fn readers_and_schemas_refuse_the_same() {
+    let mut wrong = Vec::new();
+    let mut tried = 0;
+    for (path, name, read) in complete() {
+        let text = std::fs::read_to_string(&path).unwrap();
+        read(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        let validator = validator(name);
+        let root = Value::Table(toml::from_str(&text).unwrap());
+        for (what, document) in changed(&root, &numbers(name)) {
+            tried += 1;
+            let Value::Table(table) = document else { unreachable!("a file is a table") };
+            let text = toml::to_string(&table).unwrap();
+            let taken = read(&text);
+            let file = path.file_name().unwrap().to_str().unwrap();
+            match (taken, validator.is_valid(&json(&table))) {
+                (Ok(()), false) => wrong.push(format!("{file}: {what}: only the reader takes it")),
+                (Err(error), true) if !ACROSS.iter().any(|words| error.contains(words)) => {
+                    wrong.push(format!("{file}: {what}: only the schema takes it: {error}"));
+                }
+                _ => {}
+            }
+        }
+    }
+    println!("{tried} files tried");
+    assert!(wrong.is_empty(), "{} of {tried}:\n{}", wrong.len(), wrong.join("\n"));
+}

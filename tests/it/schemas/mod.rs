@@ -1,0 +1,103 @@
+//! The schemas that `schema` prints: what a reader takes they take, what they refuse the reader refuses, and every
+//! result is as they say.
+mod controls;
+mod files;
+mod results;
+
+use gcode_sim::schema::FORMATS;
+use serde_json::Value;
+
+/// The schema of a document by its name.
+fn schema(name: &str) -> Value {
+    FORMATS.iter().find(|format| format.name == name).unwrap_or_else(|| panic!("no schema {name}")).schema()
+}
+
+fn validator(name: &str) -> jsonschema::Validator {
+    jsonschema::validator_for(&schema(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+/// Every object of a schema that is a schema, with its path.
+fn walk<'s>(schema: &'s Value, path: &str, tell: &mut impl FnMut(&str, &'s Value)) {
+    tell(path, schema);
+    for (key, inner) in schema.as_object().into_iter().flatten() {
+        match (key.as_str(), inner) {
+            ("properties" | "patternProperties" | "$defs", Value::Object(named)) => {
+                named.iter().for_each(|(name, inner)| walk(inner, &format!("{path}/{name}"), tell));
+            }
+            ("items" | "additionalProperties", Value::Object(_)) => walk(inner, &format!("{path}/[]"), tell),
+            ("oneOf" | "anyOf", Value::Array(all)) => {
+                all.iter().for_each(|inner| walk(inner, path, tell));
+            }
+            _ => {}
+        }
+    }
+}
+
+#[test]
+fn every_schema_is_one_of_draft_2020_12() {
+    for format in FORMATS {
+        let schema = format.schema();
+        assert_eq!(schema["$schema"], "https://json-schema.org/draft/2020-12/schema", "{}", format.name);
+        assert!(jsonschema::meta::is_valid(&schema), "{}", format.name);
+    }
+}
+
+/// Editors know an older draft: the schemas of TOML files keep to what has meant the same since draft 4.
+#[test]
+fn schemas_of_toml_files_keep_to_words_that_editors_know() {
+    const WORDS: [&str; 21] = [
+        "$schema",
+        "additionalProperties",
+        "anyOf",
+        "description",
+        "enum",
+        "items",
+        "maxItems",
+        "maxProperties",
+        "maximum",
+        "minItems",
+        "minProperties",
+        "minimum",
+        "multipleOf",
+        "not",
+        "oneOf",
+        "pattern",
+        "patternProperties",
+        "properties",
+        "required",
+        "title",
+        "type",
+    ];
+    for format in FORMATS.iter().filter(|format| format.is_toml) {
+        walk(&format.schema(), "", &mut |path, schema| {
+            for word in schema.as_object().into_iter().flatten().map(|(word, _)| word) {
+                assert!(WORDS.contains(&word.as_str()), "{}{path}: {word}", format.name);
+            }
+        });
+    }
+}
+
+/// An editor shows what a key is for.
+#[test]
+fn every_key_of_a_file_is_described() {
+    for format in FORMATS.iter().filter(|format| format.is_toml) {
+        let all = format.schema();
+        walk(&all, "", &mut |path, schema| {
+            for (key, inner) in schema["properties"].as_object().into_iter().flatten() {
+                let narrows = inner.as_object().unwrap().keys().all(|word| word == "enum");
+                let said = inner["description"].as_str().unwrap_or_default();
+                assert!(narrows || said.len() > 2, "{}{path}/{key} has no description", format.name);
+            }
+        });
+    }
+}
+
+#[test]
+fn descriptions_are_plain_words() {
+    for format in FORMATS {
+        walk(&format.schema(), "", &mut |path, schema| {
+            let said = schema["description"].as_str().unwrap_or_default();
+            assert!(!said.contains("[`") && !said.contains("::"), "{}{path}: {said}", format.name);
+        });
+    }
+}
