@@ -48,7 +48,7 @@ impl Wish {
             "family = \"burr\"\n[control]\ndialect = \"{}\"\nincrement = \"{}\"\n[burr]\ndiameter = {:?}\n\
              length = {:?}\nflutes = {}\nhelix = {:?}\nlaw = \"{}\"\ntip_angle = {:?}\nchord_error = {:?}\n\
              tooth_depth = 0.3\n[machine]\nc_offset = {:?}\n{profile}\
-             signs = {{ X = {x}, Y = {y}, A = {a}, B = {b}, C = {c} }}\n[program]\nform = \"{}\"\n",
+             signs = {{ X = {x}, Y = {y}, A = {a}, B = {b}, C = {c} }}\n[program]\nform = \"{}\"\nspeed = 200.0\n",
             self.control.0,
             self.control.1,
             self.diameter,
@@ -152,6 +152,8 @@ proptest! {
         let verdict = passed(&wish);
         prop_assert_eq!(verdict.flutes, wish.flutes as usize);
         prop_assert!(verdict.surface_deviation.unwrap() <= wish.chord_error + 1e-6);
+        let (slow, fast) = (verdict.speed_min.unwrap(), verdict.speed_max.unwrap());
+        prop_assert!(190.0 < slow && fast < 210.0, "{slow} {fast}");
         let (least, most) = (verdict.helix_min.unwrap(), verdict.helix_max.unwrap());
         if wish.law == "constant-helix" {
             prop_assert!((least - wish.helix).abs() < 0.3 && (most - wish.helix).abs() < 0.3, "{least} {most}");
@@ -161,6 +163,42 @@ proptest! {
             prop_assert!((flat - wish.helix).abs() < 3.0, "{least} {most}");
         }
     }
+}
+
+/// The verdict on an emitted program in which `from` is replaced.
+fn replaced(from: &str, to: &str) -> FluteVerdict {
+    let job = two_flutes().job();
+    let Wanted::Flutes(wanted) = Wanted::of_job(&job).unwrap() else { panic!("a burr has flutes") };
+    let mut package = families::emit(&job);
+    for program in &mut package.programs {
+        program.text = program.text.replace(from, to);
+    }
+    grind(&request(&package), &mut Programs(&package), &wanted).unwrap().verify()
+}
+
+/// On the cylinder the contact's way is 19/cos 20° mm, and X, A go 19 and 66.036°: G94 takes 68.7/(200/20.219) min, in
+/// which 200 mm/min take 0.1011.
+#[test]
+fn how_the_wheel_turns_and_how_fast_it_runs_counts() {
+    let cases = [
+        ("S3000 M03", "S3000 M03", Answer::Pass, None),
+        ("S3000 M03", "S3000", Answer::Fail, Some("spindle-stopped")),
+        ("S3000 M03", "S0 M03", Answer::Fail, Some("spindle-stopped")),
+        ("M08", "M08\nM05", Answer::Fail, Some("spindle-stopped")),
+        ("S3000 M03", "S3000\nM63", Answer::Pass, Some("spindle-stopped")),
+        ("S3000 M03", "S3000 M04", Answer::Pass, Some("wheel-reversed")),
+        ("G93\n", "G94\n", Answer::Fail, Some("flute-speed")),
+        ("F200. ", "F20000. ", Answer::Fail, Some("flute-speed")),
+        ("F200. ", "F160. ", Answer::Pass, None),
+    ];
+    for (from, to, answer, code) in cases {
+        let verdict = replaced(from, to);
+        let told: Vec<_> = verdict.findings.iter().map(|finding| finding.code.as_str()).collect();
+        assert!(verdict.verdict == answer && told == Vec::from_iter(code), "{to}: {told:?}");
+    }
+    let slow = replaced("G93\n", "G94\n").speed_min.unwrap();
+    let wanted = 20.219 / (66.036f64.hypot(19.0) / (200.0 / 20.219));
+    assert!((slow - wanted).abs() < 0.01, "{slow} {wanted}");
 }
 
 /// Every motion of a run.

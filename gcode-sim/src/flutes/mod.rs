@@ -3,12 +3,15 @@
 //! Feeds that turn A are grinding moves; whatever else moves lies between two passes.
 mod dives;
 mod trace;
+mod turning;
 
 use nalgebra::Point3;
 
 use dives::Dives;
 pub use dives::{Dive, Kind};
 pub use trace::{Sample, Trace, Window};
+use turning::Turning;
+pub use turning::{Begun, Idle};
 
 use crate::diag::{Diagnostic, Severity};
 use crate::machine::path::Travel;
@@ -53,6 +56,9 @@ pub struct Pass {
     pub moves: usize,
     /// The least and the greatest angle of the swivelled wheel during the pass, where an axis swivels it.
     pub head: Option<(Deg, Deg)>,
+    /// The first of its moves during which the wheel stood, and the first with M04 in force.
+    pub idle: Option<Idle>,
+    pub reversed: Option<Begun>,
 }
 
 /// What a program does to a burr.
@@ -63,6 +69,9 @@ pub struct Ground {
     pub dives: Vec<Dive>,
     /// Rapids before the wheel first stood off the blank: where they began nobody knows, and nothing is said of them.
     pub unseen: usize,
+    /// From the C axis to the end of the burr's cylinder, x and y, as the machine file has it; `None` without a C that turns
+    /// about z.
+    pub offset: Option<[f64; 2]>,
     pub findings: Vec<Diagnostic>,
 }
 
@@ -78,6 +87,7 @@ pub struct Follower<'m> {
     open: Option<Pass>,
     ground: Ground,
     dives: Dives,
+    turning: Turning,
     moves: usize,
     /// Points kept of passes, and computed at all.
     kept: usize,
@@ -104,8 +114,9 @@ impl<'m> Follower<'m> {
             flutes,
             at: Position::default(),
             open: None,
-            ground: Ground::default(),
+            ground: Ground { offset: offset(machine), ..Ground::default() },
             dives: Dives::default(),
+            turning: Turning::default(),
             moves: 0,
             kept: 0,
             computed: 0,
@@ -169,9 +180,12 @@ impl<'m> Follower<'m> {
             place: event.place(),
             moves: 0,
             head: None,
+            idle: None,
+            reversed: None,
         });
         pass.moves += 1;
-        pass.trace.follow(&self.flutes, &path, || event.place());
+        pass.trace.follow(&self.flutes, &path, event.seconds.0, event.place());
+        self.turning.note(pass, || Begun { place: event.place(), at: path[0] });
         if let Some((one, other)) = head {
             let (low, high) = if one < other { (one, other) } else { (other, one) };
             let (least, most) = pass.head.unwrap_or((low, high));
@@ -203,18 +217,30 @@ impl<'m> Follower<'m> {
     }
 }
 
+/// From the C axis to the part's origin while all axes stand at 0.
+fn offset(machine: &Machine) -> Option<[f64; 2]> {
+    let axis = machine.axes.find(b'C')?;
+    let link = machine.table.0.iter().find(|link| link.axis == axis)?;
+    match &link.motion {
+        LinkMotion::Turn { about, centre } if about.z.abs() == 1.0 => {
+            let from = machine.part.origin - centre;
+            Some([from.x, from.y])
+        }
+        LinkMotion::Turn { .. } | LinkMotion::Slide { .. } => None,
+    }
+}
+
 impl Sink for Follower<'_> {
     fn event(&mut self, event: &Event<'_>) {
         match event.kind {
             EventKind::Rapid { to } => self.motion(event, true, to, None),
             EventKind::Feed { to, .. } | EventKind::Skip { to, .. } => self.motion(event, false, to, None),
             EventKind::Arc { to, arc, .. } => self.motion(event, false, to, Some(arc)),
+            EventKind::Spindle { .. } | EventKind::Auxiliary { .. } => self.turning.hear(&event.kind),
             EventKind::Dwell { .. }
             | EventKind::Tool { .. }
             | EventKind::ToolLength { .. }
-            | EventKind::Spindle { .. }
             | EventKind::Coolant { .. }
-            | EventKind::Auxiliary { .. }
             | EventKind::Stop { .. } => {}
         }
     }

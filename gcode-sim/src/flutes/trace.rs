@@ -26,6 +26,9 @@ pub struct Sample {
     pub turned: Deg,
     /// The angle about the axis where the pass begins, in the same sense.
     pub begun: Deg,
+    /// The contact's own way since the pass's beginning, and the time it took, s.
+    pub way: f64,
+    pub seconds: f64,
     /// Which of [`Trace::places`] moved here.
     place: usize,
 }
@@ -35,6 +38,8 @@ pub struct Sample {
 pub struct Trace {
     pub samples: Vec<Sample>,
     places: Vec<Place>,
+    /// That all moves so far took.
+    seconds: f64,
 }
 
 /// The path's direction over a stretch of gauge length.
@@ -55,19 +60,23 @@ fn azimuth(p: &Point3<f64>) -> Deg {
 }
 
 impl Trace {
-    /// Goes on along `path`, whose first point is where the trace has come to. Ways are those of the surface's points below
-    /// the path: how far the path is off says nothing of its direction.
-    pub(super) fn follow(&mut self, flutes: &Flutes, path: &[Point3<f64>], place: impl Fn() -> Place) {
+    /// Goes on along `path`, whose first point is where the trace has come to and whose points are equally far in time.
+    /// Ways along and around are those of the surface's points below the path: how far the path is off says nothing of its
+    /// direction.
+    pub(super) fn follow(&mut self, flutes: &Flutes, path: &[Point3<f64>], seconds: f64, place: Place) {
         let profile = &flutes.profile;
         let index = self.places.len();
-        self.places.push(place());
+        self.places.push(place);
+        let begun = self.seconds;
+        self.seconds += seconds;
+        let steps = path.len().saturating_sub(1).max(1) as f64;
         let other = match flutes.law {
             FluteLaw::ConstantHelix => FluteLaw::Published,
             FluteLaw::Published => FluteLaw::ConstantHelix,
         };
         let foot = |at: &Point3<f64>| profile.foot(at);
         let mut before = self.samples.last().map(|last| foot(&last.at));
-        for at in path {
+        for (step, at) in path.iter().enumerate() {
             let mut sample = Sample {
                 at: *at,
                 off: profile.distance(at),
@@ -78,6 +87,8 @@ impl Trace {
                 other: 0.0,
                 turned: Deg::ZERO,
                 begun: azimuth(at),
+                way: 0.0,
+                seconds: begun + seconds * step as f64 / steps,
                 place: index,
             };
             let here = foot(at);
@@ -95,6 +106,7 @@ impl Trace {
                 sample.other = last.other + flutes.slope(other, &middle) * along;
                 sample.turned = last.turned + Deg(shorter(azimuth(at).0 - azimuth(&last.at).0));
                 sample.begun = last.begun;
+                sample.way = last.way + (at - last.at).norm();
             }
             self.samples.push(sample);
             before = Some(here);

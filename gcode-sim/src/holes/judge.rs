@@ -1,7 +1,7 @@
 //! What is wrong with a line that was cut: no way back, a way out sideways, a feed beside the tool's axis.
 use super::line::{After, Line};
 use super::rapids::TOUCH;
-use super::{Extractor, Pass};
+use super::{Extractor, Pass, spindle};
 use crate::diag::Diagnostic;
 use crate::machine::HeadKind;
 use crate::units::Deg;
@@ -82,12 +82,10 @@ impl Extractor<'_> {
     fn judge_feed(&mut self, line: &Line, off: Option<Deg>) {
         let place = line.place();
         if line.spindle_off {
+            let builder = self.builder;
             self.findings.add("spindle-stopped", place, 0, || {
-                Diagnostic::warning(
-                    "spindle-stopped",
-                    "the tool feeds into the part while the spindle stands",
-                )
-                .help("start the spindle with M03 S… before the feed")
+                spindle::stopped("the tool feeds into the part while the spindle stands", builder)
+                    .help("start the spindle with M03 S… before the feed")
             });
         }
         let Some(off) = off else {

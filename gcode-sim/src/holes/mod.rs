@@ -10,6 +10,7 @@ mod probing;
 mod rapids;
 #[cfg(test)]
 pub(crate) mod script;
+pub(crate) mod spindle;
 #[cfg(test)]
 mod tests;
 
@@ -53,6 +54,8 @@ pub struct Extractor<'m> {
     at: Position,
     setup: Setup,
     spindle: Spindle,
+    /// The last M code that went to the machine builder's logic, which may have started the spindle.
+    builder: Option<u32>,
     /// The part's place while the table stands as it does in `at`.
     frame: Frame,
     /// The tool on the part.
@@ -92,6 +95,7 @@ impl<'m> Extractor<'m> {
             at,
             setup,
             spindle: Spindle::Off,
+            builder: None,
             frame,
             pose,
             outside: false,
@@ -265,10 +269,8 @@ impl Sink for Extractor<'_> {
                     self.set_up(|setup| setup.head_angle = Some(angle));
                 }
             }
-            EventKind::Stop { .. }
-            | EventKind::Dwell { .. }
-            | EventKind::Coolant { .. }
-            | EventKind::Auxiliary { .. } => {}
+            EventKind::Auxiliary { code } => self.builder = Some(*code),
+            EventKind::Stop { .. } | EventKind::Dwell { .. } | EventKind::Coolant { .. } => {}
         }
     }
 }

@@ -29,6 +29,10 @@ pub struct Flutes {
     pub helix_tolerance: Deg,
     /// Of a flute's place round the burr, either way.
     pub index_tolerance: Deg,
+    /// Of the contact along a flute, mm/min, where the job says it.
+    pub speed: Option<f64>,
+    /// From the C axis to the end of the cylinder at C 0, x and y, as the job has it.
+    pub c_offset: [f64; 2],
 }
 
 impl Flutes {
@@ -47,6 +51,8 @@ impl Flutes {
             surface_tolerance: job.chord_error,
             helix_tolerance: Deg(job.tolerance.helix),
             index_tolerance: Deg(job.tolerance.index),
+            speed: job.program.speed_said.then_some(job.program.speed),
+            c_offset: job.grinder.c_offset,
         }
     }
 

@@ -123,6 +123,7 @@ pub const PAGES: &[Page] = pages![
     "axis-carries-nothing"
     "axis-left-out"
     "ball-into-part"
+    "burr-offset"
     "centre-here"
     "corner-ignored"
     "cycle-data-lost"
@@ -138,6 +139,7 @@ pub const PAGES: &[Page] = pages![
     "flute-helix"
     "flute-index"
     "flute-missing"
+    "flute-speed"
     "flute-surface"
     "flutes-meet"
     "g53-ignored"
@@ -184,6 +186,7 @@ pub const PAGES: &[Page] = pages![
     "tool-unknown"
     "turns-near-part"
     "wheel-into-burr"
+    "wheel-reversed"
     "words-passed-on"
     "work-offset"
 ];

@@ -46,6 +46,12 @@ pub fn table(verdict: &FluteVerdict) -> String {
         verdict.index_tolerance.to_string(),
     );
     row(
+        "speed along the flutes, least and greatest",
+        format!("{} {}", number(verdict.speed_min, 1), number(verdict.speed_max, 1)),
+        verdict.speed.map_or("-".to_owned(), |speed| format!("{speed} mm/min")),
+        verdict.speed.map_or(String::new(), |_| format!("{:.0} %", 100.0 * verdict.speed_tolerance)),
+    );
+    row(
         "neighbours' least distance, mm",
         number(verdict.nearest, 3),
         format!("at least {}", verdict.nearest_allowed),

@@ -100,6 +100,8 @@ pub struct BurrProgram {
     pub form: ProgramForm,
     /// Of the contact along the flute, mm/min.
     pub speed: f64,
+    /// Whether the job says that speed: where it doesn't, the default is no demand on other programs.
+    pub speed_said: bool,
     /// Into the blank, mm/min.
     pub plunge: f64,
     /// Of the wheel, r/min.

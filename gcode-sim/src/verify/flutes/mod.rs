@@ -3,9 +3,11 @@
 mod checks;
 mod near;
 mod round;
+mod speed;
 mod verdict;
 
 pub use round::Round;
+pub use speed::{SpeedRange, WorstSpeed};
 pub use verdict::{Angles, FluteVerdict, Law, WantedFlutes};
 
 use nalgebra::Point3;
@@ -24,6 +26,16 @@ pub struct Inspection<'g> {
     /// The flutes round the burr.
     pub round: Round,
     pub helix: HelixRange,
+    /// `None` where nothing is ground.
+    pub speed: Option<SpeedRange>,
+}
+
+impl Inspection<'_> {
+    /// A pass counted from 0, in words: by the flute it grinds where each flute has one pass.
+    fn name(&self, pass: usize) -> String {
+        let what = if self.round.again == 0 { "flute" } else { "pass" };
+        format!("{what} {}", pass + 1)
+    }
 }
 
 /// The helix angles along all flutes.
@@ -128,6 +140,7 @@ pub fn verify_flutes(
         ground,
         round: Round::of(wanted, &ground.passes),
         helix: measured.clone().unwrap_or_else(|| HelixRange::only(Deg::ZERO)),
+        speed: SpeedRange::of(wanted, &ground.passes),
     };
     let mut findings: Vec<Diagnostic> = ground.findings.clone();
     for check in checks::ALL {

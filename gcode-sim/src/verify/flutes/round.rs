@@ -48,8 +48,11 @@ pub struct Gap {
     astray: f64,
 }
 
-/// Angles nearer to each other than this are the same, degrees.
-const SAME: f64 = 1e-6;
+/// Passes nearer to each other than so many tolerances of a flute's place are rounds over the same flute.
+pub(super) const SAME: f64 = 2.0;
+
+/// Angles nearer to each other than this are equal, degrees.
+const EQUAL: f64 = 1e-6;
 
 /// A flute's angle about the axis by its place along the meridian.
 struct Course {
@@ -61,7 +64,6 @@ struct Course {
 impl Round {
     pub(super) fn of(wanted: &Flutes, passes: &[Pass]) -> Self {
         let middle = middle(wanted);
-        let pitch = 360.0 / f64::from(wanted.count);
         let angle = |pass: &Pass| {
             let first = pass.trace.samples.first()?;
             let found = pass.trace.angle_at(middle).unwrap_or(first.begun);
@@ -74,7 +76,7 @@ impl Round {
         for (pass, angle) in all {
             let same = |other: &(usize, Deg)| {
                 let gap = (angle.0 - other.1.0).rem_euclid(360.0);
-                gap.min(360.0 - gap) < 0.25 * pitch
+                gap.min(360.0 - gap) <= SAME * wanted.index_tolerance.0
             };
             let last = round.flutes.last().is_some_and(same);
             if last || round.flutes.first().is_some_and(same) {
@@ -167,7 +169,7 @@ fn middle(wanted: &Flutes) -> f64 {
 impl Gap {
     fn is_worse(&self, than: &Self) -> bool {
         let more = self.off.0 - than.off.0;
-        SAME < more || (-SAME <= more && than.astray + SAME < self.astray)
+        EQUAL < more || (-EQUAL <= more && than.astray + EQUAL < self.astray)
     }
 }
 

@@ -3,8 +3,9 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Inspection;
+use super::speed::ALLOWED;
 use crate::diag::{Diagnostic, Severity};
-use crate::flutes::Window;
+use crate::flutes::{Ground, Window};
 use crate::job::FluteLaw;
 use crate::part::flutes::Flutes;
 use crate::part::hole::Origin;
@@ -38,6 +39,13 @@ pub struct FluteVerdict {
     /// The largest difference of a gap between neighbours from an even one.
     pub index_error: Option<f64>,
     pub index_tolerance: f64,
+    /// Of the contact along the flutes, mm/min, over a gauge length.
+    pub speed_min: Option<f64>,
+    pub speed_max: Option<f64>,
+    /// What the job asks for, where it does.
+    pub speed: Option<f64>,
+    /// How far it may be off, either way, as a part of it.
+    pub speed_tolerance: f64,
     /// The least distance between the paths of neighbours, in a straight line.
     pub nearest: Option<f64>,
     pub passes: usize,
@@ -104,6 +112,9 @@ impl FluteVerdict {
                 "flute-index" => "spacing uneven",
                 "flute-end" => "an end out of place",
                 "flute-head" => "the wheel's angle out",
+                "flute-speed" => "speed out",
+                "burr-offset" => "the burr's place isn't the job's",
+                "spindle-stopped" => "the wheel stands",
                 "flutes-meet" => "neighbours meet",
                 "wheel-into-burr" => "the wheel runs into the burr",
                 other => other,
@@ -174,13 +185,17 @@ pub(super) fn verdict(
         gauge,
         index_error: inspection.round.worst_gap.map(|gap| gap.off.0),
         index_tolerance: wanted.index_tolerance.0,
+        speed_min: inspection.speed.as_ref().map(|range| range.least),
+        speed_max: inspection.speed.as_ref().map(|range| range.most),
+        speed: wanted.speed,
+        speed_tolerance: ALLOWED,
         nearest: inspection.round.nearest.map(|near| near.apart),
         passes: ground.passes.len(),
         moves: ground.passes.iter().map(|pass| pass.moves).sum(),
         holes: [],
         laws: laws(wanted, &along),
         findings: findings.iter().map(|finding| shown(finding, locate)).collect(),
-        not_checked: not_checked(ground.unseen),
+        not_checked: not_checked(wanted, ground),
         along,
         along_pass: worst_pass + 1,
         nearest_allowed: 2.0 * wanted.chord_error,
@@ -188,16 +203,24 @@ pub(super) fn verdict(
     }
 }
 
-/// What the verdict says nothing about; so many rapids began nobody knows where.
-fn not_checked(unseen: usize) -> Vec<String> {
+/// What the verdict says nothing about.
+fn not_checked(wanted: &Flutes, ground: &Ground) -> Vec<String> {
     let mut all = vec![
         "the wheel's width, form and body: it is one point, so whether it gouges a neighbouring tooth beside its contact \
          isn't known"
             .to_owned(),
         "which side of the wheel's swivel B is right: only its angle is held against the helix angle".to_owned(),
-        "which way and how fast the wheel turns, and the speed along the flute: S, M03 or M04 and F aren't held against the job"
+        "which way round and how fast the wheel turns, and how fast it goes into the blank: the first the job doesn't say, \
+         and S and that F aren't held against it"
             .to_owned(),
     ];
+    if wanted.speed.is_none() {
+        all.push("the speed along the flutes: the job has no program.speed".to_owned());
+    }
+    if ground.offset.is_none() {
+        all.push("the job's c_offset: the machine file has no axis C that turns about z".to_owned());
+    }
+    let unseen = ground.unseen;
     if 0 < unseen {
         let moves = if unseen == 1 { "1 move" } else { &format!("{unseen} moves") };
         all.push(format!(

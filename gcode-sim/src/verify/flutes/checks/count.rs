@@ -1,5 +1,6 @@
 //! As many flutes as are wanted, no more and no fewer.
 use super::super::Inspection;
+use super::super::round::SAME;
 use crate::diag::{Diagnostic, Site};
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
@@ -29,15 +30,38 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
         findings.push(finding.help(help).on(sites));
     }
     if wanted < found {
-        let message = format!("{found} flutes where {wanted} are wanted");
-        let last = inspection.round.flutes.iter().map(|(pass, _)| *pass).max().unwrap_or(0);
-        let pass = &inspection.ground.passes[last];
-        let middle = pass.trace.samples.get(pass.trace.samples.len() / 2);
+        let finding = Diagnostic::error("flute-extra", format!("{found} flutes where {wanted} are wanted"));
+        let (pass, finding) = match beside(inspection) {
+            Some((pass, other, apart)) => {
+                let note = format!(
+                    "pass {} stands {apart:.3}° beside pass {}: within {}° it would be another round over the same flute",
+                    pass + 1,
+                    other + 1,
+                    SAME * inspection.wanted.index_tolerance.0
+                );
+                (pass, finding.note(note).help("check A where this pass begins"))
+            }
+            None => {
+                let last = inspection.round.flutes.iter().map(|(pass, _)| *pass).max().unwrap_or(0);
+                (last, finding.help("the loop over the flutes goes on too long, or the index is too small"))
+            }
+        };
+        let extra = &inspection.ground.passes[pass];
+        let middle = extra.trace.samples.get(extra.trace.samples.len() / 2);
         findings.push(
-            Diagnostic::error("flute-extra", message)
-                .help("the loop over the flutes goes on too long, or the index is too small")
-                .at(pass.place.clone())
-                .on(middle.map(|sample| Site { pass: Some(last), at: sample.at })),
+            finding.at(extra.place.clone()).on(middle.map(|sample| Site { pass: Some(pass), at: sample.at })),
         );
     }
+}
+
+/// The two flutes that are nearest to each other, the later pass first, where they are less than a quarter of the pitch
+/// apart: too near to be meant as two.
+fn beside(inspection: &Inspection<'_>) -> Option<(usize, usize, f64)> {
+    let flutes = &inspection.round.flutes;
+    let next = flutes.iter().cycle().skip(1);
+    let apart = flutes.iter().zip(next).map(|(one, other)| {
+        (one.0.max(other.0), one.0.min(other.0), (other.1.0 - one.1.0).rem_euclid(360.0))
+    });
+    let nearest = apart.min_by(|one, other| one.2.total_cmp(&other.2))?;
+    Some(nearest).filter(|(.., apart)| *apart < 0.25 * 360.0 / f64::from(inspection.wanted.count))
 }

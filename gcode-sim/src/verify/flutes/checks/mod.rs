@@ -5,8 +5,11 @@ mod ends;
 mod head;
 mod helix;
 mod index;
+mod offset;
 mod spacing;
+mod speed;
 mod surface;
+mod turning;
 
 use nalgebra::Point3;
 
@@ -17,6 +20,7 @@ use crate::flutes::Pass;
 type Check = fn(&Inspection<'_>, &mut Vec<Diagnostic>);
 
 pub(super) const ALL: &[Check] = &[
+    offset::check,
     count::check,
     surface::check,
     helix::check,
@@ -24,6 +28,8 @@ pub(super) const ALL: &[Check] = &[
     ends::check,
     spacing::check,
     head::check,
+    turning::check,
+    speed::check,
     dive::check,
 ];
 

@@ -1,0 +1,51 @@
+//! Whether the wheel turns, and which way round, while it grinds.
+use nalgebra::Point3;
+
+use super::Pass;
+use crate::motion::{EventKind, Place, Spindle};
+use crate::units::Rpm;
+
+/// The first move of a pass of which something is so, and where it begins on the burr.
+#[derive(Clone, Debug)]
+pub struct Begun {
+    pub place: Place,
+    pub at: Point3<f64>,
+}
+
+/// Grinding while no M03 or M04 with a speed is in force.
+#[derive(Clone, Debug)]
+pub struct Idle {
+    pub begun: Begun,
+    /// The last M code before it that went to the machine builder's logic, which may have started the wheel.
+    pub builder: Option<u32>,
+}
+
+/// What the program has said of the wheel so far.
+#[derive(Debug, Default)]
+pub(super) struct Turning {
+    wheel: Spindle,
+    builder: Option<u32>,
+}
+
+impl Turning {
+    pub(super) fn hear(&mut self, kind: &EventKind) {
+        match kind {
+            // At S0 it stands.
+            EventKind::Spindle { speed: Rpm(0.0), .. } => self.wheel = Spindle::Off,
+            EventKind::Spindle { turning, .. } => self.wheel = *turning,
+            EventKind::Auxiliary { code } => self.builder = Some(*code),
+            _ => {}
+        }
+    }
+
+    /// Notes on a pass how the wheel turns during one of its moves.
+    pub(super) fn note(&self, pass: &mut Pass, begun: impl FnOnce() -> Begun) {
+        match self.wheel {
+            Spindle::Off if pass.idle.is_none() => {
+                pass.idle = Some(Idle { begun: begun(), builder: self.builder });
+            }
+            Spindle::Counterclockwise if pass.reversed.is_none() => pass.reversed = Some(begun()),
+            Spindle::Off | Spindle::Clockwise | Spindle::Counterclockwise => {}
+        }
+    }
+}
