@@ -236,7 +236,7 @@ impl Sink for Follower<'_> {
             EventKind::Rapid { to } => self.motion(event, true, to, None),
             EventKind::Feed { to, .. } | EventKind::Skip { to, .. } => self.motion(event, false, to, None),
             EventKind::Arc { to, arc, .. } => self.motion(event, false, to, Some(arc)),
-            EventKind::Spindle { .. } | EventKind::Auxiliary { .. } => self.turning.hear(&event.kind),
+            EventKind::Spindle { .. } | EventKind::Auxiliary { .. } => self.turning.hear(event.kind),
             EventKind::Dwell { .. }
             | EventKind::Tool { .. }
             | EventKind::ToolLength { .. }
