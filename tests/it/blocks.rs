@@ -46,8 +46,14 @@ fn the_macros_cost_so_many_blocks_for_each_hole() {
             Wanted::Holes(holes) => (holes.holes.len(), "hole"),
             Wanted::Flutes(flutes) => (flutes.count as usize, "flute"),
         };
+        let package = families::emit(&job);
         for (name, blocks) in blocks(&job) {
             let each = blocks as f64 / wanted as f64;
+            let program = package.programs.iter().find(|program| file_name(program.number) == name).unwrap();
+            if !package.mains.contains(&program.number) {
+                let said = format!("BLOCKS A {}: {each:.0})", what.to_uppercase());
+                assert!(program.text.contains(&said), "the header of {name} says {said}");
+            }
             writeln!(shown, "{example} {name}: {each:.1} blocks a {what}, {blocks} in all").unwrap();
         }
     }

@@ -1,32 +1,14 @@
 //! Which blocks lie on common ways round: the strongly connected parts of a program's ways, found in one pass
 //! (Tarjan, Depth-first search and linear graph algorithms, 1972).
-use crate::program::OpIndex;
-
 use super::flow::Flow;
 
-/// For each block the number of its circle: two blocks have the same one if each can lead to the other.
+/// For each place of the ways the number of its circle: two places have the same one if each can lead to the other.
 pub(crate) fn circles(flow: &Flow) -> Vec<usize> {
-    // A computed jump leads to every numbered block: one place that stands for all of them keeps the ways few.
-    let anywhere = flow.ways.len();
-    let after = |place: usize| -> Vec<usize> {
-        if place == anywhere {
-            return flow.numbered().to_vec();
-        }
-        let ways = &flow.ways[place];
-        let mut to: Vec<OpIndex> = ways.jumps.iter().copied().filter(|to| *to < anywhere).collect();
-        if ways.falls && place + 1 < anywhere {
-            to.push(place + 1);
-        }
-        if ways.anywhere {
-            to.push(anywhere);
-        }
-        to
-    };
-    let mut search = Search::new(anywhere + 1);
-    for place in 0..=anywhere {
+    let after = |place: usize| flow.after(place).collect();
+    let mut search = Search::new(flow.places());
+    for place in 0..flow.places() {
         search.from(place, &after);
     }
-    search.circle.truncate(anywhere);
     search.circle
 }
 

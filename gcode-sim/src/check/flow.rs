@@ -138,44 +138,33 @@ impl Flow {
         self.ways[block].anywhere = true;
     }
 
-    /// The blocks with a sequence number.
-    pub(crate) fn numbered(&self) -> &[OpIndex] {
-        &self.numbered
+    /// How many places there are: the blocks, the end of the program one past the last of them, and behind it one that
+    /// computed jumps lead to and that leads to every numbered block, which keeps the ways few.
+    pub(crate) fn places(&self) -> usize {
+        self.ways.len() + 2
     }
 
-    /// The blocks that can follow `block`; one past the last is the end of the program.
-    pub(crate) fn after(&self, block: OpIndex) -> Vec<OpIndex> {
-        let Some(ways) = self.ways.get(block) else { return Vec::new() };
-        let mut to = ways.jumps.clone();
-        if ways.falls {
-            to.push(block + 1);
-        }
-        if ways.anywhere {
-            to.extend(&self.numbered);
-        }
-        to
+    /// The places that can follow a place.
+    pub(crate) fn after(&self, place: OpIndex) -> impl Iterator<Item = OpIndex> + '_ {
+        let anywhere = self.ways.len() + 1;
+        let ways = self.ways.get(place);
+        let jumps = ways.map_or(&[][..], |ways| &ways.jumps);
+        let next = ways.filter(|ways| ways.falls).map(|_| place + 1);
+        let computed = ways.filter(|ways| ways.anywhere).map(|_| anywhere);
+        let numbered = if place == anywhere { &self.numbered[..] } else { &[] };
+        jumps.iter().copied().chain(next).chain(computed).chain(numbered.iter().copied())
     }
 
     /// Whether anything reaches each block from one of `starts`.
     pub(crate) fn reached(&self, starts: impl IntoIterator<Item = OpIndex>) -> Vec<bool> {
-        let mut reached = vec![false; self.ways.len()];
+        let mut reached = vec![false; self.places()];
         let mut open: Vec<OpIndex> = starts.into_iter().collect();
-        // A computed jump goes to every numbered block, but they need be looked at only once.
-        let mut anywhere = false;
-        while let Some(block) = open.pop() {
-            let Some(seen) = reached.get_mut(block) else { continue };
-            if std::mem::replace(seen, true) {
-                continue;
-            }
-            let ways = &self.ways[block];
-            open.extend(&ways.jumps);
-            if ways.falls {
-                open.push(block + 1);
-            }
-            if ways.anywhere && !std::mem::replace(&mut anywhere, true) {
-                open.extend(&self.numbered);
+        while let Some(place) = open.pop() {
+            if !std::mem::replace(&mut reached[place], true) {
+                open.extend(self.after(place));
             }
         }
+        reached.truncate(self.ways.len());
         reached
     }
 }

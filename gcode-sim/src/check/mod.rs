@@ -7,6 +7,7 @@
 mod calls;
 mod circles;
 mod expressions;
+mod first;
 mod flow;
 mod literal;
 mod parameters;

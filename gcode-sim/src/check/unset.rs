@@ -1,12 +1,15 @@
 //! Locals that nothing has set: what a call leaves vacant, and what reads it.
+use std::rc::Rc;
+
 use crate::program::OpIndex;
 use crate::source::Span;
 use crate::syntax::ast::{Expr, Statement};
 
 use super::calls::CallSite;
+use super::first::First;
 use super::literal::variable;
 use super::subject::Unit;
-use super::vacancy::{ANYTHING, Locals, NUMBER, States, guards, unset_at_first};
+use super::vacancy::{ANYTHING, Locals, NUMBER, States, guards};
 use super::variables::{self, Read, Use};
 
 /// The locals as a call hands them over.
@@ -20,9 +23,10 @@ pub(super) fn entry(call: &CallSite) -> Locals {
 
 /// The reads of locals that are surely unset there, each block's local once.
 pub(super) fn reads<'a>(
-    unit: &'a Unit<'_>,
+    unit: &'a Unit<'a>,
     states: &'a States,
 ) -> impl Iterator<Item = ((OpIndex, u32), (Span, Use))> + 'a {
+    let first = Rc::new(First::new(unit, states));
     let reached = unit.blocks.iter().enumerate().filter(|(block, _)| states[*block].is_some());
     reached.flat_map(move |(block, written)| {
         let itself = variables::assignment(written)
@@ -36,8 +40,9 @@ pub(super) fn reads<'a>(
                 && itself.is_none()
                 && !minded.contains(&read.number)
         });
+        let first = Rc::clone(&first);
         plain
-            .filter(move |read| unset_at_first(unit, states, block, read.number))
+            .filter(move |read| first.is_unset(block, read.number))
             .map(move |read| ((block, read.number), (read.span, read.usage)))
     })
 }

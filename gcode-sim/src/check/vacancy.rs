@@ -23,7 +23,7 @@ impl Locals {
     pub(crate) const UNSET: Self = Self([UNSET; 34]);
     pub(crate) const ANYTHING: Self = Self([ANYTHING; 34]);
 
-    fn of(&self, number: u32) -> u8 {
+    pub(super) fn of(&self, number: u32) -> u8 {
         match number {
             // [#_EMPTY] is #3100.
             0 | 3100 => EMPTY,
@@ -43,12 +43,12 @@ impl Locals {
     }
 }
 
-/// The state before each block; `None` where nothing leads.
+/// The state at each place of the ways; `None` where nothing leads.
 pub(crate) type States = Vec<Option<Locals>>;
 
 /// Follows a program from its first block with what its locals are there.
 pub(crate) fn states(unit: &Unit<'_>, entry: Locals) -> States {
-    let mut states: States = vec![None; unit.program.ops().len() + 1];
+    let mut states: States = vec![None; unit.flow.places()];
     let mut open = unit.starts.clone();
     // A call that starts elsewhere brings its own locals.
     for (place, start) in unit.starts.iter().enumerate() {
@@ -73,12 +73,12 @@ pub(crate) fn states(unit: &Unit<'_>, entry: Locals) -> States {
     states
 }
 
-/// Where a block leads and with which state.
-fn steps(unit: &Unit<'_>, block: OpIndex, state: &Locals) -> Vec<(OpIndex, Locals)> {
-    let Some(op) = unit.program.ops().get(block) else { return Vec::new() };
+/// Where a place leads and with which state.
+pub(super) fn steps(unit: &Unit<'_>, block: OpIndex, state: &Locals) -> Vec<(OpIndex, Locals)> {
+    let to = || unit.flow.after(block);
+    let both = |state: Locals| to().map(|to| (to, state)).collect::<Vec<_>>();
+    let Some(op) = unit.program.ops().get(block) else { return both(*state) };
     let mut after = *state;
-    let to = unit.flow.after(block);
-    let both = |state: Locals| to.iter().map(|to| (*to, state)).collect::<Vec<_>>();
     let statement = variables::statement(&unit.blocks, block);
     let mut steps = match (&op.kind, statement) {
         (
@@ -87,18 +87,18 @@ fn steps(unit: &Unit<'_>, block: OpIndex, state: &Locals) -> Vec<(OpIndex, Local
         ) => {
             let on_true = truth(condition, state);
             let jumping = matches!(statement, Some(Statement::IfGoto { .. }));
-            let split = |to: &OpIndex| {
+            let split = |to: OpIndex| {
                 // IF jumps when it is true, WHILE when it is not.
-                let taken = (*to == block + 1) != jumping;
-                let sure = *to != block + 1 || !unit.flow.ways[block].jumps.contains(to);
+                let taken = (to == block + 1) != jumping;
+                let sure = to != block + 1 || !unit.flow.ways[block].jumps.contains(&to);
                 if sure && on_true == Some(!taken) {
                     return None;
                 }
                 let mut state = *state;
                 refine(condition, taken, &mut state);
-                Some((*to, state))
+                Some((to, state))
             };
-            to.iter().filter_map(split).collect()
+            to().filter_map(split).collect()
         }
         (OpKind::Statement(_), Some(Statement::IfThen { condition, then })) => {
             let mut when_true = *state;
@@ -298,38 +298,4 @@ fn refine(condition: &Condition, answer: bool, state: &mut Locals) {
         Condition::Logic(..) => {}
         Condition::Bracket(inner) => refine(inner, answer, state),
     }
-}
-
-/// Whether a local is still unset when a block is reached for the first time, whichever way that is: `states` are
-/// those of the program, and no way to the block that doesn't pass it sets the local.
-pub(crate) fn unset_at_first(unit: &Unit<'_>, states: &States, block: OpIndex, local: u32) -> bool {
-    let bit = |state: &Option<Locals>| state.map_or(0, |state| state.of(local));
-    let here = bit(&states[block]);
-    if here & UNSET == 0 {
-        return false;
-    }
-    if here == UNSET {
-        return true;
-    }
-    // Follow the local once more with the block as an end.
-    let mut known = vec![0u8; states.len()];
-    let mut open = unit.starts.clone();
-    unit.starts.iter().for_each(|start| known[*start] = bit(&states[*start]));
-    while let Some(at) = open.pop() {
-        if at == block {
-            continue;
-        }
-        let Some(Some(full)) = states.get(at) else { continue };
-        let mut state = *full;
-        state.0[local as usize] = known[at];
-        for (to, after) in steps(unit, at, &state) {
-            let Some(bits) = known.get_mut(to) else { continue };
-            let joined = *bits | after.0[local as usize];
-            if joined != *bits {
-                *bits = joined;
-                open.push(to);
-            }
-        }
-    }
-    known[block] == UNSET
 }

@@ -46,7 +46,7 @@ fn jumps(subject: &Subject<'_>, unit: &Unit<'_>, told: &[bool]) -> Vec<Finding> 
     }
     let circle = circles(&unit.flow);
     let mut members: BTreeMap<usize, Vec<OpIndex>> = BTreeMap::new();
-    for (block, circle) in circle.iter().enumerate() {
+    for (block, circle) in circle[..unit.flow.ways.len()].iter().enumerate() {
         members.entry(*circle).or_default().push(block);
     }
     for jump in &unit.flow.jumps {
@@ -115,7 +115,7 @@ fn escapes(
         if ways.leaves || ways.anywhere || raises(&op.kind) || waits(&op.kind) || is_alarm(&op.kind) {
             return true;
         }
-        if unit.flow.after(block).into_iter().all(&contains) {
+        if unit.flow.after(block).all(&contains) {
             return false;
         }
         match condition(unit, block) {

@@ -50,7 +50,7 @@ const HELP: &str = "put a block before it that waits for the move, as G53 or M00
 
 /// For each block a move that may still be under way before it, where there is one.
 fn moving(settings: &Settings, unit: &Unit<'_>) -> Vec<Option<OpIndex>> {
-    let count = unit.program.ops().len();
+    let count = unit.flow.places();
     let mut moving = vec![None; count];
     let mut seen = vec![false; count];
     let mut open = vec![(0, None)];
@@ -60,13 +60,14 @@ fn moving(settings: &Settings, unit: &Unit<'_>) -> Vec<Option<OpIndex>> {
         }
         seen[block] = true;
         moving[block] = moving[block].or(motion);
-        let after = match effect(settings, &unit.op(block).kind) {
+        let op = unit.program.ops().get(block);
+        let after = match op.and_then(|op| effect(settings, &op.kind)) {
             Some(true) => Some(block),
             Some(false) => None,
             None => moving[block],
         };
-        let skipped = unit.op(block).skip.is_some().then_some((block + 1, moving[block]));
-        open.extend(unit.flow.after(block).into_iter().map(|to| (to, after)).chain(skipped));
+        let skipped = op.and_then(|op| op.skip).map(|_| (block + 1, moving[block]));
+        open.extend(unit.flow.after(block).map(|to| (to, after)).chain(skipped));
     }
     moving
 }

@@ -29,7 +29,7 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
 
 /// Whether some way to each block may have passed an F; `None` where no way leads to it.
 fn fed(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Option<bool>> {
-    let mut fed: Vec<Option<bool>> = vec![None; unit.program.ops().len()];
+    let mut fed: Vec<Option<bool>> = vec![None; unit.flow.places()];
     // Where a call with Q starts, anything may have been before.
     let mut open: Vec<(OpIndex, bool)> =
         unit.starts.iter().enumerate().map(|(nth, start)| (*start, nth > 0)).collect();
@@ -39,8 +39,8 @@ fn fed(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Option<bool>> {
             continue;
         }
         *known = Some(before);
-        let after = before || may_give(subject, unit, block);
-        open.extend(unit.flow.after(block).into_iter().map(|to| (to, after)));
+        let after = before || block < unit.flow.ways.len() && may_give(subject, unit, block);
+        open.extend(unit.flow.after(block).map(|to| (to, after)));
     }
     fed
 }
