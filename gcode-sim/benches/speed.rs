@@ -13,6 +13,8 @@ use std::time::{Duration, Instant};
 /// Blocks or turns that are timed, and the two sizes whose difference is counted in instructions.
 const MANY: u32 = 1_000_000;
 const COUNTED: [u32; 2] = [2_000, 12_000];
+/// Sizes of one kind that are timed against the first of them.
+const GROWING: [u32; 4] = [100_000, 200_000, 400_000, 800_000];
 /// The least of so many runs counts: what else the machine does only adds to it.
 const RUNS: usize = 3;
 
@@ -60,6 +62,7 @@ fn main() {
         } else {
             println!("  LinuxCNC's rs274         isn't installed (Debian's linuxcnc-uspace has it)");
         }
+        grow(workload, folder.path());
         if is_there("valgrind") {
             let [few, more] = COUNTED.map(|size| {
                 let program = write(folder.path(), "counted.nc", &(workload.ours)(size));
@@ -70,6 +73,22 @@ fn main() {
         } else {
             println!("  instructions for each    not counted: valgrind isn't installed");
         }
+    }
+}
+
+/// Twice as many blocks take twice as long: so many times the first size, so many times its time.
+fn grow(workload: &Workload, folder: &Path) {
+    let took = GROWING.map(|size| {
+        let program = write(folder, "growing.nc", &(workload.ours)(size));
+        time(|| run(&mut ours_on(&program)))
+    });
+    for (size, took_here) in GROWING.iter().zip(took).skip(1) {
+        let times = f64::from(*size) / f64::from(GROWING[0]);
+        println!(
+            "  {size:7} blocks or turns  {:6.2} times {} for {times} times as many",
+            ratio(took_here, took[0]),
+            GROWING[0]
+        );
     }
 }
 

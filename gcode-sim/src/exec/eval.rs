@@ -53,6 +53,7 @@ enum RoundsTo {
 }
 
 impl Core {
+    #[inline]
     pub(super) fn operand(&self, program: &Program, operand: Operand) -> Checked<Value> {
         self.value(program, operand, RoundsTo::Increment)
     }
@@ -62,6 +63,7 @@ impl Core {
         self.value(program, operand, RoundsTo::Whole)
     }
 
+    #[inline]
     fn value(&self, program: &Program, operand: Operand, rounds: RoundsTo) -> Checked<Value> {
         match operand {
             Operand::Number(number) => Ok(Value::Number(number)),

@@ -70,6 +70,10 @@ impl Control {
             return Some(outcome.clone());
         }
         let mut done = self.block(library, sink);
+        // Most blocks end nothing and have nothing to tell.
+        if matches!(done, Ok(None)) && self.core.told.get().is_none() {
+            return None;
+        }
         if matches!(done, Ok(Some(Over::End)))
             && let Err(alarm) = self.core.end_ahead(sink)
         {

@@ -44,13 +44,12 @@ impl Core {
                 }
             }
             Statement::While { condition, number, end } => {
-                let start = self.frame().next - 1;
-                if self.holds(program, *condition)? {
-                    self.frame_mut().loops[usize::from(*number) - 1] = Some((start, *end));
-                } else {
-                    self.frame_mut().jump(end + 1);
-                    self.frame_mut().loops[usize::from(*number) - 1] = None;
+                let holds = self.holds(program, *condition)?;
+                let frame = self.frame_mut();
+                if !holds {
+                    frame.jump(end + 1);
                 }
+                frame.loops[usize::from(*number) - 1] = holds.then_some((frame.next - 1, *end));
             }
             Statement::Do { number, end } => {
                 let start = self.frame().next - 1;
@@ -63,10 +62,7 @@ impl Core {
                 }
                 self.frame_mut().next = *start;
             }
-            Statement::SetNames { first, names } => {
-                let first = index(self.operand(program, *first)?).map_err(|a| a.at(span))?;
-                self.set_names(first, names).map_err(|a| a.at(span))?;
-            }
+            Statement::SetNames { first, names } => self.name_variables(program, *first, names, span)?,
             Statement::Print { kind, parts } => self.print(program, *kind, parts, span)?,
             Statement::OpenOutput => self.open_output(true),
             Statement::CloseOutput => self.open_output(false),
@@ -75,6 +71,18 @@ impl Core {
         Ok(())
     }
 
+    fn name_variables(
+        &mut self,
+        program: &Program,
+        first: Operand,
+        names: &[String],
+        span: Span,
+    ) -> Checked<()> {
+        let first = index(self.operand(program, first)?).map_err(|alarm| alarm.at(span))?;
+        self.set_names(first, names).map_err(|alarm| alarm.at(span))
+    }
+
+    #[inline]
     pub(super) fn target(&self, program: &Program, target: Target) -> Result<Slot, Alarm> {
         match target {
             Target::Slot(slot) => Ok(slot),
@@ -127,6 +135,7 @@ impl Core {
     }
 
     /// Writes a variable of any kind.
+    #[inline]
     pub(super) fn write<S: Sink>(
         &mut self,
         slot: Slot,
@@ -135,17 +144,23 @@ impl Core {
         span: Span,
         sink: &mut S,
     ) -> Checked<()> {
-        let number = match slot {
-            Slot::Local(index) => {
-                self.vars.set_local(usize::from(index), value);
-                return Ok(());
-            }
-            Slot::Common(index) => {
-                self.vars.set_common(usize::from(index), value);
-                return Ok(());
-            }
-            Slot::Other(number) => number,
-        };
+        match slot {
+            Slot::Local(index) => self.vars.set_local(usize::from(index), value),
+            Slot::Common(index) => self.vars.set_common(usize::from(index), value),
+            Slot::Other(number) => self.write_other(number, value, text, span, sink)?,
+        }
+        Ok(())
+    }
+
+    /// Writes a variable that is neither local nor common on every control.
+    fn write_other<S: Sink>(
+        &mut self,
+        number: u32,
+        value: Value,
+        text: Option<&[u8]>,
+        span: Span,
+        sink: &mut S,
+    ) -> Checked<()> {
         match self.vars.kind(number) {
             Kind::Local(index) => self.vars.set_local(index, value),
             Kind::Common(index) => self.vars.set_common(index, value),

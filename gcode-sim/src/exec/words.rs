@@ -264,6 +264,7 @@ impl Core {
     }
 
     /// The value of a word, or `None` where it is vacant and the word therefore not there.
+    #[inline]
     pub(super) fn raw(&self, program: &Program, word: &Coded) -> Checked<Option<Raw>> {
         Ok(match word.value {
             Input::Literal(number) => Some(Raw::Literal(number)),

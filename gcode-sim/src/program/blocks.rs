@@ -77,6 +77,11 @@ impl Blocks {
     }
 
     #[inline]
+    pub(super) fn is_ready(&self, place: OpIndex) -> bool {
+        self.entries.get(place).is_some_and(|entry| entry.op() < self.ops.len())
+    }
+
+    #[inline]
     pub(super) fn op(&self, place: OpIndex) -> Option<&Op> {
         self.ops.get(self.entries.get(place)?.op())
     }

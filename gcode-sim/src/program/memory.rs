@@ -113,7 +113,7 @@ impl Memory {
     pub(crate) fn ready(&mut self, id: ProgramId, place: OpIndex) -> Option<(&Program, &Op)> {
         let Self { sources, programs, .. } = self;
         let program = &mut programs[id.0 as usize];
-        if program.op(place).is_none() {
+        if !program.blocks.is_ready(place) {
             let Program { blocks, span, loops, .. } = program;
             blocks.ready(place, span.source, &sources.get(span.source).bytes, loops);
         }

@@ -30,6 +30,8 @@ pub(super) fn decimal(input: Input<'_>, negative: bool, limit: u64) -> Read<'_, 
         match rest {
             [b'.', ..] if before_point.is_some() => return fail(input, Alarm::IllegalPoint { letter: None }),
             [b'.', after @ ..] => (before_point, rest) = (Some(count), after),
+            // The commonest end of a number.
+            [b' ', b'A'..=b'Z', ..] => break,
             [byte, ..] if is_space(*byte) => match unspaced(rest) {
                 // Spaces behind the number aren't its own.
                 behind @ [b'0'..=b'9' | b'.', ..] => rest = behind,

@@ -69,6 +69,7 @@ fn moving(settings: &Settings, unit: &Unit<'_>) -> Vec<Option<OpIndex>> {
         let skipped = op.and_then(|op| op.skip).map(|_| (block + 1, moving[block]));
         open.extend(unit.flow.after(block).map(|to| (to, after)).chain(skipped));
     }
+    moving.truncate(unit.flow.ways.len());
     moving
 }
 

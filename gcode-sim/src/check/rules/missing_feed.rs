@@ -42,6 +42,7 @@ fn fed(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Option<bool>> {
         let after = before || block < unit.flow.ways.len() && may_give(subject, unit, block);
         open.extend(unit.flow.after(block).map(|to| (to, after)));
     }
+    fed.truncate(unit.flow.ways.len());
     fed
 }
 
