@@ -185,7 +185,7 @@ fn codes(verdict: &Verdict) -> Vec<String> {
 #[test]
 fn a_fault_in_the_macro_is_named() {
     let faults = [
-        ("#18 LT 2*#14", "#18 LT #14", "row-seam", "are 200.000° apart"),
+        ("#18 LT 2*#14", "#18 LT #14", "row-missing", "rows 9 to 17 are missing"),
         ("ROUND[3.14159265", "FUP[3.14159265", "row-angle", "18° apart, 20.0000° wanted"),
         ("#15=180/#14", "#15=FIX[178/#14]", "row-angle", "right for a diameter of 105.26 mm"),
         ("*#16/2 (WHERE", "*0 (WHERE", "row-group", "no row is staggered: all 18 rows begin at x 0.000"),

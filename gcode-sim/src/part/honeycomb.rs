@@ -65,6 +65,22 @@ impl Pattern {
         self.distance(&point(0.0, Deg::ZERO, radius), &point(0.0, self.step() * 2.0, radius))
     }
 
+    /// The row whose azimuth is nearest to that of a point, counted from 0.
+    pub fn row_of(&self, p: &Point3<f64>) -> usize {
+        let rows = (azimuth(p).0 / self.step().0).round();
+        rows.rem_euclid(f64::from(self.rows)) as usize
+    }
+
+    /// The pitch that so many rows of both groups close with, mm.
+    pub fn pitch_of(&self, rows: u32) -> f64 {
+        closed(self.metric, self.diameter, rows)
+    }
+
+    /// The pitch that the same rows close with in the other metric, mm.
+    pub fn pitch_in(&self, metric: Metric) -> f64 {
+        closed(metric, self.diameter, self.rows)
+    }
+
     /// From one row to the next.
     pub fn step(&self) -> Deg {
         Deg(360.0 / f64::from(self.rows))

@@ -1,6 +1,7 @@
 //! What a measure of a honeycomb that is wrong by a factor was computed from: numbers that programs take for others.
 use std::f64::consts::PI;
 
+use crate::job::Metric;
 use crate::part::honeycomb::Pattern;
 
 /// Factors closer than this are the same: angles and lengths are rounded to the control's increment.
@@ -13,7 +14,8 @@ struct Cause {
 }
 
 /// The fewest causes that together make `factor` of a length round the circumference, in words; `None` where nothing
-/// known does. `asked`: whether the pitch that was asked for may be among them.
+/// known does. `asked`: whether the pitch that was asked for may be among them, as it may of an angle; of a pitch itself
+/// the metric may.
 pub(super) fn causes(pattern: &Pattern, factor: f64, asked: bool) -> Option<String> {
     let all = known(pattern, asked);
     let mut best: Option<Vec<&Cause>> = None;
@@ -39,6 +41,17 @@ fn known(pattern: &Pattern, asked: bool) -> Vec<Cause> {
             let words = format!("the {name}, {other}, for the pitch's diameter, {diameter}");
             all.push(Cause { factor: other / diameter, words });
         }
+    }
+    if !asked {
+        let (other, words) = match pattern.metric {
+            Metric::Arc => {
+                (Metric::Chord, "the straight distance (chord) for the one on the developed surface (arc)")
+            }
+            Metric::Chord => {
+                (Metric::Arc, "the distance on the developed surface (arc) for the straight one (chord)")
+            }
+        };
+        all.push(Cause { factor: pattern.pitch_in(other) / pattern.pitch, words: words.to_owned() });
     }
     if let Some(pitch) = pattern.asked.filter(|_| asked) {
         let words = format!("the pitch asked for, {pitch}, for the one that closes, {:.4}", pattern.pitch);

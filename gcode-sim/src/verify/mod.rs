@@ -4,6 +4,8 @@ mod checks;
 pub mod flutes;
 mod matching;
 mod neighbours;
+mod objection;
+mod off;
 pub mod position;
 mod rounding;
 mod rows;
@@ -15,10 +17,11 @@ use std::collections::BTreeMap;
 
 pub use matching::{Comparison, Pair};
 pub use neighbours::{Around, Distance, Neighbours};
+pub use objection::Objection;
 pub use rounding::{Rounding, Share};
 pub use verdict::{Answer, Extra, Finding, HoleVerdict, OnPart, Placed, Verdict};
 
-use crate::diag::{Diagnostic, Severity};
+use crate::diag::Severity;
 use crate::holes::Extracted;
 use crate::machine::{HeadKind, Machine};
 use crate::part::reference::Reference;
@@ -47,14 +50,6 @@ impl Tolerances {
     }
 }
 
-/// Something a check has against the holes.
-#[derive(Clone, Debug)]
-pub struct Objection {
-    /// The wanted hole it is about, counted from 0.
-    pub wanted: Option<usize>,
-    pub finding: Diagnostic,
-}
-
 /// The verdict on a program. `locate` names the program and the line of a block.
 pub fn verify(
     extracted: &Extracted,
@@ -70,11 +65,9 @@ pub fn verify(
     for check in checks::ALL {
         check(&comparison, &mut objections);
     }
-    if extracted.findings.iter().any(|finding| finding.severity == Severity::Alarm) {
-        for objection in objections.iter_mut().filter(|o| o.finding.code == "hole-missing") {
-            objection.finding.help = Some("the run stopped before its end: see why first".to_owned());
-        }
-    }
+    let stopped = extracted.findings.iter().any(|finding| finding.severity == Severity::Alarm);
+    checks::alike::check(&comparison, machine, &mut objections);
+    checks::stopped::check(&comparison, stopped, &mut objections);
     let mut motion = extracted.findings.clone();
     motion.extend(checks::clearance::findings(&extracted.passings, reference.clearance));
     let mut verdict = verdict::verdict(&comparison, rounding, objections, &motion, locate);

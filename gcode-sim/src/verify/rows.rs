@@ -87,6 +87,16 @@ impl Rows {
         Some(Self { rows, gaps, usual, spacing })
     }
 
+    /// Whether most rows stand whole numbers of the usual gap from the first, to so many degrees: single rows that are turned
+    /// change the mean and leave it to fit no other.
+    pub(super) fn fit(&self, within: Deg) -> bool {
+        let off = |row: &&Row| {
+            let gaps = (row.azimuth - self.rows[0].azimuth).0 / self.usual.0;
+            (gaps - gaps.round()).abs() * self.usual.0 <= within.0
+        };
+        4 * self.rows.len() <= 5 * self.rows.iter().filter(off).count()
+    }
+
     /// Whether every row begins where the first does, where every second one should begin half a pitch later.
     pub(super) fn in_step(&self, pattern: &Pattern) -> bool {
         let off = |row: &Row| {

@@ -175,7 +175,9 @@ pub(super) fn verdict(
         neighbours: None,
         not_checked: Vec::new(),
         holes,
-        diagnostics: readable(objections.into_iter().map(|o| o.finding).chain(findings.iter().cloned())),
+        diagnostics: readable(
+            objections.into_iter().filter(|o| !o.folded).map(|o| o.finding).chain(findings.iter().cloned()),
+        ),
     }
 }
 

@@ -30,8 +30,11 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
                 false => Diagnostic::error("hole-cut-aside", message)
                     .help("correct the point of that pass: what it cuts outside the hole stays cut"),
             };
-            let objection = (!unknown).then_some(pair.wanted);
-            objections.push(Objection { wanted: objection, finding: finding.at(cut.place.clone()) });
+            let finding = finding.at(cut.place.clone());
+            objections.push(match unknown {
+                true => Objection::whole(finding),
+                false => Objection::of(pair.wanted, finding),
+            });
         }
     }
 }

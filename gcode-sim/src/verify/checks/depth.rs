@@ -23,12 +23,12 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
         if let Some(note) = without_point(nominal, nominal + error) {
             finding = finding.note(note);
         }
-        objections.push(Objection { wanted: Some(pair.wanted), finding });
+        objections.push(Objection::of(pair.wanted, finding));
     }
 }
 
 /// A depth that is a thousandth of the wanted one, or with the finer increment a ten-thousandth.
-fn without_point(wanted: f64, found: f64) -> Option<&'static str> {
+pub(super) fn without_point(wanted: f64, found: f64) -> Option<&'static str> {
     let is = |parts: f64| (found * parts / wanted - 1.0).abs() < 0.01;
     match () {
         () if is(1e3) => {

@@ -17,6 +17,6 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
         let finding = Diagnostic::error("hole-diameter", message)
             .help("finish the hole with the right tool, or correct the tool table")
             .at(found.place.clone());
-        objections.push(Objection { wanted: Some(pair.wanted), finding });
+        objections.push(Objection::of(pair.wanted, finding));
     }
 }

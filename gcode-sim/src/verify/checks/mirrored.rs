@@ -16,8 +16,9 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
     for (axis, name) in [(2, 'z'), (0, 'x'), (1, 'y')] {
         let turned: Vec<_> = comparison.found.iter().map(|found| mirror(found, axis)).collect();
         let again = Comparison::new(comparison.wanted, &turned, comparison.tolerances, comparison.pattern);
-        let agree = again.pairs.len();
-        if agree <= comparison.pairs.len() || (agree as f64) < MOST * comparison.wanted.len() as f64 {
+        // In their zones: a pattern turned round lies near itself in many ways.
+        let agree = in_place(&again);
+        if agree <= in_place(comparison) || (agree as f64) < MOST * comparison.wanted.len() as f64 {
             continue;
         }
         let message = format!(
@@ -29,9 +30,13 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
         let finding = Diagnostic::error("rotary-sign", message)
             .help("turn round the table's sign in the machine file, or machine.rotary.sign in the job")
             .at(place);
-        objections.push(Objection { wanted: None, finding });
+        objections.push(Objection::whole(finding));
         return;
     }
+}
+
+fn in_place(comparison: &Comparison<'_>) -> usize {
+    comparison.pairs.iter().filter(|pair| pair.deviation.phi() <= comparison.tolerances.position).count()
 }
 
 fn mirror(found: &Found, axis: usize) -> Found {

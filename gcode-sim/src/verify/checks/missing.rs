@@ -30,6 +30,6 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
             }
             None => finding.help("the program leaves it out"),
         };
-        objections.push(Objection { wanted: Some(*wanted), finding });
+        objections.push(Objection::of(*wanted, finding));
     }
 }

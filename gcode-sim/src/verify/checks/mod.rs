@@ -1,4 +1,5 @@
 //! The checks: one file each, one line here.
+pub(super) mod alike;
 mod aside;
 pub(super) mod clearance;
 mod depth;
@@ -9,8 +10,11 @@ mod overlap;
 mod position;
 mod row_angle;
 mod row_group;
+mod row_missing;
 mod row_pitch;
 mod row_seam;
+mod row_short;
+pub(super) mod stopped;
 pub(super) mod surplus;
 mod tools;
 
@@ -32,4 +36,6 @@ pub(super) const ALL: &[Check] = &[
     diameter::check,
     tools::check,
     overlap::check,
+    row_short::check,
+    row_missing::check,
 ];

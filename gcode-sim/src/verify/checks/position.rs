@@ -6,7 +6,7 @@ use crate::verify::Pair;
 pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>) {
     for pair in &comparison.pairs {
         if pair.deviation.phi() > comparison.tolerances.position {
-            objections.push(Objection { wanted: Some(pair.wanted), finding: finding(comparison, pair) });
+            objections.push(Objection::of(pair.wanted, finding(comparison, pair)));
         }
     }
 }

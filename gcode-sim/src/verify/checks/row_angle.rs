@@ -5,6 +5,7 @@ use crate::diag::Diagnostic;
 use crate::part::honeycomb::Pattern;
 use crate::units::Deg;
 use crate::verify::causes::causes;
+use crate::verify::objection::at_the_call;
 use crate::verify::rows::Rows;
 
 /// What rounding to the rotary's increment, 0.01° at the coarsest, may make of a turn.
@@ -19,6 +20,10 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
     if turn < ROUNDED || pattern.arc(turn) <= comparison.tolerances.position / 2.0 {
         return;
     }
+    let tolerance = Deg::atan2(comparison.tolerances.position, pattern.diameter / 2.0);
+    if !rows.fit(tolerance + ROUNDED) {
+        return;
+    }
     let (found, right) = (pattern.arc(usual), pattern.arc(wanted));
     let fits = pattern.diameter * wanted.0 / usual.0;
     let message = format!(
@@ -27,13 +32,14 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
         plain(usual),
         wanted.0
     );
-    let mut finding = Diagnostic::error("row-angle", message)
-        .help(help(pattern))
-        .at(comparison.found[rows.rows[1].first].place.clone());
+    let finding = Diagnostic::error("row-angle", message).help(help(pattern));
+    let mut finding = at_the_call(finding, &comparison.found[rows.rows[1].first].place);
     if whole(usual) && !whole(wanted) {
         let cut = if usual.0 < wanted.0 { "FIX or ROUND" } else { "FUP or ROUND" };
         finding = finding
             .note(format!("{}° is a whole number of degrees: what did {cut} leave off?", plain(usual)));
+    } else if let Some(closes) = closes(pattern, &rows, usual) {
+        finding = finding.note(closes);
     } else {
         finding = finding.note(format!(
             "this angle would be right for a diameter of {fits:.2} mm, the pitch is to hold on {}",
@@ -43,7 +49,21 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
             finding = finding.note(causes);
         }
     }
-    objections.push(Objection { wanted: None, finding });
+    objections.push(Objection::whole(finding));
+}
+
+/// The pattern that another number of rows closes with, of rows that stand as evenly round as these do.
+fn closes(pattern: &Pattern, rows: &Rows, usual: Deg) -> Option<String> {
+    let count = rows.rows.len() as u32;
+    let even = (usual.0 * f64::from(count) - 360.0).abs() < ROUNDED.0;
+    (even && count.is_multiple_of(2) && !rows.one_group(pattern)).then(|| {
+        format!(
+            "so {} rows of each group close it, as a pitch of about {:.3} asks for: are divisions, pitch or diameter in the call \
+             others?",
+            count / 2,
+            pattern.pitch_of(count)
+        )
+    })
 }
 
 fn help(pattern: &Pattern) -> String {

@@ -2,11 +2,21 @@
 use super::{Comparison, Objection};
 use crate::diag::Diagnostic;
 use crate::verify::causes::causes;
+use crate::verify::objection::at_the_call;
 use crate::verify::rows::Rows;
+
+/// Pitches nearer than this, in mm, are the same: holes are rounded to the increment.
+const FOLLOWS: f64 = 0.002;
 
 pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>) {
     let Some(pattern) = comparison.pattern else { return };
-    let Some((spacing, row)) = Rows::of(comparison, pattern).and_then(|rows| rows.spacing) else { return };
+    let Some(rows) = Rows::of(comparison, pattern) else { return };
+    let Some((spacing, row)) = rows.spacing else { return };
+    // The pitch that follows from another number of rows is told with their angle.
+    let follows = (spacing - pattern.pitch_of(rows.rows.len() as u32)).abs() < FOLLOWS;
+    if follows && objections.iter().any(|objection| objection.finding.code == "row-angle") {
+        return;
+    }
     let pitches = (pattern.length / pattern.pitch).floor();
     let sum = (spacing - pattern.pitch).abs() * pitches;
     if sum <= comparison.tolerances.position / 2.0 {
@@ -16,7 +26,8 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
         "the holes of a row stand {spacing:.4} mm apart, {:.4} wanted: over {pitches:.0} pitches that is {sum:.2} mm",
         pattern.pitch
     );
-    let mut finding = Diagnostic::error("row-pitch", message).at(comparison.found[row.first].place.clone());
+    let mut finding =
+        at_the_call(Diagnostic::error("row-pitch", message), &comparison.found[row.first].place);
     if let Some(asked) = pattern.asked
         && (spacing - asked).abs() < (spacing - pattern.pitch).abs()
     {
@@ -29,5 +40,5 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
         finding = finding.note(causes);
     }
     let finding = finding.help("compute the pitch from the number of rows that close, after the angle");
-    objections.push(Objection { wanted: None, finding });
+    objections.push(Objection::whole(finding));
 }

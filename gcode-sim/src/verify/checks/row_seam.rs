@@ -1,6 +1,7 @@
 //! Round the cylinder the last row stands as far from the first as all others from their next: else there is a seam.
 use super::{Comparison, Objection};
 use crate::diag::Diagnostic;
+use crate::verify::objection::at_the_call;
 use crate::verify::rows::Rows;
 
 /// A gap that differs by less than this part of a row is no seam.
@@ -15,6 +16,11 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
     let [seam] = seams.as_slice() else { return };
     let (before, after) = (rows.rows[*seam], rows.rows[(seam + 1) % rows.rows.len()]);
     let gap = rows.gaps[*seam];
+    // Where rows are missing, the others stand as they should.
+    let steps = (gap.0 / pattern.step().0).round();
+    if 2.0 <= steps && (gap.0 - steps * pattern.step().0).abs() <= SHARE * pattern.step().0 {
+        return;
+    }
     let message = format!(
         "a seam: the rows at {:.3}° and {:.3}° are {:.3}° apart, {:.2} mm, all others {:.3}°, {:.2} mm",
         before.azimuth.0,
@@ -24,8 +30,6 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
         rows.usual.0,
         pattern.arc(rows.usual)
     );
-    let finding = Diagnostic::error("row-seam", message)
-        .help("the angle from row to row must divide 360: take a whole number of rows first, then the angle, then the pitch")
-        .at(comparison.found[before.first].place.clone());
-    objections.push(Objection { wanted: None, finding });
+    let finding = Diagnostic::error("row-seam", message).help("the angle from row to row must divide 360: take a whole number of rows first, then the angle, then the pitch");
+    objections.push(Objection::whole(at_the_call(finding, &comparison.found[before.first].place)));
 }

@@ -14,7 +14,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
         let finding = Diagnostic::error(code, why(comparison, *index))
             .help(help)
             .at(comparison.found[*index].place.clone());
-        objections.push(Objection { wanted: None, finding });
+        objections.push(Objection::of_extra(*index, finding));
     }
 }
 

@@ -39,7 +39,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
             let finding = Diagnostic::warning("hole-tools", message)
                 .help("was a call left out?")
                 .at(comparison.found[pair.found].place.clone());
-            objections.push(Objection { wanted: Some(pair.wanted), finding });
+            objections.push(Objection::of(pair.wanted, finding));
         }
     }
 }
