@@ -14,7 +14,7 @@ use crate::verify::off::offs;
 const FEWEST: usize = 3;
 
 /// Depths that differ by less are the same, in mm.
-const SAME_DEPTH: f64 = 0.005;
+const SAME_DEPTH: f64 = 0.02;
 
 /// What is found of a single hole in a wrong place.
 const OF_PLACES: [&str; 4] = ["hole-position", "hole-tilted", "hole-missing", "hole-extra"];
@@ -77,10 +77,16 @@ fn depths(comparison: &Comparison<'_>, objections: &mut [Objection]) -> Vec<Diag
         let members: Vec<usize> = group.iter().map(|pair| pair.wanted).collect();
         let is_one = among(comparison.wanted.len(), &members);
         let folded = fold(objections, &["hole-depth"], |o| o.wanted.is_some_and(|wanted| is_one[wanted]));
+        let by = group.iter().map(|pair| pair.deviation.depth_error.abs());
+        let (least, most) =
+            by.fold((f64::INFINITY, 0.0f64), |(least, most), by| (least.min(by), most.max(by)));
+        let by = match most - least < 0.001 {
+            true => format!("{:.3}", error.abs()),
+            false => format!("{least:.3} to {most:.3}"),
+        };
         let message = format!(
-            "{} {:.3} mm too {} ({} allowed)",
+            "{} {by} mm too {} ({} allowed)",
             which(comparison, &members),
-            error.abs(),
             if error > 0.0 { "deep" } else { "shallow" },
             comparison.tolerances.depth
         );
