@@ -162,8 +162,11 @@ fn a_machine_with_errors_moves_the_holes_and_nothing_else_is_found() {
         package.machine = format!("{plain}\n{errors}");
         let verdict = || check(&job, &package).unwrap().judgement.into_holes().unwrap();
         let found = verdict();
-        let other: Vec<_> =
-            found.diagnostics.iter().filter(|finding| finding.code != "hole-position").collect();
+        let other: Vec<_> = found
+            .diagnostics
+            .iter()
+            .filter(|finding| finding.code != "hole-position" && finding.code != "holes-alike")
+            .collect();
         assert!(other.is_empty(), "{other:?}");
         assert_eq!(found.holes.len(), 5);
         assert_eq!(found.worst, verdict().worst, "the same seed is the same machine");
