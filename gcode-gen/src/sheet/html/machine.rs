@@ -163,18 +163,21 @@ pub(super) fn settings(sheet: &Sheet<'_>) -> Markup {
 
 /// The switches that the programs depend on.
 fn needed(sheet: &Sheet<'_>) -> Markup {
-    let needed = &sheet.needed;
+    let (needed, waiting) = (&sheet.needed, &sheet.record.waiting);
     html! {
         @for one in needed {
             li {
                 b { (one.key) " = " (one.value) } " (" (one.meaning) "): with the other value " (one.otherwise) "."
             }
         }
-        @if sheet.package.mains.len() > sheet.record.waiting.len() {
+        @if sheet.package.mains.len() > waiting.len() {
           li {
             "All switches in which controls differ (" code { "gcode-sim settings" } " lists them) were turned one by one: "
             @if needed.is_empty() { "none" } @else { "no other" }
             " changes what the first " (BLOCKS) " blocks of a run do."
+            @if !waiting.is_empty() {
+                " Not tried with " (waiting.join(", ")) ", which ends in an alarm until what it reads has been measured."
+            }
           }
         }
     }
