@@ -1,4 +1,5 @@
-//! Draws a burr's flutes as its job's programs grind them: cases of kind `picture` that have a `job.toml`.
+//! Draws a burr's flutes as its job's programs grind them, or as the program `case.nc` does: cases of kind `picture` that have
+//! a `job.toml`.
 use gcode_gen::families;
 use gcode_sim::job::Job;
 use gcode_sim::machine::Machine;
@@ -9,12 +10,13 @@ use gcode_sim::report::flute_view;
 use gcode_sim::session::{Request, grind};
 
 /// The scene of one view; the job's form must be `moves`, for there is no library here.
-pub(super) fn scene(job: &str, view: &str) -> Scene {
+pub(super) fn scene(job: &str, program: Option<String>, view: &str) -> Scene {
     let job = Job::parse(job).unwrap();
     let package = families::emit(&job);
     let main = package.main().unwrap();
     let machine = Machine::parse(&package.machine).unwrap();
-    let request = Request::new("O8400.nc", main.text.as_bytes(), machine);
+    let text = program.unwrap_or_else(|| main.text.clone());
+    let request = Request::new("O8400.nc", text.as_bytes(), machine);
     let Wanted::Flutes(wanted) = Wanted::of_job(&job).unwrap() else { panic!("the job is no burr") };
     let grinding = grind(&request, &mut NoLibrary, &wanted).unwrap();
     let view_of = flute_view::of("O8400.nc", &grinding, &grinding.verify());

@@ -1,4 +1,4 @@
-//! Draws the view that a `case.toml` describes, or that of the burr in a `job.toml` beside it, and holds it against
+//! Draws the view that a `case.toml` describes, or that of the burr in a `job.toml` beside it as a `case.nc` or its own program grinds it, and holds it against
 //! `expected.png`, one step per channel allowed.
 //!
 //! `says.snap` beside it has the picture's words. With an `other.toml` the picture is the comparison of both. What
@@ -83,8 +83,9 @@ fn six() -> f64 {
 pub(crate) fn run(case: &Case) {
     if let Some(job) = case.optional("job.toml") {
         let picture: BurrPicture = toml::from_str(&case.text("case.toml")).unwrap();
-        let scene = burr_picture::scene(&job, &picture.view);
+        let scene = burr_picture::scene(&job, case.optional("case.nc"), &picture.view);
         let sheet = lay_out(&scene, picture.size.parse().unwrap()).unwrap();
+        case.snapshot("says", &words(&sheet));
         return hold(case, &cropped(&png(&paint(&sheet)).unwrap(), picture.crop));
     }
     let (picture, sheet) = draw(&case.text("case.toml"));

@@ -49,7 +49,7 @@ enum View {
     Side,
     /// A burr from its tip
     Tip,
-    /// A burr's helix angle over the polar angle, with both laws
+    /// A burr's helix angle along its flutes, with what is allowed
     Helix,
 }
 

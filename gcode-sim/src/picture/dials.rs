@@ -142,7 +142,7 @@ mod tests {
     /// 1 px a mm, text of 10 px.
     fn frame() -> Frame {
         let scale = Scale::fitting(([0.0, 0.0], [100.0, 100.0]), Rect::new(0.0, 0.0, 100.0, 100.0));
-        Frame { font: Font::embedded(), text: 10.0, scale, largest_dial: 25.0 }
+        Frame { font: Font::embedded(), text: 10.0, scale, largest_dial: 25.0, axis_reach: 20.0 }
     }
 
     #[test]

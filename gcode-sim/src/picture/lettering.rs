@@ -2,7 +2,9 @@
 use super::font::{ASCENT, DESCENT};
 use super::ink::{Align, Ink, Px, Rect, px};
 use super::labels::{Field, Spot, Symbol, Way};
+use super::lines::is_path;
 use super::marks::Drawn;
+use super::obstacle::Obstacle;
 use super::palette;
 use super::scene::{Mark, Scene, Shape, Stroke};
 use super::sheet::Frame;
@@ -136,14 +138,27 @@ pub(super) fn caption_strokes(
     labels: &mut Vec<(Rect, Vec<String>)>,
 ) -> Vec<String> {
     let mut left = Vec::new();
+    let paths: Vec<Path<'_>> = scene.strokes.iter().filter_map(|stroke| Path::of(stroke, frame)).collect();
     for stroke in scene.strokes.iter().filter(|stroke| wanted(stroke)) {
         let Some(caption) = &stroke.caption else { continue };
         let lines = vec![caption.clone()];
+        let size = text_box(&lines, frame);
         let places: Vec<Px> = match &stroke.shape {
             Shape::Circle { centre, radius } => {
                 let (centre, radius) = (frame.scale.px(*centre), radius * frame.scale.factor);
                 let angles = (0..48).map(|i| Deg(f64::from(i) * 7.5 + 225.0));
                 angles.map(|angle| centre.toward(symbol::direction(angle), radius)).collect()
+            }
+            // A number on one of several paths covers none of the others: nobody should take it for theirs.
+            Shape::Line(_) if is_path(stroke.pen) => {
+                let own = paths.iter().find(|path| std::ptr::eq(path.stroke, stroke));
+                let mut places = own.into_iter().flat_map(|path| path.points.iter().copied());
+                let apart = |place: &Px| {
+                    let rect = around(*place, size).grown(0.1 * frame.text);
+                    let mut others = paths.iter().filter(|path| !std::ptr::eq(path.stroke, stroke));
+                    field.is_free(&rect) && !others.any(|path| path.runs_through(&rect))
+                };
+                places.find(apart).into_iter().collect()
             }
             Shape::Line(points) => {
                 let middles =
@@ -151,7 +166,6 @@ pub(super) fn caption_strokes(
                 middles.map(|p| frame.scale.px(p)).collect()
             }
         };
-        let size = text_box(&lines, frame);
         if let Some(spot) = field.place_on(places, size) {
             write(&lines, &spot, frame, inks);
             labels.push((spot.rect, lines));
@@ -160,6 +174,44 @@ pub(super) fn caption_strokes(
         }
     }
     left
+}
+
+/// A tool's path that has a number, and the rectangle round it: some of its points will do.
+struct Path<'s> {
+    stroke: &'s Stroke,
+    points: Vec<Px>,
+    bounds: Rect,
+}
+
+/// So many points of a path are looked at.
+const POINTS: usize = 120;
+
+impl<'s> Path<'s> {
+    fn of(stroke: &'s Stroke, frame: &Frame) -> Option<Self> {
+        let Shape::Line(points) = &stroke.shape else { return None };
+        if !is_path(stroke.pen) || stroke.caption.is_none() {
+            return None;
+        }
+        let step = (points.len() / POINTS).max(1);
+        let points: Vec<Px> = points.iter().step_by(step).map(|p| frame.scale.px(*p)).collect();
+        let first = Obstacle::Segment(*points.first()?, *points.first()?).bounds();
+        let bounds = points.iter().fold(first, |all, p| Rect {
+            left: all.left.min(p.x),
+            top: all.top.min(p.y),
+            right: all.right.max(p.x),
+            bottom: all.bottom.max(p.y),
+        });
+        Some(Self { stroke, points, bounds })
+    }
+
+    fn runs_through(&self, rect: &Rect) -> bool {
+        self.bounds.overlaps(rect)
+            && self.points.windows(2).any(|pair| Obstacle::Segment(pair[0], pair[1]).hits(rect))
+    }
+}
+
+fn around(middle: Px, (width, height): (f64, f64)) -> Rect {
+    Rect::new(middle.x - width / 2.0, middle.y - height / 2.0, width, height)
 }
 
 fn text_box(lines: &[String], frame: &Frame) -> (f64, f64) {

@@ -8,9 +8,9 @@ use super::scene::{Pen, Point, Scene, Shape, Stroke};
 use super::sheet::Frame;
 use super::symbol;
 
-/// The tool's path: seen, but nothing keeps off it.
+/// The tool's path: seen, but nothing needs to keep off it.
 pub(super) fn is_path(pen: Pen) -> bool {
-    matches!(pen, Pen::Feed | Pen::Rapid)
+    matches!(pen, Pen::Feed | Pen::Faulty | Pen::Hidden | Pen::Rapid)
 }
 
 pub(super) fn stroke_ink(stroke: &Stroke, frame: &Frame) -> Ink {
@@ -35,6 +35,12 @@ pub(super) fn stroke_ink(stroke: &Stroke, frame: &Frame) -> Ink {
 pub(super) fn block_stroke(field: &mut Field, stroke: &Stroke, frame: &Frame) {
     let hard = stroke.pen == Pen::Outline;
     let obstacles: Vec<Obstacle> = match &stroke.shape {
+        // One that has a number is told apart from others: better not covered. A few pieces will do.
+        Shape::Line(points) if is_path(stroke.pen) && stroke.caption.is_some() => {
+            let step = (points.len() / 40).max(1);
+            let ends: Vec<Px> = points.iter().step_by(step).map(|p| frame.scale.px(*p)).collect();
+            ends.windows(2).map(|w| Obstacle::Segment(w[0], w[1])).collect()
+        }
         _ if is_path(stroke.pen) => Vec::new(),
         Shape::Line(points) => {
             points.windows(2).map(|w| Obstacle::Segment(frame.scale.px(w[0]), frame.scale.px(w[1]))).collect()
@@ -57,13 +63,12 @@ pub(super) fn axes(
     field: &mut Field,
 ) -> Vec<Ink> {
     let text = frame.text;
-    let (low, high) = (frame.scale.px(extent.0), frame.scale.px(extent.1));
-    let part = Rect { left: low.x, top: high.y, right: high.x, bottom: low.y };
+    let part = part(frame, extent);
     let origin = frame.scale.px([0.0, 0.0]);
     let mut inks = Vec::new();
     for axis in &scene.axes {
         let along = [axis.direction[0], -axis.direction[1]];
-        let tip = leave(origin, along, part.grown(2.0 * text));
+        let tip = leave(origin, along, part.grown(frame.axis_reach));
         let tail = leave(origin, [-along[0], -along[1]], part.grown(0.9 * text));
         let width = (0.06 * text).max(1.0);
         let dash = Dash::Chain(0.55 * text);
@@ -83,6 +88,30 @@ pub(super) fn axes(
         field.block(Obstacle::Segment(tip.toward(along, -1.1 * text), tip));
     }
     inks
+}
+
+/// What must be seen, on the sheet.
+fn part(frame: &Frame, (low, high): (Point, Point)) -> Rect {
+    let (low, high) = (frame.scale.px(low), frame.scale.px(high));
+    Rect { left: low.x, top: high.y, right: high.x, bottom: low.y }
+}
+
+/// Whether a dial, as large as any may be, would cover an axis' arrow.
+pub(super) fn are_arrows_hidden(scene: &Scene, frame: &Frame, extent: (Point, Point)) -> bool {
+    let origin = frame.scale.px([0.0, 0.0]);
+    let with_dial = scene.marks.iter().filter(|mark| mark.misfit.is_some() && scene.zone.is_some());
+    let dials: Vec<Obstacle> = with_dial
+        .map(|mark| Obstacle::Disc {
+            centre: frame.scale.px(mark.at),
+            radius: frame.largest_dial + 0.5 * frame.text,
+        })
+        .collect();
+    scene.axes.iter().any(|axis| {
+        let along = [axis.direction[0], -axis.direction[1]];
+        let tip = leave(origin, along, part(frame, extent).grown(frame.axis_reach));
+        let neck = tip.toward(along, -1.1 * frame.text);
+        dials.iter().any(|dial| dial.crosses(neck, tip))
+    })
 }
 
 /// The rectangle, moved as little as it takes to lie in `area`.

@@ -4,10 +4,10 @@
 //! [`lay_out`] turns any scene into a [`Sheet`]: everything has its pixel place, no label covers another. [`paint`]
 //! only paints. A new view is a new file in `views/`; a new file format is a new painter of sheets.
 mod bars;
+mod chart;
 mod compare;
 mod dials;
 mod font;
-mod graph;
 mod ink;
 mod labels;
 mod lettering;
@@ -23,10 +23,12 @@ mod scene;
 mod sheet;
 mod size;
 mod symbol;
+mod ticks;
 mod views;
 mod words;
 
 pub use bars::{Bar, Bars};
+pub use chart::{Chart, Curve, Graph, Sign};
 pub use compare::{Difference, compare};
 pub use ink::{Align, Dash, Ink, Px, Rect, Rgb};
 pub use plot::Plot;
@@ -35,8 +37,8 @@ pub use scene::{Axis, LegendItem, Mark, Misfit, Pen, Point, Sample, Scene, Shape
 pub use sheet::{Sheet, lay_out};
 pub use size::Size;
 pub use views::development::development;
-pub use views::flutes::{FluteView, Spot, side_view, tip_view};
-pub use views::helix::helix_graph;
+pub use views::flutes::{Fault, FluteView, Spot, side_view, tip_view};
+pub use views::helix::{HelixAt, HelixCourses, helix_graph};
 pub use views::question::Question;
 pub use views::side::Side;
 pub use views::top::{Cylinder, DrawnHole, PathPiece, TopView, top_view};

@@ -11,6 +11,9 @@ pub(super) const RULE: Rgb = Rgb(150, 150, 150);
 /// Leaders, direction arrows, the circle of the tolerance zone.
 pub(super) const THIN: Rgb = Rgb(90, 90, 90);
 
+/// What lies within the limits of a graph.
+pub(super) const BAND: Rgb = Rgb(238, 238, 238);
+
 pub(super) fn standing(standing: Standing) -> Rgb {
     match standing {
         Standing::Good => Rgb(0, 114, 178),
@@ -27,9 +30,14 @@ pub(super) fn pen(pen: Pen, text: f64) -> (Rgb, f64, Dash) {
         Pen::Outline => (Rgb(0, 0, 0), 0.13 * text, Dash::Solid),
         Pen::Construction => (Rgb(120, 120, 120), 0.06 * text, Dash::Pattern([0.55 * text, 0.4 * text])),
         Pen::Feed => (Rgb(0, 158, 115), 0.1 * text, Dash::Solid),
+        Pen::Faulty => (Rgb(213, 94, 0), 0.24 * text, Dash::Solid),
+        Pen::Hidden => (Rgb(213, 94, 0), 0.08 * text, Dash::Pattern([0.4 * text, 0.3 * text])),
         Pen::Rapid => (Rgb(86, 180, 233), 0.07 * text, Dash::Pattern([0.25 * text, 0.25 * text])),
         Pen::Grid => (Rgb(205, 205, 205), 0.05 * text, Dash::Solid),
         Pen::First => (Rgb(0, 0, 0), 0.12 * text, Dash::Pattern([0.8 * text, 0.5 * text])),
-        Pen::Second => (Rgb(213, 94, 0), 0.14 * text, Dash::Pattern([0.22 * text, 0.3 * text])),
+        Pen::Measured => (Rgb(0, 114, 178), 0.14 * text, Dash::Solid),
+        Pen::Others => (Rgb(150, 150, 150), 0.05 * text, Dash::Solid),
+        Pen::Limit => (Rgb(213, 94, 0), 0.12 * text, Dash::Pattern([0.8 * text, 0.5 * text])),
+        Pen::Second => (Rgb(204, 121, 167), 0.14 * text, Dash::Pattern([0.22 * text, 0.3 * text])),
     }
 }

@@ -1,4 +1,5 @@
 //! What to draw, in mm and in roles: no pixels, no colours, no NC words.
+use super::chart::Chart;
 
 /// A point of the plane of the drawing, mm: to the right and up. A view says which way of the part is right.
 pub type Point = [f64; 2];
@@ -13,8 +14,8 @@ pub struct Scene {
     /// Diameter of the tolerance zone round every mark that has a misfit, mm.
     pub zone: Option<f64>,
     pub legend: Vec<LegendItem>,
-    /// No drawing of a part but a graph of degrees over degrees: a grid of so many, with numbers instead of a scale bar.
-    pub graph: Option<usize>,
+    /// In the place of the drawing.
+    pub chart: Option<Chart>,
 }
 
 /// The title block.
@@ -65,10 +66,19 @@ pub enum Pen {
     Construction,
     /// Path of the tool while it cuts.
     Feed,
+    /// The same where something is wrong with it.
+    Faulty,
+    /// That on the side that isn't seen.
+    Hidden,
     /// Path of the tool in rapid motion.
     Rapid,
     /// Of a graph.
     Grid,
+    /// A curve of a graph: what was found, and where that is one of many, the others.
+    Measured,
+    Others,
+    /// Edge of what is allowed, in a graph.
+    Limit,
     /// Two curves of a graph to compare with what was found.
     First,
     Second,
@@ -92,7 +102,7 @@ impl Standing {
     }
 }
 
-/// A hole seen along or across its axis.
+/// A hole seen along or across its axis, or another place with a sign.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mark {
     /// Where it should be; where it is, if nothing was asked for.

@@ -2,16 +2,16 @@
 use super::PictureError;
 use super::dials::{Detail, Dials};
 use super::font::Font;
-use super::graph::numbers;
 use super::ink::{Ink, Rect};
 use super::labels::Field;
 use super::lettering::{Lettering, caption_strokes};
-use super::lines::{axes, block_stroke, is_path, scale_bar, stroke_ink};
+use super::lines::{are_arrows_hidden, axes, block_stroke, is_path, scale_bar, stroke_ink};
 use super::marks::draw_marks;
 use super::measure::Scale;
 use super::panel::Panel;
 use super::scene::{Point, Scene, Shape, Standing, Stroke};
 use super::size::Size;
+use super::words::Words;
 
 /// A picture, laid out: every ink has its place in pixels.
 #[derive(Clone, Debug)]
@@ -37,6 +37,8 @@ pub(super) struct Frame {
     pub(super) scale: Scale,
     /// Radius in pixels beyond which a dial would hide the part.
     pub(super) largest_dial: f64,
+    /// How far the axes' arrows reach beyond the part, pixels.
+    pub(super) axis_reach: f64,
 }
 
 /// # Errors
@@ -52,10 +54,23 @@ pub fn lay_out(scene: &Scene, size: Size) -> Result<Sheet, PictureError> {
     let drawing = Rect { bottom: panel.drawing.bottom - strip, ..panel.drawing };
 
     let extent = extent(scene);
-    let scale = Scale::fitting(extent, drawing.grown(-2.9 * text));
     let largest_dial = (2.4 * text).min(0.05 * drawing.width().min(drawing.height()));
-    let frame = Frame { font, text, scale, largest_dial };
+    let frame_of = |axis_reach: f64| {
+        let scale = Scale::fitting(extent, drawing.grown(-axis_reach - 0.9 * text));
+        Frame { font: Font::embedded(), text, scale, largest_dial, axis_reach }
+    };
+    let mut frame = frame_of(2.0 * text);
+    if are_arrows_hidden(scene, &frame, extent) {
+        frame = frame_of(2.6 * text + largest_dial);
+    }
 
+    if let Some(chart) = &scene.chart {
+        let mut words = Words::new(&frame.font, text);
+        chart.draw(panel.drawing.grown(-text), &mut words);
+        let Words { mut inks, labels, .. } = words;
+        inks.extend(panel.inks(scene, &frame, Shown::NOTHING, &[]));
+        return Ok(Sheet { size, inks, labels, notes: Vec::new(), magnification: None });
+    }
     let mut plans = Detail::ALL.iter().map(|detail| Plan::new(scene, &frame, drawing, extent, *detail));
     let mut best = plans.next().expect("there is a first detail");
     for plan in plans {
@@ -67,10 +82,7 @@ pub fn lay_out(scene: &Scene, size: Size) -> Result<Sheet, PictureError> {
         }
     }
     let Plan { mut inks, labels, notes, shown, .. } = best;
-    inks.extend(match scene.graph {
-        Some(grid) => numbers(&frame, grid),
-        None => scale_bar(&frame, Rect { top: drawing.bottom, ..panel.drawing }),
-    });
+    inks.extend(scale_bar(&frame, Rect { top: drawing.bottom, ..panel.drawing }));
     inks.extend(panel.inks(scene, &frame, shown, &notes));
     Ok(Sheet { size, inks, labels, notes, magnification: shown.magnification })
 }
@@ -85,6 +97,12 @@ pub(super) struct Shown {
     pub(super) plain_good: bool,
     /// And those that aren't.
     pub(super) plain_rest: bool,
+}
+
+impl Shown {
+    /// No holes are drawn.
+    const NOTHING: Self =
+        Self { magnification: None, directions: false, astray: false, plain_good: false, plain_rest: false };
 }
 
 /// The drawing with some of the detail there could be.
@@ -106,9 +124,9 @@ impl Plan {
             block_stroke(&mut field, stroke, frame);
         }
         inks.extend(axes(scene, frame, extent, drawing, &mut field));
-        // The number on a straight line has one place, a hole's label many, the number on a circle any.
+        // The number on a straight line has one place, a hole's label many, the number on a circle or a path any.
         let mut labels = Vec::new();
-        let is_line = |stroke: &Stroke| matches!(stroke.shape, Shape::Line(_));
+        let is_line = |stroke: &Stroke| matches!(stroke.shape, Shape::Line(_)) && !is_path(stroke.pen);
         let mut bare = caption_strokes(scene, is_line, frame, &mut field, &mut inks, &mut labels);
         let dials = Dials::choose(scene, frame, detail);
         let drawn = draw_marks(scene, frame, &dials, &mut field);
@@ -127,7 +145,7 @@ impl Plan {
         }
         notes.extend(lettering.notes(scene));
         if !bare.is_empty() {
-            notes.push(format!("Not written on its line: {}.", bare.join(", ")));
+            notes.push(format!("No room on the line for {}.", bare.join(", ")));
         }
         let unlabelled = lettering.unlabelled(scene);
         let shown = Shown {
@@ -192,8 +210,9 @@ fn extent(scene: &Scene) -> (Point, Point) {
     }
     // A single hole without a part round it would fill the sheet.
     let widest = (high[0] - low[0]).max(high[1] - low[1]);
+    let alone = scene.strokes.iter().all(|stroke| is_path(stroke.pen));
     let least = 20.0 * scene.marks.iter().map(|m| m.radius).fold(0.5, f64::max);
-    let grow = ((least - widest) / 2.0).max(0.0);
+    let grow = if alone { ((least - widest) / 2.0).max(0.0) } else { 0.0 };
     (low.map(|v| v - grow), high.map(|v| v + grow))
 }
 
@@ -234,7 +253,7 @@ mod tests {
                 item(Sample::Pen(Pen::Outline)),
                 item(Sample::Pen(Pen::Construction)),
             ],
-            graph: None,
+            chart: None,
         }
     }
 

@@ -28,17 +28,30 @@ impl<'f> Words<'f> {
         y
     }
 
+    /// Words on the line through `at`, unless others stand there.
+    pub(super) fn write_if_free(&mut self, at: Px, align: Align, size: f64, color: Rgb, words: &str) {
+        let place = self.place(at, align, size, words);
+        if self.labels.iter().all(|(other, _)| !other.overlaps(&place)) {
+            self.write(at, align, size, color, words, f64::INFINITY);
+        }
+    }
+
     /// Words on the line through `at`, shortened to `width`.
     pub(super) fn write(&mut self, at: Px, align: Align, size: f64, color: Rgb, words: &str, width: f64) {
         let words = self.font.fitted(words, size, width);
-        let wide = self.font.width(&words, size);
+        let place = self.place(at, align, size, &words);
+        self.labels.push((place, vec![words.clone()]));
+        self.inks.push(Ink::Text { at, align, size, text: words, color });
+    }
+
+    /// The place that words on the line through `at` take.
+    pub(super) fn place(&self, at: Px, align: Align, size: f64, words: &str) -> Rect {
+        let wide = self.font.width(words, size);
         let part = match align {
             Align::Left => 0.0,
             Align::Centre => 0.5,
             Align::Right => 1.0,
         };
-        let place = Rect::new(at.x - part * wide, at.y - size, wide, 1.2 * size);
-        self.labels.push((place, vec![words.clone()]));
-        self.inks.push(Ink::Text { at, align, size, text: words, color });
+        Rect::new(at.x - part * wide, at.y - size, wide, 1.2 * size)
     }
 }

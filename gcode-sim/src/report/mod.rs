@@ -8,6 +8,7 @@ pub mod explain;
 pub mod figures;
 pub mod flute_table;
 pub mod flute_view;
+mod helix_courses;
 pub mod holes;
 pub mod junit;
 pub mod page;

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::diag::Severity;
 use crate::exec::Outcome;
-use crate::picture::Plot;
+use crate::picture::{Chart, Curve, Graph, Pen, Plot};
 use crate::report::figures::count;
 use crate::session::Following;
 use crate::stylus::{Gap, Pass, Reading};
@@ -218,10 +218,12 @@ impl ReadingsReport {
                 begun += gap.length;
             }
             if let Some(pass) = self.passes.get(behind) {
-                curves.push(pass.readings.iter().map(|row| [begun + row.along, row.reading]).collect());
+                let points = pass.readings.iter().map(|row| [begun + row.along, row.reading]).collect();
+                curves.push(Curve { points, pen: Pen::Measured, guest: false });
                 begun += pass.length;
             }
         }
+        let limit = |limit: f64| [0.0, begun].map(|way| [way, -limit, limit]);
         let end = |row: Option<&Row>| {
             row.map(|row| format!("x {:.3}, y {:.3}, z {:.3}", row.x, row.y, plain(row.z, 5e-4)))
         };
@@ -242,11 +244,18 @@ impl ReadingsReport {
             .into_iter()
             .flatten()
             .collect(),
-            across: "Way of the ball's centre, mm".to_owned(),
-            up: "Reading: distance of the ball from the surface, mm".to_owned(),
-            curves,
-            gaps,
-            limit: self.tolerance,
+            chart: Chart {
+                across: "Way of the ball's centre, mm".to_owned(),
+                guides: Vec::new(),
+                gaps,
+                graphs: vec![Graph {
+                    up: "Reading: distance of the ball from the surface, mm".to_owned(),
+                    curves,
+                    band: self.tolerance.into_iter().flat_map(limit).collect(),
+                    zero: true,
+                    signs: Vec::new(),
+                }],
+            },
         }
     }
 }

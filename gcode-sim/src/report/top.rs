@@ -53,7 +53,10 @@ pub fn of_verdict(
         standing: if hole.ok { Standing::Good } else { Standing::Bad },
         phi: Some(hole.phi),
         turn: rotary.turn(&found[hole.found]),
-        remark: hole.objections.first().map(|code| code.trim_start_matches("hole-").to_owned()),
+        remark: hole.objections.first().map(|code| match code.as_str() {
+            "hole-depth" => format!("depth {}", signed(hole.depth_error)),
+            other => other.trim_start_matches("hole-").to_owned(),
+        }),
     });
     let missing = verdict.missing.iter().map(|id| DrawnHole {
         id: id.clone(),
@@ -94,6 +97,11 @@ pub fn of_verdict(
         holes: judged.chain(missing).chain(extra).collect(),
         ..TopView::default()
     }
+}
+
+/// `+0.120`, `−1.500`.
+fn signed(by: f64) -> String {
+    format!("{by:+.3}").replace('-', "−")
 }
 
 /// The holes of a new revision over those of the old one, which they are held against.

@@ -26,7 +26,7 @@ pub fn development(view: &TopView) -> Option<Scene> {
     let axes = vec![Axis { name: turn_name(view), direction: [1.0, 0.0] }];
     let legend = sheet.legend(view, &marks);
     let strokes = sheet.strokes();
-    Some(Scene { title, axes, strokes, marks, zone: view.tolerance, legend, graph: None })
+    Some(Scene { title, axes, strokes, marks, zone: view.tolerance, legend, chart: None })
 }
 
 /// Into how many strips a cylinder may be cut: each begins at a whole number of degrees and a half.
@@ -157,22 +157,28 @@ impl Unrolled {
                 let caption = Some(if x == 0.0 { "x 0".to_owned() } else { plain(x) });
                 line([left - 1.3 * tick, y(x)], [left, y(x)], Pen::Construction, caption);
             }
-            for (row, at) in self.rows(strip) {
-                let caption = Some(format!("r{row}"));
-                line([at, top], [at, top + tick], Pen::Construction, caption);
+            for (row, at, is_named) in self.rows(strip) {
+                let caption = is_named.then(|| format!("r{row}"));
+                let long = if is_named { tick } else { 0.3 * tick };
+                line([at, top], [at, top + long], Pen::Construction, caption);
             }
         }
         strokes
     }
 
-    /// The rows of a strip that have their number above it, and where they stand.
-    fn rows(&self, strip: u32) -> impl Iterator<Item = (u32, f64)> {
+    /// The rows of a strip that have a tick above it, where they stand, and whether they have their number there: all of
+    /// them if there is room, else every fifth, tenth and so on. Where ticks would run into each other, those alone.
+    fn rows(&self, strip: u32) -> impl Iterator<Item = (u32, f64, bool)> {
         let apart = self.width() * f64::from(self.strips) / f64::from(self.cylinder.rows);
-        let every = bar_length(2.5 * (0.09 * self.width() / apart).max(1.0)) as u32;
+        let least = 0.09 * self.width() / apart;
+        let named = [1, 5, 10, 50, 100, 500, 1000].into_iter().find(|every| least <= f64::from(*every));
+        let named = named.unwrap_or(5000u32);
+        let every = if apart < 0.008 * self.width() { named } else { 1 };
         let step = 360.0 / f64::from(self.cylinder.rows);
         let all = (0..self.cylinder.rows).step_by(every as usize);
         let placed = all.map(move |row| (row, self.right(Deg(f64::from(row) * step))));
-        placed.filter(move |(_, (on, _))| *on == strip).map(|(row, (_, at))| (row, at))
+        let here = placed.filter(move |(_, (on, _))| *on == strip);
+        here.map(move |(row, (_, at))| (row, at, row % named == 0))
     }
 
     fn legend(&self, view: &TopView, marks: &[Mark]) -> Vec<LegendItem> {
@@ -300,6 +306,22 @@ mod tests {
             development(&view).unwrap().axes.remove(0).name
         };
         assert_eq!((name(false), name(true)), ("A".to_owned(), "−A".to_owned()));
+    }
+
+    /// Of 100 rows on one strip every tenth has its number, the others a tick to count by; of 8 all have.
+    #[test]
+    fn odd_rows_have_a_tick_too() {
+        let of = |rows: u32| {
+            let cylinder = Some(Cylinder { outer: 110.0, radius: 100.0, length: 400.0, rows });
+            let scene = development(&TopView { cylinder, ..TopView::default() }).unwrap();
+            let named = scene.strokes.iter().filter_map(|stroke| stroke.caption.clone());
+            let named: Vec<String> = named.filter(|caption| caption.starts_with('r')).collect();
+            (named, scene.strokes.len())
+        };
+        let (named, strokes) = of(100);
+        assert_eq!(named.join(" "), "r0 r10 r20 r30 r40 r50 r60 r70 r80 r90");
+        let (few, fewer_strokes) = of(8);
+        assert_eq!((few.len(), strokes - fewer_strokes), (8, 92));
     }
 
     /// A hole far beyond the length must not land on the next strip.

@@ -2,7 +2,10 @@
 //!
 //! From the side x points to the right and y up, so the tip is at the left, as on the machine. From the tip z points to
 //! the right and y up.
-use super::super::scene::{Axis, LegendItem, Pen, Point, Sample, Scene, Shape, Standing, Stroke, Title};
+use super::super::scene::{
+    Axis, LegendItem, Mark, Pen, Point, Sample, Scene, Shape, Standing, Stroke, Title,
+};
+use super::helix::HelixCourses;
 
 /// What pictures of a burr are made of; mm and degrees.
 #[derive(Clone, Debug)]
@@ -16,12 +19,21 @@ pub struct FluteView {
     pub outline: Vec<[f64; 2]>,
     /// Of the circle at which the flutes end.
     pub tip_radius: f64,
+    /// Of each pass, in the order in which they are ground.
     pub flutes: Vec<Vec<Spot>>,
-    /// Polar angle and helix angle along the flute that is farthest from the law.
-    pub measured: Vec<Point>,
-    /// The same as each law has it.
-    pub constant_helix: Vec<Point>,
-    pub published: Vec<Point>,
+    pub faults: Vec<Fault>,
+    pub helix: HelixCourses,
+}
+
+/// Where something is wrong.
+#[derive(Clone, Debug)]
+pub struct Fault {
+    pub spot: Spot,
+    /// Counted from 0; none where no pass is.
+    pub pass: Option<usize>,
+    pub standing: Standing,
+    /// What is wrong there, each in few words; empty where another mark of the same finding says it.
+    pub what: Vec<&'static str>,
 }
 
 /// A point of a flute in the part's frame, and the direction out of the surface there.
@@ -35,23 +47,20 @@ pub struct Spot {
 const FACING: f64 = 1e-6;
 
 pub fn side_view(view: &FluteView) -> Scene {
-    let mut strokes = flutes(view, |[x, y, _]| [x, y], |[_, _, z]| z);
+    let seen = Seen { place: |[x, y, _]| [x, y], towards: |[_, _, z]| z };
+    let mut strokes = seen.flutes(view);
     let below = view.outline.iter().rev().map(|[x, r]| [*x, -r]);
     let mut outline: Vec<Point> = view.outline.iter().copied().chain(below).collect();
     outline.extend(view.outline.first().copied());
     strokes.push(Stroke { shape: Shape::Line(outline), pen: Pen::Outline, caption: None });
-    let radius = view.outline.first().map_or(0.0, |[_, r]| *r);
-    strokes.push(Stroke {
-        shape: Shape::Line(vec![[0.0, -radius], [0.0, radius]]),
-        pen: Pen::Construction,
-        caption: None,
-    });
     let axes = vec![axis("x", [1.0, 0.0]), axis("y", [0.0, 1.0])];
-    scene(view, "Side view, seen from +z, the tip to the left", strokes, axes, "End of the cylinder")
+    let what = "Side view, seen from +z, the tip to the left; y stands where the cylinder ends";
+    Scene { axes, marks: seen.faults(view), ..scene(view, what, strokes) }
 }
 
 pub fn tip_view(view: &FluteView) -> Scene {
-    let mut strokes = flutes(view, |[_, y, z]| [z, y], |[x, _, _]| -x);
+    let seen = Seen { place: |[_, y, z]| [z, y], towards: |[x, _, _]| -x };
+    let mut strokes = seen.flutes(view);
     let circle = |radius: f64, pen: Pen| Stroke {
         shape: Shape::Circle { centre: [0.0, 0.0], radius },
         pen,
@@ -61,43 +70,98 @@ pub fn tip_view(view: &FluteView) -> Scene {
     strokes.push(circle(radius, Pen::Outline));
     strokes.push(circle(view.tip_radius, Pen::Construction));
     let axes = vec![axis("z", [1.0, 0.0]), axis("y", [0.0, 1.0])];
-    scene(view, "Tip view, seen from −x along the axis", strokes, axes, "Polar angle at which flutes end")
+    let mut scene = scene(view, "Tip view, seen from −x along the axis", strokes);
+    scene.legend.push(item(Sample::Pen(Pen::Construction), "Polar angle at which flutes end"));
+    Scene { axes, marks: seen.faults(view), ..scene }
 }
 
 fn axis(name: &str, direction: Point) -> Axis {
     Axis { name: name.to_owned(), direction }
 }
 
-/// The stretches of the flutes whose surface faces the reader.
-fn flutes(
-    view: &FluteView,
-    seen: impl Fn([f64; 3]) -> Point,
-    towards: impl Fn([f64; 3]) -> f64,
-) -> Vec<Stroke> {
-    let mut strokes = Vec::new();
-    let mut stretch: Vec<Point> = Vec::new();
-    let mut end = |stretch: &mut Vec<Point>| {
-        if 1 < stretch.len() {
-            let shape = Shape::Line(std::mem::take(stretch));
-            strokes.push(Stroke { shape, pen: Pen::Feed, caption: None });
-        }
-        stretch.clear();
-    };
-    for flute in &view.flutes {
-        for spot in flute {
-            if FACING < towards(spot.out) {
-                stretch.push(seen(spot.at));
-            } else {
-                end(&mut stretch);
-            }
-        }
-        end(&mut stretch);
-    }
-    strokes
+/// From where the burr is looked at.
+struct Seen {
+    /// A point of the part on the sheet.
+    place: fn([f64; 3]) -> Point,
+    /// How much of a direction comes towards the reader.
+    towards: fn([f64; 3]) -> f64,
 }
 
-fn scene(view: &FluteView, what: &str, strokes: Vec<Stroke>, axes: Vec<Axis>, construction: &str) -> Scene {
-    let item = |pen: Pen, text: &str| LegendItem { sample: Sample::Pen(pen), text: text.to_owned() };
+impl Seen {
+    /// The stretches of the flutes whose surface faces the reader, and all of a flute with a fault; the longest that is
+    /// seen of each pass has its number.
+    fn flutes(&self, view: &FluteView) -> Vec<Stroke> {
+        let mut strokes = Vec::new();
+        for (pass, flute) in view.flutes.iter().enumerate() {
+            let faces = |spot: &Spot| FACING < (self.towards)(spot.out);
+            let stretches = || {
+                let all = flute.chunk_by(|one, other| faces(one) == faces(other));
+                all.filter(|stretch| 1 < stretch.len()).map(|stretch| (stretch, faces(&stretch[0])))
+            };
+            let longest = stretches().filter(|(_, near)| *near).map(|(stretch, _)| stretch.len()).max();
+            let is_faulty = view.faults.iter().any(|fault| fault.pass == Some(pass));
+            for (stretch, is_near) in stretches() {
+                let pen = match (is_near, is_faulty) {
+                    (true, false) => Pen::Feed,
+                    (true, true) => Pen::Faulty,
+                    (false, true) => Pen::Hidden,
+                    (false, false) => continue,
+                };
+                let points = stretch.iter().map(|spot| (self.place)(spot.at)).collect();
+                let is_longest = is_near && Some(stretch.len()) == longest;
+                let caption = is_longest.then(|| format!("{}", pass + 1));
+                strokes.push(Stroke { shape: Shape::Line(points), pen, caption });
+            }
+        }
+        strokes
+    }
+
+    fn faults(&self, view: &FluteView) -> Vec<Mark> {
+        let mark = |fault: &Fault| {
+            let behind = (self.towards)(fault.spot.out) <= FACING;
+            let side = if behind { " (far side)" } else { "" };
+            let pass = fault.pass.map(|pass| format!("pass {}{side}", pass + 1));
+            let what = fault.what.iter().enumerate().map(|(index, what)| match (index, fault.pass) {
+                (0, None) => format!("{what}{side}"),
+                _ => (*what).to_owned(),
+            });
+            Mark {
+                at: (self.place)(fault.spot.at),
+                radius: 0.0,
+                standing: fault.standing,
+                label: pass.into_iter().chain(what).collect(),
+                direction: None,
+                misfit: None,
+                found: None,
+            }
+        };
+        view.faults.iter().map(mark).collect()
+    }
+}
+
+fn item(sample: Sample, text: &str) -> LegendItem {
+    LegendItem { sample, text: text.to_owned() }
+}
+
+/// All but the axes and the marks.
+fn scene(view: &FluteView, what: &str, strokes: Vec<Stroke>) -> Scene {
+    let is_there = |standing: Standing| view.faults.iter().any(|fault| fault.standing == standing);
+    let signs = [
+        (Standing::Bad, "Fault, where it is worst"),
+        (Standing::Missing, "Place of a missing flute"),
+        (Standing::Extra, "Flute nobody asked for"),
+    ];
+    let signs = signs.into_iter().filter(|(standing, _)| is_there(*standing));
+    let mut legend: Vec<LegendItem> =
+        signs.map(|(standing, words)| item(Sample::Standing(standing), words)).collect();
+    let lines = [
+        (Pen::Feed, "Path of the wheel's contact on the near side, with the number of its pass"),
+        (Pen::Faulty, "Pass with a fault"),
+        (Pen::Hidden, "Pass with a fault, on the far side"),
+        (Pen::Outline, "Tooth bottom"),
+    ];
+    let drawn = lines.into_iter().filter(|(pen, _)| strokes.iter().any(|stroke| stroke.pen == *pen));
+    legend.extend(drawn.map(|(pen, words)| item(Sample::Pen(pen), words)));
     Scene {
         title: Title {
             name: view.name.clone(),
@@ -107,13 +171,8 @@ fn scene(view: &FluteView, what: &str, strokes: Vec<Stroke>, axes: Vec<Axis>, co
             lines: view.lines.clone(),
             caution: "Predicted by simulation, not measured; the wheel is one point".to_owned(),
         },
-        axes,
         strokes,
-        legend: vec![
-            item(Pen::Feed, "Path of the wheel's contact, on the side that is seen"),
-            item(Pen::Outline, "Tooth bottom"),
-            item(Pen::Construction, construction),
-        ],
+        legend,
         ..Scene::default()
     }
 }
@@ -131,9 +190,8 @@ mod tests {
             outline: vec![[5.0, 2.0], [0.0, 2.0], [-2.0, 0.0]],
             tip_radius: 0.5,
             flutes: vec![out.into_iter().enumerate().map(spot).collect()],
-            measured: Vec::new(),
-            constant_helix: Vec::new(),
-            published: Vec::new(),
+            faults: Vec::new(),
+            helix: HelixCourses::default(),
         }
     }
 

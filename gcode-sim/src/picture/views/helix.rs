@@ -1,44 +1,220 @@
-//! The helix angle of a flute over the polar angle from the tip: as measured, and as each law has it.
-use super::super::scene::{LegendItem, Pen, Point, Sample, Scene, Shape, Stroke, Title};
+//! The helix angle along the flutes: as ground, as asked for with what is allowed, and how far off that.
+use super::super::chart::{Chart, Curve, Graph, Sign};
+use super::super::scene::{LegendItem, Pen, Point, Sample, Scene, Standing, Title};
 use super::flutes::FluteView;
 
-/// Degrees from line to line of the grid.
-const GRID: usize = 15;
+/// Helix angles along the flutes, left-hand ones below 0. The way is that along the tooth bottom's outline from the shank's
+/// end, mm; angles are degrees.
+#[derive(Clone, Debug, Default)]
+pub struct HelixCourses {
+    /// Of each pass, in the order in which they are ground.
+    pub passes: Vec<Vec<HelixAt>>,
+    /// The pass that is farthest from the law, counted from 0.
+    pub worst: usize,
+    /// Either way.
+    pub tolerance: f64,
+    /// Names of the law asked for and of the other one.
+    pub laws: [&'static str; 2],
+    /// What both laws have, where nothing is ground.
+    pub wanted: Vec<HelixAt>,
+    /// Places along the nose, with the polar angle there.
+    pub nose: Vec<(f64, String)>,
+}
+
+/// At one place of the way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HelixAt {
+    pub way: f64,
+    pub found: f64,
+    /// By the law asked for, and by the other one.
+    pub wanted: f64,
+    pub other: f64,
+}
+
+impl HelixAt {
+    fn off(&self) -> f64 {
+        self.found - self.wanted
+    }
+}
+
+/// A band of less than this part of a graph's height is a mere line.
+const THIN: f64 = 0.1;
+/// Deviations have a graph of their own where it enlarges them by more than this.
+const WORTH: f64 = 2.0;
 
 pub fn helix_graph(view: &FluteView) -> Scene {
-    let curve = |points: &[Point], pen: Pen| Stroke {
-        shape: Shape::Line(points.iter().map(|[polar, angle]| [*polar, angle.abs()]).collect()),
-        pen,
-        caption: None,
-    };
-    let line = |ends: [Point; 2], pen: Pen| Stroke { shape: Shape::Line(ends.to_vec()), pen, caption: None };
-    let mut strokes = Vec::new();
-    for degrees in (0..=90).step_by(GRID) {
-        let at = degrees as f64;
-        let edge = if degrees == 0 { Pen::Outline } else { Pen::Grid };
-        strokes.push(line([[at, 0.0], [at, 90.0]], edge));
-        strokes.push(line([[0.0, at], [90.0, at]], edge));
+    let helix = &view.helix;
+    let mut graphs = vec![helix.angles()];
+    if helix.needs_deviations() {
+        graphs.push(helix.deviations());
     }
-    strokes.push(curve(&view.measured, Pen::Feed));
-    strokes.push(curve(&view.constant_helix, Pen::First));
-    strokes.push(curve(&view.published, Pen::Second));
-    let item = |pen: Pen, text: &str| LegendItem { sample: Sample::Pen(pen), text: text.to_owned() };
+    let chart = Chart {
+        across:
+            "Way along the outline from the shank's end of the flute, mm; above: polar angle θ on the nose"
+                .to_owned(),
+        guides: helix.nose.clone(),
+        gaps: Vec::new(),
+        graphs,
+    };
     Scene {
         title: Title {
             name: view.name.clone(),
-            view: "Helix angle (up) over the polar angle θ from the tip (to the right), degrees".to_owned(),
+            view: "Helix angle along the flutes; below 0 left-hand".to_owned(),
             position: None,
             verdict: Some(view.verdict.clone()),
             lines: view.lines.clone(),
             caution: "Predicted by simulation, not measured".to_owned(),
         },
-        strokes,
-        graph: Some(GRID),
-        legend: vec![
-            item(Pen::Feed, "Measured, on the worst flute"),
-            item(Pen::First, "Law constant-helix"),
-            item(Pen::Second, "Law published"),
-        ],
+        legend: helix.legend(),
+        chart: Some(chart),
         ..Scene::default()
+    }
+}
+
+impl HelixCourses {
+    /// The pass that is farthest from the law; the laws alone where there is none.
+    fn shown(&self) -> &[HelixAt] {
+        self.passes.get(self.worst).filter(|pass| !pass.is_empty()).unwrap_or(&self.wanted)
+    }
+
+    /// What is drawn of every pass: the worst last, on top.
+    fn curves(&self, value: impl Fn(&HelixAt) -> f64) -> Vec<Curve> {
+        let others = self.passes.iter().enumerate().filter(|(pass, _)| *pass != self.worst);
+        let all = others.map(|(_, pass)| (pass, Pen::Others));
+        let worst = self.passes.get(self.worst).map(|pass| (pass, Pen::Measured));
+        all.chain(worst).map(|(pass, pen)| curve(pass, pen, &value)).collect()
+    }
+
+    /// Whether what is allowed would be a mere line among the angles, and can be shown better.
+    fn needs_deviations(&self) -> bool {
+        let all = || self.passes.iter().flatten();
+        let angles = spread(all().flat_map(|at| [at.found, at.wanted]));
+        let band = 2.0 * self.tolerance;
+        let off = band.max(spread(all().map(HelixAt::off).chain([0.0])));
+        band < THIN * angles && WORTH * off < angles
+    }
+
+    fn angles(&self) -> Graph {
+        let shown = self.shown();
+        let mut curves = vec![Curve { guest: true, ..curve(shown, Pen::Second, |at| at.other) }];
+        curves.extend(self.curves(|at| at.found));
+        curves.push(curve(shown, Pen::First, |at| at.wanted));
+        let allowed = |at: &HelixAt| [at.way, at.wanted - self.tolerance, at.wanted + self.tolerance];
+        Graph {
+            up: "Helix angle, degrees".to_owned(),
+            curves,
+            band: shown.iter().map(allowed).collect(),
+            zero: false,
+            signs: self.sign(|at| at.found).into_iter().collect(),
+        }
+    }
+
+    fn deviations(&self) -> Graph {
+        let allowed = |at: &HelixAt| [at.way, -self.tolerance, self.tolerance];
+        Graph {
+            up: "Off the angle asked for, degrees".to_owned(),
+            curves: self.curves(HelixAt::off),
+            band: self.shown().iter().map(allowed).collect(),
+            zero: true,
+            signs: self.sign(HelixAt::off).into_iter().collect(),
+        }
+    }
+
+    /// Where a pass is farthest from the law, if that is more than allowed.
+    fn fault(&self, pass: &[HelixAt]) -> Option<HelixAt> {
+        let worst = pass.iter().copied().max_by(|a, b| a.off().abs().total_cmp(&b.off().abs()))?;
+        (self.tolerance < worst.off().abs()).then_some(worst)
+    }
+
+    fn sign(&self, value: impl Fn(&HelixAt) -> f64) -> Option<Sign> {
+        let worst = self.fault(self.passes.get(self.worst)?)?;
+        let others = self.passes.iter().filter(|pass| self.fault(pass).is_some()).count() - 1;
+        let more = if others == 0 { String::new() } else { format!(", and {others} more") };
+        Some(Sign {
+            at: [worst.way, value(&worst)],
+            standing: Standing::Bad,
+            name: format!("pass {}{more}", self.worst + 1),
+        })
+    }
+
+    fn legend(&self) -> Vec<LegendItem> {
+        let [asked, other] = self.laws;
+        let pen = |pen: Pen, text: String| Some(LegendItem { sample: Sample::Pen(pen), text });
+        let is_ground = !self.passes.is_empty();
+        let fault = self.sign(|at| at.found).map(|_| LegendItem {
+            sample: Sample::Standing(Standing::Bad),
+            text: "Fault: farther off than allowed".to_owned(),
+        });
+        let worst = format!("Pass {}, the farthest off the law", self.worst + 1);
+        let items = [
+            fault,
+            pen(Pen::Measured, worst).filter(|_| is_ground),
+            pen(Pen::Others, "The other passes".to_owned()).filter(|_| 1 < self.passes.len()),
+            pen(Pen::First, format!("Asked for: law {asked}")),
+            pen(Pen::Limit, format!("Allowed: {}° either way", self.tolerance)),
+            pen(Pen::Second, format!("Law {other}, for comparison")),
+        ];
+        items.into_iter().flatten().collect()
+    }
+}
+
+/// From the least to the greatest; below 0 of none.
+fn spread(values: impl Iterator<Item = f64>) -> f64 {
+    let reach = |(low, high): (f64, f64), value: f64| (low.min(value), high.max(value));
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), reach);
+    high - low
+}
+
+fn curve(points: &[HelixAt], pen: Pen, value: impl Fn(&HelixAt) -> f64) -> Curve {
+    let points: Vec<Point> = points.iter().map(|at| [at.way, value(at)]).collect();
+    Curve { points, pen, guest: false }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn courses(off: &[f64]) -> HelixCourses {
+        let at = |way: f64, off: f64| HelixAt { way, found: 20.0 + off, wanted: 20.0, other: 20.0 + way };
+        let passes: Vec<Vec<HelixAt>> = off
+            .iter()
+            .map(|off| (0..=10).map(|n| at(f64::from(n), if n == 6 { *off } else { 0.01 })).collect())
+            .collect();
+        let worst = (0..off.len()).max_by(|a, b| off[*a].abs().total_cmp(&off[*b].abs())).unwrap_or(0);
+        let laws = ["constant-helix", "published"];
+        HelixCourses { passes, worst, tolerance: 0.3, laws, ..HelixCourses::default() }
+    }
+
+    /// 0.6° of 40° of angles can't be seen; a fault of 30° is seen there as well as in a graph of its own.
+    #[test]
+    fn deviations_have_a_graph_of_their_own_where_the_law_turns_far() {
+        let turning = |off: f64| {
+            let mut helix = courses(&[off]);
+            for at in &mut helix.passes[0] {
+                (at.found, at.wanted) = (at.found + 4.0 * at.way, at.wanted + 4.0 * at.way);
+            }
+            helix.needs_deviations()
+        };
+        assert!(!courses(&[0.2]).needs_deviations());
+        assert!(turning(0.2) && turning(-1.0));
+        assert!(!courses(&[-30.0]).needs_deviations() && !turning(30.0));
+    }
+
+    #[test]
+    fn the_worst_place_of_the_worst_pass_has_a_sign() {
+        let helix = courses(&[0.1, -0.4, 0.35]);
+        let sign = helix.sign(|at| at.found).unwrap();
+        assert_eq!((sign.at, sign.name.as_str()), ([6.0, 19.6], "pass 2, and 1 more"));
+        assert!(courses(&[0.1, -0.29]).sign(|at| at.found).is_none());
+    }
+
+    #[test]
+    fn both_hands_are_told_apart() {
+        let mut helix = courses(&[0.0]);
+        helix.passes[0].iter_mut().for_each(|at| at.found = -20.0);
+        let graph = helix.angles();
+        let ground = graph.curves.iter().find(|curve| curve.pen == Pen::Measured).unwrap();
+        assert!(ground.points.iter().all(|point| point[1] == -20.0));
+        assert_eq!(graph.signs[0].at[1], -20.0);
     }
 }

@@ -50,6 +50,11 @@ impl Question {
         }
     }
 
+    /// Whether a position is told, written with so many places: of two revisions a change that there is.
+    pub(super) fn tells(self, phi: f64, places: i32) -> bool {
+        self == Self::Verdict || 0.5 <= phi * libm::pow(10.0, f64::from(places))
+    }
+
     /// Before the diameter of the circle that a misfit is drawn in.
     pub(super) fn misfit(self) -> &'static str {
         match self {

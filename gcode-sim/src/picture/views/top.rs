@@ -106,7 +106,7 @@ pub fn top_view(view: &TopView) -> Scene {
         caution: "Predicted by simulation, not measured".to_owned(),
     };
     let legend = legend(view, &marks, has_circles);
-    Scene { title, axes: view.side.axes(), strokes, marks, zone: view.tolerance, legend, graph: None }
+    Scene { title, axes: view.side.axes(), strokes, marks, zone: view.tolerance, legend, chart: None }
 }
 
 /// Leaves out the numbers and dials that would hide the holes of a dense pattern.
@@ -143,7 +143,7 @@ fn path(piece: &PathPiece, side: Side) -> Stroke {
 pub(super) fn label(hole: &DrawnHole, view: &TopView) -> Vec<String> {
     let mut label = vec![hole.id.clone()];
     let turn = hole.turn.map(|turn| format!("{} {}°", view.rotary, signed(turn, 3)));
-    let phi = hole.phi.map(|phi| format!("Φ{phi:.3}"));
+    let phi = hole.phi.filter(|phi| view.question.tells(*phi, 3)).map(|phi| format!("Φ{phi:.3}"));
     let words = match hole.standing {
         Standing::Missing | Standing::Extra => Some(view.question.word(hole.standing).to_owned()),
         Standing::Good | Standing::Bad | Standing::Unjudged => hole.remark.clone(),
@@ -214,7 +214,7 @@ pub(super) fn worst(view: &TopView) -> Option<String> {
         Some(worst) if next.0 <= worst.0 => Some(worst),
         _ => Some(next),
     })?;
-    Some(format!("{}: Φ{phi:.4} (hole\u{a0}{id})", view.question.worst()))
+    view.question.tells(phi, 4).then(|| format!("{}: Φ{phi:.4} (hole\u{a0}{id})", view.question.worst()))
 }
 
 /// The signs that are drawn, for the legend.

@@ -8,7 +8,7 @@ mod verdict;
 
 pub use round::Round;
 pub use speed::{SpeedRange, WorstSpeed};
-pub use verdict::{Angles, FluteVerdict, Law, WantedFlutes};
+pub use verdict::{Angles, FluteVerdict, Law, WantedFlutes, in_words};
 
 use nalgebra::Point3;
 

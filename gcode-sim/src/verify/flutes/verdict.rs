@@ -104,22 +104,10 @@ impl FluteVerdict {
         };
         let mut said: Vec<&str> = Vec::new();
         for finding in self.findings.iter().filter(|f| f.severity == "error" || f.severity == "alarm") {
-            let what = match finding.code.as_str() {
-                // The numbers say it.
-                "flute-missing" | "flute-extra" => continue,
-                "flute-surface" => "contact off the tooth bottom",
-                "flute-helix" => "helix angle out",
-                "flute-index" => "spacing uneven",
-                "flute-end" => "an end out of place",
-                "flute-head" => "the wheel's angle out",
-                "flute-speed" => "speed out",
-                "burr-offset" => "the burr's place isn't the job's",
-                "spindle-stopped" => "the wheel stands",
-                "flutes-meet" => "neighbours meet",
-                "wheel-into-burr" => "the wheel runs into the burr",
-                other => other,
-            };
-            if !said.contains(&what) {
+            let what = in_words(&finding.code).unwrap_or(&finding.code);
+            // The numbers say what is missing and what is too many.
+            let is_counted = matches!(finding.code.as_str(), "flute-missing" | "flute-extra");
+            if !is_counted && !said.contains(&what) {
                 said.push(what);
                 text.push_str(", ");
                 text.push_str(what);
@@ -127,6 +115,25 @@ impl FluteVerdict {
         }
         text
     }
+}
+
+/// The code of a finding on flutes in few words; `None` of others.
+pub fn in_words(code: &str) -> Option<&'static str> {
+    Some(match code {
+        "flute-missing" => "a flute is missing",
+        "flute-extra" => "a flute too many",
+        "flute-surface" => "contact off the tooth bottom",
+        "flute-helix" => "helix angle out",
+        "flute-index" => "spacing uneven",
+        "flute-end" => "an end out of place",
+        "flute-head" => "the wheel's angle out",
+        "flute-speed" => "speed out",
+        "burr-offset" => "the burr's place isn't the job's",
+        "spindle-stopped" => "the wheel stands",
+        "flutes-meet" => "neighbours meet",
+        "wheel-into-burr" => "the wheel runs into the burr",
+        _ => return None,
+    })
 }
 
 impl WantedFlutes {

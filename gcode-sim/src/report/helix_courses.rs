@@ -1,0 +1,78 @@
+//! The helix angle along every flute, over the way from the shank's end, for its picture.
+use crate::flutes::{Pass, Trace};
+use crate::job::FluteLaw;
+use crate::part::flutes::Flutes;
+use crate::picture::{HelixAt, HelixCourses};
+use crate::session::Grinding;
+use crate::units::Deg;
+use crate::verify::flutes::FluteVerdict;
+
+/// The polar angles that are named along the nose; the tip angle comes last.
+const NAMED: [f64; 6] = [90.0, 75.0, 60.0, 45.0, 30.0, 15.0];
+
+pub(super) fn of(grinding: &Grinding, verdict: &FluteVerdict) -> HelixCourses {
+    let wanted = &grinding.wanted;
+    let other = match wanted.law {
+        FluteLaw::ConstantHelix => FluteLaw::Published,
+        FluteLaw::Published => FluteLaw::ConstantHelix,
+    };
+    let outline = outline(wanted);
+    let tip = wanted.tip_angle.0;
+    let nearest = |polar: f64| {
+        let off = |one: &(Deg, f64)| (one.0.0 - polar).abs();
+        outline.iter().min_by(|one, other| off(one).total_cmp(&off(other))).map(|(_, way)| *way)
+    };
+    let nose = NAMED.into_iter().filter(|polar| tip + 5.0 < *polar).chain([tip]);
+    let at = |way: f64, polar: Deg| {
+        let (wanted, other) = (wanted.angle(wanted.law, polar).0, wanted.angle(other, polar).0);
+        HelixAt { way, found: wanted, wanted, other }
+    };
+    let shank = (0.0 < wanted.start).then(|| at(0.0, Deg(90.0)));
+    HelixCourses {
+        passes: grinding.ground.passes.iter().map(|pass| course(wanted, pass)).collect(),
+        worst: verdict.along_pass - 1,
+        tolerance: wanted.helix_tolerance.0,
+        laws: [wanted.law.name(), other.name()],
+        wanted: shank.into_iter().chain(outline.iter().map(|(polar, way)| at(*way, *polar))).collect(),
+        nose: nose.filter_map(|polar| Some((nearest(polar)?, format!("{polar}°")))).collect(),
+    }
+}
+
+/// The way from the shank's end along the nose, by the polar angle: every half degree and the tip angle.
+fn outline(wanted: &Flutes) -> Vec<(Deg, f64)> {
+    let tip = wanted.tip_angle;
+    let halves = (0..=180).map(|half| Deg(90.0 - f64::from(half) / 2.0)).filter(|polar| tip < *polar);
+    let mut way = wanted.start;
+    let mut before = wanted.profile.at_polar(Deg(90.0));
+    halves
+        .chain([tip])
+        .map(|polar| {
+            let here = wanted.profile.at_polar(polar);
+            way += (here - before).norm();
+            before = here;
+            (polar, way)
+        })
+        .collect()
+}
+
+/// Whichever way it is ground.
+fn course(wanted: &Flutes, pass: &Pass) -> Vec<HelixAt> {
+    let begins = from_shank(wanted, &pass.trace);
+    let windows = pass.trace.windows(wanted.gauge);
+    let mut course: Vec<HelixAt> = windows
+        .map(|window| HelixAt {
+            way: begins + window.middle.along,
+            found: window.helix.0,
+            wanted: window.wanted.0,
+            other: window.other.0,
+        })
+        .collect();
+    course.sort_by(|one, other| one.way.total_cmp(&other.way));
+    course
+}
+
+/// How far behind the shank's end the pass begins, along the outline: its sample nearest to there tells.
+fn from_shank(wanted: &Flutes, trace: &Trace) -> f64 {
+    let first = trace.samples.iter().max_by(|one, other| one.at.x.total_cmp(&other.at.x));
+    first.map_or(0.0, |first| wanted.start - first.at.x - first.along)
+}
