@@ -1,7 +1,7 @@
 //! Emits parametric macro programs: the control itself computes the geometry, the generator only orders the calls.
 //!
 //! A family turns a job into a [`package::Package`]; [`check`] runs it as the control would and holds the holes
-//! against the job's geometry; `cli` writes the files if that is a pass. A module uses only those listed above it.
+//! against the job's geometry; `report` says what came of it, `cli` writes the files if that is a pass. A module uses only those listed above it.
 pub mod nc;
 
 pub mod package;
@@ -13,5 +13,7 @@ pub mod families;
 pub mod check;
 
 pub mod sheet;
+
+pub mod report;
 
 pub mod cli;

@@ -20,6 +20,7 @@ mod ellipse;
 mod emitted;
 mod explain;
 mod flute_sites;
+mod formats;
 mod honeycomb;
 mod limits;
 mod misplaced;

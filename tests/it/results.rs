@@ -90,6 +90,36 @@ fn findings_of_check_are_sarif_too() {
     );
 }
 
+/// What `verify` has against a program, at the line that does it and the call that led there; what `diff` finds, in the new one.
+#[test]
+fn findings_of_verify_and_changes_of_diff_are_sarif() {
+    let place = tempfile::tempdir().unwrap();
+    let drill = |y: &str| format!("O1\nS500 M3\nG81 X10. Y{y} Z-5. R2. F100\nG80\nM00\nM30\n");
+    std::fs::write(place.path().join("old.nc"), drill("0.2")).unwrap();
+    std::fs::write(place.path().join("new.nc"), drill("0.").replace("M00\n", "")).unwrap();
+    std::fs::write(place.path().join("wanted.csv"), "id,x,y,z,i,j,k,depth,diameter\n1,10,0.2,0,0,0,1,5,\n")
+        .unwrap();
+    let told = |line: &str| -> Vec<(String, Value, Value)> {
+        let log = json(line, place.path());
+        assert_eq!(against_schema(&log), Vec::<String>::new(), "{line}");
+        let results = log["runs"][0]["results"].as_array().unwrap();
+        let one = |result: &Value| {
+            let at = &result["locations"][0]["physicalLocation"];
+            let code = result["ruleId"].as_str().unwrap().to_owned();
+            (code, at["artifactLocation"]["uri"].clone(), at["region"]["startLine"].clone())
+        };
+        results.iter().map(one).collect()
+    };
+    let found = told("gcode-sim verify new.nc --reference wanted.csv --format sarif");
+    assert!(found.contains(&("hole-position".to_owned(), "new.nc".into(), 3.into())), "{found:?}");
+    assert_eq!(told("gcode-sim verify old.nc --reference wanted.csv --format sarif"), []);
+    let found = told("gcode-sim diff old.nc new.nc --format sarif");
+    let wanted =
+        [("hole-moved".to_owned(), "new.nc".into(), 3.into()), ("stop".to_owned(), Value::Null, Value::Null)];
+    assert_eq!(found, wanted);
+    assert_eq!(told("gcode-sim diff old.nc old.nc --format sarif"), []);
+}
+
 #[test]
 fn junit_counts_failures_and_tells_them_as_the_terminal_does() {
     let place = tempfile::tempdir().unwrap();

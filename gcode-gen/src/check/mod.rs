@@ -10,6 +10,8 @@ use gcode_sim::picture::Scene;
 use gcode_sim::program::Library;
 use gcode_sim::verify::Verdict;
 use gcode_sim::verify::flutes::FluteVerdict;
+use schemars::JsonSchema;
+use serde::Serialize;
 
 use crate::package::{Package, Program, file_name};
 
@@ -39,7 +41,8 @@ pub struct Checked {
 }
 
 /// The verdict, by what the part gets.
-#[derive(Debug)]
+#[derive(Debug, Serialize, JsonSchema)]
+#[serde(untagged)]
 pub enum Judgement {
     Holes(Verdict),
     Flutes(FluteVerdict),

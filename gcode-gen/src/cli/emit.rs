@@ -1,7 +1,8 @@
 //! `gcode-gen emit`: programs into a folder, after they have been run and held against the job.
-use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use anstream::adapter::strip_str;
+use gcode_sim::cli::format::TextFormat;
 use gcode_sim::cli::{Refusal, Status, input, output};
 use gcode_sim::job::Job;
 use gcode_sim::picture::{self, PictureError, Scene, Size};
@@ -9,6 +10,7 @@ use gcode_sim::picture::{self, PictureError, Scene, Size};
 use crate::check::{CheckError, Checked, check};
 use crate::families;
 use crate::package::{Package, file_name};
+use crate::report::EmitReport;
 
 /// A job, its programs, and the run in which they hold.
 pub(super) struct Held {
@@ -17,30 +19,52 @@ pub(super) struct Held {
     pub checked: Checked,
 }
 
-/// Reads a job, emits its programs and runs them; `None` where they don't hold, and why is told.
-pub(super) fn held(path: &Path) -> Result<Option<Held>, Refusal> {
+/// Why programs aren't written, as a terminal shows it, and the run in which they don't hold.
+pub(super) struct Refused {
+    pub why: String,
+    pub checked: Option<Checked>,
+}
+
+impl Refused {
+    /// Without colours.
+    pub(super) fn plain(&self) -> String {
+        strip_str(self.why.trim_end()).to_string()
+    }
+}
+
+/// Reads a job, emits its programs and runs them; where they don't hold, why is told.
+pub(super) fn held(path: &Path) -> Result<Result<Held, Refused>, Refusal> {
     let text = input::text(path)?;
     let job = Job::parse(&text).map_err(|error| Refusal::new(format!("{}, {error}", path.display())))?;
     let package = families::emit(&job);
-    let checked = match check(&job, &package) {
-        Ok(checked) => checked,
-        Err(CheckError::Impossible(why)) => {
-            output::tell(&format!("error: {why}\nerror: nothing is written for {}\n", path.display()));
-            return Ok(None);
-        }
-        Err(error) => return Err(Refusal::new(error.to_string())),
+    let refused = |why: String, checked| {
+        output::tell(&why);
+        Ok(Err(Refused { why, checked }))
     };
-    if !checked.refusals.is_empty() {
-        let reasons = checked.refusals.concat();
-        let job = path.display();
-        output::tell(&format!("{reasons}error: nothing is written, for the programs of {job} don't hold\n"));
-        return Ok(None);
+    match check(&job, &package) {
+        Ok(checked) if checked.refusals.is_empty() => Ok(Ok(Held { job, package, checked })),
+        Ok(checked) => {
+            let (reasons, job) = (checked.refusals.concat(), path.display());
+            let why = format!("{reasons}error: nothing is written, for the programs of {job} don't hold\n");
+            refused(why, Some(checked))
+        }
+        Err(CheckError::Impossible(why)) => {
+            refused(format!("error: {why}\nerror: nothing is written for {}\n", path.display()), None)
+        }
+        Err(error) => Err(Refusal::new(error.to_string())),
     }
-    Ok(Some(Held { job, package, checked }))
 }
 
-pub(super) fn run(path: &Path, out: &Path) -> Result<Status, Refusal> {
-    let Some(Held { job, package, checked }) = held(path)? else { return Ok(Status::Fails) };
+pub(super) fn run(path: &Path, out: &Path, format: TextFormat) -> Result<Status, Refusal> {
+    let Held { job, package, checked } = match held(path)? {
+        Ok(held) => held,
+        Err(refused) => {
+            if format == TextFormat::Json {
+                output::json(&EmitReport::refused(refused.checked.as_ref(), refused.plain()))?;
+            }
+            return Ok(Status::Fails);
+        }
+    };
     let pictures = pictures(&checked)?;
     make_folder(out)?;
     let mut files: Vec<(PathBuf, &[u8])> =
@@ -48,14 +72,18 @@ pub(super) fn run(path: &Path, out: &Path) -> Result<Status, Refusal> {
     files.extend(pictures.iter().map(|(name, png)| (out.join(name), png.as_slice())));
     let written: Vec<_> = files.iter().map(|(path, bytes)| (path.as_path(), *bytes)).collect();
     output::write_all(&written)?;
-    let mut text = checked.report.clone();
-    let minutes = checked.seconds / 60.0;
-    let _ = writeln!(text, "running time {minutes:.0} min without the operator's stops\n");
-    for (path, _) in &files {
-        let _ = writeln!(text, "written: {}", path.display());
+    let left_over = left_over(&job, &package, out);
+    let names = |path: &Path| path.display().to_string();
+    let report = EmitReport::new(
+        &checked,
+        files.iter().map(|(path, _)| names(path)).collect(),
+        left_over.iter().map(|path| names(path)).collect(),
+    );
+    match format {
+        TextFormat::Text => output::print(&report.text())?,
+        TextFormat::Json => output::json(&report)?,
     }
-    output::print(&text)?;
-    for path in left_over(&job, &package, out) {
+    for path in left_over {
         output::tell(&format!(
             "warning: {} is from an earlier job and isn't called by the programs just written: if no other program in the \
              folder calls it, remove it, so that nobody loads it with them\n",

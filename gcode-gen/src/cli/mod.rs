@@ -6,10 +6,13 @@ mod sheet;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use clap::{Parser, Subcommand};
+use clap::{Args, Parser, Subcommand};
+use gcode_sim::cli::format::TextFormat;
 use gcode_sim::cli::front::{self, Colours};
 use gcode_sim::cli::packaging::{self, ManArguments, ShellArguments};
-use gcode_sim::cli::{Refusal, Status, output};
+use gcode_sim::cli::{Refusal, Status, output, schema};
+
+use crate::report::FORMATS;
 
 /// Emits parametric Fanuc macro programs in which the control itself computes the geometry.
 #[derive(Debug, Parser)]
@@ -27,6 +30,9 @@ Exit codes:
   0  done
   1  refused: the programs of this job would not hold; nothing is written
   2  the request can't be used: bad flag, unreadable or malformed job, unwritable folder
+
+Results go to standard output, messages to standard error. --format json writes one document and nothing else; its
+schema is what `gcode-gen schema` prints for the command.
 
 Every program is simulated and held against the job's geometry before a file is written. That is a
 prediction, not a measurement.";
@@ -59,6 +65,9 @@ Examples:
         /// The folder for the programs; made if it isn't there
         #[arg(short, long, value_name = "DIR")]
         out: PathBuf,
+        /// How the result is written
+        #[arg(long, value_enum, default_value_t = TextFormat::Text)]
+        format: TextFormat,
     },
 
     /// Write the set-up sheet of a job's programs: one HTML file, for paper and screens
@@ -78,7 +87,18 @@ What only people know (part, drawing, minutes, rates) is the job's section [shee
         /// What machine hours cost, instead of the job's [sheet.rates]
         #[arg(long, value_name = "RATES.toml")]
         rates: Option<PathBuf>,
+        /// How the result is written
+        #[arg(long, value_enum, default_value_t = TextFormat::Text)]
+        format: TextFormat,
     },
+
+    /// Write the JSON Schema (draft 2020-12) of a result to standard output
+    #[command(after_help = "\
+Example:
+  gcode-gen schema emit
+
+Those of job files and of what gcode-sim answers are gcode-sim's: gcode-sim schema job")]
+    Schema(SchemaArguments),
 
     /// Write the completions of a shell to standard output
     #[command(after_help = "\
@@ -91,6 +111,13 @@ Example:
 Example:
   gcode-gen man ~/.local/share/man/man1")]
     Man(ManArguments),
+}
+
+#[derive(Debug, Args)]
+struct SchemaArguments {
+    /// What it is of
+    #[arg(value_name = "NAME", value_parser = schema::names(FORMATS))]
+    name: String,
 }
 
 fn families() -> clap::builder::PossibleValuesParser {
@@ -106,8 +133,9 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Status {
     arguments.colours.obey();
     let done = match &arguments.command {
         Command::New { family, output } => new::run(family, output.as_deref()),
-        Command::Emit { job, out } => emit::run(job, out),
-        Command::Sheet { job, output, rates } => sheet::run(job, output, rates.as_deref()),
+        Command::Emit { job, out, format } => emit::run(job, out, *format),
+        Command::Sheet { job, output, rates, format } => sheet::run(job, output, rates.as_deref(), *format),
+        Command::Schema(name) => schema::print(&name.name, FORMATS),
         Command::Completions(shell) => packaging::completions::<Arguments>(shell),
         Command::Man(folder) => packaging::man::<Arguments>(folder),
     };

@@ -10,10 +10,10 @@ pub mod record;
 pub mod settings;
 
 use gcode_sim::job::{Job, Rates};
-use gcode_sim::report::figures::{count, near, signed_to};
 
 use crate::check::{CheckError, Checked};
 use crate::package::Package;
+use cost::{Cost, Taken};
 use record::Record;
 use settings::Needed;
 
@@ -56,29 +56,14 @@ impl<'a> Sheet<'a> {
         })
     }
 
-    /// Time and money in two or three lines, for a terminal.
-    pub fn summary(&self) -> String {
-        let own = cost::taken(self.job.sheet(), &self.record);
-        let stops = count(own.stops, "operator stop");
-        let changes = count(own.tool_changes, "tool change");
-        let (run, hours) = (near(own.run, 1), near(own.all() / 60.0, 2));
-        let mut text =
-            format!("run {run} min, {stops}, {changes}: {hours} machine hours; {}\n", BASIS.to_lowercase());
-        let Some(rates) = self.rates else { return text + "no rate was given: the sheet shows time only\n" };
-        let costs = cost::costs(rates, &own);
-        for cost in &costs {
-            let price = format!("{} {} a part", near(cost.cost(), 2), rates.currency);
-            text += &match &cost.machine {
-                None => format!("{price}\n"),
-                Some(machine) => match costs[0].change(cost) {
-                    Some(change) => format!("{price} on {machine}; this job {} %\n", signed_to(change, 1)),
-                    None => {
-                        format!("{price} on {machine}; not compared: a time is given for one of them only\n")
-                    }
-                },
-            };
-        }
-        text
+    /// The time that a part takes.
+    pub fn taken(&self) -> Taken {
+        cost::taken(self.job.sheet(), &self.record)
+    }
+
+    /// What it costs, on the job's own machine first, and the currency; nothing where no rate was given.
+    pub fn costs(&self) -> (&str, Vec<Cost>) {
+        self.rates.map_or(("", Vec::new()), |rates| (&rates.currency, cost::costs(rates, &self.taken())))
     }
 
     /// One self-contained HTML file.

@@ -2,7 +2,7 @@
 //! Those of one command stand in its file.
 use std::path::{Path, PathBuf};
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, Parser, Subcommand};
 
 use super::budget::BudgetArguments;
 use super::check::CheckArguments;
@@ -17,6 +17,7 @@ use super::reference::ReferenceArguments;
 use super::render::RenderArguments;
 use super::run::RunArguments;
 use super::schema::SchemaArguments;
+use super::settings::SettingsArguments;
 use super::test::TestArguments;
 use super::verify::VerifyArguments;
 
@@ -38,6 +39,9 @@ Exit codes:
   1  done, and the answer is no: out of tolerance, missing or extra holes, findings, a difference
   2  the request can't be used: bad flag, unreadable file, malformed job or reference
   3  the control stopped with an alarm, or a limit ended the run
+
+Results go to standard output, messages to standard error. --format json writes one document and nothing else; its
+schema is what `gcode-sim schema` prints for the command.
 
 A program is simulated, not measured: every number printed here is a prediction.";
 
@@ -73,6 +77,7 @@ Examples:
   gcode-sim verify O8100.nc --reference reference.csv --tolerance 0.1 --worst-first
   gcode-sim verify O8100.nc --reference job.toml --machine machine.toml --format json
   gcode-sim verify O8100.nc --reference job.toml --picture top.png
+  gcode-sim verify O8100.nc --reference job.toml --format sarif > findings.sarif
   gcode-sim verify O8100.nc --reference job.toml --page review.html")]
     Verify(VerifyArguments),
 
@@ -139,7 +144,11 @@ Examples:
     Budget(BudgetArguments),
 
     /// List the settings of the control that --control takes
-    Settings,
+    #[command(after_help = "\
+Examples:
+  gcode-sim settings
+  gcode-sim settings --format json")]
+    Settings(SettingsArguments),
 
     /// Tell what an alarm or a finding means, with an example and what to write instead
     #[command(after_help = "\
@@ -246,26 +255,4 @@ impl RunConditions {
     pub(super) fn of(&self, program: &Path) -> ProgramArguments {
         ProgramArguments { program: program.to_owned(), conditions: self.clone() }
     }
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum TextFormat {
-    Text,
-    Json,
-}
-
-/// What findings with places are written as.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum FindingFormat {
-    Text,
-    Json,
-    /// SARIF 2.1.0
-    Sarif,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum ListFormat {
-    Text,
-    Json,
-    Csv,
 }

@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicUsize;
 
 use clap::Args;
 
-use super::args::TextFormat;
+use super::format::TextFormat;
 use super::{Refusal, Status, input, options, output, progress};
 use crate::budget::{MOST_SAMPLES, Question, budget};
 use crate::job::Job;

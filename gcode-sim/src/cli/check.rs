@@ -3,7 +3,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::args::{FindingFormat, RunConditions};
+use super::args::RunConditions;
+use super::format::FindingFormat;
 use super::{Refusal, Status, options, output};
 use crate::check::check;
 use crate::report::check::{CheckReport, text};

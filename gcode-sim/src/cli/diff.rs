@@ -3,14 +3,16 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::args::{RunConditions, TextFormat};
+use super::args::RunConditions;
+use super::format::FindingFormat;
 use super::{Refusal, Status, options, output, page, render, unused_machine};
 use crate::changes::{Compared, Revision};
 use crate::part::reference::Reference;
 use crate::part::wanted::Wanted;
 use crate::picture;
-use crate::report::changes::ChangesReport;
+use crate::report::changes::{ChangesReport, change_found};
 use crate::report::page::{Difference, Page, Seen};
+use crate::report::sarif::{self, Finding};
 use crate::report::{diagnostic, top};
 use crate::session::Trace;
 use crate::verify::Tolerances;
@@ -46,8 +48,8 @@ pub(super) struct DiffArguments {
     reference: Option<PathBuf>,
 
     /// How the result is written
-    #[arg(long, value_enum, default_value_t = TextFormat::Text)]
-    format: TextFormat,
+    #[arg(long, value_enum, default_value_t = FindingFormat::Text)]
+    format: FindingFormat,
 }
 
 pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
@@ -70,15 +72,18 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
         tolerance,
     );
     match arguments.format {
-        TextFormat::Json => output::json(&report)?,
-        TextFormat::Text => output::print(&report.text())?,
+        FindingFormat::Json => output::json(&report)?,
+        FindingFormat::Text => output::print(&report.text())?,
+        FindingFormat::Sarif => {
+            output::json(&sarif::log(&findings(&compared, &new), &options::started_in()))?
+        }
     }
     if let Some(path) = &arguments.picture {
         let name = format!("{} against {}", render::name(&new_request), render::name(&old_request));
         let view = top::of_changes(&name, &old.simulation, &new.simulation, &new_request.machine, tolerance);
         let scene = picture::top_view(&view.map_err(Refusal::new)?);
         render::write(&scene, "1600x1200", path)?;
-        if arguments.format == TextFormat::Text {
+        if arguments.format == FindingFormat::Text {
             output::print(&format!("picture: {}\n", path.display()))?;
         }
     }
@@ -102,7 +107,7 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
             documents: &page::documents(&arguments.run, arguments.reference.as_deref())?,
         };
         page::write(&review, path)?;
-        page::tell(path, arguments.format == TextFormat::Text)?;
+        page::tell(path, arguments.format == FindingFormat::Text)?;
     }
     let mut status = if compared.changes.is_empty() { Status::Holds } else { Status::Fails };
     for revision in [&old, &new] {
@@ -113,6 +118,13 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
         }
     }
     Ok(status)
+}
+
+/// For a code review: what changes, at its place in the new revision, and why that stops if it does.
+fn findings(compared: &Compared, new: &Revision) -> Vec<Finding> {
+    let (files, sources) = (new.files(), new.simulation.run.control.memory().sources());
+    let changes = compared.changes.iter().map(|change| change_found(change, "", &files));
+    changes.chain(new.stopped().map(|stopped| Finding::of(stopped, sources))).collect()
 }
 
 /// The page's reference.

@@ -1,8 +1,9 @@
 //! `gcode-sim explain`: the page of a code.
 use clap::Args;
 
+use super::format::TextFormat;
 use super::{Refusal, Status, output};
-use crate::report::explain;
+use crate::report::explained::ExplainReport;
 
 #[derive(Debug, Args)]
 pub(super) struct ExplainArguments {
@@ -13,22 +14,24 @@ pub(super) struct ExplainArguments {
     /// Name all codes that can be explained
     #[arg(long, conflicts_with = "code")]
     list: bool,
+
+    /// How the result is written
+    #[arg(long, value_enum, default_value_t = TextFormat::Text)]
+    format: TextFormat,
 }
 
 pub(super) fn run(arguments: &ExplainArguments) -> Result<Status, Refusal> {
-    let Some(code) = &arguments.code else {
-        output::print(&explain::list())?;
-        return Ok(Status::Holds);
+    let report = match &arguments.code {
+        None => ExplainReport::list(),
+        Some(code) => ExplainReport::of(code).ok_or_else(|| {
+            Refusal::new(format!(
+                "{code} is none of this simulator's alarms and findings: gcode-sim explain --list names them"
+            ))
+        })?,
     };
-    let unknown = || {
-        Refusal::new(format!(
-            "{code} is none of this simulator's alarms and findings: gcode-sim explain --list names them"
-        ))
-    };
-    let pages: Vec<String> = explain::pages(code).map(|page| page.shown()).collect();
-    if pages.is_empty() {
-        return Err(unknown());
+    match arguments.format {
+        TextFormat::Text => output::print(&report.text())?,
+        TextFormat::Json => output::json(&report)?,
     }
-    output::print(&pages.join("\n"))?;
     Ok(Status::Holds)
 }

@@ -3,7 +3,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::args::{ListFormat, ProgramArguments};
+use super::args::ProgramArguments;
+use super::format::ListFormat;
 use super::{Refusal, Status, options, output, page, progress, unused_machine};
 use crate::part::hole::HoleList;
 use crate::report::holes as report;

@@ -5,6 +5,7 @@ mod check;
 mod compare;
 mod diff;
 mod explain;
+pub mod format;
 pub mod front;
 mod holes;
 pub mod input;
@@ -18,7 +19,7 @@ mod readings;
 mod reference;
 mod render;
 mod run;
-mod schema;
+pub mod schema;
 mod settings;
 mod test;
 mod unused_machine;
@@ -86,7 +87,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Status {
         Command::Diff(arguments) => diff::run(&arguments),
         Command::Test(arguments) => test::run(&arguments),
         Command::Budget(arguments) => budget::run(&arguments),
-        Command::Settings => settings::run(),
+        Command::Settings(arguments) => settings::run(&arguments),
         Command::Schema(arguments) => schema::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Completions(shell) => packaging::completions::<Arguments>(&shell),

@@ -3,7 +3,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::args::ListFormat;
+use super::format::ListFormat;
 use super::{Refusal, Status, holes, input, output};
 use crate::job::Job;
 use crate::part::wanted::Wanted;

@@ -4,11 +4,13 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use super::args::ProgramArguments;
+use super::format::TextFormat;
 use super::{Refusal, Status, options, output, progress, unused_machine};
 use crate::part::flutes::Flutes;
 use crate::part::reference::Reference;
 use crate::part::wanted::Wanted;
 use crate::picture::{self, Scene, Size, TopView};
+use crate::report::pictures::RenderReport;
 use crate::report::{flute_view, top};
 use crate::session::{self, Request, Simulation};
 use crate::verify::{Tolerances, Verdict};
@@ -37,6 +39,10 @@ pub(super) struct RenderArguments {
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "1600x1200")]
     size: String,
+
+    /// How the result is written
+    #[arg(long, value_enum, default_value_t = TextFormat::Text)]
+    format: TextFormat,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -51,6 +57,19 @@ enum View {
     Tip,
     /// A burr's helix angle along its flutes, with what is allowed
     Helix,
+}
+
+impl View {
+    /// As `--view` has it.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Top => "top",
+            Self::Development => "development",
+            Self::Side => "side",
+            Self::Tip => "tip",
+            Self::Helix => "helix",
+        }
+    }
 }
 
 pub(super) fn run(arguments: &RenderArguments) -> Result<Status, Refusal> {
@@ -76,20 +95,21 @@ fn holes(arguments: &RenderArguments, reference: Option<Reference>) -> Result<St
         }
         None => top::of_holes(&name(&request), &simulation, &request.machine),
     };
-    let scene = match arguments.view {
-        None | Some(View::Top) => picture::top_view(&drawn),
-        Some(View::Side | View::Tip | View::Helix) => {
+    let asked = arguments.view.unwrap_or(View::Top);
+    let scene = match asked {
+        View::Top => picture::top_view(&drawn),
+        View::Side | View::Tip | View::Helix => {
             let message =
                 "the views side, tip and helix are of a burr: --reference JOB.toml of that family is needed";
             return Err(Refusal::new(message));
         }
-        Some(View::Development) => picture::development(&drawn).ok_or_else(|| {
+        View::Development => picture::development(&drawn).ok_or_else(|| {
             let message = "--view development unrolls a cylinder: it needs --reference with a job of one";
             Refusal::new(message)
         })?,
     };
     write(&scene, &arguments.size, &arguments.output)?;
-    output::print(&format!("picture: {}\n", arguments.output.display()))?;
+    tell(arguments, asked)?;
     Ok(super::stopped(&simulation.run).unwrap_or(Status::Holds))
 }
 
@@ -102,17 +122,27 @@ fn flutes(arguments: &RenderArguments, mut wanted: Flutes) -> Result<Status, Ref
         .map_err(|e| Refusal::new(e.to_string()))?;
     let verdict = grinding.verify();
     let view = flute_view::of(&name(&request), &grinding, &verdict);
-    let scene = match arguments.view {
-        None | Some(View::Side) => picture::side_view(&view),
-        Some(View::Tip) => picture::tip_view(&view),
-        Some(View::Helix) => picture::helix_graph(&view),
-        Some(View::Top | View::Development) => {
+    let asked = arguments.view.unwrap_or(View::Side);
+    let scene = match asked {
+        View::Side => picture::side_view(&view),
+        View::Tip => picture::tip_view(&view),
+        View::Helix => picture::helix_graph(&view),
+        View::Top | View::Development => {
             return Err(Refusal::new("that view is of holes; a burr has the views side, tip and helix"));
         }
     };
     write(&scene, &arguments.size, &arguments.output)?;
-    output::print(&format!("picture: {}\n", arguments.output.display()))?;
+    tell(arguments, asked)?;
     Ok(super::stopped(&grinding.run).unwrap_or(Status::Holds))
+}
+
+/// Says what was drawn, and where it is.
+fn tell(arguments: &RenderArguments, view: View) -> Result<(), Refusal> {
+    let report = RenderReport { picture: arguments.output.display().to_string(), view: view.name() };
+    match arguments.format {
+        TextFormat::Text => output::print(&report.text()),
+        TextFormat::Json => output::json(&report),
+    }
 }
 
 /// What the views of a verdict are made of.

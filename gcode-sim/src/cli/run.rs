@@ -3,7 +3,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::args::{ProgramArguments, TextFormat};
+use super::args::ProgramArguments;
+use super::format::TextFormat;
 use super::{Refusal, Status, options, output, progress, unused_machine};
 use crate::holes::Extractor;
 use crate::report::run::{MOST_MOVES, Moves, RunReport};

@@ -3,22 +3,29 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 
 use super::{Refusal, Status, output};
-use crate::schema::FORMATS;
+use crate::schema::{FORMATS, Format};
 
 #[derive(Debug, Args)]
 pub(super) struct SchemaArguments {
-    /// Which document it describes
-    #[arg(value_name = "NAME", value_parser = names())]
+    /// What it is of
+    #[arg(value_name = "NAME", value_parser = names(FORMATS))]
     name: String,
 }
 
-fn names() -> PossibleValuesParser {
-    FORMATS.iter().map(|format| PossibleValue::new(format.name).help(format.about)).collect::<Vec<_>>().into()
+/// The names of all formats, for either program's help.
+pub fn names(formats: &[Format]) -> PossibleValuesParser {
+    let value = |format: &Format| PossibleValue::new(format.name).help(format.about);
+    formats.iter().map(value).collect::<Vec<_>>().into()
 }
 
 pub(super) fn run(arguments: &SchemaArguments) -> Result<Status, Refusal> {
-    let format = FORMATS.iter().find(|format| format.name == arguments.name);
-    let format = format.ok_or_else(|| Refusal::new(format!("no schema '{}'", arguments.name)))?;
+    print(&arguments.name, FORMATS)
+}
+
+/// Prints the schema of one of the formats.
+pub fn print(name: &str, formats: &[Format]) -> Result<Status, Refusal> {
+    let format = formats.iter().find(|format| format.name == name);
+    let format = format.ok_or_else(|| Refusal::new(format!("no schema '{name}'")))?;
     output::json(&format.schema())?;
     Ok(Status::Holds)
 }

@@ -3,16 +3,19 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::args::{ProgramArguments, TextFormat};
+use super::args::ProgramArguments;
+use super::format::FindingFormat;
 use super::library::Folders;
 use super::{Refusal, Status, options, output, page, progress, render, unused_machine};
+use crate::diag::Diagnostic;
 use crate::part::flutes::Flutes;
 use crate::part::reference::Reference;
 use crate::part::wanted::Wanted;
 use crate::picture;
+use crate::report::sarif::{self, Finding};
 use crate::report::verdict_table::{Layout, table};
 use crate::report::{flute_table, flute_view};
-use crate::session::{self, Request, Simulation};
+use crate::session::{self, Request, Run, Simulation};
 use crate::verify::{Answer, Tolerances, Verdict};
 
 #[derive(Debug, Args)]
@@ -51,8 +54,8 @@ pub(super) struct VerifyArguments {
     page: Option<PathBuf>,
 
     /// How the result is written
-    #[arg(long, value_enum, default_value_t = TextFormat::Text)]
-    format: TextFormat,
+    #[arg(long, value_enum, default_value_t = FindingFormat::Text)]
+    format: FindingFormat,
 }
 
 pub(super) fn run(arguments: &VerifyArguments) -> Result<Status, Refusal> {
@@ -92,17 +95,25 @@ fn flutes(
         .map_err(|error| Refusal::new(error.to_string()))?;
     let verdict = grinding.verify();
     match arguments.format {
-        TextFormat::Json => output::json(&verdict)?,
-        TextFormat::Text => output::print(&flute_table::table(&verdict))?,
+        FindingFormat::Json => output::json(&verdict)?,
+        FindingFormat::Text => output::print(&flute_table::table(&verdict))?,
+        FindingFormat::Sarif => sarif(&verdict.diagnostics, &grinding.run)?,
     }
     if let Some(path) = &arguments.picture {
         let scene = picture::side_view(&flute_view::of(&render::name(request), &grinding, &verdict));
         render::write(&scene, "1600x1200", path)?;
-        if arguments.format == TextFormat::Text {
+        if arguments.format == FindingFormat::Text {
             output::print(&format!("picture: {}\n", path.display()))?;
         }
     }
     Ok(judged(super::findings(&verdict.diagnostics, &grinding.run), verdict.verdict))
+}
+
+/// The findings for a code review.
+fn sarif(findings: &[Diagnostic], run: &Run) -> Result<(), Refusal> {
+    let sources = run.control.memory().sources();
+    let findings: Vec<_> = findings.iter().map(|finding| Finding::of(finding, sources)).collect();
+    output::json(&sarif::log(&findings, &options::started_in()))
 }
 
 fn judged(status: Status, answer: Answer) -> Status {
@@ -126,7 +137,7 @@ fn holes(
         let judged = Some((arguments.reference.as_path(), reference, &verdict));
         page::write_alone(request, &watched, judged, &arguments.program.conditions, path)?;
         let status = tell(arguments, request, reference, simulation, &verdict)?;
-        page::tell(path, arguments.format == TextFormat::Text)?;
+        page::tell(path, arguments.format == FindingFormat::Text)?;
         return Ok(status);
     }
     let simulation =
@@ -144,16 +155,17 @@ fn tell(
     verdict: &Verdict,
 ) -> Result<Status, Refusal> {
     match arguments.format {
-        TextFormat::Json => output::json(verdict)?,
-        TextFormat::Text => {
+        FindingFormat::Json => output::json(verdict)?,
+        FindingFormat::Text => {
             let layout = Layout { worst_first: arguments.worst_first, full: arguments.full };
             output::print(&table(verdict, layout))?;
         }
+        FindingFormat::Sarif => sarif(&verdict.diagnostics, &simulation.run)?,
     }
     if let Some(path) = &arguments.picture {
         let view = render::view(request, simulation, reference, verdict);
         render::write(&picture::main_view(&view), "1600x1200", path)?;
-        if arguments.format == TextFormat::Text {
+        if arguments.format == FindingFormat::Text {
             output::print(&format!("picture: {}\n", path.display()))?;
         }
     }

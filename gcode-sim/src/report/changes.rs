@@ -5,7 +5,9 @@ use std::fmt::Write;
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::sarif::{At, Finding};
 use crate::changes::{Change, Record, Totals, Where};
+use crate::diag::Severity;
 
 /// The document of `diff --format json`.
 #[derive(Debug, Serialize, JsonSchema)]
@@ -113,4 +115,29 @@ fn entry(text: &mut String, change: &Change, indent: &str) {
 /// `O8101:12  G1 X#11`.
 fn line(place: &Where) -> String {
     format!("{}:{}  {}", place.program, place.line, place.block)
+}
+
+/// A change for a code review, at its place in the new revision; `files` are those of the programs by their names.
+pub fn change_found(change: &Change, before: &str, files: &BTreeMap<String, String>) -> Finding {
+    let Change { code, message, old, new } = change;
+    // What is gone has no line in the file as it is now: its old one is told in words.
+    let was = old.as_ref().filter(|_| new.is_none());
+    let was = was.map(|place| format!(" (was {}:{} {})", place.program, place.line, place.block));
+    let calls = new.as_ref().map_or(&[][..], |place| &place.calls);
+    Finding {
+        code: code.to_string(),
+        severity: Severity::Error,
+        message: format!("{before}{message}{}", was.unwrap_or_default()),
+        at: new.as_ref().and_then(|place| place_in(place, files)),
+        related: calls
+            .iter()
+            .filter_map(|call| Some((place_in(call, files)?, "called from here".to_owned())))
+            .collect(),
+    }
+}
+
+/// The line of a block in its file.
+pub(super) fn place_in(place: &Where, files: &BTreeMap<String, String>) -> Option<At> {
+    let file = files.get(&place.program)?.clone();
+    Some(At { file, line: Some(place.line), column: None })
 }

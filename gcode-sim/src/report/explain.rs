@@ -210,7 +210,8 @@ fn sections(page: &'static str) -> impl Iterator<Item = Page> {
     sections.filter_map(|text| Some(Page { code: text.split_once(": ")?.0, text }))
 }
 
-fn all() -> impl Iterator<Item = Page> {
+/// Every page, in the order in which they are listed.
+pub fn all() -> impl Iterator<Item = Page> {
     PAGES.iter().copied().chain(rules()).chain(changes())
 }
 
@@ -274,14 +275,6 @@ impl Page {
         }
         text
     }
-}
-
-/// All codes with what they mean, one line each.
-pub fn list() -> String {
-    all().fold(String::new(), |mut text, page| {
-        let _ = writeln!(text, "{:<20} {}", page.code, page.title());
-        text
-    })
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::changes::{counted, entries};
+use super::changes::{change_found, counted, entries, place_in};
 use super::sarif::{At, Finding};
 use crate::changes::{Change, Totals, Where};
 use crate::diag::Severity;
@@ -172,7 +172,7 @@ impl CaseReport {
             at: at.or_else(whole),
             related: calls
                 .iter()
-                .filter_map(|call| Some((self.at(call)?, "called from here".to_owned())))
+                .filter_map(|call| Some((place_in(call, &self.files)?, "called from here".to_owned())))
                 .collect(),
         };
         let mut all = Vec::new();
@@ -183,24 +183,16 @@ impl CaseReport {
             Answer::New => all.push(found("case-new", "nothing accepted yet".to_owned(), None, &[])),
             Answer::Same | Answer::Changed => {}
         }
-        for Change { code, message, old, new } in &self.changes {
-            // What is gone has no line in the file as it is now: its old one is told in words.
-            let was = old.as_ref().filter(|_| new.is_none());
-            let was = was.map(|place| format!(" (was {}:{} {})", place.program, place.line, place.block));
-            let calls = new.as_ref().map_or(&[][..], |place| &place.calls);
-            let message = format!("{message}{}", was.unwrap_or_default());
-            all.push(found(code, message, new.as_ref().and_then(|place| self.at(place)), calls));
+        let before = format!("{}: ", self.name);
+        for change in &self.changes {
+            let found = change_found(change, &before, &self.files);
+            all.push(Finding { at: found.at.or_else(whole), ..found });
         }
         if let Some(Against { code, message, place }) = &self.against {
             let calls = place.as_ref().map_or(&[][..], |place| &place.calls);
-            let at = place.as_ref().and_then(|place| self.at(place));
+            let at = place.as_ref().and_then(|place| place_in(place, &self.files));
             all.push(found(code, message.clone(), at, calls));
         }
         all
-    }
-
-    fn at(&self, place: &Where) -> Option<At> {
-        let file = self.files.get(&place.program)?.clone();
-        Some(At { file, line: Some(place.line), column: None })
     }
 }

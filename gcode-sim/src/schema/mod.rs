@@ -14,8 +14,11 @@ use crate::part::hole::HoleList;
 use crate::report::budget::BudgetReport;
 use crate::report::changes::ChangesReport;
 use crate::report::check::CheckReport;
+use crate::report::explained::ExplainReport;
+use crate::report::pictures::{CompareReport, RenderReport};
 use crate::report::readings::ReadingsReport;
 use crate::report::run::RunReport;
+use crate::report::settings::SettingsReport;
 use crate::report::tested::TestReport;
 use crate::verify::Verdict;
 use crate::verify::flutes::{FluteVerdict, WantedFlutes};
@@ -59,13 +62,18 @@ pub const FORMATS: &[Format] = &[
     result::<ChangesReport>("diff", "what diff answers"),
     result::<TestReport>("test", "what test answers, and test --merge reads"),
     result::<BudgetReport>("budget", "what budget answers"),
+    result::<RenderReport>("render", "what render answers besides its picture"),
+    result::<CompareReport>("compare", "what compare answers"),
+    result::<SettingsReport>("settings", "what settings answers"),
+    result::<ExplainReport>("explain", "what explain answers"),
 ];
 
 const fn file<T: JsonSchema>(name: &'static str, about: &'static str) -> Format {
     Format { name, about, is_toml: true, schema: types::toml::<T> }
 }
 
-const fn result<T: JsonSchema>(name: &'static str, about: &'static str) -> Format {
+/// The result of a command, as JSON.
+pub const fn result<T: JsonSchema>(name: &'static str, about: &'static str) -> Format {
     Format { name, about, is_toml: false, schema: types::written::<T> }
 }
 
@@ -73,7 +81,7 @@ impl Format {
     /// The schema, draft 2020-12.
     pub fn schema(&self) -> Value {
         let mut schema = (self.schema)();
-        schema.insert("title".to_owned(), format!("gcode-sim: {}", self.about).into());
+        schema.insert("title".to_owned(), self.about.into());
         schema.to_value()
     }
 }

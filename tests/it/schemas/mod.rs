@@ -4,12 +4,17 @@ mod controls;
 mod files;
 mod results;
 
-use gcode_sim::schema::FORMATS;
+use gcode_sim::schema::{FORMATS, Format};
 use serde_json::Value;
+
+/// Those of both programs.
+fn all() -> impl Iterator<Item = &'static Format> {
+    FORMATS.iter().chain(gcode_gen::report::FORMATS)
+}
 
 /// The schema of a document by its name.
 fn schema(name: &str) -> Value {
-    FORMATS.iter().find(|format| format.name == name).unwrap_or_else(|| panic!("no schema {name}")).schema()
+    all().find(|format| format.name == name).unwrap_or_else(|| panic!("no schema {name}")).schema()
 }
 
 fn validator(name: &str) -> jsonschema::Validator {
@@ -35,7 +40,7 @@ fn walk<'s>(schema: &'s Value, path: &str, tell: &mut impl FnMut(&str, &'s Value
 
 #[test]
 fn every_schema_is_one_of_draft_2020_12() {
-    for format in FORMATS {
+    for format in all() {
         let schema = format.schema();
         assert_eq!(schema["$schema"], "https://json-schema.org/draft/2020-12/schema", "{}", format.name);
         assert!(jsonschema::meta::is_valid(&schema), "{}", format.name);
@@ -94,7 +99,7 @@ fn every_key_of_a_file_is_described() {
 
 #[test]
 fn descriptions_are_plain_words() {
-    for format in FORMATS {
+    for format in all() {
         walk(&format.schema(), "", &mut |path, schema| {
             let said = schema["description"].as_str().unwrap_or_default();
             assert!(!said.contains("[`") && !said.contains("::"), "{}{path}: {said}", format.name);

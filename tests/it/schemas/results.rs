@@ -81,6 +81,11 @@ const COMMANDS: &[(&str, &str)] = &[
         "budget",
         "gcode-sim budget examples/melon-mould/job.toml --errors examples/error-budget/before.toml --samples 50 --format json",
     ),
+    ("settings", "gcode-sim settings --format json"),
+    ("explain", "gcode-sim explain hole-depth --format json"),
+    ("explain", "gcode-sim explain --list --format json"),
+    ("compare", "gcode-sim compare examples/burr/O8400.png examples/burr/O8400-tip.png --format json"),
+    ("compare", "gcode-sim compare examples/burr/O8400.png examples/burr/O8400.png --format json"),
 ];
 
 #[test]
@@ -112,6 +117,12 @@ fn alarms_findings_and_changes_are_as_their_schemas_say() {
     write("parts/moved/reference.csv", "id,x,y,z,i,j,k,depth,diameter\n1,10,0.2,0,0,0,1,5,\n");
     run_line("gcode-sim test parts --only moved --accept", place.path());
     write("parts/moved/main.nc", &drilled("0.1"));
+    let result = |name: &str, line: &str| {
+        let done = run_line(line, place.path());
+        let document: Value = serde_json::from_slice(&done.stdout)
+            .unwrap_or_else(|error| panic!("{line}: {error}: {}", String::from_utf8_lossy(&done.stderr)));
+        holds(name, &document, line);
+    };
     for (name, line) in [
         ("run", "gcode-sim run O1.nc --moves --format json"),
         ("check", "gcode-sim check O3.nc --format json"),
@@ -121,14 +132,42 @@ fn alarms_findings_and_changes_are_as_their_schemas_say() {
             "verify",
             "gcode-sim verify parts/moved/main.nc --reference parts/moved/reference.csv --format json",
         ),
+        ("render", "gcode-sim render parts/moved/main.nc -o top.png --size 480x360 --format json"),
     ] {
-        let done = run_line(line, place.path());
-        let document: Value = serde_json::from_slice(&done.stdout)
-            .unwrap_or_else(|error| panic!("{line}: {error}: {}", String::from_utf8_lossy(&done.stderr)));
-        holds(name, &document, line);
+        result(name, line);
     }
     let accepted = std::fs::read_to_string(place.path().join("parts/moved/accepted.json")).unwrap();
     holds("accepted", &serde_json::from_str(&accepted).unwrap(), "accepted.json");
+}
+
+/// What the generator answers, of programs that hold and of those that don't.
+#[test]
+fn the_generator_answers_as_its_schemas_say() {
+    let place = tempfile::tempdir().unwrap();
+    let complete = workspace().join("tests/complete");
+    for name in ["honeycomb.toml", "rates.toml"] {
+        std::fs::copy(complete.join(name), place.path().join(name)).unwrap();
+    }
+    run_line("gcode-gen new pin-holes -o job.toml", place.path());
+    let job = std::fs::read_to_string(place.path().join("job.toml")).unwrap();
+    // A zone that rounding alone uses up.
+    std::fs::write(place.path().join("tight.toml"), job.replace("position = 0.1", "position = 0.0001"))
+        .unwrap();
+    for (name, line, code) in [
+        ("emit", "gcode-gen emit job.toml --out nc --format json", 0),
+        ("emit", "gcode-gen emit tight.toml --out no --format json", 1),
+        ("sheet", "gcode-gen sheet job.toml -o setup.html --rates rates.toml --format json", 0),
+        ("sheet", "gcode-gen sheet tight.toml -o no.html --format json", 1),
+    ] {
+        let done = run_line(line, place.path());
+        assert_eq!(done.status.code(), Some(code), "{line}");
+        let document: Value = serde_json::from_slice(&done.stdout).unwrap();
+        holds(name, &document, line);
+        assert_eq!(document["refused"].is_null(), code == 0, "{line}");
+        let said = document["refused"].as_str().unwrap_or_default();
+        assert!(!said.contains('\u{1b}'), "{said}");
+    }
+    assert!(place.path().join("nc/O8100.nc").exists() && !place.path().join("no").exists());
 }
 
 /// The sessions of the cases and of the examples that have JSON in them.

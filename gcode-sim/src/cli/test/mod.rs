@@ -7,9 +7,10 @@ mod watch;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 use self::case::{ACCEPTED, Case, Tried};
+use super::format::TestFormat;
 use super::{Refusal, Status, options, output};
 use crate::report::tested::{Answer, Shard, TestReport};
 use crate::report::{junit, sarif};
@@ -51,16 +52,6 @@ pub(super) struct TestArguments {
     /// How the result is written
     #[arg(long, value_enum, default_value_t = TestFormat::Text)]
     format: TestFormat,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum TestFormat {
-    Text,
-    Json,
-    /// JUnit XML
-    Junit,
-    /// SARIF 2.1.0
-    Sarif,
 }
 
 pub(super) fn run(arguments: &TestArguments) -> Result<Status, Refusal> {

@@ -1,0 +1,63 @@
+//! What `explain` answers: the pages of a code, or all codes with what they mean.
+use std::fmt::Write;
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::explain;
+
+/// The document of `explain --format json`.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct ExplainReport {
+    pub pages: Vec<PageReport>,
+}
+
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct PageReport {
+    pub code: &'static str,
+    /// What the code means in a few words.
+    pub title: &'static str,
+    /// The whole page, Markdown; a list of all codes has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub text: Option<&'static str>,
+    #[serde(skip)]
+    shown: String,
+}
+
+impl ExplainReport {
+    /// The pages of a code in any of its spellings: of `hole-depth`, which `verify` tells and `diff` too, there are two.
+    pub fn of(code: &str) -> Option<Self> {
+        let page = |page: explain::Page| PageReport {
+            code: page.code,
+            title: page.title(),
+            text: Some(page.text),
+            shown: page.shown(),
+        };
+        let pages: Vec<_> = explain::pages(code).map(page).collect();
+        (!pages.is_empty()).then_some(Self { pages })
+    }
+
+    /// All codes.
+    pub fn list() -> Self {
+        let page = |page: explain::Page| PageReport {
+            code: page.code,
+            title: page.title(),
+            text: None,
+            shown: String::new(),
+        };
+        Self { pages: explain::all().map(page).collect() }
+    }
+
+    /// The same for people: the pages, or a line a code.
+    pub fn text(&self) -> String {
+        let mut text = String::new();
+        for (number, PageReport { code, title, text: page, shown }) in self.pages.iter().enumerate() {
+            let _ = match page {
+                None => writeln!(text, "{code:<20} {title}"),
+                Some(_) if number == 0 => write!(text, "{shown}"),
+                Some(_) => write!(text, "\n{shown}"),
+            };
+        }
+        text
+    }
+}

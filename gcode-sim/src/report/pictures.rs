@@ -1,0 +1,74 @@
+//! What `render` and `compare` answer besides their pictures.
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::picture::Difference;
+
+/// The document of `render --format json`.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct RenderReport {
+    /// The file that was written.
+    pub picture: String,
+    pub view: &'static str,
+}
+
+impl RenderReport {
+    /// The same for people.
+    pub fn text(&self) -> String {
+        format!("picture: {}\n", self.picture)
+    }
+}
+
+/// The document of `compare --format json`.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct CompareReport {
+    /// Nothing differs by more than the tolerance, the sizes neither.
+    pub same: bool,
+    /// Width and height of both pictures, pixels.
+    pub sizes: [[u32; 2]; 2],
+    /// How many pixels differ.
+    pub pixels: u64,
+    /// The largest difference of a colour value, 0 to 255.
+    pub largest: u8,
+    /// Left, top, right and bottom of what differs, both ends included.
+    pub bounds: Option<[u32; 4]>,
+    /// The file that marks what differs, where one was written.
+    pub picture: Option<String>,
+}
+
+impl CompareReport {
+    pub fn new(difference: &Difference, picture: Option<String>) -> Self {
+        Self {
+            same: difference.is_none(),
+            sizes: difference.sizes.map(|(width, height)| [width, height]),
+            pixels: difference.pixels,
+            largest: difference.largest,
+            bounds: difference.bounds,
+            picture,
+        }
+    }
+
+    /// The same for people.
+    pub fn text(&self) -> String {
+        if self.same {
+            return "the pictures are alike\n".to_owned();
+        }
+        let [[w, h], [other_w, other_h]] = self.sizes;
+        let mut text = if (w, h) == (other_w, other_h) {
+            format!("{} of {} pixels differ", self.pixels, u64::from(w) * u64::from(h))
+        } else {
+            format!("the sizes differ: {w}x{h} and {other_w}x{other_h}; {} pixels differ", self.pixels)
+        };
+        if let Some([left, top, right, bottom]) = self.bounds {
+            text.push_str(&format!(
+                ", by up to {} steps, between ({left}, {top}) and ({right}, {bottom})",
+                self.largest
+            ));
+        }
+        text.push('\n');
+        if let Some(picture) = &self.picture {
+            text.push_str(&format!("picture: {picture}\n"));
+        }
+        text
+    }
+}

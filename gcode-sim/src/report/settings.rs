@@ -1,0 +1,78 @@
+//! The settings of the control that `--control` takes, as text and as data.
+use std::fmt::Write;
+
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use crate::control::{CodeCallKind, FAMILIES, RANGES, ROWS};
+
+/// The document of `settings --format json`.
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct SettingsReport {
+    pub settings: Vec<SettingReport>,
+}
+
+#[derive(Debug, Serialize, JsonSchema)]
+pub struct SettingReport {
+    /// What `--control` is given before the `=`; several of a kind are named by the first and the last.
+    pub key: String,
+    /// What it decides, with the parameter's number where a control has one.
+    pub meaning: String,
+    /// The values that it takes, in words.
+    pub allowed: String,
+}
+
+impl SettingReport {
+    fn new(key: impl Into<String>, meaning: impl Into<String>, allowed: impl Into<String>) -> Self {
+        Self { key: key.into(), meaning: meaning.into(), allowed: allowed.into() }
+    }
+}
+
+impl SettingsReport {
+    /// All that there are.
+    pub fn new() -> Self {
+        let rows = ROWS.iter().map(|row| SettingReport::new(row.key, row.meaning, row.values.to_string()));
+        let mut settings: Vec<_> = rows.collect();
+        settings.push(SettingReport::new("#1000 to #1031", "an input signal", "0 or 1"));
+        let (program, kind) = ("a code that calls a program", "the program's number; G-201 is a modal call");
+        settings.push(SettingReport::new("G201, M50, T, …", program, kind));
+        for family in FAMILIES {
+            let (first, last) = (family.first, family.last);
+            let (letter, kind) = (char::from(family.letter), word(family.kind));
+            let most = family.program + u32::from(last - first);
+            let meaning = format!("{letter} codes that call O{} to O{most} as {kind}s", family.program);
+            settings.push(SettingReport::new(format!("{first} to {last}"), meaning, "a code, 0 for none"));
+        }
+        for range in RANGES {
+            let (first, last) = (range.first, range.first + 2);
+            let (letter, kind) = (char::from(range.letter), word(range.kind));
+            let meaning =
+                format!("a range of {letter} codes that call {kind}s: first code, first program, how many");
+            settings.push(SettingReport::new(format!("{first} to {last}"), meaning, "numbers"));
+        }
+        let meaning = "the address that calls O9004 with #146, O9005 with #147";
+        settings.push(SettingReport::new("6090, 6091", meaning, "its character code"));
+        Self { settings }
+    }
+
+    /// The same for people.
+    pub fn text(&self) -> String {
+        self.settings.iter().fold(String::new(), |mut text, SettingReport { key, meaning, allowed }| {
+            let _ = writeln!(text, "{key:<16} {meaning} [{allowed}]");
+            text
+        })
+    }
+}
+
+impl Default for SettingsReport {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+fn word(kind: CodeCallKind) -> &'static str {
+    match kind {
+        CodeCallKind::Macro | CodeCallKind::Modal => "macro",
+        CodeCallKind::Subprogram => "subprogram",
+    }
+}
