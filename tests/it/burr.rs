@@ -201,6 +201,19 @@ fn how_the_wheel_turns_and_how_fast_it_runs_counts() {
     assert!((slow - wanted).abs() < 0.01, "{slow} {wanted}");
 }
 
+/// The burr's end 0.02 too far from the C axis in Y: off by 0.02·(1 − cos 85°) at the tip, below.
+#[test]
+fn an_offset_that_is_off_is_told_as_that() {
+    let verdict = replaced("J-15. ", "J-15.02 ");
+    let told = verdict.findings.iter().find(|finding| finding.code == "flute-surface").unwrap();
+    let deepest = 0.02 * (1.0 - Deg(85.0).cos());
+    assert!((verdict.surface_deviation.unwrap() - deepest).abs() < 0.002, "{told:?}");
+    assert!(told.notes[0].contains("X40.000 Y-15.020 from the C axis, where it is X40 Y-15"), "{told:?}");
+    let verdict = replaced("I40. ", "I40.03 ");
+    let told = verdict.findings.iter().find(|finding| finding.code == "flute-surface").unwrap();
+    assert!(told.notes[0].contains("X40.030 Y-15.000 from the C axis"), "{told:?}");
+}
+
 /// Every motion of a run.
 #[derive(Default)]
 struct Path(Vec<(bool, Position, f64)>);

@@ -13,6 +13,8 @@ use crate::part::flutes::Flutes;
 pub enum Kind {
     /// In rapid motion.
     Rapid,
+    /// In rapid motion along a flute, as a pass would go; which of all passes it is, counted from 1.
+    RapidPass(usize),
     /// A feed that doesn't turn the burr, below the tooth bottom.
     Below,
     /// A feed that doesn't turn the burr, so far along or around it, mm.
@@ -32,6 +34,8 @@ pub struct Dive {
     pub depth: f64,
     /// How often the block did it; the depth is the greatest.
     pub times: usize,
+    /// Moves, of a pass in rapid motion that begins at this block more than one.
+    pub moves: usize,
 }
 
 /// Motion is straight in or out if it goes no more than this part of its way sideways: 3°.
@@ -67,6 +71,9 @@ pub(super) struct Dives {
     outside: bool,
     /// Rapids that weren't looked at for that reason.
     pub(super) unseen: usize,
+    /// The pass in rapid motion that goes on, in `found`, and how many there were.
+    rapid: Option<usize>,
+    rapids: usize,
 }
 
 impl Dives {
@@ -88,28 +95,54 @@ impl Dives {
     }
 
     /// The deepest of each block: a loop makes all of its dives alike.
-    fn add(&mut self, place: Place, kind: Kind, Depth { depth, at }: Depth) {
+    fn add(&mut self, place: Place, kind: Kind, deepest: Depth) -> usize {
         let which = match kind {
             Kind::Rapid => 0,
             Kind::Below => 1,
             Kind::Sideways(_) => 2,
             Kind::Pit => 3,
+            Kind::RapidPass(_) => 4,
         };
         let key = (place.block.source.0, place.block.start, which);
         let index = *self.index.entry(key).or_insert(self.found.len());
         match self.found.get_mut(index) {
-            None => self.found.push(Dive { place, kind, at, depth, times: 1 }),
+            None => {
+                let Depth { depth, at } = deepest;
+                self.found.push(Dive { place, kind, at, depth, times: 1, moves: 1 });
+            }
             Some(dive) => {
                 dive.times += 1;
-                if dive.depth < depth {
-                    (dive.depth, dive.kind, dive.at) = (depth, kind, at);
+                dive.moves += 1;
+                if dive.depth < deepest.depth && !matches!(kind, Kind::RapidPass(_)) {
+                    dive.kind = kind;
                 }
+                dive.deepen(deepest);
             }
         }
+        index
     }
 
-    /// Looks at a motion that is no pass.
-    pub(super) fn look(&mut self, flutes: &Flutes, place: Place, rapid: bool, path: &[Point3<f64>]) {
+    /// A rapid that goes along a flute in the blank: a pass begins with it, or goes on. `passes`: those in feed so far.
+    fn rapid_pass(&mut self, place: Place, depth: Depth, passes: usize) {
+        self.stand = Stand::Ground;
+        if let Some(dive) = self.rapid.and_then(|index| self.found.get_mut(index)) {
+            dive.moves += 1;
+            dive.deepen(depth);
+            return;
+        }
+        self.rapids += 1;
+        self.rapid = Some(self.add(place, Kind::RapidPass(passes + self.rapids), depth));
+    }
+
+    /// Looks at a motion that is no pass; `turns`: a rapid turns the burr behind so many passes.
+    pub(super) fn look(
+        &mut self,
+        flutes: &Flutes,
+        place: Place,
+        rapid: bool,
+        turns: Option<usize>,
+        path: &[Point3<f64>],
+    ) {
         let way = Way::of(flutes, path);
         let known = self.outside;
         self.outside |= flutes.tooth_depth < way.last;
@@ -117,6 +150,10 @@ impl Dives {
             self.stand = Stand::Off;
         }
         let depth = Depth { depth: (flutes.tooth_depth - way.nearest).max(0.0), at: way.deepest };
+        if let (true, Some(passes), true) = (rapid && known, turns, way.slants && way.starts && way.ends) {
+            return self.rapid_pass(place, depth, passes);
+        }
+        self.rapid = None;
         if rapid {
             self.pit();
             self.stand = if way.ends { Stand::Ground } else { Stand::Off };
@@ -162,6 +199,16 @@ struct Way {
     straight: bool,
     /// How far it goes along and around the burr in the cut, mm.
     sideways: f64,
+    /// In the cut it goes along the burr, not just around it.
+    slants: bool,
+}
+
+impl Dive {
+    fn deepen(&mut self, Depth { depth, at }: Depth) {
+        if self.depth < depth {
+            (self.depth, self.at) = (depth, at);
+        }
+    }
 }
 
 impl Way {
@@ -171,7 +218,7 @@ impl Way {
         // What is as near to the tooth bottom as a pass may be is in the cut even if no blank stands above it.
         let cut = flutes.tooth_depth.max(flutes.surface_tolerance) - ARITHMETIC;
         let (first, last) = (distances.first().copied(), distances.last().copied());
-        let (mut sideways, mut length) = (0.0, 0.0);
+        let (mut sideways, mut length, mut along) = (0.0, 0.0, 0.0);
         for (points, off) in path.windows(2).zip(distances.windows(2)) {
             if cut <= off[0] || cut <= off[1] {
                 continue;
@@ -180,6 +227,7 @@ impl Way {
             let (meridian, around) = profile.directions(&nalgebra::center(&points[0], &points[1]));
             sideways += libm::hypot(by.dot(&meridian), by.dot(&around));
             length += by.norm();
+            along += by.dot(&meridian).abs();
         }
         let far = f64::INFINITY;
         let nearer = |best: (f64, Point3<f64>), (off, at): (&f64, &Point3<f64>)| {
@@ -196,6 +244,7 @@ impl Way {
             leaves: distances.windows(2).all(|pair| pair[0] < pair[1]),
             straight: sideways <= flutes.surface_tolerance + STRAIGHT * length,
             sideways,
+            slants: STRAIGHT * length < along,
         }
     }
 }

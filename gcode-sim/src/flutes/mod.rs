@@ -9,6 +9,7 @@ use nalgebra::Point3;
 
 use dives::Dives;
 pub use dives::{Dive, Kind};
+pub(crate) use trace::shorter;
 pub use trace::{Sample, Trace, Window};
 use turning::Turning;
 pub use turning::{Begun, Idle};
@@ -169,7 +170,8 @@ impl<'m> Follower<'m> {
         };
         if !grinds {
             self.close();
-            self.dives.look(&self.flutes, event.place(), rapid, &path);
+            let turns = (from[self.burr] != to[self.burr]).then_some(self.ground.passes.len());
+            self.dives.look(&self.flutes, event.place(), rapid, turns, &path);
             return;
         }
         self.kept = KEPT.min(self.kept + path.len());

@@ -113,6 +113,13 @@ impl Trace {
         }
     }
 
+    /// The programmed points: where the pass begins, and where each of its moves ends.
+    pub fn programmed(&self) -> impl Iterator<Item = &Sample> {
+        let ends = self.samples.windows(2).filter(|pair| pair[0].place != pair[1].place);
+        let first = self.samples.first().filter(|_| 1 < self.samples.len());
+        first.into_iter().chain(ends.map(|pair| &pair[0])).chain(self.samples.last())
+    }
+
     /// The block that moved to a sample.
     pub fn place(&self, sample: &Sample) -> &Place {
         &self.places[sample.place]

@@ -50,9 +50,10 @@ impl Cause {
         let alone = [[x / xx, 0.0], [0.0, y / yy]];
         let both = [(x * yy - y * xy) / square, (y * xx - x * xy) / square];
         let fits = |d: &[f64; 2]| holds(&|p| d[0] * of_x(p) + d[1] * of_y(p));
-        match alone.into_iter().find(fits) {
+        let by = alone.into_iter().find(fits).or(Some(both).filter(|both| 5 <= points.len() && fits(both)));
+        // What is off by more is another mistake, and the formula above is for what is small against the radius.
+        match by.filter(|by| libm::hypot(by[0], by[1]) <= wanted.profile.radius()) {
             Some(by) => Self::Offset(by),
-            None if 5 <= points.len() && fits(&both) => Self::Offset(both),
             None => Self::Other,
         }
     }

@@ -1,11 +1,14 @@
 //! Holds the flutes a program grinds against the wanted ones: on the surface, at the helix angle, evenly spaced, all
 //! there. The wheel is one point: how wide it grinds, and whether its body gouges a neighbour, is not modelled.
+mod cause;
 mod checks;
+mod common;
 mod near;
 mod round;
 mod speed;
 mod verdict;
 
+pub use common::Instead;
 pub use round::Round;
 pub use speed::{SpeedRange, WorstSpeed};
 pub use verdict::{Angles, FluteVerdict, Law, WantedFlutes, in_words};
@@ -28,9 +31,21 @@ pub struct Inspection<'g> {
     pub helix: HelixRange,
     /// `None` where nothing is ground.
     pub speed: Option<SpeedRange>,
+    /// How far above the tooth bottom all flutes are ground, alike all along, where that is too much, mm.
+    pub depth: Option<f64>,
+    /// What all flutes have instead of the wanted helix angle, all along.
+    pub instead: Option<Instead>,
 }
 
 impl Inspection<'_> {
+    /// `all 6 flutes are`, `the flute is`.
+    fn all_flutes(&self) -> String {
+        match self.round.flutes.len() {
+            1 => "the flute is".to_owned(),
+            all => format!("all {all} flutes are"),
+        }
+    }
+
     /// A pass counted from 0, in words: by the flute it grinds where each flute has one pass.
     fn name(&self, pass: usize) -> String {
         let what = if self.round.again == 0 { "flute" } else { "pass" };
@@ -141,6 +156,8 @@ pub fn verify_flutes(
         round: Round::of(wanted, &ground.passes),
         helix: measured.clone().unwrap_or_else(|| HelixRange::only(Deg::ZERO)),
         speed: SpeedRange::of(wanted, &ground.passes),
+        depth: common::depth(wanted, &ground.passes),
+        instead: Instead::of(wanted, &ground.passes),
     };
     let mut findings: Vec<Diagnostic> = ground.findings.clone();
     for check in checks::ALL {

@@ -2,7 +2,7 @@
 use nalgebra::Point3;
 
 use super::near;
-use crate::flutes::{Pass, Sample};
+use crate::flutes::{Pass, Sample, shorter};
 use crate::part::flutes::Flutes;
 use crate::units::Deg;
 
@@ -41,11 +41,29 @@ pub struct Gap {
     /// Along x, where it is so, and the polar angle there.
     pub x: f64,
     pub polar: Deg,
-    /// Of the two flutes the one that stands farther from the middle between its neighbours, and which of its samples.
+    /// Of the two flutes the one that stands farther from its place between all others, which of its samples is there,
+    /// and the first of them that is nearly as far off.
     pub pass: usize,
     pub sample: usize,
-    /// How far it stands from there.
-    astray: f64,
+    pub first: usize,
+    /// How far that flute stands from its place; `None` of two flutes, for either may be right.
+    pub astray: Option<Deg>,
+}
+
+/// How far each flute is from the one that is ground before it, where that is always the same.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Step {
+    pub found: Deg,
+    /// The nearest one with which flutes would be evenly spaced.
+    pub wanted: Deg,
+    /// The pass after the first step, counted from 0.
+    pub pass: usize,
+}
+
+impl Step {
+    pub(super) fn off(&self) -> Deg {
+        (self.found - self.wanted).abs()
+    }
 }
 
 /// Passes nearer to each other than so many tolerances of a flute's place are rounds over the same flute.
@@ -90,41 +108,68 @@ impl Round {
         round
     }
 
-    /// The gaps on both sides of every flute at every one of its samples: the worst.
+    /// The gap behind every flute at every one of its samples: the worst.
     fn gaps(&self, wanted: &Flutes, passes: &[Pass]) -> Option<Gap> {
         let pitch = 360.0 / f64::from(wanted.count);
         let courses: Vec<Course> =
             self.flutes.iter().map(|(pass, _)| Course::of(wanted, &passes[*pass])).collect();
         let count = courses.len();
-        let mut worst: Option<Gap> = None;
+        // One flute alone is its own neighbour a whole turn further.
+        let gap = |here: f64, there: f64| if count == 1 { 360.0 } else { (there - here).rem_euclid(360.0) };
+        let mut worst: Option<(Gap, f64)> = None;
         for (flute, (pass, _)) in self.flutes.iter().enumerate() {
             let (before, after) = ((flute + count - 1) % count, (flute + 1) % count);
             for (index, sample) in passes[*pass].trace.samples.iter().enumerate() {
                 let (at, angle) = (place(wanted, sample), (sample.begun + sample.turned).0);
-                // One flute alone is its own neighbour a whole turn further.
-                let turn = |angle: f64| if count == 1 { 360.0 } else { angle.rem_euclid(360.0) };
-                let behind = courses[before].angle(at).map(|other| turn(angle - other));
-                let ahead = courses[after].angle(at).map(|other| turn(other - angle));
-                let astray = behind.zip(ahead).map_or(0.0, |(behind, ahead)| (behind - ahead).abs() / 2.0);
-                for (from, found) in [(flute, ahead), (before, behind)] {
-                    let Some(found) = found else { continue };
-                    let gap = Gap {
-                        from,
-                        found: Deg(found),
-                        off: Deg((found - pitch).abs()),
-                        x: sample.at.x,
-                        polar: sample.polar,
-                        pass: *pass,
-                        sample: index,
-                        astray,
-                    };
-                    if worst.is_none_or(|worst| gap.is_worse(&worst)) {
-                        worst = Some(gap);
+                let behind = courses[before].angle(at).map(|other| (before, gap(other, angle)));
+                let ahead = courses[after].angle(at).map(|other| (flute, gap(angle, other)));
+                for (from, found) in [ahead, behind].into_iter().flatten() {
+                    let off = Deg((found - pitch).abs());
+                    if worst.is_none_or(|(worst, _)| worst.off.0 + EQUAL < off.0) {
+                        let (x, polar) = (sample.at.x, sample.polar);
+                        let (pass, sample, first) = (*pass, index, index);
+                        let found = Deg(found);
+                        let gap = Gap { from, found, off, x, polar, pass, sample, first, astray: None };
+                        worst = Some((gap, at));
                     }
                 }
             }
         }
-        worst
+        let (mut worst, at) = worst?;
+        // Which of both stands wrong decides whose block is named.
+        let (from, after) = (worst.from, (worst.from + 1) % count);
+        let (flute, astray) = astray(&courses, pitch, at, [from, after], &self.flutes);
+        worst.astray = astray.map(Deg);
+        let (other, ahead) = if flute == from { (after, true) } else { (from, false) };
+        let samples = &passes[self.flutes[flute].0].trace.samples;
+        let off = |sample: &Sample| {
+            let angle = (sample.begun + sample.turned).0;
+            let there = courses[other].angle(place(wanted, sample))?;
+            Some((if ahead { gap(angle, there) } else { gap(there, angle) } - pitch).abs())
+        };
+        let far = |part: f64| {
+            samples.iter().position(|sample| off(sample).is_some_and(|off| part * worst.off.0 <= off))
+        };
+        if let Some(first) = far(0.9) {
+            let sample = far(0.999).unwrap_or(first);
+            (worst.pass, worst.sample, worst.first) = (self.flutes[flute].0, sample, first);
+        }
+        Some(worst)
+    }
+
+    /// The step from each flute to the one ground after it, of three and more; `None` where it isn't the same.
+    pub(super) fn step(&self, wanted: &Flutes) -> Option<Step> {
+        let mut ground = self.flutes.clone();
+        ground.sort_by_key(|(pass, _)| *pass);
+        let steps = ground.windows(2).map(|pair| shorter(pair[1].1.0 - pair[0].1.0));
+        let (least, most) = steps.clone().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), step| {
+            (step.min(least), step.max(most))
+        });
+        let pitch = 360.0 / f64::from(wanted.count);
+        let mean = steps.sum::<f64>() / ground.len().saturating_sub(1) as f64;
+        let step =
+            Step { found: Deg(mean), wanted: Deg((mean / pitch).round() * pitch), pass: ground.get(1)?.0 };
+        (3 <= ground.len() && most - least <= step.off().0 / 2.0).then_some(step)
     }
 
     /// Where flutes would have to be so that none is missing, halfway along the burr: so many to a gap as it is wider
@@ -166,11 +211,32 @@ fn middle(wanted: &Flutes) -> f64 {
     (wanted.start + wanted.profile.at_polar(wanted.tip_angle).x) / 2.0
 }
 
-impl Gap {
-    fn is_worse(&self, than: &Self) -> bool {
-        let more = self.off.0 - than.off.0;
-        EQUAL < more || (-EQUAL <= more && than.astray + EQUAL < self.astray)
+/// Which of two flutes stands farther from its place between all others, and how far; places are those with which most
+/// agree. Of two flutes in all either may be right: the one ground later is named.
+fn astray(
+    courses: &[Course],
+    pitch: f64,
+    at: f64,
+    pair: [usize; 2],
+    flutes: &[(usize, Deg)],
+) -> (usize, Option<f64>) {
+    let later = if flutes[pair[0]].0 < flutes[pair[1]].0 { pair[1] } else { pair[0] };
+    let angles = courses.iter().enumerate();
+    let all: Vec<(usize, f64)> =
+        angles.filter_map(|(n, course)| Some((n, course.angle(at)? - pitch * n as f64))).collect();
+    let Some((_, zero)) = all.first().copied() else { return (later, None) };
+    let mut sorted: Vec<f64> = all.iter().map(|(_, phase)| shorter(phase - zero)).collect();
+    sorted.sort_by(f64::total_cmp);
+    let middle = sorted[(sorted.len() - 1) / 2];
+    let off = |flute: usize| {
+        let phase = all.iter().find(|(n, _)| *n == flute).map(|(_, phase)| shorter(phase - zero - middle));
+        phase.map_or(0.0, f64::abs)
+    };
+    let [one, other] = pair.map(off);
+    if courses.len() < 3 || (one - other).abs() <= EQUAL {
+        return (later, None);
     }
+    if other < one { (pair[0], Some(one)) } else { (pair[1], Some(other)) }
 }
 
 /// The way along the meridian from the end of the cylinder, towards the tip: on the nose by the direction of the normal,

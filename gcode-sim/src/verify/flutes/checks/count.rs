@@ -2,32 +2,12 @@
 use super::super::Inspection;
 use super::super::round::SAME;
 use crate::diag::{Diagnostic, Site};
+use crate::flutes::Kind;
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
     let (found, wanted) = (inspection.round.flutes.len(), inspection.wanted.count as usize);
-    if found == 0 {
-        let message = format!("no flute is ground where {wanted} are wanted: no feed turns A");
-        findings.push(
-            Diagnostic::error("flute-missing", message).help("grinding moves are feeds (G01) with an A word"),
-        );
-        return;
-    }
     if found < wanted {
-        let pitch = 360.0 / wanted as f64;
-        let mut finding =
-            Diagnostic::error("flute-missing", format!("{found} flutes where {wanted} are wanted"));
-        if let Some(gap) = inspection.round.worst_gap.filter(|gap| 1.5 * pitch < gap.found.0) {
-            let (pass, _) = inspection.round.flutes[gap.from];
-            finding = finding
-                .note(format!(
-                    "the widest gap round the burr is {:.3}° where {pitch:.3}° are wanted, behind the flute that begins here",
-                    gap.found.0
-                ))
-                .at(inspection.ground.passes[pass].place.clone());
-        }
-        let sites = inspection.round.absent(inspection.wanted).into_iter().map(|at| Site { pass: None, at });
-        let help = "the loop over the flutes ends too early, or an index move is missing";
-        findings.push(finding.help(help).on(sites));
+        findings.push(missing(inspection, found, wanted));
     }
     if wanted < found {
         let finding = Diagnostic::error("flute-extra", format!("{found} flutes where {wanted} are wanted"));
@@ -46,6 +26,7 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
                 (last, finding.help("the loop over the flutes goes on too long, or the index is too small"))
             }
         };
+        let finding = apart(inspection).into_iter().fold(finding, Diagnostic::note);
         let extra = &inspection.ground.passes[pass];
         let middle = extra.trace.samples.get(extra.trace.samples.len() / 2);
         findings.push(
@@ -64,4 +45,52 @@ fn beside(inspection: &Inspection<'_>) -> Option<(usize, usize, f64)> {
     });
     let nearest = apart.min_by(|one, other| one.2.total_cmp(&other.2))?;
     Some(nearest).filter(|(.., apart)| *apart < 0.25 * 360.0 / f64::from(inspection.wanted.count))
+}
+
+fn missing(inspection: &Inspection<'_>, found: usize, wanted: usize) -> Diagnostic {
+    let missing = |message: String| Diagnostic::error("flute-missing", message);
+    let sites = inspection.round.absent(inspection.wanted).into_iter().map(|at| Site { pass: None, at });
+    let dives = inspection.ground.dives.iter();
+    let rapid: Vec<_> = dives.filter(|dive| matches!(dive.kind, Kind::RapidPass(_))).collect();
+    if let Some(first) = rapid.first() {
+        let all: usize = rapid.iter().map(|dive| dive.times).sum();
+        let which = match first.kind {
+            Kind::RapidPass(number) if all == 1 => format!("flute {number}'s pass is"),
+            _ => format!("{all} passes are"),
+        };
+        return missing(format!("{found} flutes where {wanted} are wanted: {which} made in rapid motion"))
+            .help("grind with G01: G00 stays in force until another motion code")
+            .at(first.place.clone())
+            .on(sites);
+    }
+    if found == 0 {
+        return missing(format!("no flute is ground where {wanted} are wanted: no feed turns A"))
+            .help("grinding moves are feeds (G01) with an A word");
+    }
+    let pitch = 360.0 / wanted as f64;
+    let mut finding = missing(format!("{found} flutes where {wanted} are wanted"));
+    if let Some(note) = apart(inspection) {
+        finding = finding.note(note);
+    } else if let Some(gap) = inspection.round.worst_gap.filter(|gap| 1.5 * pitch < gap.found.0) {
+        let (pass, _) = inspection.round.flutes[gap.from];
+        finding = finding
+            .note(format!(
+                "the widest gap round the burr is {:.3}° where {pitch:.3}° are wanted, behind the flute that begins here",
+                gap.found.0
+            ))
+            .at(inspection.ground.passes[pass].place.clone());
+    }
+    finding.help("the loop over the flutes ends too early, or an index move is missing").on(sites)
+}
+
+/// In words how far the flutes are apart, where they are ground in even steps and those aren't the wanted ones.
+fn apart(inspection: &Inspection<'_>) -> Option<String> {
+    let wanted = inspection.wanted;
+    let step = inspection.round.step(wanted).filter(|step| wanted.index_tolerance < step.off())?;
+    Some(format!(
+        "the flutes are {:.3}° apart, where {} flutes are {:.3}° apart",
+        step.found.0.abs(),
+        wanted.count,
+        360.0 / f64::from(wanted.count)
+    ))
 }

@@ -11,6 +11,11 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
             Kind::Rapid => {
                 format!("rapid motion while the wheel touches the blank, {depth:.3} mm below its surface")
             }
+            Kind::RapidPass(_) => {
+                format!(
+                    "rapid motion along a flute while the wheel touches the blank, {depth:.3} mm below its surface"
+                )
+            }
             Kind::Below => {
                 format!("a feed that doesn't turn A takes the wheel {depth:.3} mm below the tooth bottom")
             }
@@ -22,15 +27,31 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
                 format!("the wheel is fed {depth:.3} mm below the blank's surface where no pass begins")
             }
         };
+        let help = match dive.kind {
+            Kind::RapidPass(_) => "grind with G01: G00 stays in force until another motion code",
+            Kind::Rapid | Kind::Below | Kind::Sideways(_) | Kind::Pit => {
+                "move Y clear of the burr first, then turn A and C"
+            }
+        };
+        let again = dive.times - 1;
+        let note = match dive.kind {
+            Kind::RapidPass(_) => match again {
+                0 => Some(dive.moves - 1)
+                    .filter(|more| 0 < *more)
+                    .map(|more| format!("and {more} more moves of this pass")),
+                more => Some(format!(
+                    "{} moves of this pass and {more} more that begin at this block",
+                    dive.moves
+                )),
+            },
+            Kind::Rapid | Kind::Below | Kind::Sideways(_) | Kind::Pit => {
+                (0 < again).then(|| format!("and {again} more of this block"))
+            }
+        };
         let finding = Diagnostic::error("wheel-into-burr", message)
-            .help("move Y clear of the burr first, then turn A and C")
+            .help(help)
             .at(dive.place.clone())
             .on([Site { pass: None, at: dive.at }]);
-        let again = dive.times - 1;
-        findings.push(if again == 0 {
-            finding
-        } else {
-            finding.note(format!("and {again} more of this block"))
-        });
+        findings.push(note.into_iter().fold(finding, Diagnostic::note));
     }
 }

@@ -2,11 +2,16 @@
 use nalgebra::Point3;
 
 use super::super::Inspection;
+use super::helix::follow;
 use super::on_passes;
 use crate::diag::Diagnostic;
 use crate::flutes::Pass;
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
+    // That is told with the helix angle.
+    if follow(inspection) {
+        return;
+    }
     let wrong = |pass| Some((wrong(inspection, pass)?, start(pass)?));
     let finding = on_passes(inspection, "flute-head", wrong);
     findings

@@ -1,46 +1,90 @@
 //! The helix angle along every flute is that of the law asked for.
-use super::super::{Inspection, WorstHelix};
+use super::super::{Inspection, Instead};
 use crate::diag::{Diagnostic, Site};
-use crate::flutes::Window;
+use crate::flutes::Pass;
 use crate::job::FluteLaw;
+use crate::units::Deg;
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
     let tolerance = inspection.wanted.helix_tolerance;
     let Some(worst) = inspection.helix.worst.filter(|worst| tolerance < worst.off()) else { return };
     let pass = &inspection.ground.passes[worst.pass];
-    let message = format!(
+    let here = format!(
         "the helix angle is {:.2}° at polar angle {:.1}° where {:.2}° is wanted: {}° either way is allowed",
         worst.found.0, worst.polar.0, worst.wanted.0, tolerance.0
     );
+    let error = |message: String| Diagnostic::error("flute-helix", message);
+    let finding = match all_alike(inspection) {
+        Some((message, help)) => {
+            heads(inspection).into_iter().fold(error(message).note(here).help(help), Diagnostic::note)
+        }
+        None => error(here).help("check how A is computed, in degrees, and its sign in the machine file"),
+    };
     let place = worst.place(&pass.trace, inspection.wanted.gauge).unwrap_or(&pass.place);
-    let finding = Diagnostic::error("flute-helix", message).at(place.clone());
     let mut all: Vec<_> = inspection.helix.of_passes.iter().filter(|w| tolerance < w.off()).collect();
     all.sort_by(|one, other| other.off().0.total_cmp(&one.off().0));
     let sites = all.into_iter().map(|worst| Site { pass: Some(worst.pass), at: worst.at });
-    findings.push(finding.help(help(inspection, &worst)).on(sites));
+    findings.push(finding.at(place.clone()).on(sites));
 }
 
-/// Another law or the other hand is named only where the whole flute has it, not one place by chance.
-fn help(inspection: &Inspection<'_>, worst: &WorstHelix) -> String {
-    let law = inspection.wanted.law;
-    let other = match law {
-        FluteLaw::ConstantHelix => FluteLaw::Published,
-        FluteLaw::Published => FluteLaw::ConstantHelix,
+/// What all flutes have instead, all along, and what to look at.
+fn all_alike(inspection: &Inspection<'_>) -> Option<(String, &'static str)> {
+    let wanted = inspection.wanted;
+    let flutes = match inspection.round.flutes.len() {
+        1 => "the flute has".to_owned(),
+        all => format!("all {all} flutes have"),
     };
-    let gauge = inspection.wanted.gauge;
-    let allowed = inspection.wanted.helix_tolerance * 2.0;
-    let all_along = |fits: &dyn Fn(&Window<'_>) -> bool| {
-        inspection.ground.passes[worst.pass].trace.windows(gauge).all(|window| fits(&window))
+    Some(match inspection.instead? {
+        Instead::Law => {
+            let other = match wanted.law {
+                FluteLaw::ConstantHelix => FluteLaw::Published,
+                FluteLaw::Published => FluteLaw::ConstantHelix,
+            };
+            let (other, asked) = (other.name(), wanted.law.name());
+            (
+                format!("{flutes} the helix angle of the law '{other}' where '{asked}' is asked for"),
+                "compute A by the job's law (H of the call)",
+            )
+        }
+        Instead::Helix(helix) if helix.0 * wanted.helix.0 < 0.0 => (
+            format!(
+                "{flutes} the other hand: {}, with a helix of {:.1}°, where {:.1}°, {}, is asked for",
+                hand(helix),
+                helix.0,
+                wanted.helix.0,
+                hand(wanted.helix)
+            ),
+            "A turns the wrong way round: check its sign, and that of the helix angle in the program",
+        ),
+        Instead::Helix(helix) => (
+            format!("{flutes} a helix of {:.1}° where {:.1}° is asked for", helix.0, wanted.helix.0),
+            "check the helix angle and the radius that A is computed from, and that A is in degrees",
+        ),
+        Instead::Deep => (
+            format!("{flutes} another helix angle on the wanted diameter than {:.1}°", wanted.helix.0),
+            "it comes of the diameter they are ground to, on which the angle is the wanted one: see flute-surface",
+        ),
+    })
+}
+
+fn hand(helix: Deg) -> &'static str {
+    if helix.0 < 0.0 { "left-hand" } else { "right-hand" }
+}
+
+/// Where all heads stand at the angle that all flutes have: that they do isn't told by itself.
+fn heads(inspection: &Inspection<'_>) -> Option<String> {
+    let Some(Instead::Helix(helix)) = inspection.instead else { return None };
+    follow(inspection).then(|| format!("so is the head B set, to {:.1}° in all passes", helix.0))
+}
+
+/// Whether every pass has its head at the helix angle that all flutes have instead of the wanted one.
+pub(super) fn follow(inspection: &Inspection<'_>) -> bool {
+    let Some(Instead::Helix(helix)) = inspection.instead else { return false };
+    let tolerance = inspection.wanted.helix_tolerance;
+    let there = |angle: Deg| (angle - helix).abs() <= tolerance;
+    let stands = |pass: &Pass| {
+        pass.head.is_some_and(|(least, most)| there(least) && there(most) && most.0 - least.0 <= 1e-9)
     };
-    if all_along(&|window| (window.helix - window.other).abs() < allowed) {
-        return format!(
-            "all along the flute this is what the law '{}' has, and the job asks for '{}'",
-            other.name(),
-            law.name()
-        );
-    }
-    if all_along(&|window| (window.helix + window.wanted).abs() < allowed) {
-        return "A turns the wrong way round: the flute has the other hand".to_owned();
-    }
-    "check how A is computed, in degrees, and its sign in the machine file".to_owned()
+    inspection.helix.worst.is_some_and(|worst| tolerance < worst.off())
+        && inspection.ground.passes.iter().all(stands)
 }
