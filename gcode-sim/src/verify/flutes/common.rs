@@ -15,6 +15,11 @@ pub enum Instead {
     Deep,
 }
 
+/// In words which way flutes of a helix angle wind.
+pub(super) fn hand(helix: Deg) -> &'static str {
+    if helix.0 < 0.0 { "left-hand" } else { "right-hand" }
+}
+
 /// How far above the tooth bottom all passes are alike, where that is more than is allowed, mm.
 pub(super) fn depth(wanted: &Flutes, passes: &[Pass]) -> Option<f64> {
     let depths: Option<Vec<f64>> = passes

@@ -1,4 +1,5 @@
 //! The helix angle along every flute is that of the law asked for.
+use super::super::common::hand;
 use super::super::{Inspection, Instead};
 use crate::diag::{Diagnostic, Site};
 use crate::flutes::Pass;
@@ -65,10 +66,6 @@ fn all_alike(inspection: &Inspection<'_>) -> Option<(String, &'static str)> {
             "it comes of the diameter they are ground to, on which the angle is the wanted one: see flute-surface",
         ),
     })
-}
-
-fn hand(helix: Deg) -> &'static str {
-    if helix.0 < 0.0 { "left-hand" } else { "right-hand" }
 }
 
 /// Where all heads stand at the angle that all flutes have: that they do isn't told by itself.
