@@ -21,6 +21,11 @@ pub(super) fn watched<T>(all: usize, counted: &AtomicUsize, work: impl FnOnce() 
     showing(bar, work)
 }
 
+/// Does the work, and meanwhile shows how many of `all` cases are done.
+pub(super) fn of_cases<T>(all: usize, done: &AtomicUsize, work: impl FnOnce() -> T) -> T {
+    showing(|| format!("{} of {all} cases", done.load(Ordering::Relaxed)), work)
+}
+
 /// Runs a program, and meanwhile shows how many blocks it has executed. The first Ctrl-C ends the run, the second the
 /// process.
 pub(super) fn of_run<T>(request: &mut Request, work: impl FnOnce(&Request) -> T) -> T {

@@ -11,7 +11,7 @@ use clap::Args;
 
 use self::case::{ACCEPTED, Case, Tried};
 use super::format::TestFormat;
-use super::{Refusal, Status, options, output};
+use super::{Refusal, Status, options, output, progress};
 use crate::report::tested::{Answer, Shard, TestReport};
 use crate::report::{junit, sarif};
 
@@ -127,13 +127,25 @@ fn shard(text: &str) -> Result<(usize, usize), Refusal> {
 
 /// Runs the cases on all cores; the answers are in the order of the cases.
 fn all(cases: &[Case], libraries: &[PathBuf], tolerance: f64) -> Vec<Tried> {
-    let next = AtomicUsize::new(0);
+    let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    progress::of_cases(cases.len(), &done, || all_of(cases, libraries, tolerance, &next, &done))
+}
+
+/// Takes the next case again and again, on every core, and counts those that are done.
+fn all_of(
+    cases: &[Case],
+    libraries: &[PathBuf],
+    tolerance: f64,
+    next: &AtomicUsize,
+    counted: &AtomicUsize,
+) -> Vec<Tried> {
     let work = || {
         let mut done = Vec::new();
         loop {
             let index = next.fetch_add(1, Ordering::Relaxed);
             let Some(case) = cases.get(index) else { return done };
             done.push((index, case.run(libraries, tolerance)));
+            counted.fetch_add(1, Ordering::Relaxed);
         }
     };
     let workers = std::thread::available_parallelism().map_or(1, usize::from).min(cases.len());
