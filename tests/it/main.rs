@@ -11,6 +11,7 @@ mod changes;
 mod check;
 mod chord_limits;
 mod ci;
+mod collection;
 mod compensation;
 mod control;
 mod control_page;

@@ -204,6 +204,11 @@ impl Record {
         &self.ending.outcome
     }
 
+    /// A called program wasn't found: that says more of the folders that were named than of the program.
+    pub fn lacks_program(&self) -> bool {
+        self.ending.words.starts_with("alarm PS0076 ")
+    }
+
     /// How the run ended, in words.
     pub fn words(&self) -> &str {
         &self.ending.words

@@ -64,6 +64,11 @@ pub fn folder(path: &Path) -> Result<Vec<PathBuf>, Refusal> {
     Ok(paths)
 }
 
+/// A folder's one path, whatever links lead to it.
+pub fn canonical(path: &Path) -> Result<PathBuf, Refusal> {
+    path.canonicalize().map_err(|error| Refusal::new(format!("{} can't be read: {error}", path.display())))
+}
+
 /// A file's text, which must be UTF-8 (jobs, machine files, references; programs are bytes).
 pub fn text(path: &Path) -> Result<String, Refusal> {
     let bytes = bytes(path)?;

@@ -102,7 +102,22 @@ impl TestReport {
             words.push(format!("{failing} against its reference"));
         }
         let _ = writeln!(text, "{}: {}", counted(self.cases.len() as u64, "case"), words.join(", "));
-        if count(Answer::Changed) + count(Answer::New) > 0 {
+        if let Some(Shard { number, of, cases }) = self.shard.filter(|_| self.cases.is_empty()) {
+            let _ = writeln!(text, "shard {number}/{of} is empty: {} in all", counted(cases as u64, "case"));
+        }
+        let (lacking, open): (Vec<_>, Vec<_>) = self
+            .cases
+            .iter()
+            .filter(|case| matches!(case.answer, Answer::Changed | Answer::New))
+            .partition(|case| case.lacks_program());
+        for case in lacking {
+            let name = &case.name;
+            let _ = writeln!(
+                text,
+                "--accept doesn't take {name}: a called program isn't found; name its folder with --lib, or put it into lib/ of the case"
+            );
+        }
+        if !open.is_empty() {
             text.push_str("--accept takes what is new; --only NAME takes one\n");
         }
         text
@@ -138,6 +153,11 @@ impl CaseReport {
     /// The alarm that the run ended with.
     fn alarm(&self) -> Option<&str> {
         self.ending.as_deref().filter(|words| words.starts_with("alarm"))
+    }
+
+    /// As [`crate::changes::Record::lacks_program`].
+    fn lacks_program(&self) -> bool {
+        self.alarm().is_some_and(|words| words.starts_with("alarm PS0076 "))
     }
 
     /// What isn't as it should be; nothing of a good case.

@@ -21,7 +21,8 @@ pub(super) struct Case {
     /// Its path below the folder that was asked for, `/` between the parts.
     pub name: String,
     pub folder: PathBuf,
-    programs: Vec<PathBuf>,
+    /// None where a program was accepted and is gone.
+    pub programs: Vec<PathBuf>,
 }
 
 /// What came of a case.
@@ -31,43 +32,28 @@ pub(super) struct Tried {
     pub record: Option<Record>,
 }
 
-/// The cases in a folder and below it, by name. A folder with programs is a case; folders below it are its own business.
-pub(super) fn find(root: &Path) -> Result<Vec<Case>, Refusal> {
-    let mut cases = Vec::new();
-    let mut folders = vec![(root.to_owned(), String::new())];
-    while let Some((folder, name)) = folders.pop() {
-        let entries = input::folder(&folder)?;
-        let (programs, others): (Vec<_>, Vec<_>) =
-            entries.into_iter().partition(|path| is_program(path) && path.is_file());
-        if programs.is_empty() {
-            for below in others.into_iter().filter(|path| path.is_dir()) {
-                let own = below.file_name().unwrap_or_default().to_string_lossy();
-                let path = if name.is_empty() { own.into_owned() } else { format!("{name}/{own}") };
-                folders.push((below, path));
-            }
-        } else {
-            let name = if name.is_empty() { ".".to_owned() } else { name };
-            cases.push(Case { name, folder, programs });
-        }
-    }
-    cases.sort_by(|a, b| a.name.cmp(&b.name));
-    Ok(cases)
-}
-
-fn is_program(path: &Path) -> bool {
-    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("nc"))
-}
-
 impl Case {
     /// Runs the case and holds it against what was accepted.
     pub(super) fn run(&self, libraries: &[PathBuf], tolerance: f64) -> Tried {
-        let main = main_program::of(&self.folder, &self.programs);
+        let main = self.lost().map_or_else(|| main_program::of(&self.folder, &self.programs), Err);
         let file = main.as_ref().ok().map(|path| path.display().to_string());
         let empty = |answer| CaseReport::new(self.name.clone(), file.clone(), answer);
         let tried = main.and_then(|program| self.tried(&program, libraries, tolerance, empty));
         tried.unwrap_or_else(|refusal| {
             let error = Some(refusal.to_string());
             Tried { report: CaseReport { error, ..empty(Answer::Refused) }, record: None }
+        })
+    }
+
+    /// Why there is nothing to run.
+    fn lost(&self) -> Option<Refusal> {
+        let folder = self.folder.display();
+        if self.folder.is_symlink() && !self.folder.exists() {
+            return Some(Refusal::new(format!("{folder} is a link to what isn't there")));
+        }
+        self.programs.is_empty().then(|| {
+            let remedy = "put the program back, or delete the folder where the part is no longer made";
+            Refusal::new(format!("{folder} has {ACCEPTED} and no program (.nc): {remedy}"))
         })
     }
 
@@ -78,7 +64,9 @@ impl Case {
         tolerance: f64,
         empty: impl Fn(Answer) -> CaseReport,
     ) -> Result<Tried, Refusal> {
-        let there = |name: &str| Some(self.folder.join(name)).filter(|path| path.exists());
+        // A link to nothing is there: that it can't be read is told.
+        let there =
+            |name: &str| Some(self.folder.join(name)).filter(|path| path.exists() || path.is_symlink());
         let conditions = RunConditions {
             machine: there("machine.toml"),
             control_file: there("control.toml"),
@@ -87,6 +75,10 @@ impl Case {
             ..RunConditions::default()
         };
         let (request, mut folders) = options::request(&conditions.of(program))?;
+        if let (Some(one), Some(other)) = (there("reference.json"), there("reference.csv")) {
+            let both = format!("{} and {}", one.display(), other.display());
+            return Err(Refusal::new(format!("{both}: which of them says what is wanted? delete the other")));
+        }
         let reference = ["reference.json", "reference.csv", "job.toml"].into_iter().find_map(there);
         let wanted = reference.as_deref().map(options::wanted).transpose()?;
         let surface = match &wanted {
@@ -96,8 +88,7 @@ impl Case {
         let refused = |error: SessionError| Refusal::new(error.to_string());
         let revision = Revision::of(&request, &mut folders, surface).map_err(refused)?;
         if revision.is_cut_off() {
-            let message = "the run was cut off by a limit: what lies behind it can't be compared";
-            return Err(Refusal::new(message));
+            return Err(cut_off(&revision));
         }
         let against = match &wanted {
             None => None,
@@ -135,6 +126,15 @@ impl Case {
         };
         Ok(Tried { report, record: Some(revision.record) })
     }
+}
+
+/// Where the run was when it had no end.
+fn cut_off(revision: &Revision) -> Refusal {
+    let place = revision.stopped().find_map(|finding| finding.place.as_ref());
+    let place = place.map(|place| Where::of(&revision.simulation.run, place));
+    let place = place.map(|Where { program, line, block, .. }| format!(" at {program}:{line} {block}"));
+    let place = place.unwrap_or_default();
+    Refusal::new(format!("the run was cut off by a limit{place}: what lies behind it can't be compared"))
 }
 
 /// The first thing that a failed verdict has against the program.

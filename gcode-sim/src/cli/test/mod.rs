@@ -1,5 +1,6 @@
 //! `gcode-sim test`: a shop's own programs, each held against what was accepted of it.
 mod case;
+mod find;
 mod main_program;
 mod merge;
 mod watch;
@@ -12,6 +13,7 @@ use clap::Args;
 use self::case::{ACCEPTED, Case, Tried};
 use super::format::TestFormat;
 use super::{Refusal, Status, options, output, progress};
+use crate::changes::Record;
 use crate::report::tested::{Answer, Shard, TestReport};
 use crate::report::{junit, sarif};
 
@@ -33,15 +35,15 @@ pub(super) struct TestArguments {
     #[arg(long, value_name = "K/N")]
     shard: Option<String>,
 
-    /// Put the JSON results of all shards together instead of running anything
+    /// Put the JSON results of all shards together instead of running or accepting anything
     #[arg(long, value_name = "RESULT.json", num_args = 1.., conflicts_with_all = ["folders", "libraries", "only", "shard", "accept"])]
     merge: Vec<PathBuf>,
 
-    /// Accept what came of the cases: write their accepted.json
+    /// Accept what came of the cases: write their accepted.json; not of a run whose called program isn't found
     #[arg(long)]
     accept: bool,
 
-    /// Run again what a saved file concerns, until Ctrl-C
+    /// Run again what a saved file concerns, until Ctrl-C; tells text, and accepts nothing
     #[arg(long, conflicts_with_all = ["accept", "format", "merge"])]
     watch: bool,
 
@@ -93,14 +95,7 @@ fn tested(arguments: &TestArguments, tolerance: f64) -> Result<TestReport, Refus
 
 /// The cases that are asked for, and which part of them these are.
 fn cases(arguments: &TestArguments) -> Result<(Option<Shard>, Vec<Case>), Refusal> {
-    let mut cases = Vec::new();
-    for folder in &arguments.folders {
-        let mut found = case::find(folder)?;
-        if arguments.folders.len() > 1 {
-            found.iter_mut().for_each(|case| case.name = format!("{}/{}", folder.display(), case.name));
-        }
-        cases.extend(found);
-    }
+    let mut cases = find::cases(&arguments.folders)?;
     if cases.is_empty() {
         return Err(Refusal::new("no cases: a case is a folder with a program (.nc)"));
     }
@@ -166,7 +161,8 @@ fn accept(cases: &[Case], tried: &mut [Tried]) -> Result<Vec<String>, Refusal> {
     let mut files = Vec::new();
     let mut names = Vec::new();
     for (case, Tried { report, record }) in cases.iter().zip(tried.iter_mut()) {
-        let Some(record) = record.as_ref().filter(|_| report.answer != Answer::Same) else { continue };
+        let is_taken = |record: &&Record| report.answer != Answer::Same && !record.lacks_program();
+        let Some(record) = record.as_ref().filter(is_taken) else { continue };
         let text = record.to_json().map_err(|error| Refusal::new(error.to_string()))?;
         files.push((case.folder.join(ACCEPTED), text.into_bytes()));
         names.push(report.name.clone());

@@ -1,5 +1,5 @@
 //! `gcode-sim test --watch`: runs again what a saved file concerns, until Ctrl-C.
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
@@ -76,7 +76,12 @@ fn differing(old: &Stamps, new: &Stamps) -> Vec<PathBuf> {
 fn stamps<'a>(folders: impl Iterator<Item = &'a PathBuf>) -> Stamps {
     let mut found = Stamps::new();
     let mut left: Vec<PathBuf> = folders.cloned().collect();
+    let mut seen = BTreeSet::new();
     while let Some(folder) = left.pop() {
+        // A link may lead back up.
+        if folder.canonicalize().is_ok_and(|path| !seen.insert(path)) {
+            continue;
+        }
         let entries = std::fs::read_dir(Path::new(&folder)).into_iter().flatten().flatten();
         for entry in entries {
             let path = entry.path();

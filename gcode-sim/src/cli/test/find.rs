@@ -1,0 +1,93 @@
+//! Where the cases are: every folder with a program, at any depth, none of them hidden by what stands above it.
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use super::case::{ACCEPTED, Case};
+use crate::cli::{Refusal, input};
+
+/// Called programs of the case that it is in; a folder in it is a case where something was accepted of it.
+const LIBRARY: &str = "lib";
+
+/// The cases in folders and below them, by name within each folder that was asked for. A folder that is reached twice,
+/// by a link or because it was named twice, counts once, and by a name without links where it has one.
+pub(super) fn cases(roots: &[PathBuf]) -> Result<Vec<Case>, Refusal> {
+    let mut search = Search::default();
+    for (root, folder) in roots.iter().enumerate() {
+        search.look(Place { root, folder: folder.clone(), name: String::new(), in_library: false })?;
+    }
+    while let Some(place) = search.links.pop() {
+        search.look(place)?;
+    }
+    let mut found = search.found;
+    found.sort_by(|(a, one), (b, other)| (a, &one.name).cmp(&(b, &other.name)));
+    let mut cases: Vec<Case> = Vec::with_capacity(found.len());
+    for (root, mut case) in found {
+        if roots.len() > 1 {
+            case.name = format!("{}/{}", roots[root].display(), case.name);
+        }
+        cases.push(case);
+    }
+    Ok(cases)
+}
+
+/// A folder to look into.
+struct Place {
+    /// Which of the folders that were asked for it is below.
+    root: usize,
+    folder: PathBuf,
+    /// Below that one; empty for that one itself.
+    name: String,
+    in_library: bool,
+}
+
+#[derive(Default)]
+struct Search {
+    found: Vec<(usize, Case)>,
+    /// Folders behind links: looked into last.
+    links: Vec<Place>,
+    seen: BTreeSet<PathBuf>,
+}
+
+impl Search {
+    /// Everything below a folder but for what links lead to.
+    fn look(&mut self, from: Place) -> Result<(), Refusal> {
+        let mut places = vec![from];
+        while let Some(place) = places.pop() {
+            if self.seen.insert(input::canonical(&place.folder)?) {
+                self.folder(place, &mut places)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn folder(&mut self, place: Place, places: &mut Vec<Place>) -> Result<(), Refusal> {
+        let Place { root, folder, name, in_library } = place;
+        let entries = input::folder(&folder)?;
+        let has_accepted = entries.iter().any(|path| path.file_name().is_some_and(|name| name == ACCEPTED));
+        let programs: Vec<PathBuf> =
+            entries.iter().filter(|path| is_program(path) && !path.is_dir()).cloned().collect();
+        let is_case = has_accepted || !programs.is_empty() && !in_library;
+        for path in entries {
+            let own = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            let below = if name.is_empty() { own.clone() } else { format!("{name}/{own}") };
+            if path.is_dir() {
+                let in_library = in_library || is_case && own == LIBRARY;
+                let place = Place { root, folder: path.clone(), name: below, in_library };
+                let list = if path.is_symlink() { &mut self.links } else { &mut *places };
+                list.push(place);
+            } else if path.is_symlink() && !path.exists() && !own.starts_with('.') && !is_program(&path) {
+                // It may have been a folder of cases.
+                self.found.push((root, Case { name: below, folder: path, programs: Vec::new() }));
+            }
+        }
+        if is_case {
+            let name = if name.is_empty() { ".".to_owned() } else { name };
+            self.found.push((root, Case { name, folder, programs }));
+        }
+        Ok(())
+    }
+}
+
+fn is_program(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("nc"))
+}
