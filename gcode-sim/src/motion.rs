@@ -160,8 +160,10 @@ pub enum EventKind {
         turning: Spindle,
         speed: Rpm,
     },
+    /// M07 and M08 switch it on, M09 off.
     Coolant {
         on: bool,
+        code: u32,
     },
     /// An M code for the machine builder's logic: what it does isn't simulated.
     Auxiliary {

@@ -130,3 +130,69 @@ fn otherwise(text: &str) -> String {
     };
     text.lines().map(|one| line(one) + "\n").collect()
 }
+
+/// What is different, as `code: message`.
+fn told(old: &str, new: &str) -> Vec<String> {
+    let found = changes(&revision(old).record, &revision(new).record, 0.0001);
+    found.iter().map(|change| format!("{}: {}", change.code, change.message)).collect()
+}
+
+/// Two tools on two holes, a contour beside the part; all offsets are 0 and unknown to the run.
+const PART: &str = "O1\nG90 G54\nT1 M6\nG43 H1 G0 Z50. M8\nG98 G81 X10. Y0 Z-1. R2. F100\nX20.\nG80\nT2 M6\n\
+    G43 H2 G0 Z50.\nG98 G81 X10. Y0 Z-9. R2. F80\nX20.\nG80\nG0 X0 Y30. M1\nG41 D1 G1 Y40. F200\nX50.\nG40 Y30.\nM30\n";
+
+/// `PART` with one thing written otherwise.
+fn changed(from: &str, to: &str) -> Vec<String> {
+    assert_eq!(PART.matches(from).count(), 1, "{from}");
+    told(PART, &PART.replace(from, to))
+}
+
+#[test]
+fn what_is_called_by_number_counts_where_the_tables_hold_the_same() {
+    assert_eq!(told(PART, PART), Vec::<String>::new());
+    let found = changed("G43 H2", "G43 H3");
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(found[0].starts_with("tool-length: G43 H3 instead of G43 H2, both 0 here ("), "{found:?}");
+    for (from, to, what) in [
+        ("G41 D1", "G42 D1", "cutter-side: G42 D1 instead of G41 D1 ("),
+        ("G41 D1", "G41 D2", "cutter-side: G41 D2 instead of G41 D1 ("),
+        ("G41 D1 ", "", "cutter-side: G40 instead of G41 D1 ("),
+        ("G0 X0 Y30.", "G55 G0 X0 Y30.", "work-system: G55 instead of G54 ("),
+        ("G41 D1 G1", "G61 G41 D1 G1", "path-mode: G61 instead of G64 ("),
+    ] {
+        let found = changed(from, to);
+        assert!(found[0].starts_with(what), "{from} -> {to}: {found:?}");
+        // A mode that stays is left to the next program as well.
+        assert!(found[1..].iter().all(|entry| entry.starts_with("mode: the program leaves G")), "{found:?}");
+    }
+}
+
+#[test]
+fn mist_is_no_coolant() {
+    assert_eq!(changed("M8", "M7"), ["coolant: M07 instead of M08"]);
+}
+
+#[test]
+fn a_lost_spot_drilling_is_told_at_its_hole() {
+    let found = changed("Z-1. R2. F100\nX20.\n", "Z-1. R2. F100\n");
+    assert_eq!(found, ["hole-tool: hole 2: no longer made by T1, in all by T2"]);
+    let found = changed("Z-9. R2. F80\nX20.\n", "Z-9. R2. F80\nX20.\nX20.\n");
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(found[0].starts_with("hole-tool: hole 2: made once more by T2"), "{found:?}");
+}
+
+#[test]
+fn a_stop_that_comes_later_is_one_entry() {
+    let old = "O1\nG0 X1.\nM00\nG0 Y5.\nM30\n";
+    let new = "O1\nG0 X1.\nG0 Y5.\nM00\nM30\n";
+    assert_eq!(told(old, new), ["stop: the stop M00 comes later than before"]);
+    assert_eq!(told(new, old), ["stop: the stop M00 comes earlier than before"]);
+}
+
+#[test]
+fn behind_an_alarm_nothing_is_compared() {
+    let stops = PART.replace("T2 M6\n", "T2 M6\n#3000=1(NO TOOL)\n");
+    let found = told(PART, &stops);
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(found[0].starts_with("outcome: "), "{found:?}");
+}

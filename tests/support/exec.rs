@@ -94,7 +94,7 @@ fn event(ran: &Ran, kind: &EventKind) -> String {
         EventKind::Tool { number } => format!("tool {number}"),
         EventKind::ToolLength { offset } => format!("tool length {}", at(offset)),
         EventKind::Spindle { turning, speed } => format!("spindle {turning:?} {}", speed.0).to_lowercase(),
-        EventKind::Coolant { on } => format!("coolant {}", if *on { "on" } else { "off" }),
+        EventKind::Coolant { on, .. } => format!("coolant {}", if *on { "on" } else { "off" }),
         EventKind::Auxiliary { code } => format!("M{code:02} for the machine builder"),
         EventKind::Stop { kind, text, named } => {
             let named: Vec<_> = named.iter().map(|(n, value)| format!(" #{n} is {value:.4}")).collect();

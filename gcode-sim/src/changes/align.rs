@@ -45,7 +45,32 @@ pub(super) fn align(old: &[Step], new: &[Step], tolerance: f64) -> Vec<Link> {
         }
         (i, j) = (to_i + 1, to_j + 1);
     }
+    moves_stay((old, new), tolerance, &mut links);
     links
+}
+
+/// Where something else has gone past a move, the move is the one that stays: a stop that comes later is one, and no
+/// move is lost.
+fn moves_stay((old, new): (&[Step], &[Step]), tolerance: f64, links: &mut [Link]) {
+    for first in 0..links.len() {
+        let is_other = |link: &Link| matches!(link, Link::Same(i, _) if !old[*i].is_move());
+        let between = links[first + 1..].iter().take_while(|link| is_other(link)).count();
+        let Some(last) = links.get(first + 1 + between).copied() else { return };
+        let (i, j) = match (links[first], last) {
+            (Link::Lost(i), Link::Added(j)) | (Link::Added(j), Link::Lost(i)) => (i, j),
+            _ => continue,
+        };
+        let is_move = old[i].is_move() && old[i].is_same(&new[j], tolerance);
+        // More than one between them would be more entries than it saves.
+        let Link::Same(other_i, other_j) = links[first + 1] else { continue };
+        if !is_move || between != 1 {
+            continue;
+        }
+        let (lost, added) = (Link::Lost(other_i), Link::Added(other_j));
+        let gone_first = matches!(links[first], Link::Added(_));
+        (links[first], links[first + 1], links[first + 2]) =
+            if gone_first { (lost, Link::Same(i, j), added) } else { (added, Link::Same(i, j), lost) };
+    }
 }
 
 type Side<'a> = (&'a [Step], std::ops::Range<usize>);

@@ -5,6 +5,7 @@ use nalgebra::{Point3, Vector3};
 
 use super::align::Link;
 use super::record::{Record, Where};
+use super::steps::Kind;
 use super::{Change, listed};
 use crate::holes::Found;
 use crate::part::hole::Hole;
@@ -54,7 +55,8 @@ pub(super) fn compare(old: &Record, new: &Record, links: &[Link], tolerance: f64
         partner[pair.wanted] = Some(pair.found);
     }
     pair_by_motion(&mut partner, &comparison.extra, links, (old, new));
-    let mut told = Told { old, new, tolerance, moved: Explained::default() };
+    let tools = (tools(old), tools(new));
+    let mut told = Told { old, new, tolerance, tools, moved: Explained::default() };
     let mut changes = told.pairs(&partner);
     changes.extend(told.order(&partner));
     changes.extend(told.lost_and_added(&partner));
@@ -99,6 +101,8 @@ struct Told<'a> {
     old: &'a Record,
     new: &'a Record,
     tolerance: f64,
+    /// As [`tools`].
+    tools: (Vec<Vec<u32>>, Vec<Vec<u32>>),
     moved: Explained,
 }
 
@@ -110,7 +114,7 @@ impl Told<'_> {
             let Some(other) = other else { continue };
             let (before, now) = (&self.old.holes[hole], &self.new.holes[*other]);
             let apart = Apart::new(before, now);
-            let aspects = self.aspects(before, now, &apart);
+            let aspects = self.aspects(hole, *other, &apart);
             let Some((code, _)) = aspects.first() else { continue };
             if aspects.iter().any(|(code, _)| ["hole-moved", "hole-tilted", "hole-depth"].contains(code)) {
                 let with = |step: &usize| (*step, apart.deeper);
@@ -152,7 +156,7 @@ impl Told<'_> {
             pairs.push(Paired {
                 old: Some(hole),
                 new: Some(other),
-                changed: !self.aspects(was, is, &apart).is_empty(),
+                changed: !self.aspects(hole, other, &apart).is_empty(),
                 moved: apart.entry.norm(),
                 tilted: tilt(was, is),
                 deeper: apart.deeper,
@@ -164,7 +168,8 @@ impl Told<'_> {
     }
 
     /// All that is different about one hole.
-    fn aspects(&mut self, old: &Found, new: &Found, apart: &Apart) -> Vec<(&'static str, String)> {
+    fn aspects(&mut self, hole: usize, other: usize, apart: &Apart) -> Vec<(&'static str, String)> {
+        let (old, new) = (&self.old.holes[hole], &self.new.holes[other]);
         let mut aspects = Vec::new();
         if apart.entry.norm() > self.tolerance {
             let [x, y, z] = [apart.entry.x, apart.entry.y, apart.entry.z].map(plain);
@@ -182,11 +187,22 @@ impl Told<'_> {
         {
             aspects.push(("hole-diameter", format!("Φ{now} instead of Φ{before}")));
         }
-        if let (Some(before), Some(now)) = (old.tool, new.tool)
-            && before != now
-        {
-            self.moved.tools.insert((before, now));
-            aspects.push(("hole-tool", format!("made by T{now} instead of T{before}")));
+        let (was, is) = (self.tools.0[hole].clone(), self.tools.1[other].clone());
+        match passes(&was, &is) {
+            None if was.is_empty() || is.is_empty() => {}
+            None => {
+                let others = was.iter().zip(&is).filter(|(before, now)| before != now);
+                self.moved.tools.extend(others.map(|(before, now)| (*before, *now)));
+                if was != is {
+                    let text = format!("made by {} instead of {}", in_words(&is), in_words(&was));
+                    aspects.push(("hole-tool", text));
+                }
+            }
+            Some(text) => {
+                self.moved.elsewhen.0.extend(&self.old.feeds[hole]);
+                self.moved.elsewhen.1.extend(&self.new.feeds[other]);
+                aspects.push(("hole-tool", text));
+            }
         }
         aspects
     }
@@ -195,6 +211,10 @@ impl Told<'_> {
     fn order(&mut self, partner: &[Option<usize>]) -> Option<Change> {
         let paired: Vec<(usize, usize)> =
             partner.iter().enumerate().filter_map(|(old, new)| Some((old, (*new)?))).collect();
+        // A hole that is made by fewer passes or more is begun at another time because of that.
+        let as_often =
+            |(old, new): &(usize, usize)| passes(&self.tools.0[*old], &self.tools.1[*new]).is_none();
+        let paired: Vec<(usize, usize)> = paired.into_iter().filter(as_often).collect();
         let stays = rising(&paired.iter().map(|(_, new)| *new).collect::<Vec<_>>());
         let late: Vec<_> = (0..paired.len()).filter(|k| !stays.contains(k)).map(|k| paired[k]).collect();
         let (first, other) = *late.first()?;
@@ -231,6 +251,58 @@ impl Told<'_> {
             changes.push(Change::new("hole-added", message).now_at(place(self.new, hole)));
         }
         changes
+    }
+}
+
+/// The tools that make each hole, pass by pass; nothing where a pass has none.
+fn tools(record: &Record) -> Vec<Vec<u32>> {
+    let in_spindle = record.steps.iter().scan(None, |tool, step| {
+        if let Kind::Tool(number) = step.kind {
+            *tool = Some(number);
+        }
+        Some(*tool)
+    });
+    let in_spindle: Vec<Option<u32>> = in_spindle.collect();
+    let of = |feeds: &Vec<usize>| feeds.iter().map(|step| in_spindle[*step]).collect::<Option<Vec<u32>>>();
+    record.feeds.iter().map(|feeds| of(feeds).unwrap_or_default()).collect()
+}
+
+/// Which passes are gone and which are new; `None` where as many are made.
+fn passes(was: &[u32], is: &[u32]) -> Option<String> {
+    if was.len() == is.len() || was.is_empty() || is.is_empty() {
+        return None;
+    }
+    let common = super::align::common(was.len(), is.len(), |i, j| was[i] == is[j]);
+    let of = |all: &[u32], kept: &dyn Fn(usize) -> bool| -> Vec<u32> {
+        all.iter().enumerate().filter(|(k, _)| !kept(*k)).map(|(_, tool)| *tool).collect()
+    };
+    let gone = of(was, &|k| common.iter().any(|(i, _)| *i == k));
+    let new = of(is, &|k| common.iter().any(|(_, j)| *j == k));
+    let mut words = Vec::new();
+    if !gone.is_empty() {
+        let times =
+            if gone.iter().any(|tool| is.contains(tool)) { "made fewer times" } else { "no longer made" };
+        words.push(format!("{times} by {}", in_words(&gone)));
+    }
+    if !new.is_empty() {
+        let again = new.iter().any(|tool| was.contains(tool));
+        words.push(match (again, is) {
+            (true, [_, _]) => "made twice now".to_owned(),
+            (true, _) => format!("made once more by {}", in_words(&new)),
+            (false, _) => format!("made by {} as well", in_words(&new)),
+        });
+    }
+    words.push(format!("in all by {}", in_words(is)));
+    Some(words.join(", "))
+}
+
+/// `T1`, `T1 and T2`, `T1, T2 and T2`.
+fn in_words(tools: &[u32]) -> String {
+    let names: Vec<String> = tools.iter().map(|tool| format!("T{tool}")).collect();
+    match names.as_slice() {
+        [] => String::new(),
+        [only] => only.clone(),
+        [before @ .., last] => format!("{} and {last}", before.join(", ")),
     }
 }
 

@@ -40,6 +40,7 @@ fn value(name: &str, was: Option<&Left>, is: Option<&Left>, tolerance: f64) -> O
     let is_length = matches!(code, "work-offset" | "tool-offset");
     // What isn't written down is 0; a variable is vacant, a parameter as it was.
     let absent = (!matches!(code, "variable" | "parameter")).then_some(0.0);
+    let places = (was.and_then(|left| left.place.as_ref()), is.and_then(|left| left.place.as_ref()));
     let (was, is) = (was.map(|left| left.value).or(absent), is.map(|left| left.value).or(absent));
     let same = match (was, is) {
         (Some(a), Some(b)) if is_length => (a - b).abs() <= tolerance,
@@ -47,16 +48,28 @@ fn value(name: &str, was: Option<&Left>, is: Option<&Left>, tolerance: f64) -> O
         (Some(a), Some(b)) => (a - b).abs() <= 1e-9 * a.abs().max(b.abs()),
         (a, b) => a == b,
     };
+    let (old, new) = places;
     let nothing = if code == "parameter" { "as it was" } else { "vacant" };
     let shown = |value: Option<f64>| value.map_or_else(|| nothing.to_owned(), |v| plain(v).to_string());
-    (!same)
-        .then(|| Change::new(known(code), format!("{name} is left {} instead of {}", shown(is), shown(was))))
+    let message = || match (code, was, is) {
+        ("mode", Some(was), Some(is)) => {
+            format!("the program leaves {} instead of {}", g_code(is), g_code(was))
+        }
+        _ => format!("{name} is left {} instead of {}", shown(is), shown(was)),
+    };
+    (!same).then(|| Change::new(known(code), message()).once_at(old).now_at(new))
 }
 
 /// The name of a change as every entry has it; a file may hold any.
 fn known(code: &str) -> &'static str {
     let codes = ["variable", "mode", "work-offset", "tool-offset", "parameter", "signal", "counter"];
     codes.into_iter().find(|known| *known == code).unwrap_or("variable")
+}
+
+/// `G01`, `G54.1`.
+fn g_code(value: f64) -> String {
+    let value = plain(value);
+    if value.fract() == 0.0 { format!("G{value:02}") } else { format!("G{value}") }
 }
 
 /// Digits that nobody can set aren't shown.

@@ -3,6 +3,7 @@
 //! Nothing of the text is compared: sequence numbers, spaces, comments, names of locals and the way a number is written
 //! make no difference unless the control does something else because of them.
 mod align;
+mod conditions;
 mod holes;
 mod left;
 mod motion;
@@ -25,7 +26,7 @@ pub use store::StoreError;
 use self::align::{Link, align};
 
 /// What a change can be called, in the order of their sections in docs/changes.md.
-pub const CODES: [&str; 30] = [
+pub const CODES: [&str; 35] = [
     "outcome",
     "hole-moved",
     "hole-tilted",
@@ -44,6 +45,11 @@ pub const CODES: [&str; 30] = [
     "dwell",
     "tool",
     "tool-length",
+    "cutter-side",
+    "work-system",
+    "cycle",
+    "return-level",
+    "path-mode",
     "spindle",
     "coolant",
     "m-code",
@@ -108,17 +114,41 @@ pub struct Compared {
 impl Compared {
     /// `tolerance` as for [`changes`].
     pub fn new(old: &Record, new: &Record, tolerance: f64) -> Self {
-        let links = align(&old.steps, &new.steps, tolerance);
+        let mut links = align(&old.steps, &new.steps, tolerance);
+        let outcome = left::outcome(old, new);
+        let [old_steps, new_steps] = up_to_the_stop(old, new, &mut links);
+        let (old, new) = (&*old.up_to(old_steps), &*new.up_to(new_steps));
         let holes = holes::compare(old, new, &links, tolerance);
-        let mut changes: Vec<Change> = left::outcome(old, new).into_iter().collect();
+        let is_to_the_end = outcome.is_none();
+        let mut changes: Vec<Change> = outcome.into_iter().collect();
         changes.extend(holes.changes);
         changes.extend(motion::compare(old, new, &links, &holes.moved, tolerance));
-        changes.extend(left::compare(old, new, tolerance));
+        if is_to_the_end {
+            changes.extend(left::compare(old, new, tolerance));
+        }
         let different = links.iter().filter(|link| !matches!(link, Link::Same(..)));
         let (was, is): (Vec<_>, Vec<_>) = different.map(|link| link.sides()).unzip();
         let steps = [was.into_iter().flatten().collect(), is.into_iter().flatten().collect()];
         Self { changes, holes: holes.pairs, steps }
     }
+}
+
+/// How many steps of each count where one of them stops: what the other does behind that isn't compared.
+fn up_to_the_stop(old: &Record, new: &Record, links: &mut Vec<Link>) -> [usize; 2] {
+    let stops = |record: &Record| record.outcome() != "end";
+    let is_endless = |record: &Record| record.outcome() == "limit";
+    let is_lost_behind = stops(new) || is_endless(old);
+    let is_added_behind = stops(old) || is_endless(new);
+    let mut steps = [old.steps.len(), new.steps.len()];
+    while let Some(link) = links.last() {
+        match link {
+            Link::Lost(i) if is_lost_behind => steps[0] = *i,
+            Link::Added(j) if is_added_behind => steps[1] = *j,
+            _ => break,
+        }
+        links.pop();
+    }
+    steps
 }
 
 /// Pairs of equal lines of two texts, by their places from 0: the longest common sequence, or, of texts that differ in

@@ -1,6 +1,9 @@
 //! Moves, feeds, tools, spindle and stops that are different and that no changed hole explains.
+use std::collections::BTreeMap;
+
 use super::Change;
 use super::align::Link;
+use super::conditions::{Conditions, Strokes};
 use super::holes::Explained;
 use super::record::Record;
 use super::steps::{Category, Kind, Step, difference, is_same_arc};
@@ -13,15 +16,25 @@ pub(super) fn compare(
     explained: &Explained,
     tolerance: f64,
 ) -> Vec<Change> {
+    let conditions = Conditions::new(old, new);
+    let strokes = conditions.strokes(links);
+    let (records, axes) = ((old, new), &old.axes);
     let mut motion =
-        Motion { old: &old.steps, new: &new.steps, axes: &old.axes, tolerance, groups: Vec::new() };
+        Motion { old: &old.steps, new: &new.steps, axes, tolerance, groups: Vec::new(), strokes, records };
     for region in regions(links, &old.steps, &new.steps) {
         motion.region(&region, explained);
     }
-    for link in links {
-        motion.step(*link, explained);
+    let shifted = shifted(links, &old.steps, &new.steps, tolerance);
+    for (k, link) in links.iter().enumerate() {
+        match shifted.get(&k) {
+            None => motion.step(*link, explained),
+            Some(Some((i, j, word))) => motion.shifted(&old.steps[*i], &new.steps[*j], word),
+            Some(None) => {}
+        }
     }
-    motion.groups.into_iter().map(|group| group.change(old, new)).collect()
+    let mut changes = conditions.changes(links);
+    changes.extend(motion.groups.into_iter().map(|group| group.change(old, new)));
+    changes
 }
 
 /// Moves next to one another that are all different; other steps between them don't part them.
@@ -38,6 +51,40 @@ fn regions(links: &[Link], old: &[Step], new: &[Step]) -> Vec<Vec<Link>> {
     }
     regions.retain(|region| !region.is_empty());
     regions
+}
+
+/// The lost and the added step of what comes at another time, and whether that is `earlier` or `later`.
+type Shifted = (usize, usize, &'static str);
+
+/// Stops, M codes and the like that are lost in one place and added in another, by the first link of the two; with
+/// nothing at the second.
+fn shifted(links: &[Link], old: &[Step], new: &[Step], tolerance: f64) -> BTreeMap<usize, Option<Shifted>> {
+    let mut known = BTreeMap::new();
+    let alone = |(_, link): &(usize, &Link)| match link {
+        Link::Lost(i) => !old[*i].is_move(),
+        Link::Added(j) => !new[*j].is_move(),
+        Link::Same(..) | Link::Changed(..) => false,
+    };
+    let alone: Vec<(usize, &Link)> = links.iter().enumerate().filter(alone).collect();
+    // Of more than these each is an entry of its own.
+    if alone.len() > 1000 {
+        return known;
+    }
+    for (place, (k, link)) in alone.iter().enumerate() {
+        if known.contains_key(k) {
+            continue;
+        }
+        let pair = |(l, other): &(usize, &Link)| match (link, other) {
+            (Link::Lost(i), Link::Added(j)) => Some((*l, (*i, *j, "later"))),
+            (Link::Added(j), Link::Lost(i)) => Some((*l, (*i, *j, "earlier"))),
+            _ => None,
+        };
+        let mut others = alone[place + 1..].iter().filter(|(l, _)| !known.contains_key(l)).filter_map(pair);
+        if let Some((l, found)) = others.find(|(_, (i, j, _))| old[*i].is_same(&new[*j], tolerance)) {
+            known.extend([(*k, Some(found)), (l, None)]);
+        }
+    }
+    known
 }
 
 /// A feed of a changed hole.
@@ -127,6 +174,8 @@ struct Motion<'a> {
     axes: &'a Axes,
     tolerance: f64,
     groups: Vec<Group>,
+    strokes: Strokes,
+    records: (&'a Record, &'a Record),
 }
 
 impl<'a> Motion<'a> {
@@ -156,16 +205,19 @@ impl<'a> Motion<'a> {
         for (k, link) in region.iter().enumerate() {
             let is_part =
                 [before[k], behind[k]].iter().flatten().any(|feed| self.is_part_of_hole(link, feed));
+            if self.strokes.explain(link, self.records.0, self.records.1) {
+                continue;
+            }
             match *link {
                 Link::Changed(i, j) if !is_part => self.changed(&self.old[i], &self.new[j]),
                 Link::Lost(i) if !(is_part && gone) => {
                     let step = &self.old[i];
-                    let text = format!("a {} to {} is no longer there", step.kind.name(), self.point(step));
+                    let text = format!("{} to {} is no longer there", step.kind.one(), self.point(step));
                     self.tell("move-lost", "move", text, Some(step), None);
                 }
                 Link::Added(j) if !(is_part && gone) => {
                     let step = &self.new[j];
-                    let text = format!("a {} to {} is new", step.kind.name(), self.point(step));
+                    let text = format!("{} to {} is new", step.kind.one(), self.point(step));
                     self.tell("move-added", "move", text, None, Some(step));
                 }
                 _ => {}
@@ -195,14 +247,14 @@ impl<'a> Motion<'a> {
 
     /// A move that goes elsewhere or in another way.
     fn changed(&mut self, old: &'a Step, new: &'a Step) {
-        let (was, is) = (old.kind.name(), new.kind.name());
+        let (was, is) = (old.kind.one(), new.kind.one());
         if was != is {
-            self.tell("move-kind", "move", format!("a {is} where a {was} was"), Some(old), Some(new));
+            self.tell("move-kind", "move", format!("{is} where {was} was"), Some(old), Some(new));
         }
         let way = difference(&new.to, &old.to);
         let shift = self.coordinates(&way, self.tolerance, true);
         if !shift.is_empty() {
-            let text = format!("a {is} ends elsewhere, by {shift}");
+            let text = format!("{is} ends elsewhere, by {shift}");
             self.tell("move-shifted", "move", text, Some(old), Some(new));
         } else if let (Kind::Arc(a, _), Kind::Arc(b, _)) = (&old.kind, &new.kind)
             && !is_same_arc(a, b, self.tolerance)
@@ -217,6 +269,7 @@ impl<'a> Motion<'a> {
 
     /// Feeds, and everything that is no move.
     fn step(&mut self, link: Link, explained: &Explained) {
+        let is_stroke = self.strokes.explain(&link, self.records.0, self.records.1);
         match link {
             Link::Same(i, j) | Link::Changed(i, j) => {
                 let (old, new) = (&self.old[i], &self.new[j]);
@@ -226,22 +279,28 @@ impl<'a> Motion<'a> {
                     let text = format!("feed F{} instead of F{}", short(is), short(was));
                     self.tell("feed", "move", text, Some(old), Some(new));
                 }
-                if matches!(link, Link::Changed(..)) {
+                if matches!(link, Link::Changed(..)) && !is_stroke {
                     self.swapped(old, new, explained);
                 }
             }
-            Link::Lost(i) if !self.old[i].is_move() => {
+            Link::Lost(i) if !self.old[i].is_move() && !is_stroke => {
                 let step = &self.old[i];
                 let text = format!("{} is no longer there", self.described(&step.kind));
                 self.tell(lost_code(&step.kind), step.kind.name(), text, Some(step), None);
             }
-            Link::Added(j) if !self.new[j].is_move() => {
+            Link::Added(j) if !self.new[j].is_move() && !is_stroke => {
                 let step = &self.new[j];
                 let text = format!("{} is new", self.described(&step.kind));
                 self.tell(lost_code(&step.kind), step.kind.name(), text, None, Some(step));
             }
             Link::Lost(_) | Link::Added(_) => {}
         }
+    }
+
+    /// A step that comes at another time.
+    fn shifted(&mut self, old: &'a Step, new: &'a Step, word: &str) {
+        let text = format!("{} comes {word} than before", self.described(&old.kind));
+        self.tell(lost_code(&old.kind), old.kind.name(), text, Some(old), Some(new));
     }
 
     /// The same kind of step with other values.
@@ -262,22 +321,22 @@ impl<'a> Motion<'a> {
             Kind::Dwell(seconds) => format!("a dwell of {seconds} s"),
             Kind::Tool(number) => format!("tool T{number}"),
             Kind::Length(offset) => match self.coordinates(offset, 0.0, false).as_str() {
-                "" => "no tool length offset".to_owned(),
+                "" => "a tool length offset of 0".to_owned(),
                 values => format!("tool length offset {values}"),
             },
             Kind::Spindle(Spindle::Off, _) => "spindle stop".to_owned(),
             Kind::Spindle(Spindle::Clockwise, speed) => format!("M03 S{speed}"),
             Kind::Spindle(Spindle::Counterclockwise, speed) => format!("M04 S{speed}"),
-            Kind::Coolant(true) => "coolant on".to_owned(),
-            Kind::Coolant(false) => "coolant off".to_owned(),
-            Kind::Auxiliary(code) => format!("M{code:02}"),
+            Kind::Coolant(true, None) => "coolant on".to_owned(),
+            Kind::Coolant(false, None) => "coolant off".to_owned(),
+            Kind::Coolant(_, Some(code)) | Kind::Auxiliary(code) => format!("M{code:02}"),
             Kind::Stop(StopKind::M00, ..) => "the stop M00".to_owned(),
             Kind::Stop(StopKind::M01, ..) => "the stop M01".to_owned(),
             Kind::Stop(StopKind::Message, text, named) => {
                 let values = named.iter().map(|(number, value)| format!(", #{number} = {}", short(*value)));
                 format!("the stop #3006 ({text}){}", values.collect::<String>())
             }
-            Kind::Rapid | Kind::Feed(_) | Kind::Arc(..) | Kind::Probe(_) => format!("a {}", kind.name()),
+            Kind::Rapid | Kind::Feed(_) | Kind::Arc(..) | Kind::Probe(_) => kind.one(),
         }
     }
 

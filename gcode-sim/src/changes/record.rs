@@ -1,13 +1,16 @@
 //! What one revision does, written down: all that two of them are compared by, without the run it came from.
+use std::borrow::Cow;
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::steps::{Kind, Recorder, Step};
+use super::conditions::Condition;
+use super::steps::{Kind, Recorder, Shared, Step};
 use crate::diag::{Diagnostic, Severity};
-use crate::exec::{Outcome, RemainderKind, Watcher};
+use crate::exec::{Control, Outcome, Remainder, RemainderKind, Watcher};
 use crate::holes::Found;
 use crate::motion::{Axes, MAX_AXES, Place, Position};
 use crate::part::surface::Surface;
@@ -29,6 +32,8 @@ pub struct Record {
     pub(super) feeds: Vec<Vec<usize>>,
     /// The blocks that the steps come from: [`Step::place`] counts them.
     pub(super) places: Vec<Where>,
+    /// What is in force while steps are made: [`Step::under`] counts them.
+    pub(super) conditions: Vec<Condition>,
     pub(super) ending: Ending,
     pub totals: Totals,
 }
@@ -77,6 +82,9 @@ pub(super) struct Left {
     /// What a change of it is called.
     pub code: String,
     pub value: f64,
+    /// The block that has put a mode in force.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub place: Option<Where>,
 }
 
 /// A run with its record.
@@ -104,8 +112,10 @@ impl Revision {
         surface: Option<Surface>,
         watcher: &mut impl Watcher,
     ) -> Result<Self, SessionError> {
-        let mut recorder = Recorder::default();
-        let mut simulation = session::simulate_beside(request, library, surface, &mut recorder, watcher)?;
+        let recorder = RefCell::new(Recorder::default());
+        let (mut told, mut beside) = (Shared(&recorder), Beside(Shared(&recorder), watcher));
+        let mut simulation = session::simulate_beside(request, library, surface, &mut told, &mut beside)?;
+        let recorder = recorder.into_inner();
         if recorder.too_many {
             let message = format!("more than {MOST_STEPS} moves: those behind them aren't compared");
             simulation.extracted.findings.push(Diagnostic::new(Severity::Alarm, "limit", message));
@@ -139,11 +149,31 @@ impl Revision {
     }
 }
 
+/// Two that look on.
+struct Beside<A, B>(A, B);
+
+impl<A: Watcher, B: Watcher> Watcher for Beside<A, B> {
+    fn before(&mut self, control: &mut Control) {
+        self.0.before(control);
+        self.1.before(control);
+    }
+
+    fn after(&mut self, control: &Control) {
+        self.0.after(control);
+        self.1.after(control);
+    }
+}
+
 fn record(simulation: &Simulation, recorder: Recorder) -> Record {
     let (run, holes) = (&simulation.run, simulation.extracted.holes.clone());
     let feeds = feeds(&recorder, &holes);
-    let Recorder { mut steps, places, .. } = recorder;
-    let places = resolve(run, &places, &mut steps);
+    let Recorder { mut steps, places, mut conditions, mut set, .. } = recorder;
+    if conditions.is_empty() {
+        conditions.push(Condition::default());
+    }
+    let words = conditions.iter_mut().flat_map(|condition| &mut condition.0);
+    let named = words.filter_map(|word| word.place.as_mut()).chain(set.values_mut());
+    let places = resolve(run, &places, steps.iter_mut().map(|step| &mut step.place).chain(named));
     Record {
         axes: run.control.settings().axes.clone(),
         totals: Totals {
@@ -152,7 +182,8 @@ fn record(simulation: &Simulation, recorder: Recorder) -> Record {
             blocks: run.control.blocks(),
             seconds: run.control.seconds().0,
         },
-        ending: ending(run),
+        ending: ending(run, &set, &places),
+        conditions,
         steps,
         holes,
         feeds,
@@ -177,7 +208,7 @@ fn feeds(recorder: &Recorder, holes: &[Found]) -> Vec<Vec<usize>> {
 }
 
 /// Every place once, as people find it.
-fn resolve(run: &Run, places: &[Place], steps: &mut [Step]) -> Vec<Where> {
+fn resolve<'a>(run: &Run, places: &[Place], named: impl Iterator<Item = &'a mut usize>) -> Vec<Where> {
     let mut numbers: BTreeMap<Where, usize> = BTreeMap::new();
     let resolved: Vec<usize> = places
         .iter()
@@ -186,7 +217,7 @@ fn resolve(run: &Run, places: &[Place], steps: &mut [Step]) -> Vec<Where> {
             *numbers.entry(Where::of(run, place)).or_insert(next)
         })
         .collect();
-    steps.iter_mut().for_each(|step| step.place = resolved[step.place]);
+    named.for_each(|place| *place = resolved[*place]);
     let mut all: Vec<(Where, usize)> = numbers.into_iter().collect();
     all.sort_by_key(|(_, number)| *number);
     all.into_iter().map(|(place, _)| place).collect()
@@ -197,6 +228,25 @@ impl Record {
     pub fn stops(&self) -> impl Iterator<Item = &Where> {
         let stops = self.steps.iter().filter(|step| matches!(step.kind, Kind::Stop(..)));
         stops.map(|step| &self.places[step.place])
+    }
+
+    /// The first steps alone, and the holes that they begin.
+    pub(super) fn up_to(&self, steps: usize) -> Cow<'_, Self> {
+        if steps >= self.steps.len() {
+            return Cow::Borrowed(self);
+        }
+        let mut first = self.clone();
+        first.steps.truncate(steps);
+        first.feeds.iter_mut().for_each(|feeds| feeds.retain(|step| *step < steps));
+        let begun = first.feeds.iter().take_while(|feeds| !feeds.is_empty()).count();
+        first.feeds.truncate(begun);
+        first.holes.truncate(begun);
+        Cow::Owned(first)
+    }
+
+    /// What is in force while a step is made.
+    pub(super) fn under(&self, step: usize) -> &Condition {
+        &self.conditions[self.steps[step].under]
     }
 
     /// `end`, `alarm` or `limit`.
@@ -228,7 +278,7 @@ impl Where {
     }
 }
 
-fn ending(run: &Run) -> Ending {
+fn ending(run: &Run, set: &BTreeMap<u32, usize>, places: &[Where]) -> Ending {
     let (outcome, words, stopped) = match &run.outcome {
         Outcome::End => ("end", "the program ends".to_owned(), None),
         Outcome::Alarm(stopped) => {
@@ -243,14 +293,20 @@ fn ending(run: &Run) -> Ending {
         words,
         stopped,
         output: run.control.output().iter().map(|line| crate::exec::printable(line)).collect(),
-        left: left(run),
+        left: left(run, set, places),
     }
 }
 
 /// What the next program finds, by name.
-fn left(run: &Run) -> BTreeMap<String, Left> {
-    let all = run.control.left_behind();
-    all.into_iter().map(|r| (r.name, Left { code: code(r.kind).to_owned(), value: r.value })).collect()
+fn left(run: &Run, set: &BTreeMap<u32, usize>, places: &[Where]) -> BTreeMap<String, Left> {
+    let by: BTreeMap<String, &Where> =
+        set.iter().map(|(group, place)| (format!("the mode of group {group:02}"), &places[*place])).collect();
+    let all = run.control.left_behind().into_iter();
+    let left = |r: Remainder| {
+        let place = by.get(&r.name).map(|place| (*place).clone());
+        (r.name, Left { code: code(r.kind).to_owned(), value: r.value, place })
+    };
+    all.map(left).collect()
 }
 
 fn code(kind: RemainderKind) -> &'static str {

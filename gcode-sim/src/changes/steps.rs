@@ -1,7 +1,11 @@
 //! What a machine was told, step by step, in a form that two runs can be compared by.
-use crate::motion::{Arc2, Event, EventKind, MAX_AXES, Place, Position, Sink, Spindle, StopKind};
+use std::cell::RefCell;
+use std::collections::BTreeMap;
 
+use super::conditions::Condition;
 use super::record::{MOST_STEPS, is_same_place};
+use crate::exec::{Control, Modal, Watcher};
+use crate::motion::{Arc2, Event, EventKind, MAX_AXES, Place, Position, Sink, Spindle, StopKind};
 
 /// One thing the machine was told.
 #[derive(Clone, Debug)]
@@ -15,6 +19,8 @@ pub(super) struct Step {
     pub at: Position,
     /// The block it comes from, by its number in the record.
     pub place: usize,
+    /// What is in force, by its number in the record.
+    pub under: usize,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -30,7 +36,8 @@ pub(super) enum Kind {
     Tool(u32),
     Length(Position),
     Spindle(Spindle, f64),
-    Coolant(bool),
+    /// On or off, and by which M code; a file may not say by which.
+    Coolant(bool, Option<u32>),
     /// An M code for the machine builder's logic.
     Auxiliary(u32),
     /// With its text, and the variables that the text names with their values.
@@ -58,7 +65,7 @@ impl Kind {
             Self::Tool(_) => Category::Tool,
             Self::Length(_) => Category::Length,
             Self::Spindle(..) => Category::Spindle,
-            Self::Coolant(_) => Category::Coolant,
+            Self::Coolant(..) => Category::Coolant,
             Self::Auxiliary(_) => Category::Auxiliary,
             Self::Stop(..) => Category::Stop,
         }
@@ -72,6 +79,12 @@ impl Kind {
         }
     }
 
+    /// With its article.
+    pub(super) fn one(&self) -> String {
+        let article = if matches!(self, Self::Arc(..)) { "an" } else { "a" };
+        format!("{article} {}", self.name())
+    }
+
     /// As people say it.
     pub(super) fn name(&self) -> &'static str {
         match self {
@@ -83,7 +96,7 @@ impl Kind {
             Self::Tool(_) => "tool change",
             Self::Length(_) => "tool length offset",
             Self::Spindle(..) => "spindle command",
-            Self::Coolant(_) => "coolant command",
+            Self::Coolant(..) => "coolant command",
             Self::Auxiliary(_) => "M code",
             Self::Stop(..) => "stop",
         }
@@ -93,6 +106,10 @@ impl Kind {
 impl Step {
     pub(super) fn is_move(&self) -> bool {
         self.kind.category() == Category::Move
+    }
+
+    pub(super) fn is_rapid(&self) -> bool {
+        self.kind == Kind::Rapid
     }
 
     /// The same thing done: a move to the same point in the same way, at whatever feed.
@@ -109,6 +126,9 @@ impl Step {
                 let same = |(a, b): (&(u32, f64), &(u32, f64))| a.0 == b.0 && (a.1 - b.1).abs() <= tolerance;
                 let alike = named.len() == values.len() && named.iter().zip(values).all(same);
                 kind == other && text == words && alike
+            }
+            (Kind::Coolant(on, a), Kind::Coolant(is, b)) => {
+                on == is && (a.is_none() || b.is_none() || a == b)
             }
             (a, b) => a == b,
         }
@@ -165,20 +185,64 @@ pub(super) struct Recorder {
     pub places: Vec<Place>,
     /// There were more than [`MOST_STEPS`].
     pub too_many: bool,
+    pub conditions: Vec<Condition>,
+    /// The block that has put a mode in force, by its group.
+    pub set: BTreeMap<u32, usize>,
     at: Position,
     length: Position,
+    /// What the conditions were read from.
+    seen: Option<Seen>,
+    /// Steps whose conditions are known.
+    settled: usize,
+}
+
+/// What of a control's state conditions depend on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Seen {
+    modal: Modal,
+    h: u32,
+    d: u32,
+    q: Option<f64>,
 }
 
 impl Recorder {
+    /// The number of a place.
+    fn place(&mut self, place: Place) -> usize {
+        if !self.places.last().is_some_and(|last| is_same_place(last, &place)) {
+            self.places.push(place);
+        }
+        self.places.len() - 1
+    }
+
+    /// A block is done: what is in force now was so for its steps.
+    fn settle(&mut self, control: &Control) {
+        let state = control.state();
+        let now = Seen { modal: state.modal, h: state.codes.h, d: state.codes.d, q: state.drilling.q };
+        if self.seen != Some(now) {
+            let place = self.place(control.place());
+            let before = self.seen.map_or_else(Modal::default, |seen| seen.modal);
+            for group in (1..=22).filter(|group| before.code(*group) != now.modal.code(*group)) {
+                self.set.insert(group, place);
+            }
+            let before = self.conditions.last().cloned().unwrap_or_else(Condition::at_power_on);
+            let next = before.follow(state, place);
+            if self.conditions.last() != Some(&next) {
+                self.conditions.push(next);
+            }
+            self.seen = Some(now);
+        }
+        let under = self.conditions.len() - 1;
+        self.steps[self.settled..].iter_mut().for_each(|step| step.under = under);
+        self.settled = self.steps.len();
+    }
+
     fn push(&mut self, kind: Kind, from: Position, event: &Event<'_>) {
         self.too_many |= self.steps.len() >= MOST_STEPS;
         if !self.too_many {
             let place = event.place();
-            if !self.places.last().is_some_and(|last| is_same_place(last, &place)) {
-                self.places.push(place);
-            }
+            let place = self.place(place);
             let (from, to) = (difference(&from, &self.length), difference(&self.at, &self.length));
-            self.steps.push(Step { kind, from, to, at: self.at, place: self.places.len() - 1 });
+            self.steps.push(Step { kind, from, to, at: self.at, place, under: 0 });
         }
     }
 
@@ -191,7 +255,25 @@ impl Recorder {
     }
 }
 
-impl Sink for Recorder {
+/// A recorder that is told what the machine does, and looks on at the control.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shared<'a>(pub &'a RefCell<Recorder>);
+
+impl Watcher for Shared<'_> {
+    fn before(&mut self, _: &mut Control) {}
+
+    fn after(&mut self, control: &Control) {
+        self.0.borrow_mut().settle(control);
+    }
+}
+
+impl Sink for Shared<'_> {
+    fn event(&mut self, event: &Event<'_>) {
+        self.0.borrow_mut().event(event);
+    }
+}
+
+impl Recorder {
     fn event(&mut self, event: &Event<'_>) {
         let here = self.at;
         match event.kind {
@@ -210,7 +292,7 @@ impl Sink for Recorder {
                 let speed = if *turning == Spindle::Off { 0.0 } else { speed.0 };
                 self.push(Kind::Spindle(*turning, speed), here, event);
             }
-            EventKind::Coolant { on } => self.push(Kind::Coolant(*on), here, event),
+            EventKind::Coolant { on, code } => self.push(Kind::Coolant(*on, Some(*code)), here, event),
             EventKind::Auxiliary { code } => self.push(Kind::Auxiliary(*code), here, event),
             EventKind::Stop { kind, text, named } => {
                 self.push(Kind::Stop(*kind, text.clone(), named.clone()), here, event);

@@ -6,6 +6,7 @@ use nalgebra::{Point3, Unit, Vector3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::conditions::{Aspect, Condition, Word};
 use super::record::{Ending, Record, Totals, Where};
 use super::steps::{Kind, Step, difference};
 use crate::holes::Found;
@@ -31,17 +32,67 @@ pub(crate) struct File {
 #[derive(Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "do", rename_all = "lowercase", deny_unknown_fields)]
 enum Line {
-    Rapid { to: BTreeMap<char, f64>, place: usize },
-    Feed { to: BTreeMap<char, f64>, f: f64, place: usize },
-    Arc { to: BTreeMap<char, f64>, plane: [char; 2], centre: [f64; 2], sweep: f64, f: f64, place: usize },
-    Probe { to: BTreeMap<char, f64>, f: f64, place: usize },
-    Dwell { seconds: f64, place: usize },
-    Tool { number: u32, place: usize },
-    Length { offset: BTreeMap<char, f64>, place: usize },
-    Spindle { turning: Turning, speed: f64, place: usize },
-    Coolant { on: bool, place: usize },
-    Auxiliary { m: u32, place: usize },
-    Stop { kind: Waiting, text: String, named: Vec<(u32, f64)>, place: usize },
+    Rapid {
+        to: BTreeMap<char, f64>,
+        place: usize,
+    },
+    Feed {
+        to: BTreeMap<char, f64>,
+        f: f64,
+        place: usize,
+    },
+    Arc {
+        to: BTreeMap<char, f64>,
+        plane: [char; 2],
+        centre: [f64; 2],
+        sweep: f64,
+        f: f64,
+        place: usize,
+    },
+    Probe {
+        to: BTreeMap<char, f64>,
+        f: f64,
+        place: usize,
+    },
+    Dwell {
+        seconds: f64,
+        place: usize,
+    },
+    Tool {
+        number: u32,
+        place: usize,
+    },
+    Length {
+        offset: BTreeMap<char, f64>,
+        place: usize,
+    },
+    Spindle {
+        turning: Turning,
+        speed: f64,
+        place: usize,
+    },
+    Coolant {
+        on: bool,
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        m: Option<u32>,
+        place: usize,
+    },
+    Auxiliary {
+        m: u32,
+        place: usize,
+    },
+    Stop {
+        kind: Waiting,
+        text: String,
+        named: Vec<(u32, f64)>,
+        place: usize,
+    },
+    /// No step: what is in force from here on. Holes don't count it among their steps.
+    Under {
+        what: Aspect,
+        code: String,
+        place: Option<usize>,
+    },
 }
 
 #[derive(Clone, Copy, Serialize, Deserialize, JsonSchema)]
@@ -83,15 +134,18 @@ impl Record {
     /// The record as a text.
     pub fn to_json(&self) -> Result<String, StoreError> {
         let mut at = Position::default();
-        let steps: Vec<Line> = self
-            .steps
-            .iter()
-            .map(|step| {
-                let line = self.line(step, &at);
-                at = step.at;
-                line
-            })
-            .collect();
+        let mut steps = Vec::with_capacity(self.steps.len());
+        let mut under = Condition::default();
+        for (index, step) in self.steps.iter().enumerate() {
+            let now = self.under(index);
+            for what in Aspect::ALL.into_iter().filter(|what| now.word(*what) != under.word(*what)) {
+                let Word { text, place } = now.word(what).clone();
+                steps.push(Line::Under { what, code: text, place });
+            }
+            under.clone_from(now);
+            steps.push(self.line(step, &at));
+            at = step.at;
+        }
         let holes = self.holes.iter().zip(&self.feeds).map(|(hole, steps)| Hole {
             entry: hole.entry.coords.into(),
             axis: hole.axis.into_inner().into(),
@@ -121,8 +175,19 @@ impl Record {
             return Err(StoreError(format!("version {} is not known here, only {VERSION}", file.version)));
         }
         let axes = Axes::new(&file.axes).ok_or_else(|| StoreError(format!("no axes '{}'", file.axes)))?;
-        let mut reader = Steps { axes: &axes, at: Position::default(), length: Position::default() };
-        let steps = file.steps.into_iter().map(|line| reader.step(line)).collect::<Result<Vec<_>, _>>()?;
+        let mut reader = Steps {
+            axes: &axes,
+            at: Position::default(),
+            length: Position::default(),
+            conditions: vec![Condition::default()],
+        };
+        let steps = file.steps.into_iter().filter_map(|line| reader.step(line).transpose());
+        let steps = steps.collect::<Result<Vec<_>, _>>()?;
+        let conditions = reader.conditions;
+        let named = conditions.iter().flat_map(|condition| &condition.0).filter_map(|word| word.place);
+        if let Some(place) = named.max().filter(|place| file.places.len() <= *place) {
+            return Err(StoreError(format!("a mode names block {place}, which isn't there")));
+        }
         if let Some(step) = steps.iter().find(|step| file.places.len() <= step.place) {
             return Err(StoreError(format!("a step names block {}, which isn't there", step.place)));
         }
@@ -136,7 +201,7 @@ impl Record {
             feeds.push(hole.steps);
         }
         let (places, ending, totals) = (file.places, file.ending, file.totals);
-        Ok(Self { axes, steps, holes, feeds, places, ending, totals })
+        Ok(Self { axes, steps, holes, feeds, places, conditions, ending, totals })
     }
 
     fn line(&self, step: &Step, before: &Position) -> Line {
@@ -167,7 +232,7 @@ impl Record {
                 };
                 Line::Spindle { turning, speed: *speed, place }
             }
-            Kind::Coolant(on) => Line::Coolant { on: *on, place },
+            Kind::Coolant(on, m) => Line::Coolant { on: *on, m: *m, place },
             Kind::Auxiliary(m) => Line::Auxiliary { m: *m, place },
             Kind::Stop(kind, text, named) => {
                 let kind = match kind {
@@ -202,10 +267,12 @@ struct Steps<'a> {
     axes: &'a Axes,
     at: Position,
     length: Position,
+    conditions: Vec<Condition>,
 }
 
 impl Steps<'_> {
-    fn step(&mut self, line: Line) -> Result<Step, StoreError> {
+    /// `None` where the line is no step.
+    fn step(&mut self, line: Line) -> Result<Option<Step>, StoreError> {
         let before = self.at;
         let (kind, place) = match line {
             Line::Rapid { to, place } => (self.go(&to, Kind::Rapid)?, place),
@@ -230,7 +297,7 @@ impl Steps<'_> {
                 };
                 (Kind::Spindle(turning, speed), place)
             }
-            Line::Coolant { on, place } => (Kind::Coolant(on), place),
+            Line::Coolant { on, m, place } => (Kind::Coolant(on, m), place),
             Line::Auxiliary { m, place } => (Kind::Auxiliary(m), place),
             Line::Stop { kind, text, named, place } => {
                 let kind = match kind {
@@ -240,9 +307,15 @@ impl Steps<'_> {
                 };
                 (Kind::Stop(kind, text, named), place)
             }
+            Line::Under { what, code, place } => {
+                let mut next = self.conditions.last().cloned().unwrap_or_default();
+                next.set(what, Word { text: code, place });
+                self.conditions.push(next);
+                return Ok(None);
+            }
         };
         let (from, to) = (difference(&before, &self.length), difference(&self.at, &self.length));
-        Ok(Step { kind, from, to, at: self.at, place })
+        Ok(Some(Step { kind, from, to, at: self.at, place, under: self.conditions.len() - 1 }))
     }
 
     fn go(&mut self, to: &BTreeMap<char, f64>, kind: Kind) -> Result<Kind, StoreError> {

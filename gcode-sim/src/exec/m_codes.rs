@@ -44,11 +44,11 @@ impl Core {
                 }
                 MEffect::CoolantOn => {
                     plan.state.coolant = true;
-                    plan.tell(EventKind::Coolant { on: true });
+                    plan.tell(EventKind::Coolant { on: true, code });
                 }
                 MEffect::CoolantOff => {
                     plan.state.coolant = false;
-                    plan.after.push((EventKind::Coolant { on: false }, 0.0));
+                    plan.after.push((EventKind::Coolant { on: false, code }, 0.0));
                 }
                 MEffect::InterruptOn => {
                     given.accept(b"P");

@@ -14,13 +14,16 @@ use crate::diag::Severity;
 pub struct ChangesReport {
     /// Says what kind of numbers these are.
     pub basis: &'static str,
-    /// Nothing changes on the part, nor in what the control is left with.
+    /// Nothing changes on the part, nor in what the control is left with, and both ran to their ends.
     pub same: bool,
     /// mm, and degrees for axes that turn.
     pub tolerance: f64,
     pub changes: Vec<Change>,
     pub old: Side,
     pub new: Side,
+    /// How a run ended that stopped before its end: behind that nothing could be compared.
+    #[serde(skip)]
+    stopped: Option<String>,
 }
 
 /// One revision in numbers.
@@ -39,13 +42,15 @@ impl ChangesReport {
             outcome: record.outcome().to_owned(),
             totals: record.totals.clone(),
         };
+        let stopped = [old.1, new.1].into_iter().find(|record| record.outcome() != "end");
         Self {
             basis: "predicted by simulation, not measured",
-            same: changes.is_empty(),
+            same: changes.is_empty() && stopped.is_none(),
             tolerance,
             changes: changes.to_vec(),
             old: side(old),
             new: side(new),
+            stopped: stopped.map(|record| record.words().to_owned()),
         }
     }
 
@@ -54,7 +59,16 @@ impl ChangesReport {
         let mut text = String::new();
         entries(&mut text, &self.changes, "");
         let _ = match self.changes.len() {
-            0 => writeln!(text, "nothing changes on the part"),
+            0 => match &self.stopped {
+                None => writeln!(text, "nothing changes on the part"),
+                Some(words) if self.old.totals.moves == 0 => {
+                    writeln!(text, "nothing could be compared: both stop before the first move, {words}")
+                }
+                Some(words) => writeln!(
+                    text,
+                    "nothing changes before the stop, what is behind it could not be compared: {words}"
+                ),
+            },
             1 => writeln!(text, "1 change"),
             n => writeln!(text, "{n} changes"),
         };
