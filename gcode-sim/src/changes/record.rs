@@ -238,7 +238,7 @@ impl Record {
         let mut first = self.clone();
         first.steps.truncate(steps);
         first.feeds.iter_mut().for_each(|feeds| feeds.retain(|step| *step < steps));
-        let begun = first.feeds.iter().take_while(|feeds| !feeds.is_empty()).count();
+        let begun = first.feeds.iter().rposition(|feeds| !feeds.is_empty()).map_or(0, |last| last + 1);
         first.feeds.truncate(begun);
         first.holes.truncate(begun);
         Cow::Owned(first)
