@@ -51,7 +51,7 @@ impl Aspect {
         let modal = &state.modal;
         let group = |number| {
             let code = modal.code(number).unwrap_or_default();
-            if code % 10 == 0 {
+            if code.is_multiple_of(10) {
                 format!("G{:02}", code / 10)
             } else {
                 format!("G{}.{}", code / 10, code % 10)

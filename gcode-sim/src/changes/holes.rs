@@ -171,6 +171,9 @@ impl Told<'_> {
     fn aspects(&mut self, hole: usize, other: usize, apart: &Apart) -> Vec<(&'static str, String)> {
         let (old, new) = (&self.old.holes[hole], &self.new.holes[other]);
         let mut aspects = Vec::new();
+        if self.old.unfinished.contains(&hole) || self.new.unfinished.contains(&other) {
+            return aspects;
+        }
         if apart.entry.norm() > self.tolerance {
             let [x, y, z] = [apart.entry.x, apart.entry.y, apart.entry.z].map(plain);
             aspects.push(("hole-moved", format!("moved by {x:+.4} {y:+.4} {z:+.4} mm")));

@@ -1,7 +1,7 @@
 //! What one revision does, written down: all that two of them are compared by, without the run it came from.
 use std::borrow::Cow;
 use std::cell::RefCell;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use schemars::JsonSchema;
@@ -30,6 +30,8 @@ pub struct Record {
     pub(super) holes: Vec<Found>,
     /// The steps that cut each hole, the finishing one last.
     pub(super) feeds: Vec<Vec<usize>>,
+    /// Holes that a stop leaves unfinished: their depth and their tools aren't known.
+    pub(super) unfinished: BTreeSet<usize>,
     /// The blocks that the steps come from: [`Step::place`] counts them.
     pub(super) places: Vec<Where>,
     /// What is in force while steps are made: [`Step::under`] counts them.
@@ -187,6 +189,7 @@ fn record(simulation: &Simulation, recorder: Recorder) -> Record {
         steps,
         holes,
         feeds,
+        unfinished: BTreeSet::new(),
         places,
     }
 }
@@ -237,6 +240,8 @@ impl Record {
         }
         let mut first = self.clone();
         first.steps.truncate(steps);
+        let is_cut = |feeds: &Vec<usize>| feeds.iter().any(|step| *step >= steps);
+        first.unfinished = (0..self.feeds.len()).filter(|hole| is_cut(&self.feeds[*hole])).collect();
         first.feeds.iter_mut().for_each(|feeds| feeds.retain(|step| *step < steps));
         let begun = first.feeds.iter().rposition(|feeds| !feeds.is_empty()).map_or(0, |last| last + 1);
         first.feeds.truncate(begun);

@@ -1,5 +1,5 @@
 //! A record as a file: JSON with one step, one block and one hole a line, so that a change of it can be read.
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
 use nalgebra::{Point3, Unit, Vector3};
@@ -201,7 +201,8 @@ impl Record {
             feeds.push(hole.steps);
         }
         let (places, ending, totals) = (file.places, file.ending, file.totals);
-        Ok(Self { axes, steps, holes, feeds, places, conditions, ending, totals })
+        let unfinished = BTreeSet::new();
+        Ok(Self { axes, steps, holes, feeds, unfinished, places, conditions, ending, totals })
     }
 
     fn line(&self, step: &Step, before: &Position) -> Line {
