@@ -78,7 +78,7 @@ proptest! {
             .replace("letter = \"B\", sign = 1", &format!("letter = \"{letter}\", sign = {sign}"))
             .replace("increment = \"IS-B\"", &format!("increment = \"{increment}\""))
             .replace("dialect = \"fanuc-31i\"", &format!("dialect = \"{dialect}\""))
-            .replace("e_radius = 812.4", "e_radius = 612.4")
+            .replace("e_radius = 812.4", "e_radius = 512.4")
             .replace("a = 1158.8", &format!("a = {a}"))
             .replace("b = 724.3", &format!("b = {b}"))
             .replace("[-25.0, 25.0, 11]", &format!("[{from:.3}, {to:.3}, 9]"));

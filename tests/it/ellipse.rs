@@ -48,7 +48,7 @@ impl Path {
              surface = {{ kind = \"ellipsoid\", a = {a:?}, b = {b:?} }}\n\
              probe = {{ radius = {radius:?} }}\n\
              sine_table = {{ length = 200.0, phi = 38.5, gauge_blocks = \"metric-87\" }}\n\
-             chord = {{ e_radius = 3.0, f_radius = 2.0, circle = 1.0, candidates = 10 }}\n\
+             chord = {{ e_radius = 3.0, f_radius = 2.0, circle = 0.1, candidates = 10 }}\n\
              runout = {{ heights = [1.0, 2.0], angles = [-25.0, 25.0, 11] }}\n\
              ellipse = {{ from = {from:?}, to = {to:?}, chord_error = {chord_error:?} }}\n"
         );

@@ -3,6 +3,7 @@
 
 mod accepted;
 mod alignment;
+mod alignment_slips;
 mod arithmetic;
 mod blocks;
 mod budget;

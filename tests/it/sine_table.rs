@@ -40,13 +40,14 @@ fn the_height_follows_the_tilt_the_way_that_u_says() {
         let ran = ran(("U1.", sign), Some(tilt));
         assert!(matches!(ran.outcome, Outcome::End), "{:?}", ran.outcome);
         let value = |number: u32| ran.control.variable(number).unwrap().number();
-        let found = [value(590), value(591), value(592), value(593)];
+        let found = [value(586), value(587), value(588), value(589)];
         for (found, (wanted, by)) in
             found.into_iter().zip([(angle, 1e-9), (height, 1e-9), (change, 1e-6), (left, 2e-3)])
         {
             assert!((found - wanted).abs() < by, "{found} is not {wanted}, {sign} {tilt}");
         }
-        assert_eq!(ran.control.stops().len(), 1, "the operator is told");
+        assert_eq!(ran.control.stops().len(), 2, "the operator is asked and told");
+        assert!(ran.control.variable(583).unwrap().is_vacant(), "used up");
     }
 }
 
@@ -62,9 +63,9 @@ fn the_program_names_the_blocks() {
 #[test]
 fn what_no_table_can_be_set_to_is_refused() {
     let cases = [
-        ("A38.5", "", Some(0.1), 3161),
-        ("A38.5", "A-1.", Some(0.1), 3161),
-        ("A38.5", "A45.1", Some(0.1), 3161),
+        ("THEN #596=38.5", "THEN #597=1", Some(0.1), 3161),
+        ("THEN #596=38.5", "THEN #596=-1.", Some(0.1), 3161),
+        ("THEN #596=38.5", "THEN #596=45.1", Some(0.1), 3161),
         ("B200.", "", Some(0.1), 3162),
         ("C0.001", "C0.", Some(0.1), 3163),
         ("U1.", "", Some(0.1), 3164),
@@ -77,6 +78,6 @@ fn what_no_table_can_be_set_to_is_refused() {
         let ran = ran((from, to), tilt);
         let Outcome::Alarm(stopped) = &ran.outcome else { panic!("{to} in place of {from} runs") };
         assert_eq!(stopped.alarm.row().code, Code::Mc(number), "{to} in place of {from}, {tilt:?}");
-        assert!(ran.control.variable(590).unwrap().is_vacant());
+        assert!(ran.control.variable(586).unwrap().is_vacant());
     }
 }

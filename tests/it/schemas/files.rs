@@ -212,7 +212,7 @@ fn changed(root: &Value, numbers: &[f64]) -> Vec<(String, Value)> {
 }
 
 /// What a schema can't say: the words of the readers that compare one key with another.
-const ACROSS: [&str; 27] = [
+const ACROSS: [&str; 30] = [
     "which is not in [[tool]]",
     "names tools of [[tool]], and there are none",
     "no tool of [[tool]] is as small",
@@ -240,6 +240,9 @@ const ACROSS: [&str; 27] = [
     "whose direction isn't known",
     "needs one axis that turns",
     "needs a [probe]",
+    "an eighth of 'probe.search'",
+    "round E and F",
+    "too steep to be touched along y",
 ];
 
 #[test]

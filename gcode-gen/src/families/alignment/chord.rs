@@ -12,7 +12,7 @@ use crate::nc::program::Program as Text;
 pub const MAIN: u32 = 8200;
 
 /// The pair and the correction.
-const MATCH: u32 = 8201;
+pub const MATCH: u32 = 8201;
 /// Candidates where none were entered.
 const TOUCH: u32 = 8202;
 
@@ -42,10 +42,14 @@ fn write(job: &Alignment, text: &mut Text) {
         "#570 #571 THE CHOSEN NUMBERS, #572 THEIR CHORD LESS THAT OF THE MODEL".to_owned(),
         "#573-#576 WHAT IS ADDED TO THE WORK OFFSET IN X Y Z AND THE ROTARY".to_owned(),
         "#577 TILT OF THE CHORD ABOUT Z, NOT CORRECTED".to_owned(),
-        format!("CALLS O{TOUCH}, WHICH TOUCHES THEM WHERE NONE WERE ENTERED OR A CHORD"),
-        "WAS MADE FROM THEM ALREADY, #578 1., AND MOVES NOTHING ELSE".to_owned(),
+        format!("CALLS O{TOUCH}. WHERE #501-#560 AND #578 ARE VACANT IT TOUCHES THEM WITH"),
+        "THE PROBE. CANDIDATES OF MARKS ARE ENTERED BY HAND, ALL OF THEM, WITH".to_owned(),
+        "#578 VACANT, THEN NOTHING MOVES. #578 1. IS A TOUCH BROKEN OFF, AN".to_owned(),
+        "ALARM. #578 0. CLEARS ALL CANDIDATES AND TOUCHES ANEW".to_owned(),
+        "POINTS ARE USED ONCE, #501-#560 AND #578 ARE VACANT AT THE STOP".to_owned(),
         format!("CALLS O{MATCH}, THE PAIR AND THE WORK OFFSET"),
-        format!("ALARMS {k}061-{k}069 BY O{MATCH}, {k}121-{k}134 BY O{TOUCH}"),
+        "AT THE STOP CYCLE START ADDS #573-#576, RESET KEEPS THEM OUT".to_owned(),
+        format!("ALARMS {k}061-{k}071 BY O{MATCH}, {k}121-{k}135 BY O{TOUCH}"),
         "START WITH THE BALL CLEAR OF THE PART, ABOVE IT OR AT +X".to_owned(),
         format!("AFTERWARDS {rotary}0. TURNS THE CHORD INTO THE PLANE Z 0"),
     ] {
@@ -60,10 +64,12 @@ fn write(job: &Alignment, text: &mut Text) {
         Block::call(MATCH)
             .word('A', number(job.surface.a))
             .word('B', number(job.surface.b))
+            .word('C', number(chord.circle))
             .word('D', &e)
             .word('E', &f)
             .word('H', number(f64::from(chord.candidates)))
             .word('U', number(f64::from(job.machine.rotary.sign)))
+            .word('V', number(job.probe_search))
             .comment("CHORD"),
     );
     text.block(Block::of("M30"));

@@ -17,7 +17,7 @@ use super::{Family, control};
 use crate::nc::program::Program as Text;
 use crate::package::{Package, Program};
 
-pub use chord::MAIN as CHORD;
+pub use chord::{MAIN as CHORD, MATCH as CHORD_MATCH};
 pub use ellipse::MAIN as ELLIPSE;
 pub use runout::MAIN as RUNOUT;
 pub use sine::MAIN as SINE_TABLE;

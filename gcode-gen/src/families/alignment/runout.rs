@@ -35,10 +35,12 @@ fn write(job: &Alignment, text: &mut Text) {
     for line in [
         format!("CALLS O{FIT} TWICE, BETWEEN THEM A STOP TO CORRECT THE PART"),
         "#580 #581 SHIFT OF THE PART IN X AND Z, #582 #583 ITS TILT ABOUT".to_owned(),
-        "X AND Z, OF THE LAST PASS. THE PART IS MOVED BY THE OPPOSITE".to_owned(),
+        "X AND Z, OF THE LAST PASS".to_owned(),
         "#584 ITS SHIFT IN Y, LESS SURE. #585 WHAT THE FIT LEAVES".to_owned(),
         "#590-#595 THE SAME OF THE FIRST PASS".to_owned(),
-        format!("ALARMS {k}141-{k}157 BY O{FIT}"),
+        "AT THE STOP THE PART IS MOVED BACK BY #580 #581 AND SHIMMED BACK BY".to_owned(),
+        "#582, THE TILT #583 IS LEFT TO O8230. CYCLE START MEASURES AGAIN".to_owned(),
+        format!("ALARMS {k}141-{k}160 BY O{FIT}"),
         format!("START WITH THE BALL CLEAR OF THE PART, ABOVE IT OR AT +X, {rotary} FREE"),
         "TO TURN".to_owned(),
     ] {
@@ -50,7 +52,7 @@ fn write(job: &Alignment, text: &mut Text) {
     for of_pass in 0..6 {
         text.block(Block::of(format!("#{}=#{}", 590 + of_pass, 580 + of_pass)));
     }
-    text.block(Block::of("#3006=1(CORRECT BY #580-#583)"));
+    text.block(Block::of("#3006=1(PART IS OFF BY #580-#583)"));
     text.block(pass(job).comment("WHAT REMAINS"));
     text.block(Block::of("M30"));
 }
@@ -70,6 +72,8 @@ fn pass(job: &Alignment) -> Block {
         ('F', job.probe_feed),
         ('V', job.probe_search),
         ('U', f64::from(job.machine.rotary.sign)),
+        ('W', job.probe_noise),
+        ('T', runout.y_shift),
     ];
     arguments.into_iter().fold(Block::call(FIT), |block, (letter, value)| block.word(letter, number(value)))
 }

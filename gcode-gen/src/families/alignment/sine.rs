@@ -40,22 +40,31 @@ fn write(job: &Alignment, text: &mut Text) {
     text.remark(format!("THEY MAKE {:.2} SECONDS OF ARC {over}", setting.left.abs()));
     for line in [
         "AFTER O8210 HAS FOUND THE TILT #583 THIS PROGRAM TELLS".to_owned(),
-        "#590 PHI TO SET, #591 HEIGHT OF THE BLOCKS, #592 ITS CHANGE".to_owned(),
-        "#593 SECONDS OF ARC BY WHICH #591 MAKES TOO MUCH".to_owned(),
+        "#586 PHI TO SET, #587 HEIGHT OF THE BLOCKS, #588 ITS CHANGE".to_owned(),
+        "#589 SECONDS OF ARC BY WHICH #587 MAKES TOO MUCH".to_owned(),
+        "#596 IS PHI AS THE TABLE IS SET, VACANT AT FIRST, THEN IT IS".to_owned(),
+        format!("{phi}. WHOEVER SETS THE TABLE OTHERWISE WRITES IT THERE"),
+        "THE FIRST STOP ASKS WHETHER IT IS RIGHT, IF NOT RESET AND WRITE IT".to_owned(),
+        "CYCLE START AT THE SECOND SAYS THAT THE TABLE IS SET, #596 IS CHANGED".to_owned(),
+        "AND #583 IS USED UP. THEN O8210 AGAIN".to_owned(),
         format!("CONTROL {}", control::remark(job.control)),
         format!("CALLS O{TABLE}, ALARMS {k}161-{k}166. NOTHING MOVES"),
     ] {
         text.remark(line);
     }
+    text.block(Block::of(format!("IF[#596 EQ #0]THEN #596={phi}")));
     text.block(
         Block::call(TABLE)
-            .word('A', phi)
-            .word('B', length)
+            .word('A', "#596")
+            .word('B', &length)
             .word('C', number(set.step().mm()))
             .word('U', number(f64::from(table.sign)))
             .comment("SINE TABLE"),
     );
-    text.block(Block::of("#3006=1(SET SINE TABLE TO H #591)"));
+    text.block(Block::of("#3006=1(TABLE STANDS AT PHI #596)"));
+    text.block(Block::of("#3006=1(SET BLOCKS TO H #587)"));
+    text.block(Block::of(format!("#596=ASIN[#587/{length}]")));
+    text.block(Block::of("#583=#0"));
     text.block(Block::of("M30"));
 }
 

@@ -12,6 +12,9 @@ use crate::job::sheet::FileSheet;
 use crate::job::{JobError, Reader, Surface};
 use crate::units::{Deg, Mm};
 
+/// The part along y that the surface's normal must have where O8202 touches it along y.
+const STEEP: f64 = 0.3;
+
 /// Measurements that tell how a part stands on its machine.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -54,6 +57,9 @@ struct FileProbe {
     /// How far before and behind the surface a touch begins and ends, mm [default: 10].
     #[schemars(range(min = 0.01, max = 1000.0))]
     search: Option<Spanned<f64>>,
+    /// Standard deviation of a touch, mm; not below the least increment [default: 0.002, or the increment].
+    #[schemars(range(min = 0.0001, max = 1.0))]
+    noise: Option<Spanned<f64>>,
 }
 
 /// The table that sets the angle of the part's axis.
@@ -102,6 +108,9 @@ struct FileRunout {
     /// From, to, and the number of readings (3 to 100): degrees.
     #[schemars(inner(range(min = -360.0, max = 360.0)))]
     angles: Spanned<Exactly<f64, 3>>,
+    /// The largest shift of the part in y that the fit is believed to find, mm [default: 0.4].
+    #[schemars(range(min = 0.01, max = 100.0))]
+    y_shift: Option<Spanned<f64>>,
 }
 
 /// Reads the text of a job of this family.
@@ -114,17 +123,29 @@ pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<Alignment, JobError> 
     let of_probe = |key: &str, value: &Spanned<f64>, unit: &str| {
         reader.number(key, value, &format!("0.01 to 1000 {unit}"), within(0.01, 1000.0))
     };
+    let probe_radius = of_probe("probe.radius", &probe.radius, "mm")?;
+    let probe_search = match &probe.search {
+        Some(search) => of_probe("probe.search", search, "mm")?,
+        None => 10.0,
+    };
+    file.chord.touchable(reader, surface, chord, probe_search)?;
+    let increment = control.increment.size();
     Ok(Alignment {
         control,
         machine: file.machine.check(reader)?,
-        probe_radius: of_probe("probe.radius", &probe.radius, "mm")?,
+        probe_radius,
         probe_feed: match &probe.feed {
             Some(feed) => of_probe("probe.feed", feed, "mm/min")?,
             None => 100.0,
         },
-        probe_search: match &probe.search {
-            Some(search) => of_probe("probe.search", search, "mm")?,
-            None => 10.0,
+        probe_search,
+        probe_noise: match &probe.noise {
+            // The control notes a touch no finer than its increment.
+            Some(noise) => {
+                let allowed = format!("{increment} (the least increment) to 1 mm");
+                reader.number("probe.noise", noise, &allowed, within(increment, 1.0))?
+            }
+            None => f64::max(0.002, increment),
         },
         sine_table: file.sine_table.check(reader)?,
         chord,
@@ -174,15 +195,59 @@ impl FileChord {
                 format!("key 'chord.f_radius' is {f_radius}: as large as e_radius, and there is no chord");
             return Err(reader.error(&self.f_radius, message));
         }
+        let circle = length(reader, "chord.circle", &self.circle)?;
         Ok(Chord {
             e_radius,
             f_radius,
-            circle: length(reader, "chord.circle", &self.circle)?,
+            circle,
             // Three common variables a point, thirty for each end of the chord.
             candidates: u32::try_from(candidates).ok().filter(|n| (1..=10).contains(n)).ok_or_else(|| {
                 reader.error(&self.candidates, format!("key 'chord.candidates' is {candidates}: 1 to 10"))
             })?,
         })
+    }
+}
+
+impl FileChord {
+    /// Whether O8202 can touch the candidates: along y, each in its own circle, within the probe's search.
+    fn touchable(
+        &self,
+        reader: &Reader<'_>,
+        surface: Surface,
+        chord: Chord,
+        search: f64,
+    ) -> Result<(), JobError> {
+        let Chord { e_radius, f_radius, circle, .. } = chord;
+        if (e_radius - f_radius).abs() <= 2.0 * circle {
+            let message = format!(
+                "key 'chord.circle' is {circle}: the circles round E and F, {:.3} mm apart in x, must not meet",
+                (e_radius - f_radius).abs()
+            );
+            return Err(reader.error(&self.circle, message));
+        }
+        if search < 8.0 * circle {
+            let message = format!(
+                "key 'chord.circle' is {circle}: at most an eighth of 'probe.search', which is {search} mm, for the surface falls within the circle"
+            );
+            return Err(reader.error(&self.circle, message));
+        }
+        for (key, value, x) in
+            [("chord.e_radius", &self.e_radius, e_radius), ("chord.f_radius", &self.f_radius, f_radius)]
+        {
+            let y = surface.b * (1.0 - (x / surface.a) * (x / surface.a)).sqrt();
+            let (across, up) = (x / (surface.a * surface.a), y / (surface.b * surface.b));
+            let part = up / (across * across + up * up).sqrt();
+            if part < STEEP {
+                let message = format!(
+                    "key '{key}' is {x}: the surface stands at {:.1} degrees to y there, and less than {:.1} is too steep to \
+                     be touched along y; choose it nearer to the pole",
+                    Deg::asin(part).0,
+                    Deg::asin(STEEP).0
+                );
+                return Err(reader.error(value, message));
+            }
+        }
+        Ok(())
     }
 }
 
@@ -203,7 +268,11 @@ impl FileRunout {
             let message = "key 'runout.angles' is from, to and the number of readings: degrees, -360 to 360, and 3 to 100";
             return Err(reader.error(&self.angles, message));
         }
-        Ok(Runout { heights, from, to, readings: readings as u32 })
+        let y_shift = match &self.y_shift {
+            Some(value) => reader.number("runout.y_shift", value, "0.01 to 100 mm", within(0.01, 100.0))?,
+            None => 0.4,
+        };
+        Ok(Runout { heights, from, to, readings: readings as u32, y_shift })
     }
 }
 
@@ -256,7 +325,7 @@ angles = [-25.0, 25.0, 11]
             (
                 "radius = 3.0",
                 "diameter = 6",
-                "line 12: key 'probe.diameter' is not known; allowed: radius, feed, search",
+                "line 12: key 'probe.diameter' is not known; allowed: radius, feed, search, noise",
             ),
             ("phi = 38.5", "phi = 46", "line 15: key 'sine_table.phi' is 46: 0 to 45 degrees"),
             ("length = 200.0", "sign = 2\nlength = 200.0", "line 14: key 'sine_table.sign' is 2: 1 or -1"),
@@ -285,6 +354,30 @@ angles = [-25.0, 25.0, 11]
                 "e_radius = 1200.0",
                 "line 18: key 'chord.e_radius' is 1200: 0 to the equatorial radius a = 1158.8 mm",
             ),
+            (
+                "circle = 1.0",
+                "circle = 2.0",
+                "line 20: key 'chord.circle' is 2: at most an eighth of 'probe.search', which is 10 mm, for the surface falls \
+                 within the circle",
+            ),
+            (
+                "f_radius = 318.0",
+                "f_radius = 811.0",
+                "line 20: key 'chord.circle' is 1: the circles round E and F, 1.400 mm apart in x, must not meet",
+            ),
+            // y = 129.939, tan = (y/b²)/(x/a²) = 0.29176.
+            (
+                "e_radius = 812.4",
+                "e_radius = 1140.0",
+                "line 18: key 'chord.e_radius' is 1140: the surface stands at 16.3 degrees to y there, and less than 17.5 is too \
+                 steep to be touched along y; choose it nearer to the pole",
+            ),
+            (
+                "radius = 3.0",
+                "radius = 3.0\nnoise = 0.0005",
+                "line 13: key 'probe.noise' is 0.0005: 0.001 (the least increment) to 1 mm",
+            ),
+            ("[runout]", "[runout]\ny_shift = 0", "line 23: key 'runout.y_shift' is 0: 0.01 to 100 mm"),
             (
                 "[150.0, 420.0]",
                 "[150.0]",

@@ -19,6 +19,8 @@ pub struct Alignment {
     pub probe_feed: f64,
     /// A touch begins this far before where the surface should be, and ends as far behind it.
     pub probe_search: f64,
+    /// Standard deviation of a touch.
+    pub probe_noise: f64,
     pub sine_table: SineTable,
     pub chord: Chord,
     pub runout: Runout,
@@ -70,4 +72,6 @@ pub struct Runout {
     pub to: f64,
     /// At each height; 3 to 100.
     pub readings: u32,
+    /// The largest shift of the part in y that the fit is believed to find.
+    pub y_shift: f64,
 }
