@@ -5,7 +5,7 @@ use clap::Args;
 
 use super::args::RunConditions;
 use super::format::FindingFormat;
-use super::{Refusal, Status, options, output};
+use super::{Refusal, Status, options, output, unused_machine};
 use crate::check::check;
 use crate::report::check::{CheckReport, text};
 use crate::report::sarif::{self, Finding};
@@ -55,7 +55,9 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<Status, Refusal> {
         code: arguments.code.clone(),
         ..RunConditions::default()
     };
-    let (request, mut folders) = options::request(&conditions.of(&arguments.program))?;
+    let program = conditions.of(&arguments.program);
+    let (request, mut folders) = options::request(&program)?;
+    unused_machine::tell_of_control(&program, &request);
     let checked = check(request.name.clone(), request.bytes, &request.settings, &mut folders);
     if checked.programs == 0 {
         return Err(Refusal::new(format!("{} holds no program", request.name)));

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::args::ProgramArguments;
 use super::output;
+use crate::control::{Dialect, Increment};
 use crate::session::Request;
 
 /// The name that the generator gives a machine file.
@@ -19,7 +20,7 @@ pub(super) fn tell(arguments: &ProgramArguments, request: &Request) {
     let what = if !piped && beside.is_file() {
         let file = beside.display();
         format!("{file} stands beside the program and isn't used: --machine {file}")
-    } else if names_one(&request.bytes) {
+    } else if head(&request.bytes).is_some() {
         "the program's remarks name a machine file, and none is used: --machine MACHINE.toml".to_owned()
     } else {
         return;
@@ -27,9 +28,46 @@ pub(super) fn tell(arguments: &ProgramArguments, request: &Request) {
     output::tell(&format!("note: {what}\n"));
 }
 
-/// As the header of an emitted program does, which stands at the top of it.
-fn names_one(program: &[u8]) -> bool {
-    const WORDS: &[u8] = b"MACHINE FILE";
+/// Of a machine `check` needs nothing but its control: says so where the program's head names another one than is assumed.
+pub(super) fn tell_of_control(arguments: &ProgramArguments, request: &Request) {
+    if arguments.conditions.machine.is_some() {
+        return;
+    }
+    let Some(head) = head(&request.bytes) else { return };
+    let settings = &request.settings;
+    let mut differ = Vec::new();
+    if let Some(dialect) = named(&head, &Dialect::ALL).filter(|dialect| *dialect != settings.dialect) {
+        differ.push(format!("{}, and {} is assumed", dialect.name(), settings.dialect.name()));
+    }
+    if let Some(increment) = named(&head, &Increment::ALL).filter(|named| *named != settings.increment) {
+        let assumed = settings.increment;
+        differ.push(format!(
+            "{}, and {} is assumed ({} mm and degrees, not {})",
+            increment.name(),
+            assumed.name(),
+            assumed.size(),
+            increment.size()
+        ));
+    }
+    if !differ.is_empty() {
+        let differ = differ.join("; ");
+        output::tell(&format!("warning: the program's head says {differ}: give --machine {NAME}\n"));
+    }
+}
+
+/// The line that names a machine file, in capitals: `(CONTROL FANUC-31I, INCREMENT IS-B, MACHINE FILE MACHINE.TOML)`
+/// stands at the top of an emitted program.
+fn head(program: &[u8]) -> Option<String> {
     const TOP: usize = 65_536;
-    program[..program.len().min(TOP)].windows(WORDS.len()).any(|part| part.eq_ignore_ascii_case(WORDS))
+    let top = String::from_utf8_lossy(&program[..program.len().min(TOP)]).to_ascii_uppercase();
+    top.lines().find(|line| line.contains("MACHINE FILE")).map(str::to_owned)
+}
+
+/// The one whose name is a word of the line.
+fn named<T: Copy>(line: &str, all: &[(&str, T)]) -> Option<T> {
+    let is_word = |name: &str| {
+        let mut words = line.split(|c: char| !c.is_ascii_alphanumeric() && c != '-');
+        words.any(|word| word.eq_ignore_ascii_case(name))
+    };
+    all.iter().find(|(name, _)| is_word(name)).map(|(_, one)| *one)
 }
