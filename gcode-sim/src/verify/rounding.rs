@@ -1,5 +1,5 @@
-//! How much of the tolerance the control's least increment uses up by itself: half an increment of every axis, the
-//! worst way round, at the hole's place.
+//! How much of the tolerance the control's least increment uses up by itself: half an increment of every axis, and of a
+//! head's angle that is set by hand, the worst way round, at the hole's place.
 use nalgebra::{Point3, Vector3};
 
 use super::Comparison;
@@ -8,11 +8,19 @@ use crate::machine::{Frame, HeadKind, LinkMotion, Machine};
 use crate::motion::Axis;
 use crate::units::Deg;
 
-/// What one axis' half increment moves the hole's axis by, sideways, at the worse end, in mm.
+/// What half an increment of an axis, or of the head's angle, moves the hole's axis by, sideways, at the worse end, in mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Share {
-    pub letter: char,
+    /// Of the axis; `None` of a head that is set by hand.
+    pub letter: Option<char>,
     pub moves: f64,
+}
+
+impl Share {
+    /// `X`, or `head`.
+    pub fn name(&self) -> String {
+        self.letter.map_or("head".to_owned(), String::from)
+    }
 }
 
 /// The worst case for one hole.
@@ -37,9 +45,11 @@ pub(super) fn shares(comparison: &Comparison<'_>, machine: &Machine) -> Vec<Roun
             let aside = |v: Vector3<f64>| v - out * v.dot(&out);
             let ends = [(entry, wanted.depth), (entry - out * wanted.depth, 0.0)];
             let move_of = |(end, above)| aside(half_increment(machine, *axis, found, &frame, &end, above));
-            (*axis, ends.map(move_of))
+            (Some(machine.axes.letter(*axis)), ends.map(move_of))
         });
-        worst_case(machine, moved.collect())
+        let by_hand = head_by_hand(machine, found, &frame)
+            .map(|aside| (None, [Vector3::zeros(), aside * wanted.depth]));
+        worst_case(moved.chain(by_hand).collect())
     });
     each.collect()
 }
@@ -89,8 +99,27 @@ fn half_increment(
     frame.rotation.inverse_transform_vector(&(along.unwrap_or_default() * half))
 }
 
+/// How far a millimetre below its entry a hole stands aside when the angle that a head is set to by hand is rounded by
+/// half an increment: the feed runs along the rounded angle, through the entry. An angle of whole degrees has nothing
+/// to round.
+fn head_by_hand(machine: &Machine, found: &Found, frame: &Frame) -> Option<Vector3<f64>> {
+    // Of a head that nobody described the axis is the feed's, unless a message to the operator set it.
+    let set = match machine.head.kind {
+        HeadKind::Manual { .. } => true,
+        HeadKind::Free => found.off_tool != Deg::ZERO,
+        HeadKind::Fixed(_) | HeadKind::Axis { .. } => false,
+    };
+    let out = frame.rotation * found.axis.into_inner();
+    let angle = Deg::atan2(out.y, out.x).0;
+    if !set || (angle - angle.round()).abs() < 1e-9 {
+        return None;
+    }
+    let half = Deg(machine.increment.size() / 2.0).to_rad();
+    Some(frame.rotation.inverse_transform_vector(&(Vector3::new(-out.y, out.x, 0.0) * half)))
+}
+
 /// The signs of all movements that together move one end of the axis farthest.
-fn worst_case(machine: &Machine, moved: Vec<(Axis, [Vector3<f64>; 2])>) -> Rounding {
+fn worst_case(moved: Vec<(Option<char>, [Vector3<f64>; 2])>) -> Rounding {
     let mut worst = 0.0f64;
     // The first sign can stay: turning all of them round changes nothing.
     for signs in 0..1u32 << moved.len().saturating_sub(1) {
@@ -103,10 +132,7 @@ fn worst_case(machine: &Machine, moved: Vec<(Axis, [Vector3<f64>; 2])>) -> Round
     }
     let mut shares: Vec<Share> = moved
         .iter()
-        .map(|(axis, [entry, bottom])| Share {
-            letter: machine.axes.letter(*axis),
-            moves: entry.norm().max(bottom.norm()),
-        })
+        .map(|(letter, [entry, bottom])| Share { letter: *letter, moves: entry.norm().max(bottom.norm()) })
         .collect();
     // What goes along the hole, or turns a hole on the table's own axis, moves nothing sideways.
     shares.retain(|share| 1e-7 < share.moves);

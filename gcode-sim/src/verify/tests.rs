@@ -146,6 +146,34 @@ fn five_right_holes_pass_and_rounding_explains_what_is_left() {
     assert!(verdict.worst_from.unwrap().contains("within what rounding explains"));
 }
 
+/// One hole at azimuth 0, so that B has nothing to round: X and Y alone, and the head where its angle isn't whole. Half of
+/// 0.001° over a depth of 15 mm is 15·0.0005·π/180 = 0.000131 mm, at the bottom.
+#[test]
+fn a_head_set_by_hand_has_its_share_of_rounding() {
+    let machine = Machine { head: Head::new(HeadKind::Manual { start: None }, 0.0), ..Machine::default() };
+    let share = |axial, machine: &Machine, way| {
+        let place = Place { t: 50.0, azimuth: 0.0, axial };
+        let script = drill(start(PAPER), PAPER, place, way);
+        let verdict = judge(machine, &PAPER.reference(&[place]), &script);
+        assert_eq!(verdict.verdict, Answer::Pass, "{:?}", codes(&verdict));
+        let (angle, rounding) = (PAPER.above(place, 0.0).2, verdict.rounding.unwrap());
+        // Half an increment of X and of Y, whichever of both signs is worse across the hole.
+        let feed = 0.0005 * (angle.sin().abs() + angle.cos().abs());
+        let x_alone = 0.0005 * angle.sin();
+        (rounding / 2.0 - if axial { x_alone } else { feed }, verdict.worst_from.unwrap())
+    };
+    let (more, said) = share(false, &machine, RIGHT);
+    assert!((more - 0.000_130_9).abs() < 1e-6 && said.contains("head 0.0001"), "{more} {said}");
+    // As where nothing is known of the head but the angle that the operator was told.
+    let (more, said) = share(false, &Machine::default(), RIGHT);
+    assert!((more - 0.000_130_9).abs() < 1e-6 && said.contains("head 0.0001"), "{more} {said}");
+    // Whole degrees, and a head that nobody set.
+    for (axial, way) in [(true, RIGHT), (false, Way { set_head: false, ..RIGHT })] {
+        let (more, said) = share(axial, &Machine::default(), way);
+        assert!(more.abs() < 1e-6 && !said.contains("head"), "{more} {said}");
+    }
+}
+
 #[test]
 fn a_hole_0_08_mm_aside_fails_by_its_position_alone() {
     for shift in [[0.08, 0.0, 0.0], [0.0, 0.0, 0.08]] {

@@ -300,7 +300,7 @@ fn worst_from(hole: &HoleVerdict, rounding: &Rounding) -> String {
         true => ("bottom", hole.at_bottom),
         false => ("entry", hole.at_entry),
     };
-    let shares: Vec<_> = rounding.shares.iter().map(|s| format!("{} {:.4}", s.letter, s.moves)).collect();
+    let shares: Vec<_> = rounding.shares.iter().map(|s| format!("{} {:.4}", s.name(), s.moves)).collect();
     let shares = if shares.is_empty() { String::new() } else { format!(" ({})", shares.join(", ")) };
     // What can be explained by rounding is compared with room for the arithmetic itself.
     let blame = match hole.phi <= rounding.phi + 1e-6 {
