@@ -19,7 +19,7 @@ use crate::Case;
 pub(crate) fn run(case: &Case) {
     let machine =
         case.optional("machine.toml").map_or_else(Machine::default, |text| Machine::parse(&text).unwrap());
-    let request = Request::new("case.nc", case.bytes("case.nc"), machine.clone());
+    let mut request = Request::new("case.nc", case.bytes("case.nc"), machine.clone());
     let files = ["reference.toml", "reference.csv", "reference.json"];
     let wanted = files.iter().find_map(|name| case.optional(name)).map(|text| Wanted::parse(&text).unwrap());
     if let Some(Wanted::Flutes(flutes)) = &wanted {
@@ -30,6 +30,7 @@ pub(crate) fn run(case: &Case) {
     }
     let reference = wanted.and_then(Wanted::into_holes);
     let surface = reference.as_ref().and_then(|reference| reference.surface);
+    request.clamp = reference.as_ref().and_then(|reference| reference.clamp);
     let simulation = simulate(&request, &mut NoLibrary, surface).unwrap();
     let (shown, findings) = match &reference {
         Some(reference) => {

@@ -16,7 +16,8 @@ use crate::package::{Package, file_name, stem};
 pub(super) fn check(job: &Job, package: &Package, reference: &Reference) -> Result<Checked, CheckError> {
     let machine = Machine::parse(&package.machine).map_err(|e| told("machine.toml", &e))?;
     let main = main_program(package)?;
-    let request = Request::new(file_name(main.number), main.text.as_bytes(), machine.clone());
+    let mut request = Request::new(file_name(main.number), main.text.as_bytes(), machine.clone());
+    request.clamp = reference.clamp;
     let simulation = simulate(&request, &mut Programs(package), reference.surface)
         .map_err(|e| told("the main program", &e))?;
     let tolerances = Tolerances::of(reference, None);

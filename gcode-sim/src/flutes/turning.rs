@@ -16,7 +16,7 @@ pub struct Begun {
 #[derive(Clone, Debug)]
 pub struct Idle {
     pub begun: Begun,
-    /// The last M code before it that went to the machine builder's logic, which may have started the wheel.
+    /// The last M code since M03, M04 or M05 that went to the machine builder's logic, which may have started the wheel.
     pub builder: Option<u32>,
 }
 
@@ -31,8 +31,10 @@ impl Turning {
     pub(super) fn hear(&mut self, kind: &EventKind) {
         match kind {
             // At S0 it stands.
-            EventKind::Spindle { speed: Rpm(0.0), .. } => self.wheel = Spindle::Off,
-            EventKind::Spindle { turning, .. } => self.wheel = *turning,
+            EventKind::Spindle { speed, turning } => {
+                self.wheel = if *speed == Rpm(0.0) { Spindle::Off } else { *turning };
+                self.builder = None;
+            }
             EventKind::Auxiliary { code } => self.builder = Some(*code),
             _ => {}
         }

@@ -25,6 +25,7 @@ use self::findings::Findings;
 use self::passing::Passings;
 use self::rapids::Curved;
 use crate::diag::{Diagnostic, Severity};
+use crate::job::Clamp;
 use crate::machine::path::Travel;
 use crate::machine::{Frame, Machine, Pose, Setup};
 use crate::motion::{Arc2, Event, EventKind, Place, Position, Signal, Sink, SkipFeed, Spindle, StopKind};
@@ -54,8 +55,9 @@ pub struct Extractor<'m> {
     at: Position,
     setup: Setup,
     spindle: Spindle,
-    /// The last M code that went to the machine builder's logic, which may have started the spindle.
+    /// The last M code since M03, M04 or M05 that went to the machine builder's logic, which may have started the spindle.
     builder: Option<u32>,
+    clamp: Option<Clamp>,
     /// The part's place while the table stands as it does in `at`.
     frame: Frame,
     /// The tool on the part.
@@ -96,6 +98,7 @@ impl<'m> Extractor<'m> {
             setup,
             spindle: Spindle::Off,
             builder: None,
+            clamp: None,
             frame,
             pose,
             outside: false,
@@ -114,6 +117,17 @@ impl<'m> Extractor<'m> {
     pub fn with_surface(mut self, surface: Option<Surface>) -> Self {
         self.surface = surface;
         self
+    }
+
+    /// With the codes of the rotary's clamp known, they are not taken for what may start the spindle.
+    #[must_use]
+    pub fn with_clamp(mut self, clamp: Option<Clamp>) -> Self {
+        self.clamp = clamp;
+        self
+    }
+
+    fn clamps(&self, code: u32) -> bool {
+        self.clamp.is_some_and(|clamp| code == clamp.on || code == clamp.off)
     }
 
     pub fn finish(mut self) -> Extracted {
@@ -263,14 +277,20 @@ impl Sink for Extractor<'_> {
                 self.set_up(|setup| setup.tool = Some(*number));
             }
             EventKind::ToolLength { offset } => self.set_up(|setup| setup.offset = *offset),
-            EventKind::Spindle { turning, .. } => self.spindle = *turning,
+            EventKind::Spindle { turning, .. } => {
+                self.spindle = *turning;
+                self.builder = None;
+            }
             EventKind::Stop { kind: StopKind::Message, text, named } => {
                 if let Some(angle) = self.head_message(event, text, named) {
                     self.set_up(|setup| setup.head_angle = Some(angle));
                 }
             }
-            EventKind::Auxiliary { code } => self.builder = Some(*code),
-            EventKind::Stop { .. } | EventKind::Dwell { .. } | EventKind::Coolant { .. } => {}
+            EventKind::Auxiliary { code } if !self.clamps(*code) => self.builder = Some(*code),
+            EventKind::Auxiliary { .. }
+            | EventKind::Stop { .. }
+            | EventKind::Dwell { .. }
+            | EventKind::Coolant { .. } => {}
         }
     }
 }

@@ -4,7 +4,7 @@ use crate::source::{SourceId, Span};
 use crate::units::{MmPerMin, Rpm, Seconds};
 
 /// Events in order; event n stands in line n, counted from 1.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) struct Script {
     at: Position,
     events: Vec<EventKind>,

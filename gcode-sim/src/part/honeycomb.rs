@@ -130,6 +130,7 @@ pub(super) fn reference(job: &Honeycomb) -> Result<Reference, ReferenceError> {
         depth: Some(job.depth_tolerance),
         surface: Some(Surface::Cylinder { radius: outer }),
         clearance: Some(job.machine.clearance),
+        clamp: job.machine.clamp,
         pattern: Some(pattern),
     })
 }

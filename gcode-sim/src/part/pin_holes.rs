@@ -19,6 +19,7 @@ pub(super) fn reference(job: &PinHoles) -> Result<Reference, ReferenceError> {
         depth: Some(job.depth_tolerance),
         surface: Some(surface),
         clearance: Some(job.machine.clearance),
+        clamp: None,
         pattern: None,
     })
 }

@@ -4,6 +4,7 @@ use super::honeycomb::Pattern;
 use super::read;
 pub use super::read::ReferenceError;
 use super::surface::Surface;
+use crate::job::Clamp;
 
 /// What the holes of a program are held against.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,6 +18,8 @@ pub struct Reference {
     pub surface: Option<Surface>,
     /// From so far above the surface the tool feeds, in mm, where the reference says it.
     pub clearance: Option<f64>,
+    /// The M codes that clamp and free the rotary table, where the reference says them: all that they do is known.
+    pub clamp: Option<Clamp>,
     /// What the holes' neighbours must be like, of a part where that matters.
     pub pattern: Option<Pattern>,
 }
@@ -30,6 +33,7 @@ impl Reference {
             depth: None,
             surface: None,
             clearance: None,
+            clamp: None,
             pattern: None,
         })
     }

@@ -123,7 +123,7 @@ impl<'m> Stylus<'m> {
 
     pub fn finish(mut self) -> Followed {
         self.close();
-        self.missed.leave(self.followed.passes.len());
+        self.missed.end(self.followed.passes.len());
         let Missed { gaps, ways, mut findings, .. } = self.missed;
         findings.extend(self.followed.findings);
         Followed { gaps, ways, findings, ..self.followed }

@@ -112,20 +112,23 @@ fn a_feed_of_the_path_without_a_reading_is_told() {
     }
 }
 
-/// Between two contacts the ball is fed past the part: that way belongs to no path, but nothing says so.
+/// The ball is fed past the part before a contact, after one, or between two: whether that way belongs to the path nothing
+/// says, so it is told wherever there is a path.
 #[test]
-fn what_is_fed_between_two_passes_is_told_and_what_comes_after_them_is_not() {
+fn what_is_fed_past_the_part_is_told_wherever_a_path_is_read() {
     let over = |script: Script| {
         let x = 103.0 * Deg(10.0).sin();
         let y = 103.0 * Deg(10.0).cos();
         script.rapid(&format!("X{} Y200", -x)).feed(&format!("Y{y}")).feed(&format!("X{x}")).rapid("Y200")
     };
     let after = over(Script::new()).feed("X50");
-    assert!(followed(&Machine::default(), SPHERE, &after).findings.is_empty());
-    let found = followed(&Machine::default(), SPHERE, &over(after));
-    let [finding] = found.findings.as_slice() else { panic!("{:?}", found.findings) };
-    assert_eq!(finding.code, "path-not-read");
-    assert_eq!((found.gaps.len(), found.gaps[0].behind, found.passes.len()), (1, 1, 2));
+    let before = over(Script::new().rapid("X0 Y200").feed("X50").rapid("Y210"));
+    for (script, behind, passes) in [(before, 0, 1), (after.clone(), 1, 1), (over(after), 1, 2)] {
+        let found = followed(&Machine::default(), SPHERE, &script);
+        let [finding] = found.findings.as_slice() else { panic!("{:?}", found.findings) };
+        assert_eq!(finding.code, "path-not-read");
+        assert_eq!((found.gaps.len(), found.gaps[0].behind, found.passes.len()), (1, behind, passes));
+    }
 }
 
 /// A sphere of 100 that stands 15 mm farther out than is believed: a rapid to 10 mm before the ball's contact ends 5 mm

@@ -42,7 +42,8 @@ pub(super) struct Missed {
     feeds: Vec<Unread>,
     /// Whether anything was read since the last rapid.
     touched: bool,
-    /// Feeds between two rapids on which nothing was read, behind a pass: not told before another pass comes.
+    /// Feeds between two rapids on which nothing was read, and the passes before them: whether they are missing from the
+    /// path shows with the next pass, or at the end.
     between: Vec<(Vec<Unread>, usize)>,
     pub gaps: Vec<Gap>,
     /// Feeds to the surface and feeds from it.
@@ -58,11 +59,15 @@ impl Missed {
     /// A feed along the surface begins; so many passes were read before.
     pub(super) fn read(&mut self, passes: usize) {
         for (feeds, behind) in std::mem::take(&mut self.between) {
-            self.tell(&feeds, behind);
+            if behind > 0 || is_astray(&feeds) {
+                self.tell(&feeds, behind);
+            } else {
+                self.count(&feeds);
+            }
         }
         let feeds = std::mem::take(&mut self.feeds);
         if !self.touched && feeds.iter().all(|feed| feed.way == Way::Nearer && !feed.is_inside()) {
-            self.ways[0] += feeds.len();
+            self.count(&feeds);
         } else {
             self.tell(&feeds, passes);
         }
@@ -77,9 +82,28 @@ impl Missed {
         if feeds.iter().any(Unread::is_inside) || (touched && !away) {
             self.tell(&feeds, passes);
         } else if touched {
-            self.ways[1] += feeds.len();
-        } else if passes > 0 && !feeds.is_empty() {
+            self.count(&feeds);
+        } else if !feeds.is_empty() {
             self.between.push((feeds, passes));
+        }
+    }
+
+    /// The program is at its end; so many passes were read. Where there is a path at all, a feed that goes neither to the
+    /// surface nor from it is missing from it.
+    pub(super) fn end(&mut self, passes: usize) {
+        self.leave(passes);
+        for (feeds, behind) in std::mem::take(&mut self.between) {
+            if passes > 0 && is_astray(&feeds) {
+                self.tell(&feeds, behind);
+            } else {
+                self.count(&feeds);
+            }
+        }
+    }
+
+    fn count(&mut self, feeds: &[Unread]) {
+        for feed in feeds {
+            self.ways[usize::from(feed.way == Way::Farther)] += 1;
         }
     }
 
@@ -109,6 +133,10 @@ impl Missed {
         let help = format!("read is what stays within {REACH} mm of the surface at less than 30° to it");
         self.findings.push(finding.at(first.place.clone()).help(help));
     }
+}
+
+fn is_astray(feeds: &[Unread]) -> bool {
+    feeds.iter().any(|feed| feed.way == Way::Astray)
 }
 
 impl Unread {

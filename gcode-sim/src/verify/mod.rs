@@ -66,8 +66,8 @@ pub fn verify(
         check(&comparison, &mut objections);
     }
     let stopped = extracted.findings.iter().any(|finding| finding.severity == Severity::Alarm);
-    checks::alike::check(&comparison, machine, &mut objections);
     checks::stopped::check(&comparison, stopped, &mut objections);
+    checks::alike::check(&comparison, machine, &mut objections);
     let mut motion = extracted.findings.clone();
     motion.extend(checks::clearance::findings(&extracted.passings, reference.clearance));
     let mut verdict = verdict::verdict(&comparison, rounding, objections, &motion, locate);

@@ -1,4 +1,4 @@
-//! Where all rows of a honeycomb end too early, as with a length that is too small, that is told instead of what it looks
+//! Where a honeycomb ends too early, as with a length that is too small, that is told instead of what it looks
 //! like.
 use super::{Comparison, Objection};
 use crate::diag::Diagnostic;
@@ -19,8 +19,11 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
     let folded = fold(objections, &["hole-missing"], |_| true);
     let farthest = comparison.missing.iter().map(|wanted| x(*wanted)).fold(end, f64::max);
     let message = format!(
-        "all rows end too early: the last hole stands at x {end:.3}, and {} holes beyond it are missing, up to x {farthest:.3}",
-        comparison.missing.len()
+        "the pattern ends too early: the last hole stands at x {end:.3}, and beyond it, up to x {farthest:.3}, {} missing",
+        match comparison.missing.len() {
+            1 => "1 hole is".to_owned(),
+            missing => format!("{missing} holes are"),
+        }
     );
     let mut finding =
         Diagnostic::error("row-short", message).help("is the length in the call right, and with its point?");

@@ -72,6 +72,8 @@ impl Instead {
         let alike = |window: &Window<'_>| {
             (window.helix - Deg::atan2(factor * window.wanted.tan(), 1.0)).abs().0 <= 2.0 * allowed
         };
-        all(&alike).then(|| Self::Helix(Deg::atan2(factor * slope, 1.0)))
+        // One flute that is off makes no other angle of all.
+        let helix = Deg::atan2(factor * slope, 1.0);
+        (allowed < (helix - wanted.helix).abs().0 && all(&alike)).then_some(Self::Helix(helix))
     }
 }
