@@ -149,7 +149,9 @@ fn found(page: &Page, number: usize) -> Vec<Diagnostic> {
         .get(number)
         .or(machines.first())
         .map_or_else(Machine::default, |text| Machine::parse(text).unwrap());
-    let wanted = page.fenced("csv").into_iter().chain(jobs).next().map(|text| Wanted::parse(text).unwrap());
+    // A finding on the reference itself has a second one without it.
+    let job = jobs.get(number).or(jobs.first()).copied();
+    let wanted = page.fenced("csv").into_iter().chain(job).next().map(|text| Wanted::parse(text).unwrap());
     let request = Request::new("example.nc", program.as_bytes(), machine.clone());
     if let Some(Wanted::Flutes(flutes)) = &wanted {
         return grind(&request, &mut NoLibrary, flutes).unwrap().verify().diagnostics;
@@ -162,7 +164,9 @@ fn found(page: &Page, number: usize) -> Vec<Diagnostic> {
     }
     let simulation = simulate(&request, &mut NoLibrary, surface).unwrap();
     match reference {
-        Some(reference) if surface.is_none() || reference.pattern.is_some() => {
+        Some(reference)
+            if surface.is_none() || reference.pattern.is_some() || page.code.starts_with("hole-") =>
+        {
             simulation.verify(&reference, Tolerances::of(&reference, None), &machine).diagnostics
         }
         _ => simulation.extracted.findings,

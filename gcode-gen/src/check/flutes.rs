@@ -7,7 +7,7 @@ use gcode_sim::report::{diagnostic, flute_table, flute_view};
 use gcode_sim::session::{Request, grind};
 use gcode_sim::verify::Answer;
 
-use super::{CheckError, Checked, Judgement, Programs, main_program, told};
+use super::{CheckError, Checked, Judgement, Programs, main_program, told, warnings};
 use crate::package::{Package, file_name, stem};
 
 pub(super) fn check(package: &Package, wanted: &Flutes) -> Result<Checked, CheckError> {
@@ -26,6 +26,7 @@ pub(super) fn check(package: &Package, wanted: &Flutes) -> Result<Checked, Check
     let view = flute_view::of(&file_name(main.number), &grinding, &verdict);
     Ok(Checked {
         refusals,
+        warnings: warnings(&verdict.diagnostics, sources),
         seconds: grinding.run.control.seconds().0,
         report: flute_table::table(&verdict),
         pictures: vec![

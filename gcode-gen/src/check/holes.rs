@@ -10,7 +10,7 @@ use gcode_sim::report::{diagnostic, top};
 use gcode_sim::session::{Request, Simulation, simulate};
 use gcode_sim::verify::{Answer, Tolerances, Verdict};
 
-use super::{CheckError, Checked, Judgement, Programs, main_program, told};
+use super::{CheckError, Checked, Judgement, Programs, main_program, told, warnings};
 use crate::package::{Package, file_name, stem};
 
 pub(super) fn check(job: &Job, package: &Package, reference: &Reference) -> Result<Checked, CheckError> {
@@ -25,6 +25,7 @@ pub(super) fn check(job: &Job, package: &Package, reference: &Reference) -> Resu
     let top = top::of_verdict(&file_name(main.number), &simulation, reference, &verdict, &machine);
     Ok(Checked {
         refusals: refusals(job, reference, &simulation, &verdict),
+        warnings: warnings(&verdict.diagnostics, simulation.run.control.memory().sources()),
         seconds: simulation.run.control.seconds().0,
         report: table(&verdict, Layout::default()),
         pictures: vec![(stem(main.number), picture::main_view(&top))],

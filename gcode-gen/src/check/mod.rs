@@ -4,10 +4,13 @@ mod alignment;
 mod flutes;
 mod holes;
 
+use gcode_sim::diag::{Diagnostic, Severity};
 use gcode_sim::job::Job;
 use gcode_sim::part::wanted::Wanted;
 use gcode_sim::picture::Scene;
 use gcode_sim::program::Library;
+use gcode_sim::report::diagnostic;
+use gcode_sim::source::Sources;
 use gcode_sim::verify::Verdict;
 use gcode_sim::verify::flutes::FluteVerdict;
 use schemars::JsonSchema;
@@ -31,6 +34,8 @@ pub enum CheckError {
 pub struct Checked {
     /// Why it may not be written: findings with their lines, as text for a terminal. Empty where all is well.
     pub refusals: Vec<String>,
+    /// What to look at before it is used: the verdict's warnings, as text for a terminal.
+    pub warnings: Vec<String>,
     /// Predicted running time, operator stops left out.
     pub seconds: f64,
     /// What `verify` prints.
@@ -86,6 +91,11 @@ pub fn check(job: &Job, package: &Package) -> Result<Checked, CheckError> {
 
 pub(crate) fn told(what: &str, error: &dyn std::fmt::Display) -> CheckError {
     CheckError::Broken(format!("{what}: {error}"))
+}
+
+fn warnings(found: &[Diagnostic], sources: &Sources) -> Vec<String> {
+    let told = found.iter().filter(|finding| finding.severity == Severity::Warning);
+    told.map(|finding| diagnostic::render(finding, sources)).collect()
 }
 
 fn main_program(package: &Package) -> Result<&Program, CheckError> {

@@ -65,6 +65,7 @@ pub(super) fn run(path: &Path, out: &Path, format: TextFormat) -> Result<Status,
             return Ok(Status::Fails);
         }
     };
+    checked.warnings.iter().for_each(|warning| output::tell(warning));
     let pictures = pictures(&checked)?;
     make_folder(out)?;
     let mut files: Vec<(PathBuf, &[u8])> =

@@ -65,6 +65,8 @@ pub fn verify(
     for check in checks::ALL {
         check(&comparison, &mut objections);
     }
+    checks::through::check(&comparison, reference.surface, &mut objections);
+    checks::tool_short::check(&comparison, machine, &mut objections);
     let stopped = extracted.findings.iter().any(|finding| finding.severity == Severity::Alarm);
     checks::stopped::check(&comparison, stopped, &mut objections);
     checks::alike::check(&comparison, machine, &mut objections);

@@ -41,6 +41,7 @@ const TRIALS: &[(u32, Trial)] = &[
 pub(super) fn check(job: &Alignment, package: &Package) -> Result<Checked, CheckError> {
     let mut checked = Checked {
         refusals: Vec::new(),
+        warnings: Vec::new(),
         seconds: 0.0,
         report: String::new(),
         pictures: Vec::new(),

@@ -16,6 +16,8 @@ mod row_seam;
 mod row_short;
 pub(super) mod stopped;
 pub(super) mod surplus;
+pub(super) mod through;
+pub(super) mod tool_short;
 mod tools;
 
 use super::{Comparison, Objection};
