@@ -180,11 +180,12 @@ fn a_touch_that_fails_leaves_no_points() {
     assert_eq!((alarm(&next), next.control.moves()), (Some(3135), 0));
 }
 
-/// D and E exchanged turns the chord round: 180°, and 1130 mm. A part 3 mm aside is farther than two circles.
+/// D and E exchanged turns the chord round: 180°, and 1130 mm. Two circles of 1 mm the one way at E and the other way
+/// at F put the axis 2·1130.4/494.4 = 4.573 mm beside the chord's plane: a part that stands 5 mm aside is farther off.
 #[test]
 fn a_correction_larger_than_the_circle_allows_is_an_alarm_before_the_stop() {
     let moved = |by: f64| marks().into_iter().map(move |(n, v)| (n, if n % 3 == 0 { v + by } else { v }));
-    let beside: Vec<_> = moved(3.0).collect();
+    let beside: Vec<_> = moved(5.0).collect();
     for (change, set) in
         [(Some((8200, "D812.4 E318. H10. U1.", "D318. E812.4 H10. U1.")), marks()), (None, beside)]
     {
