@@ -40,7 +40,7 @@ fn finding(passing: &Passing, clearance: Option<f64>) -> Option<Diagnostic> {
         }
         Way::Past => {
             let message = format!("the rapid goes past the part {above:.3} mm above the surface");
-            let finding = Diagnostic::error("rapid-near-part", message)
+            let finding = Diagnostic::warning("rapid-near-part", message)
                 .note(format!("a tool length or a part that is {CONTACT} mm off makes it touch"));
             Some(finding.help("go from hole to hole at a safe height"))
         }
