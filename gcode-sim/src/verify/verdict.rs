@@ -182,7 +182,7 @@ pub(super) fn verdict(
 }
 
 /// A finding as data, about the wanted hole of this id.
-fn finding_of(
+pub(super) fn finding_of(
     finding: &Diagnostic,
     hole: Option<&str>,
     from_motion: bool,
@@ -198,7 +198,7 @@ fn finding_of(
         from_motion,
         hole: hole.map(str::to_owned),
         from: origin.map(|(program, line)| Origin { program, line, tool: None }),
-        sites: Vec::new(),
+        sites: finding.sites.iter().map(Into::into).collect(),
     }
 }
 

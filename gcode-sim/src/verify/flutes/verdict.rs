@@ -8,10 +8,9 @@ use crate::diag::{Diagnostic, Severity};
 use crate::flutes::{Ground, Window};
 use crate::job::FluteLaw;
 use crate::part::flutes::Flutes;
-use crate::part::hole::Origin;
 use crate::source::Span;
 use crate::units::Deg;
-use crate::verify::verdict::{Answer, Finding, readable};
+use crate::verify::verdict::{Answer, Finding, finding_of, readable};
 
 /// As `verify --format json` writes it. Lengths in mm, angles in degrees; nothing is rounded.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
@@ -201,7 +200,7 @@ pub(super) fn verdict(
         moves: ground.passes.iter().map(|pass| pass.moves).sum(),
         holes: [],
         laws: laws(wanted, &along),
-        findings: findings.iter().map(|finding| shown(finding, locate)).collect(),
+        findings: findings.iter().map(|finding| finding_of(finding, None, false, locate)).collect(),
         not_checked: not_checked(wanted, ground),
         along,
         along_pass: worst_pass + 1,
@@ -255,22 +254,4 @@ fn laws(wanted: &Flutes, along: &[Angles]) -> Vec<Law> {
         }
     };
     all.map(at).collect()
-}
-
-fn shown(finding: &Diagnostic, locate: &dyn Fn(Span) -> (String, u32)) -> Finding {
-    let from = finding.place.as_ref().map(|place| {
-        let (program, line) = locate(place.block);
-        Origin { program, line, tool: None }
-    });
-    Finding {
-        code: finding.code.clone(),
-        severity: finding.severity.name(),
-        message: finding.message.clone(),
-        help: finding.help.clone(),
-        notes: finding.notes.clone(),
-        from_motion: false,
-        hole: None,
-        from,
-        sites: finding.sites.iter().map(Into::into).collect(),
-    }
 }
