@@ -1,27 +1,89 @@
 //! The least distance between two paths, in a straight line: of the paths themselves, whatever was wanted.
+use std::ops::Range;
+
 use nalgebra::{Point3, Vector3};
 
-/// Between two paths of straight pieces, their ends counted in, and on which piece of the first; `None` where one has none.
-///
-/// From a piece `d` away the path has to run on by `d` less the best so far before it can come nearer: so far the search
-/// goes on without looking.
+/// Between two paths of straight pieces, their ends counted in, and on which piece of the first: of equally near ones the
+/// first; `None` where one has none.
 pub(super) fn distance(one: &[Point3<f64>], other: &[Point3<f64>]) -> Option<(f64, usize)> {
-    let (here, there) = (lengths(one), lengths(other));
-    let mut best: Option<(f64, usize)> = None;
-    let mut i = 0;
-    while i + 1 < one.len() {
-        let mut near: Option<f64> = None;
-        let mut j = 0;
-        while j + 1 < other.len() {
-            let apart = pieces([one[i], one[i + 1]], [other[j], other[j + 1]]);
-            near = Some(near.map_or(apart, |near| near.min(apart)));
-            j = skip(&there, j, apart - near.unwrap_or(apart));
-        }
-        let near = near?;
-        let (least, _) = *best.insert(best.filter(|(least, _)| *least <= near).unwrap_or((near, i)));
-        i = skip(&here, i, near - least);
+    let all = |path: &[Point3<f64>]| 0..path.len().saturating_sub(1);
+    let mut search = Search { paths: [Path::of(one), Path::of(other)], best: None };
+    if !all(one).is_empty() && !all(other).is_empty() {
+        search.among([all(one), all(other)]);
     }
-    best
+    search.best
+}
+
+/// Halves the longer stretch as long as its pieces could be nearer than the nearest so far.
+struct Search<'p> {
+    paths: [Path<'p>; 2],
+    best: Option<(f64, usize)>,
+}
+
+struct Path<'p> {
+    points: &'p [Point3<f64>],
+    /// The way along the path to each point.
+    ways: Vec<f64>,
+}
+
+impl Search<'_> {
+    /// Of stretches of one piece and more each. Its depth is that of two halvings.
+    fn among(&mut self, stretches: [Range<usize>; 2]) {
+        let [one, other] = &stretches;
+        if one.len() == 1 && other.len() == 1 {
+            let near = (pieces(self.paths[0].piece(one.start), self.paths[1].piece(other.start)), one.start);
+            if self.best.is_none_or(|best| near < best) {
+                self.best = Some(near);
+            }
+            return;
+        }
+        let reach = |path: usize| self.paths[path].reach(&stretches[path]);
+        let longer = usize::from(one.len() == 1 || 1 < other.len() && reach(0) < reach(1));
+        let whole = stretches[longer].clone();
+        let middle = whole.start + whole.len() / 2;
+        let halves = [whole.start..middle, middle..whole.end].map(|half| {
+            let mut halved = stretches.clone();
+            halved[longer] = half;
+            (self.at_least(&halved), halved)
+        });
+        let [first, second] = halves;
+        let sorted = if second.0 < first.0 { [second, first] } else { [first, second] };
+        for (least, halved) in sorted {
+            if self.best.is_none_or(|(best, _)| least <= best) {
+                self.among(halved);
+            }
+        }
+    }
+
+    /// No two points of the stretches are nearer to each other.
+    fn at_least(&self, [one, other]: &[Range<usize>; 2]) -> f64 {
+        let [first, second] = &self.paths;
+        (first.middle(one) - second.middle(other)).norm() - first.reach(one) - second.reach(other)
+    }
+}
+
+impl<'p> Path<'p> {
+    fn of(points: &'p [Point3<f64>]) -> Self {
+        Self { points, ways: lengths(points) }
+    }
+
+    fn piece(&self, index: usize) -> [Point3<f64>; 2] {
+        [self.points[index], self.points[index + 1]]
+    }
+
+    fn middle(&self, stretch: &Range<usize>) -> Point3<f64> {
+        self.points[Self::halfway(stretch)]
+    }
+
+    /// No point of the stretch is farther from its middle.
+    fn reach(&self, stretch: &Range<usize>) -> f64 {
+        let middle = self.ways[Self::halfway(stretch)];
+        (middle - self.ways[stretch.start]).max(self.ways[stretch.end] - middle)
+    }
+
+    fn halfway(stretch: &Range<usize>) -> usize {
+        stretch.start.midpoint(stretch.end)
+    }
 }
 
 /// The way along the path to each point.
@@ -32,12 +94,6 @@ fn lengths(path: &[Point3<f64>]) -> Vec<f64> {
         way
     });
     std::iter::once(0.0).chain(steps).collect()
-}
-
-/// The first piece behind `from` that ends more than `way` beyond its end.
-fn skip(lengths: &[f64], from: usize, way: f64) -> usize {
-    let end = lengths[from + 1];
-    (from + 1).max(lengths.partition_point(|length| *length <= end + way).saturating_sub(1))
 }
 
 /// Between two straight pieces.
@@ -75,6 +131,8 @@ fn to_piece(point: &Point3<f64>, piece: &[Point3<f64>; 2]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
 
     fn path(points: &[[f64; 3]]) -> Vec<Point3<f64>> {
@@ -102,5 +160,27 @@ mod tests {
         let bent = path(&[[0.0, 30.0, 0.0], [30.0, 30.0, 0.0], [50.0, 0.5, 0.0], [60.0, 30.0, 0.0]]);
         assert_eq!(distance(&line, &bent), Some((0.5, 0)));
         assert_eq!(distance(&bent, &line), Some((0.5, 1)));
+    }
+
+    proptest! {
+        /// Every pair of pieces looked at.
+        #[test]
+        fn no_pair_of_pieces_is_nearer(
+            one in prop::collection::vec(prop::array::uniform3(-5i32..5), 2..24),
+            other in prop::collection::vec(prop::array::uniform3(-5i32..5), 2..24),
+        ) {
+            let [one, other] = [one, other].map(|path| {
+                path.into_iter().map(|at| Point3::from(at.map(f64::from))).collect::<Vec<_>>()
+            });
+            let each = |path: &[Point3<f64>]| {
+                path.windows(2).map(|pair| [pair[0], pair[1]]).collect::<Vec<_>>()
+            };
+            let pairs = each(&one).into_iter().enumerate().flat_map(|(index, piece)| {
+                each(&other).into_iter().map(move |there| (pieces(piece, there), index))
+            });
+            let least = pairs.reduce(|best, near| if near < best { near } else { best });
+            let (found, wanted) = (distance(&one, &other).unwrap(), least.unwrap());
+            prop_assert!((found.0 - wanted.0).abs() < 1e-12, "{found:?} {wanted:?}");
+        }
     }
 }
