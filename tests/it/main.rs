@@ -18,6 +18,7 @@ mod control;
 mod control_page;
 mod corpus;
 mod docs;
+mod drawn;
 mod ellipse;
 mod emitted;
 mod explain;

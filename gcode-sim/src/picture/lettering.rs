@@ -6,7 +6,7 @@ use super::lines::is_path;
 use super::marks::Drawn;
 use super::obstacle::Obstacle;
 use super::palette;
-use super::scene::{Mark, Scene, Shape, Stroke};
+use super::scene::{Mark, Pen, Scene, Shape, Stroke};
 use super::sheet::Frame;
 use super::symbol;
 use crate::units::Deg;
@@ -127,8 +127,9 @@ impl Lettering {
     }
 }
 
-/// Radii and the like, on the lines that are `wanted`: somewhere round a circle, from the lower left on, or on a straight
-/// line. Gives back those that found no room.
+/// Radii and the like, on the lines that are `wanted`: somewhere round a circle, from the lower left on, on a straight
+/// line, at the end of a scale's tick, along a path or on a leader to its middle. Gives back those that found no room;
+/// a scale can do without some of its numbers.
 pub(super) fn caption_strokes(
     scene: &Scene,
     wanted: impl Fn(&Stroke) -> bool,
@@ -160,20 +161,40 @@ pub(super) fn caption_strokes(
                 };
                 places.find(apart).into_iter().collect()
             }
-            Shape::Line(points) => {
-                let middles =
-                    points.windows(2).map(|w| [(w[0][0] + w[1][0]) / 2.0, (w[0][1] + w[1][1]) / 2.0]);
-                middles.map(|p| frame.scale.px(p)).collect()
-            }
+            Shape::Line(points) => points
+                .windows(2)
+                .flat_map(|ends| {
+                    let (from, to) = (frame.scale.px(ends[0]), frame.scale.px(ends[1]));
+                    // Beyond an upright tick it would stand between its neighbours.
+                    let is_level = stroke.pen == Pen::Scale && from.y == to.y;
+                    let middle = px((from.x + to.x) / 2.0, (from.y + to.y) / 2.0);
+                    [is_level.then(|| beyond(from, to, size)), Some(middle)]
+                })
+                .flatten()
+                .collect(),
         };
-        if let Some(spot) = field.place_on(places, size) {
+        let spot = field.place_on(places, size).or_else(|| {
+            let path = paths.iter().find(|path| std::ptr::eq(path.stroke, stroke))?;
+            let at = path.points[path.points.len() / 2];
+            field.place(Symbol { at, clear: 0.0, way: Way::ThroughAll }, size, frame.text * LEADING)
+        });
+        if let Some(spot) = spot {
+            if let Some((from, to)) = spot.leader {
+                inks.push(Ink::line(from, to, (0.05 * frame.text).max(1.0), palette::THIN));
+                inks.push(Ink::Disc { centre: from, radius: 0.17 * frame.text, color: palette::TEXT });
+            }
             write(&lines, &spot, frame, inks);
             labels.push((spot.rect, lines));
-        } else {
+        } else if stroke.pen != Pen::Scale {
             left.push(caption.clone());
         }
     }
     left
+}
+
+/// The middle of a box that goes on where a level line ends.
+fn beyond(from: Px, to: Px, (width, _): (f64, f64)) -> Px {
+    px(to.x + (width / 2.0).copysign(to.x - from.x), to.y)
 }
 
 /// A tool's path that has a number, and the rectangle round it: some of its points will do.
@@ -233,5 +254,72 @@ fn write(lines: &[String], spot: &Spot, frame: &Frame, inks: &mut Vec<Ink>) {
         let at = px(x, rect.top + size * (0.05 + ASCENT + LEADING * n as f64));
         let color = if n == 0 { palette::TEXT } else { palette::SOFT_TEXT };
         inks.push(Ink::Text { at, align, size, text: line.clone(), color });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::scene::Point;
+    use super::super::sheet::{Sheet, lay_out};
+    use super::super::size::Size;
+    use super::*;
+
+    fn sheet(lines: Vec<(Vec<Point>, Pen, &str)>) -> Sheet {
+        let outline = vec![[0.0, 0.0], [100.0, 0.0], [100.0, 60.0], [0.0, 60.0], [0.0, 0.0]];
+        let stroke = |(points, pen, caption): (Vec<Point>, Pen, &str)| Stroke {
+            shape: Shape::Line(points),
+            pen,
+            caption: (!caption.is_empty()).then(|| caption.to_owned()),
+        };
+        let strokes = lines.into_iter().chain([(outline, Pen::Outline, "")]).map(stroke).collect();
+        lay_out(&Scene { strokes, ..Scene::default() }, Size::new(480, 360).unwrap()).unwrap()
+    }
+
+    fn place(sheet: &Sheet, words: &str) -> Rect {
+        sheet.labels.iter().find(|(_, lines)| lines[0] == words).unwrap_or_else(|| panic!("{words}")).0
+    }
+
+    /// Lines a tenth of a letter apart.
+    #[test]
+    fn paths_too_close_for_their_numbers_have_them_on_leaders() {
+        let path = |n: usize| {
+            let y = 1.0 + 0.4 * n as f64;
+            (0..=40).map(|k| [2.0 + 2.4 * f64::from(k), y]).collect::<Vec<_>>()
+        };
+        let names = ["1", "2", "3", "4", "5"];
+        let sheet = sheet(names.iter().enumerate().map(|(n, name)| (path(n), Pen::Feed, *name)).collect());
+        assert!(sheet.notes.is_empty(), "{:?}", sheet.notes);
+        let places: Vec<Rect> = names.iter().map(|name| place(&sheet, name)).collect();
+        let ends = sheet.inks.iter().filter(|ink| matches!(ink, Ink::Disc { .. })).count();
+        assert!(3 <= ends, "{places:?}");
+    }
+
+    /// The left one's number goes on to the left where the tick ends, the upper one's interrupts its tick.
+    #[test]
+    fn a_scales_number_stands_beside_a_level_tick_and_on_an_upright_one() {
+        let tick = |from: Point, to: Point, name: &'static str| (vec![from, to], Pen::Scale, name);
+        let sheet =
+            sheet(vec![tick([-1.0, 30.0], [-4.0, 30.0], "left"), tick([50.0, 61.0], [50.0, 68.0], "over")]);
+        let (left, over) = (place(&sheet, "left"), place(&sheet, "over"));
+        let ends = |upright: bool| {
+            let lines = sheet.inks.iter().filter_map(|ink| match ink {
+                Ink::Line { points, .. } if points.len() == 2 => Some((points[0], points[1])),
+                _ => None,
+            });
+            let mut ticks = lines.filter(|(a, b)| if upright { a.x == b.x } else { a.y == b.y });
+            ticks.next().unwrap()
+        };
+        assert!((left.right - ends(false).1.x).abs() < 1e-9, "{left:?}");
+        let (low, high) = ends(true);
+        assert!((over.centre().y - (low.y + high.y) / 2.0).abs() < 1e-9, "{over:?}");
+    }
+
+    #[test]
+    fn a_scale_without_room_for_a_number_says_nothing_of_it() {
+        let tick = |x: f64, name: &'static str| (vec![[x, 61.0], [x, 66.0]], Pen::Scale, name);
+        let sheet = sheet(vec![tick(50.0, "r100"), tick(51.0, "r101"), tick(70.0, "r120")]);
+        let named: Vec<&str> = sheet.labels.iter().map(|(_, lines)| lines[0].as_str()).collect();
+        assert_eq!(named, ["r100", "r120"]);
+        assert!(sheet.notes.is_empty(), "{:?}", sheet.notes);
     }
 }

@@ -29,6 +29,7 @@ pub(super) fn pen(pen: Pen, text: f64) -> (Rgb, f64, Dash) {
     match pen {
         Pen::Outline => (Rgb(0, 0, 0), 0.13 * text, Dash::Solid),
         Pen::Construction => (Rgb(120, 120, 120), 0.06 * text, Dash::Pattern([0.55 * text, 0.4 * text])),
+        Pen::Scale => (Rgb(120, 120, 120), 0.06 * text, Dash::Solid),
         Pen::Feed => (Rgb(0, 158, 115), 0.1 * text, Dash::Solid),
         Pen::Faulty => (Rgb(213, 94, 0), 0.24 * text, Dash::Solid),
         Pen::Hidden => (Rgb(213, 94, 0), 0.08 * text, Dash::Pattern([0.4 * text, 0.3 * text])),

@@ -64,6 +64,8 @@ pub enum Pen {
     Outline,
     /// Not an edge, only helps the eye: the circle on which holes lie.
     Construction,
+    /// Tick of a scale, drawn outwards; where its numbers would run into each other some are left out.
+    Scale,
     /// Path of the tool while it cuts.
     Feed,
     /// The same where something is wrong with it.

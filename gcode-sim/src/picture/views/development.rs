@@ -151,16 +151,16 @@ impl Unrolled {
                 let at = width * f64::from(part) / 4.0;
                 let degrees = 360.0 * (f64::from(strip) + f64::from(part) / 4.0) / f64::from(self.strips);
                 let caption = Some(format!("{}°", plain(degrees)));
-                line([at, bottom], [at, bottom - tick], Pen::Construction, caption);
+                line([at, bottom], [at, bottom - tick], Pen::Scale, caption);
             }
             for x in marks_along(length, (length / 6.0).max(0.04 * width)) {
                 let caption = Some(if x == 0.0 { "x 0".to_owned() } else { plain(x) });
-                line([left - 1.3 * tick, y(x)], [left, y(x)], Pen::Construction, caption);
+                line([left, y(x)], [left - 0.6 * tick, y(x)], Pen::Scale, caption);
             }
             for (row, at, is_named) in self.rows(strip) {
                 let caption = is_named.then(|| format!("r{row}"));
                 let long = if is_named { tick } else { 0.3 * tick };
-                line([at, top], [at, top + long], Pen::Construction, caption);
+                line([at, top], [at, top + long], Pen::Scale, caption);
             }
         }
         strokes

@@ -49,9 +49,8 @@ pub fn helix_graph(view: &FluteView) -> Scene {
         graphs.push(helix.deviations());
     }
     let chart = Chart {
-        across:
-            "Way along the outline from the shank's end of the flute, mm; above: polar angle θ on the nose"
-                .to_owned(),
+        across: "Way along the outline, mm, from the shank's end; above: polar angle θ on the nose"
+            .to_owned(),
         guides: helix.nose.clone(),
         gaps: Vec::new(),
         graphs,
