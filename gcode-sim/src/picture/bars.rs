@@ -2,7 +2,7 @@
 use super::font::Font;
 use super::ink::{Align, Ink, Rect, px};
 use super::palette;
-use super::scene::Standing;
+use super::role::Standing;
 use super::sheet::Sheet;
 use super::size::Size;
 use super::words::Words;

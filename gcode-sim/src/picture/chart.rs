@@ -2,7 +2,7 @@
 use super::ink::{Align, Dash, Ink, Px, Rect, Rgb, px};
 use super::obstacle::Obstacle;
 use super::palette;
-use super::scene::{Pen, Point, Standing};
+use super::role::{Pen, Point, Standing};
 use super::symbol;
 use super::ticks::Ticks;
 use super::words::Words;

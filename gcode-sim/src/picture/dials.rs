@@ -1,11 +1,11 @@
 //! How much can be shown of each hole: where there is room for a dial with the misfit, how large, how enlarged.
 use nalgebra::Point3;
 
+use super::frame::{Frame, LABEL_LIMIT};
 use super::ink::Px;
-use super::lettering::LABEL_LIMIT;
 use super::measure::magnification;
-use super::scene::{Mark, Scene, Standing};
-use super::sheet::Frame;
+use super::role::Standing;
+use super::scene::{Mark, Scene};
 use crate::holes::near::PointTree;
 
 /// How much is drawn of the holes, tried in this order until every hole has its number.

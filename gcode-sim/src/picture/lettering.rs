@@ -1,18 +1,16 @@
 //! Letters holes and lines: as many lines of every label as there is room for, and a note of what had none.
 use super::font::{ASCENT, DESCENT};
+use super::frame::{Frame, LABEL_LIMIT};
 use super::ink::{Align, Ink, Px, Rect, px};
 use super::labels::{Field, Spot, Symbol, Way};
 use super::lines::is_path;
 use super::marks::Drawn;
 use super::obstacle::Obstacle;
 use super::palette;
-use super::scene::{Mark, Pen, Scene, Shape, Stroke};
-use super::sheet::Frame;
+use super::role::Pen;
+use super::scene::{Mark, Scene, Shape, Stroke};
 use super::symbol;
 use crate::units::Deg;
-
-/// Beyond so many holes labels could not be told apart: the most important ones get theirs.
-pub(super) const LABEL_LIMIT: usize = 400;
 
 /// Height of a line of text in parts of its size.
 const LEADING: f64 = 1.18;
@@ -259,7 +257,7 @@ fn write(lines: &[String], spot: &Spot, frame: &Frame, inks: &mut Vec<Ink>) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::scene::Point;
+    use super::super::role::Point;
     use super::super::sheet::{Sheet, lay_out};
     use super::super::size::Size;
     use super::*;

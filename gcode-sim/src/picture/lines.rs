@@ -1,11 +1,12 @@
 //! The drawing's own lines: edges and circles, axes through the origin, the scale bar.
+use super::frame::Frame;
 use super::ink::{Align, Dash, Ink, Px, Rect, px};
 use super::labels::Field;
 use super::measure::{bar_length, plain};
 use super::obstacle::Obstacle;
 use super::palette;
-use super::scene::{Pen, Point, Scene, Shape, Stroke};
-use super::sheet::Frame;
+use super::role::{Pen, Point};
+use super::scene::{Scene, Shape, Stroke};
 use super::symbol;
 
 /// The tool's path: seen, but nothing needs to keep off it.

@@ -1,11 +1,12 @@
 //! Holes on the sheet: symbol, direction of the axis, and round it the dial that shows the misfit enlarged.
 use super::dials::{Detail, Dials};
+use super::frame::Frame;
 use super::ink::{Dash, Ink, Px, Rgb};
 use super::labels::Field;
 use super::obstacle::Obstacle;
 use super::palette;
-use super::scene::{Mark, Misfit, Scene, Standing};
-use super::sheet::Frame;
+use super::role::Standing;
+use super::scene::{Mark, Misfit, Scene};
 use super::symbol;
 use crate::units::Deg;
 

@@ -1,6 +1,6 @@
 //! Round numbers and scales: the scale bar, the magnification of misfits, and mm to pixels.
 use super::ink::{Px, Rect, px};
-use super::scene::Point;
+use super::role::Point;
 
 /// Maps the drawing's mm to pixels, the same scale both ways.
 #[derive(Clone, Copy, Debug)]

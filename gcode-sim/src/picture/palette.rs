@@ -2,7 +2,7 @@
 //!
 //! Colour never stands alone: every standing has a shape and a mark of its own (`symbol`), every pen its dashes.
 use super::ink::{Dash, Rgb};
-use super::scene::{Pen, Standing};
+use super::role::{Pen, Standing};
 
 pub(super) const PAPER: Rgb = Rgb(255, 255, 255);
 pub(super) const TEXT: Rgb = Rgb(0, 0, 0);

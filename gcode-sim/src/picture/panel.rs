@@ -1,10 +1,11 @@
 //! Title block, legend and notes beside the drawing.
 use super::font::{ASCENT, Font};
+use super::frame::{Frame, Shown};
 use super::ink::{Dash, Ink, Px, Rect, Rgb, px};
 use super::measure::plain;
 use super::palette;
-use super::scene::{LegendItem, Sample, Scene, Standing};
-use super::sheet::{Frame, Shown};
+use super::role::Standing;
+use super::scene::{LegendItem, Sample, Scene};
 use super::symbol;
 
 /// Where the drawing goes, and the columns beside it or below it.

@@ -43,7 +43,7 @@ mod tests {
     use super::*;
     use crate::picture::chart::{Curve, Graph, Sign};
     use crate::picture::ink::Ink;
-    use crate::picture::scene::{Pen, Standing};
+    use crate::picture::role::{Pen, Standing};
 
     fn plot(high: f64, length: f64) -> Plot {
         let sign = |part: f64| Sign {

@@ -2,6 +2,7 @@
 use super::PictureError;
 use super::dials::{Detail, Dials};
 use super::font::Font;
+use super::frame::{Frame, Shown};
 use super::ink::{Ink, Rect};
 use super::labels::Field;
 use super::lettering::{Lettering, caption_strokes};
@@ -9,7 +10,8 @@ use super::lines::{are_arrows_hidden, axes, block_stroke, is_path, scale_bar, st
 use super::marks::draw_marks;
 use super::measure::Scale;
 use super::panel::Panel;
-use super::scene::{Point, Scene, Shape, Standing, Stroke};
+use super::role::{Point, Standing};
+use super::scene::{Scene, Shape, Stroke};
 use super::size::Size;
 use super::words::Words;
 
@@ -28,18 +30,6 @@ pub struct Sheet {
 
 /// Coordinates beyond are slips, not parts, mm.
 const FARTHEST: f64 = 1e6;
-
-/// What every step of the layout needs.
-pub(super) struct Frame {
-    pub(super) font: Font,
-    /// Size of ordinary text, pixels.
-    pub(super) text: f64,
-    pub(super) scale: Scale,
-    /// Radius in pixels beyond which a dial would hide the part.
-    pub(super) largest_dial: f64,
-    /// How far the axes' arrows reach beyond the part, pixels.
-    pub(super) axis_reach: f64,
-}
 
 /// # Errors
 /// A coordinate that is no number, or farther than a kilometre from the origin.
@@ -85,24 +75,6 @@ pub fn lay_out(scene: &Scene, size: Size) -> Result<Sheet, PictureError> {
     inks.extend(scale_bar(&frame, Rect { top: drawing.bottom, ..panel.drawing }));
     inks.extend(panel.inks(scene, &frame, shown, &notes));
     Ok(Sheet { size, inks, labels, notes, magnification: shown.magnification })
-}
-
-/// Which signs the drawing really has, for the legend.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Shown {
-    pub(super) magnification: Option<f64>,
-    pub(super) directions: bool,
-    pub(super) astray: bool,
-    /// Good holes are drawn as they are, without a sign.
-    pub(super) plain_good: bool,
-    /// And those that aren't.
-    pub(super) plain_rest: bool,
-}
-
-impl Shown {
-    /// No holes are drawn.
-    const NOTHING: Self =
-        Self { magnification: None, directions: false, astray: false, plain_good: false, plain_rest: false };
 }
 
 /// The drawing with some of the detail there could be.
@@ -220,7 +192,8 @@ fn extent(scene: &Scene) -> (Point, Point) {
 mod tests {
     use super::*;
     use crate::picture::ink::Align;
-    use crate::picture::scene::{Axis, LegendItem, Mark, Misfit, Pen, Sample, Title};
+    use crate::picture::role::Pen;
+    use crate::picture::scene::{Axis, LegendItem, Mark, Misfit, Sample, Title};
     use proptest::prelude::*;
 
     fn scene(marks: Vec<Mark>) -> Scene {

@@ -1,7 +1,7 @@
 //! The signs of a drawing as paths: what a verdict looks like without its colour, arrows, the position symbol.
 use super::ink::{Dash, Ink, Px, Rgb, px};
 use super::palette;
-use super::scene::Standing;
+use super::role::Standing;
 use crate::units::Deg;
 
 /// The sign of a standing, `radius` pixels large. Every one differs from the others in outline and in its mark:

@@ -4,7 +4,8 @@
 //! is the seam: its left and its right edge are the same line of the part. What is long round and short along x is cut
 //! into strips, one below the other, so that holes are as large as the sheet allows.
 use super::super::measure::{bar_length, plain};
-use super::super::scene::{Axis, LegendItem, Mark, Misfit, Pen, Point, Sample, Scene, Shape, Stroke, Title};
+use super::super::role::{Pen, Point};
+use super::super::scene::{Axis, LegendItem, Mark, Misfit, Sample, Scene, Shape, Stroke, Title};
 use super::side::off;
 use super::top::{Cylinder, DrawnHole, NUMBERED, TopView, headline, number_few, standings, turn_name, worst};
 use crate::part::hole::Hole;
@@ -219,7 +220,7 @@ fn misfit(nominal: &Hole, found: &Hole) -> Option<Misfit> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::picture::scene::Standing;
+    use crate::picture::role::Standing;
 
     fn hole(x: f64, azimuth: f64, radius: f64) -> Hole {
         let (s, c) = (Deg(azimuth).sin(), Deg(azimuth).cos());

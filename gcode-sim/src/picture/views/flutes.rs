@@ -2,9 +2,8 @@
 //!
 //! From the side x points to the right and y up, so the tip is at the left, as on the machine. From the tip z points to
 //! the right and y up.
-use super::super::scene::{
-    Axis, LegendItem, Mark, Pen, Point, Sample, Scene, Shape, Standing, Stroke, Title,
-};
+use super::super::role::{Pen, Point, Standing};
+use super::super::scene::{Axis, LegendItem, Mark, Sample, Scene, Shape, Stroke, Title};
 use super::helix::HelixCourses;
 
 /// What pictures of a burr are made of; mm and degrees.

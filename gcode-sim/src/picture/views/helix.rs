@@ -1,6 +1,7 @@
 //! The helix angle along the flutes: as ground, as asked for with what is allowed, and how far off that.
 use super::super::chart::{Chart, Curve, Graph, Sign};
-use super::super::scene::{LegendItem, Pen, Point, Sample, Scene, Standing, Title};
+use super::super::role::{Pen, Point, Standing};
+use super::super::scene::{LegendItem, Sample, Scene, Title};
 use super::flutes::FluteView;
 
 /// Helix angles along the flutes, left-hand ones below 0. The way is that along the tooth bottom's outline from the shank's

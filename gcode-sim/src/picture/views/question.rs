@@ -1,5 +1,5 @@
 //! What a picture of holes answers: are they where the drawing wants them, or where they were before?
-use super::super::scene::Standing;
+use super::super::role::Standing;
 
 /// The question, and with it the words of the title block and the legend.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,7 +1,8 @@
 //! From where a part is looked at: which of its directions are right and up on the sheet.
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::super::scene::{Axis, Misfit, Point};
+use super::super::role::Point;
+use super::super::scene::{Axis, Misfit};
 use crate::part::hole::Hole;
 
 /// The direction that comes towards the reader.

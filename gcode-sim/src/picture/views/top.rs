@@ -2,7 +2,8 @@
 use nalgebra::Vector3;
 
 use super::super::measure::plain;
-use super::super::scene::{LegendItem, Mark, Pen, Sample, Scene, Shape, Standing, Stroke, Title};
+use super::super::role::{Pen, Standing};
+use super::super::scene::{LegendItem, Mark, Sample, Scene, Shape, Stroke, Title};
 use super::question::Question;
 use super::side::Side;
 use crate::part::hole::Hole;
