@@ -1,8 +1,6 @@
-//! The command line as written: the commands, their help texts with examples, and the arguments that several share.
-//! Those of one command stand in its file.
-use std::path::{Path, PathBuf};
-
-use clap::{Args, Parser, Subcommand};
+//! The command line as written: the commands and their help texts with examples. Each command's arguments stand in its
+//! file, those that several share in `conditions`.
+use clap::{Parser, Subcommand};
 
 use super::budget::BudgetArguments;
 use super::check::CheckArguments;
@@ -185,74 +183,4 @@ Example:
 Example:
   gcode-sim compare before.png after.png -o differences.png")]
     Compare(CompareArguments),
-}
-
-/// The program, and everything its run depends on.
-#[derive(Debug, Default, Args)]
-pub(super) struct ProgramArguments {
-    /// The main program; '-' reads standard input
-    #[arg(value_name = "PROGRAM.nc")]
-    pub(super) program: PathBuf,
-
-    #[command(flatten)]
-    pub(super) conditions: RunConditions,
-}
-
-/// Everything a run depends on but its program.
-#[derive(Clone, Debug, Default, Args)]
-pub(super) struct RunConditions {
-    /// A folder that holds called programs (repeatable; the program's own folder is searched first)
-    #[arg(long = "lib", value_name = "DIR")]
-    pub(super) libraries: Vec<PathBuf>,
-
-    /// Set a common variable before the start, e.g. '#500=12.5' (repeatable)
-    #[arg(long, value_name = "#N=VALUE")]
-    pub(super) set: Vec<String>,
-
-    /// The control: fanuc-31i, fanuc-0i-f or haas-ngc
-    #[arg(long, value_name = "NAME")]
-    pub(super) dialect: Option<String>,
-
-    /// Stop after this many blocks
-    #[arg(long, value_name = "N", default_value_t = 10_000_000)]
-    pub(super) max_blocks: u64,
-
-    /// A setting of the control, e.g. NAT=1, DPI=1, BDT=1+2, 5115=0.5 (repeatable)
-    #[arg(long, value_name = "KEY=VALUE")]
-    pub(super) control: Vec<String>,
-
-    /// A file of such settings (TOML): NAT = 1, 5115 = 0.5, ROA = "A"; flags go before it
-    #[arg(long, value_name = "CONTROL.toml")]
-    pub(super) control_file: Option<PathBuf>,
-
-    /// An input signal, e.g. '#1005=1' (repeatable)
-    #[arg(long, value_name = "#N=0|1")]
-    pub(super) input: Vec<String>,
-
-    /// The machine: axes, rotary sign, head, tools, offsets [default: the machine of the paper]
-    #[arg(long, value_name = "MACHINE.toml")]
-    pub(super) machine: Option<PathBuf>,
-
-    /// A code that calls a program, e.g. G201=9010, M50=9020, M6=9001 or T=9000 (repeatable)
-    #[arg(long, value_name = "CODE=PROGRAM")]
-    pub(super) code: Vec<String>,
-
-    /// G31 stops after this part of its path, 0 to 1
-    #[arg(long, value_name = "PART", allow_negative_numbers = true)]
-    pub(super) skip: Option<f64>,
-
-    /// The part that is there to be probed: G31 stops where the ball of the machine's or the job's [probe] touches it
-    #[arg(long, value_name = "JOB.toml")]
-    pub(super) part: Option<PathBuf>,
-
-    /// End the run at the main program's N-th M99
-    #[arg(long, value_name = "N")]
-    pub(super) cycles: Option<u32>,
-}
-
-impl RunConditions {
-    /// These, and a program.
-    pub(super) fn of(&self, program: &Path) -> ProgramArguments {
-        ProgramArguments { program: program.to_owned(), conditions: self.clone() }
-    }
 }

@@ -3,7 +3,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::args::RunConditions;
+use super::conditions::RunConditions;
 use super::format::FindingFormat;
 use super::{Refusal, Status, options, output, unused_machine};
 use crate::check::check;

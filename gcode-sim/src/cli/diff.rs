@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::args::RunConditions;
+use super::conditions::RunConditions;
 use super::format::FindingFormat;
 use super::{Refusal, Status, options, output, page, render, unused_machine};
 use crate::changes::{Compared, Revision};

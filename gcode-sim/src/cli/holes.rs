@@ -3,7 +3,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::args::ProgramArguments;
+use super::conditions::ProgramArguments;
 use super::format::ListFormat;
 use super::{Refusal, Status, options, output, page, progress, unused_machine};
 use crate::part::hole::HoleList;

@@ -3,6 +3,7 @@ mod args;
 mod budget;
 mod check;
 mod compare;
+mod conditions;
 mod diff;
 mod explain;
 pub mod format;

@@ -1,7 +1,7 @@
 //! Turns what stands on the command line into a request the session can run.
 use std::path::Path;
 
-use super::args::ProgramArguments;
+use super::conditions::ProgramArguments;
 use super::library::Folders;
 use super::{Refusal, input};
 use crate::exec::Limits;

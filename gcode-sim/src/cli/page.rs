@@ -1,7 +1,7 @@
 //! Writes the review page, with everything that the result depends on named in it.
 use std::path::Path;
 
-use super::args::RunConditions;
+use super::conditions::RunConditions;
 use super::library::Folders;
 use super::{Refusal, input, output};
 use crate::changes::Revision;

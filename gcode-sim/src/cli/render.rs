@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use super::args::ProgramArguments;
+use super::conditions::ProgramArguments;
 use super::format::TextFormat;
 use super::{Refusal, Status, options, output, progress, unused_machine};
 use crate::part::flutes::Flutes;

@@ -2,7 +2,7 @@
 //! machine are other holes.
 use std::path::Path;
 
-use super::args::ProgramArguments;
+use super::conditions::ProgramArguments;
 use super::output;
 use crate::control::{Dialect, Increment};
 use crate::session::Request;

@@ -3,7 +3,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::args::ProgramArguments;
+use super::conditions::ProgramArguments;
 use super::format::FindingFormat;
 use super::library::Folders;
 use super::{Refusal, Status, options, output, page, progress, render, unused_machine};

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::main_program;
 use crate::changes::{Change, Record, Revision, Where, changes};
-use crate::cli::args::RunConditions;
+use crate::cli::conditions::RunConditions;
 use crate::cli::{Refusal, input, options};
 use crate::diag::{Diagnostic, Severity};
 use crate::exec::Limits;
