@@ -32,7 +32,9 @@ impl Case {
         let reference = wanted.into_holes().expect("the part has holes");
         assert_eq!(reference.holes.len() as u32, rows * along);
         let program = program(&reference, along as usize);
-        Self { request: Request::new("O1.nc", program.into_bytes(), machine), reference }
+        let mut request = Request::new("O1.nc", program.into_bytes(), machine);
+        request.conduct = reference.conduct.clone();
+        Self { request, reference }
     }
 
     fn simulate(&self) -> Simulation {

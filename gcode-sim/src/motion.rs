@@ -152,9 +152,11 @@ pub enum EventKind {
     Tool {
         number: u32,
     },
-    /// The tool length offset that is part of every machine position from now on; moves nothing itself.
+    /// The tool length offset that is part of every machine position from now on, or what it comes of, is another; moves
+    /// nothing itself.
     ToolLength {
         offset: Position,
+        by: Lengthening,
     },
     Spindle {
         turning: Spindle,
@@ -204,6 +206,15 @@ pub struct Arc2 {
     pub centre: (f64, f64),
     /// The angle swept; positive is counterclockwise seen from the plane's positive third axis.
     pub sweep: Deg,
+}
+
+/// What a tool length offset comes of: G43 or G44, and the H with it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Lengthening {
+    #[default]
+    Off,
+    Plus(u32),
+    Minus(u32),
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

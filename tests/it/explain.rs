@@ -152,7 +152,7 @@ fn found(page: &Page, number: usize) -> Vec<Diagnostic> {
     // A finding on the reference itself has a second one without it.
     let job = jobs.get(number).or(jobs.first()).copied();
     let wanted = page.fenced("csv").into_iter().chain(job).next().map(|text| Wanted::parse(text).unwrap());
-    let request = Request::new("example.nc", program.as_bytes(), machine.clone());
+    let mut request = Request::new("example.nc", program.as_bytes(), machine.clone());
     if let Some(Wanted::Flutes(flutes)) = &wanted {
         return grind(&request, &mut NoLibrary, flutes).unwrap().verify().diagnostics;
     }
@@ -162,6 +162,7 @@ fn found(page: &Page, number: usize) -> Vec<Diagnostic> {
     if let (Some(surface), Some(probe)) = (surface, &machine.probe) {
         return follow(&request, &mut NoLibrary, surface, probe.radius).unwrap().followed.findings;
     }
+    request.conduct = reference.as_ref().map(|reference| reference.conduct.clone()).unwrap_or_default();
     let simulation = simulate(&request, &mut NoLibrary, surface).unwrap();
     match reference {
         Some(reference)

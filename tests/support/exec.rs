@@ -5,7 +5,7 @@
 use std::fmt::Write as _;
 
 use gcode_sim::exec::{Outcome, Stopped};
-use gcode_sim::motion::{Call, EventKind};
+use gcode_sim::motion::{Call, EventKind, Lengthening};
 use gcode_sim::source::Span;
 
 use crate::Case;
@@ -92,7 +92,11 @@ fn event(ran: &Ran, kind: &EventKind) -> String {
         }
         EventKind::Dwell { time } => format!("dwell {:.3} s", time.0),
         EventKind::Tool { number } => format!("tool {number}"),
-        EventKind::ToolLength { offset } => format!("tool length {}", at(offset)),
+        EventKind::ToolLength { offset, by } => match by {
+            Lengthening::Off => format!("tool length {}", at(offset)),
+            Lengthening::Plus(h) => format!("tool length {} by G43 H{h}", at(offset)),
+            Lengthening::Minus(h) => format!("tool length {} by G44 H{h}", at(offset)),
+        },
         EventKind::Spindle { turning, speed } => format!("spindle {turning:?} {}", speed.0).to_lowercase(),
         EventKind::Coolant { on, .. } => format!("coolant {}", if *on { "on" } else { "off" }),
         EventKind::Auxiliary { code } => format!("M{code:02} for the machine builder"),

@@ -30,7 +30,7 @@ pub(crate) fn run(case: &Case) {
     }
     let reference = wanted.and_then(Wanted::into_holes);
     let surface = reference.as_ref().and_then(|reference| reference.surface);
-    request.clamp = reference.as_ref().and_then(|reference| reference.clamp);
+    request.conduct = reference.as_ref().map(|reference| reference.conduct.clone()).unwrap_or_default();
     let simulation = simulate(&request, &mut NoLibrary, surface).unwrap();
     let (shown, findings) = match &reference {
         Some(reference) => {

@@ -17,7 +17,7 @@ pub(super) fn check(job: &Job, package: &Package, reference: &Reference) -> Resu
     let machine = Machine::parse(&package.machine).map_err(|e| told("machine.toml", &e))?;
     let main = main_program(package)?;
     let mut request = Request::new(file_name(main.number), main.text.as_bytes(), machine.clone());
-    request.clamp = reference.clamp;
+    request.conduct = reference.conduct.clone();
     let simulation = simulate(&request, &mut Programs(package), reference.surface)
         .map_err(|e| told("the main program", &e))?;
     let tolerances = Tolerances::of(reference, None);

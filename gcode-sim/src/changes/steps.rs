@@ -283,7 +283,8 @@ impl Recorder {
             EventKind::Skip { to, rate, .. } => self.go(Kind::Probe(rate.0), *to, event),
             EventKind::Dwell { time } => self.push(Kind::Dwell(time.0), here, event),
             EventKind::Tool { number } => self.push(Kind::Tool(*number), here, event),
-            EventKind::ToolLength { offset } => {
+            EventKind::ToolLength { offset, .. } if *offset == self.length => {}
+            EventKind::ToolLength { offset, .. } => {
                 self.length = *offset;
                 self.push(Kind::Length(*offset), here, event);
             }

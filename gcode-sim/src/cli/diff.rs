@@ -54,11 +54,14 @@ pub(super) struct DiffArguments {
 
 pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
     let tolerance = options::tolerance("--tolerance", Some(arguments.tolerance))?.unwrap_or_default();
-    let (old_request, mut old_folders) = options::request(&arguments.run.of(&arguments.old))?;
-    let (new_request, mut new_folders) = options::request(&arguments.run.of(&arguments.new))?;
+    let (mut old_request, mut old_folders) = options::request(&arguments.run.of(&arguments.old))?;
+    let (mut new_request, mut new_folders) = options::request(&arguments.run.of(&arguments.new))?;
     unused_machine::tell(&arguments.run.of(&arguments.new), &new_request);
     let reference = arguments.reference.as_deref().map(wanted_holes).transpose()?;
     let surface = reference.as_ref().and_then(|reference| reference.surface);
+    for request in [&mut old_request, &mut new_request] {
+        request.conduct = reference.as_ref().map(|reference| reference.conduct.clone()).unwrap_or_default();
+    }
     let refused = |error: crate::session::SessionError| Refusal::new(error.to_string());
     let trace = || arguments.page.as_ref().map(|_| Trace::default());
     let (mut old_trace, mut new_trace) = (trace(), trace());

@@ -85,6 +85,7 @@ fn holes(arguments: &RenderArguments, reference: Option<Reference>) -> Result<St
     unused_machine::tell(&arguments.program, &request);
     let asked = options::tolerance("--tolerance", arguments.tolerance)?;
     let surface = reference.as_ref().and_then(|r| r.surface);
+    request.conduct = reference.as_ref().map(|r| r.conduct.clone()).unwrap_or_default();
     let simulation =
         progress::of_run(&mut request, |request| session::simulate(request, &mut folders, surface))
             .map_err(|e| Refusal::new(e.to_string()))?;

@@ -130,7 +130,7 @@ fn holes(
     reference: &Reference,
     tolerances: Tolerances,
 ) -> Result<Status, Refusal> {
-    request.clamp = reference.clamp;
+    request.conduct = reference.conduct.clone();
     if let Some(path) = &arguments.page {
         let watched = page::watched(request, &mut folders, reference.surface)?;
         let simulation = &watched.0.simulation;

@@ -25,12 +25,12 @@ impl Core {
             plan.notes.push(Note::LengthOfNothing { code: row.code });
         }
         let offset = at(self.length_offset(&plan.state), span)?;
-        if offset == plan.state.length {
-            return Ok(false);
+        let (changed, by) = (offset != plan.state.length, plan.state.lengthening());
+        if changed || by != self.state.lengthening() {
+            plan.tell(EventKind::ToolLength { offset, by });
         }
         plan.state.length = offset;
-        plan.tell(EventKind::ToolLength { offset });
-        Ok(true)
+        Ok(changed)
     }
 
     /// 4. A move by the modal codes: a drilling cycle, or group 01.

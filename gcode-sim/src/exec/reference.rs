@@ -5,7 +5,7 @@ use super::notes::Note;
 use super::plan::Plan;
 use super::words::Given;
 use crate::alarm::Alarm;
-use crate::motion::{EventKind, Position};
+use crate::motion::{EventKind, Lengthening, Position};
 use crate::program::modes::Length;
 use crate::source::Span;
 
@@ -86,8 +86,8 @@ impl Core {
 
 /// No tool length offset any more, nor G43 or G44.
 fn end_length(plan: &mut Plan) {
-    if plan.state.length != Position::default() {
-        plan.tell(EventKind::ToolLength { offset: Position::default() });
+    if plan.state.modal.length != Length::Off {
+        plan.tell(EventKind::ToolLength { offset: Position::default(), by: Lengthening::Off });
     }
     plan.state.length = Position::default();
     plan.state.modal.length = Length::Off;

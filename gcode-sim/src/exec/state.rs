@@ -2,7 +2,8 @@
 //! leaves no trace.
 use super::modal::Modal;
 use super::transform::Transform;
-use crate::motion::{Axis, Position, Spindle};
+use crate::motion::{Axis, Lengthening, Position, Spindle};
+use crate::program::modes::Length;
 
 /// The control between two blocks. Lengths in mm, whatever G20 says.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -39,6 +40,17 @@ pub struct State {
     pub parameter_input: bool,
     /// The tool in the spindle.
     pub tool: u32,
+}
+
+impl State {
+    /// What the tool length offset comes of.
+    pub fn lengthening(&self) -> Lengthening {
+        match self.modal.length {
+            Length::Off => Lengthening::Off,
+            Length::Plus => Lengthening::Plus(self.codes.h),
+            Length::Minus => Lengthening::Minus(self.codes.h),
+        }
+    }
 }
 
 /// Where the last move ended, as it was programmed, while the program stands elsewhere in its coordinates because a

@@ -1,10 +1,9 @@
 //! What the wheel does in the blank between two passes: it may go straight in where a pass begins and straight out where
 //! one ends; all else is a dive.
-use std::collections::BTreeMap;
-
 use nalgebra::Point3;
 
 use super::ARITHMETIC;
+use crate::holes::per_block::PerBlock;
 use crate::motion::Place;
 use crate::part::flutes::Flutes;
 
@@ -33,7 +32,7 @@ pub struct Dive {
     /// Where it was nearest: below the tooth bottom if that is what's wrong, else below the blank's surface, mm.
     pub depth: f64,
     /// How often the block did it; the depth is the greatest.
-    pub times: usize,
+    pub times: u64,
     /// Moves, of a pass in rapid motion that begins at this block more than one.
     pub moves: usize,
 }
@@ -64,9 +63,7 @@ enum Stand {
 #[derive(Debug, Default)]
 pub(super) struct Dives {
     stand: Stand,
-    found: Vec<Dive>,
-    /// By the block and the kind, in `found`.
-    index: BTreeMap<(u32, u32, u8), usize>,
+    found: PerBlock<u8, Dive>,
     /// The wheel has been off the blank: before that, nobody knows where a rapid began.
     outside: bool,
     /// Rapids that weren't looked at for that reason.
@@ -84,7 +81,7 @@ impl Dives {
 
     pub(super) fn finish(mut self) -> Vec<Dive> {
         self.pit();
-        self.found
+        self.found.into_entries().map(|entry| Dive { times: entry.times, ..entry.value }).collect()
     }
 
     /// The wheel stood in the blank and no pass began.
@@ -103,31 +100,24 @@ impl Dives {
             Kind::Pit => 3,
             Kind::RapidPass(_) => 4,
         };
-        let key = (place.block.source.0, place.block.start, which);
-        let index = *self.index.entry(key).or_insert(self.found.len());
-        match self.found.get_mut(index) {
-            None => {
-                let Depth { depth, at } = deepest;
-                self.found.push(Dive { place, kind, at, depth, times: 1, moves: 1 });
-            }
-            Some(dive) => {
-                dive.times += 1;
-                dive.moves += 1;
-                if dive.depth < deepest.depth && !matches!(kind, Kind::RapidPass(_)) {
-                    dive.kind = kind;
-                }
-                dive.deepen(deepest);
-            }
+        let Depth { depth, at } = deepest;
+        let first = || Dive { place: place.clone(), kind, at, depth, times: 0, moves: 0 };
+        let (index, entry) = self.found.count(place.block, which, first);
+        let dive = &mut entry.value;
+        dive.moves += 1;
+        if dive.depth < depth && !matches!(kind, Kind::RapidPass(_)) {
+            dive.kind = kind;
         }
+        dive.deepen(deepest);
         index
     }
 
     /// A rapid that goes along a flute in the blank: a pass begins with it, or goes on. `passes`: those in feed so far.
     fn rapid_pass(&mut self, place: Place, depth: Depth, passes: usize) {
         self.stand = Stand::Ground;
-        if let Some(dive) = self.rapid.and_then(|index| self.found.get_mut(index)) {
-            dive.moves += 1;
-            dive.deepen(depth);
+        if let Some(entry) = self.rapid.and_then(|index| self.found.get_mut(index)) {
+            entry.value.moves += 1;
+            entry.value.deepen(depth);
             return;
         }
         self.rapids += 1;

@@ -73,6 +73,8 @@ pub struct Ground {
     /// From the C axis to the end of the burr's cylinder, x and y, as the machine file has it; `None` without a C that turns
     /// about z.
     pub offset: Option<[f64; 2]>,
+    /// Which way the axes run, by their letters: 1 or −1.
+    pub signs: Vec<(char, f64)>,
     pub findings: Vec<Diagnostic>,
 }
 
@@ -115,7 +117,7 @@ impl<'m> Follower<'m> {
             flutes,
             at: Position::default(),
             open: None,
-            ground: Ground { offset: offset(machine), ..Ground::default() },
+            ground: Ground { offset: offset(machine), signs: signs(machine), ..Ground::default() },
             dives: Dives::default(),
             turning: Turning::default(),
             moves: 0,
@@ -230,6 +232,16 @@ fn offset(machine: &Machine) -> Option<[f64; 2]> {
         }
         LinkMotion::Turn { .. } | LinkMotion::Slide { .. } => None,
     }
+}
+
+/// Of the axes that carry the burr, and of the one that swivels the wheel.
+fn signs(machine: &Machine) -> Vec<(char, f64)> {
+    let carry = machine.table.0.iter().map(|link| {
+        let (LinkMotion::Turn { about: along, .. } | LinkMotion::Slide { along }) = &link.motion;
+        (machine.axes.letter(link.axis), link.sign * along.sum().signum())
+    });
+    let swivels = machine.wheel.and_then(|wheel| wheel.swivels);
+    carry.chain(swivels.map(|(axis, sign)| (machine.axes.letter(axis), sign))).collect()
 }
 
 impl Sink for Follower<'_> {

@@ -4,6 +4,7 @@ use super::rapids::TOUCH;
 use super::{Extractor, Pass, spindle};
 use crate::diag::Diagnostic;
 use crate::machine::HeadKind;
+use crate::motion::Spindle;
 use crate::units::Deg;
 
 /// A feed may differ from the tool's direction by this much and by what rounding explains.
@@ -81,7 +82,11 @@ impl Extractor<'_> {
     /// The spindle and the head during a feed, and its direction.
     fn judge_feed(&mut self, line: &Line, off: Option<Deg>) {
         let place = line.place();
-        if line.spindle_off {
+        self.check_held(place, line.hold);
+        if let Some(feeds) = line.feeds() {
+            self.cuttings.add(place, &line.force, feeds);
+        }
+        if line.force.turning == Spindle::Off {
             let builder = self.builder;
             self.findings.add("spindle-stopped", place, 0, || {
                 spindle::stopped("the tool feeds into the part while the spindle stands", builder)

@@ -2,7 +2,10 @@
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::Pass;
+use super::clamping::Hold;
+use super::cutting::InForce;
 use crate::motion::{Place, Position};
+use crate::units::MmPerMin;
 
 /// A stroke counts as deeper than the last when it is so by this much, in mm.
 const DEEPER: f64 = 0.001;
@@ -25,8 +28,11 @@ pub(super) struct Line {
     pub out: Unit<Vector3<f64>>,
     /// The direction of the tool on the part, where known.
     pub tool_axis: Option<Unit<Vector3<f64>>>,
-    pub tool: Option<u32>,
-    pub spindle_off: bool,
+    /// What was in force when the feed began, and how the clamp stood.
+    pub force: InForce,
+    pub hold: Hold,
+    /// The slowest and the fastest of the feeds that cut.
+    feeds: Option<[MmPerMin; 2]>,
     /// The depth reached by finished strokes.
     deepest: f64,
     /// The stroke being fed.
@@ -64,8 +70,9 @@ impl Line {
             start,
             out,
             tool_axis: None,
-            tool: None,
-            spindle_off: false,
+            force: InForce::default(),
+            hold: Hold::default(),
+            feeds: None,
             deepest: 0.0,
             stroke: Some(Stroke { from: 0.0, reach: depth, place: place.clone(), at }),
             depth,
@@ -73,6 +80,16 @@ impl Line {
             at,
             rounding,
         })
+    }
+
+    /// A feed inwards that cut.
+    pub(super) fn note_feed(&mut self, feed: MmPerMin) {
+        let [least, most] = self.feeds.unwrap_or([feed, feed]);
+        self.feeds = Some([if feed < least { feed } else { least }, if most < feed { feed } else { most }]);
+    }
+
+    pub(super) fn feeds(&self) -> Option<[MmPerMin; 2]> {
+        self.feeds
     }
 
     /// How deep the line is cut.
@@ -200,6 +217,6 @@ impl Line {
     fn pass(&self, depth: f64, place: Place, at: Position) -> Pass {
         let bottom = self.start - self.out.into_inner() * depth;
         let axis = self.tool_axis.unwrap_or(self.out);
-        Pass { start: self.start, bottom, axis, fed: self.out, tool: self.tool, place, at }
+        Pass { start: self.start, bottom, axis, fed: self.out, tool: self.force.tool, place, at }
     }
 }

@@ -1,4 +1,6 @@
 //! Motion → holes: follows the tool on the part, sees feeds along one line as passes, and passes as holes.
+mod clamping;
+mod cutting;
 mod findings;
 mod group;
 mod judge;
@@ -6,6 +8,7 @@ mod line;
 mod machine_words;
 pub mod near;
 mod passing;
+pub(crate) mod per_block;
 mod probing;
 mod rapids;
 #[cfg(test)]
@@ -16,22 +19,26 @@ mod tests;
 
 use nalgebra::Point3;
 
+pub use cutting::Cutting;
 pub use group::Found;
 use group::Pass;
 use line::{After, Line};
-pub use passing::{CONTACT, Passing, Way};
+pub use passing::{CONTACT, Passing, ROUNDED, Way};
 
+use self::clamping::Hold;
+use self::cutting::{Cuttings, InForce};
 use self::findings::Findings;
 use self::passing::Passings;
-use self::rapids::Curved;
+use self::rapids::{Curved, TOUCH};
 use crate::diag::{Diagnostic, Severity};
-use crate::job::Clamp;
 use crate::machine::path::Travel;
 use crate::machine::{Frame, Machine, Pose, Setup};
 use crate::motion::{Arc2, Event, EventKind, Place, Position, Signal, Sink, SkipFeed, Spindle, StopKind};
+use crate::part::conduct::Conduct;
 use crate::part::hole::{Hole, HoleList, Origin, Unit};
 use crate::part::surface::Surface;
 use crate::source::Span;
+use crate::units::Rpm;
 
 /// More passes than this aren't kept: no part has so many holes, but a loop that never ends drills them, and must not
 /// fill the memory.
@@ -45,6 +52,10 @@ pub struct Extracted {
     pub findings: Vec<Diagnostic>,
     /// What passes near the part, where the part's surface is known.
     pub passings: Vec<Passing>,
+    /// What was in force where the tool cut.
+    pub cuttings: Vec<Cutting>,
+    /// What the motion was looked at for.
+    pub conduct: Conduct,
 }
 
 /// Listens to a run and collects the holes it makes.
@@ -54,10 +65,11 @@ pub struct Extractor<'m> {
     surface: Option<Surface>,
     at: Position,
     setup: Setup,
-    spindle: Spindle,
+    force: InForce,
     /// The last M code since M03, M04 or M05 that went to the machine builder's logic, which may have started the spindle.
     builder: Option<u32>,
-    clamp: Option<Clamp>,
+    conduct: Conduct,
+    hold: Hold,
     /// The part's place while the table stands as it does in `at`.
     frame: Frame,
     /// The tool on the part.
@@ -72,6 +84,7 @@ pub struct Extractor<'m> {
     too_many: Option<Place>,
     findings: Findings,
     passings: Passings,
+    cuttings: Cuttings,
     /// How many times a probe was sent to the part.
     touches: u64,
 }
@@ -96,9 +109,10 @@ impl<'m> Extractor<'m> {
             surface: None,
             at,
             setup,
-            spindle: Spindle::Off,
+            force: InForce::default(),
             builder: None,
-            clamp: None,
+            conduct: Conduct::default(),
+            hold: Hold::default(),
             frame,
             pose,
             outside: false,
@@ -108,6 +122,7 @@ impl<'m> Extractor<'m> {
             too_many: None,
             findings: Findings::default(),
             passings: Passings::default(),
+            cuttings: Cuttings::default(),
             touches: 0,
         }
     }
@@ -119,15 +134,11 @@ impl<'m> Extractor<'m> {
         self
     }
 
-    /// With the codes of the rotary's clamp known, they are not taken for what may start the spindle.
+    /// With what the reference says of how the part is to be worked, the motion is held against that as well.
     #[must_use]
-    pub fn with_clamp(mut self, clamp: Option<Clamp>) -> Self {
-        self.clamp = clamp;
+    pub fn with_conduct(mut self, conduct: &Conduct) -> Self {
+        self.conduct = conduct.clone();
         self
-    }
-
-    fn clamps(&self, code: u32) -> bool {
-        self.clamp.is_some_and(|clamp| code == clamp.on || code == clamp.off)
     }
 
     pub fn finish(mut self) -> Extracted {
@@ -143,7 +154,13 @@ impl<'m> Extractor<'m> {
             finding.help("does a loop never end? else split the program")
         }));
         let holes = group::holes(&self.passes, self.machine);
-        Extracted { holes, findings, passings: self.passings.finish() }
+        Extracted {
+            holes,
+            findings,
+            passings: self.passings.finish(),
+            cuttings: self.cuttings.finish(),
+            conduct: self.conduct,
+        }
     }
 
     fn keep(&mut self, passes: impl IntoIterator<Item = Pass>) {
@@ -159,6 +176,7 @@ impl<'m> Extractor<'m> {
     fn motion(&mut self, event: &Event<'_>, pace: Pace, to: &Position, arc: Option<&Arc2>) {
         let from = self.at;
         self.idle_axes(event, &from, to);
+        self.check_turn(event, &from, to);
         let before = self.pose;
         if self.machine.table.differs(&from, to) {
             self.frame = self.machine.part_frame(to);
@@ -194,7 +212,12 @@ impl<'m> Extractor<'m> {
         match line.after(&from, &tip) {
             After::On => {
                 let again = match pace {
-                    Pace::Feed => line.feed(&tip, event.place(), &self.at),
+                    Pace::Feed => {
+                        if line.depth_of(&from) < line.depth_of(&tip) {
+                            self.note_feed(event, &mut line);
+                        }
+                        line.feed(&tip, event.place(), &self.at)
+                    }
                     Pace::Rapid | Pace::Probe => {
                         let (again, uncut) = line.rapid(&tip);
                         if uncut {
@@ -220,10 +243,21 @@ impl<'m> Extractor<'m> {
         let line = Line::begin(start, self.pose.tip, event.place(), self.at, rounding);
         self.line = line.map(|mut line| {
             line.tool_axis = self.pose.axis;
-            line.tool = self.setup.tool;
-            line.spindle_off = self.spindle == Spindle::Off;
+            line.force = InForce { tool: self.setup.tool, ..self.force };
+            line.hold = self.hold;
+            self.note_feed(event, &mut line);
             line
         });
+    }
+
+    /// How fast a feed inwards is, where it cuts: the way to the part may be fed faster.
+    fn note_feed(&self, event: &Event<'_>, line: &mut Line) {
+        let cuts = self.surface.is_none_or(|surface| TOUCH < surface.depth(&self.pose.tip));
+        if let EventKind::Feed { rate, .. } = event.kind
+            && cuts
+        {
+            line.note_feed(*rate);
+        }
     }
 
     /// The table or the head turns, or an arc: the tool's way on the part is curved.
@@ -276,9 +310,14 @@ impl Sink for Extractor<'_> {
                 self.known_tool(event, *number);
                 self.set_up(|setup| setup.tool = Some(*number));
             }
-            EventKind::ToolLength { offset } => self.set_up(|setup| setup.offset = *offset),
-            EventKind::Spindle { turning, .. } => {
-                self.spindle = *turning;
+            EventKind::ToolLength { offset, by } => {
+                self.set_up(|setup| setup.offset = *offset);
+                self.force.by = *by;
+            }
+            EventKind::Spindle { turning, speed } => {
+                // At S0 it stands.
+                self.force.turning = if *speed == Rpm(0.0) { Spindle::Off } else { *turning };
+                self.force.speed = *speed;
                 self.builder = None;
             }
             EventKind::Stop { kind: StopKind::Message, text, named } => {
@@ -286,11 +325,12 @@ impl Sink for Extractor<'_> {
                     self.set_up(|setup| setup.head_angle = Some(angle));
                 }
             }
-            EventKind::Auxiliary { code } if !self.clamps(*code) => self.builder = Some(*code),
-            EventKind::Auxiliary { .. }
-            | EventKind::Stop { .. }
-            | EventKind::Dwell { .. }
-            | EventKind::Coolant { .. } => {}
+            EventKind::Auxiliary { code } => {
+                if !self.hold(*code) {
+                    self.builder = Some(*code);
+                }
+            }
+            EventKind::Stop { .. } | EventKind::Dwell { .. } | EventKind::Coolant { .. } => {}
         }
     }
 }

@@ -1,34 +1,36 @@
 //! Motion that passes near the part without touching it: how near, which the verdict holds against the job's clearance.
-use std::collections::BTreeMap;
-
 use nalgebra::Point3;
 
 use super::Extractor;
-use super::rapids::TOUCH;
-use crate::machine::Pose;
+use super::per_block::PerBlock;
 use crate::machine::path::Travel;
+use crate::machine::{LinkMotion, Pose};
 use crate::motion::{Event, Place};
+use crate::part::distance::Nearest;
 use crate::part::surface::Surface;
 use crate::units::Deg;
 
-/// Turns are kept where the tool comes this near to the part, in mm, …
-const TURNS: f64 = 5.0;
-
-/// … and straight rapids where it does this, in mm: a tool length or a part is easily off by as much.
+/// So near to the part nobody sets a tool, mm: a tool length or a part is easily off by as much.
 pub const CONTACT: f64 = 0.1;
+
+/// What rounding may take off a height that the reference says, mm.
+pub const ROUNDED: f64 = 0.01;
 
 /// A straight way within 45° of the surface's normal leads to the part or away from it, not past it.
 const STEEP: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-/// So many make a part of a way as small as an increment.
-const THIRDS: u32 = 30;
+/// A curved way is first cut into parts that stray from their chords by no more than this, mm, …
+const STRAY: f64 = 5.0;
+
+/// … and then into smaller ones until the nearest place is known to this, mm.
+const KNOWN: f64 = 1e-3;
 
 /// What a block does near the part, where it comes nearest.
 #[derive(Clone, Debug)]
 pub struct Passing {
     pub place: Place,
     pub way: Way,
-    /// From the tool's tip to the surface, mm; a little below 0 where it touches.
+    /// From the tool's tip to the surface, mm; a little below 0 where it touches. Of [`Way::Low`] along the tool.
     pub tip: f64,
     /// From the edge of the tool, were its end flat, where its direction and diameter are known, mm.
     pub edge: Option<f64>,
@@ -41,19 +43,17 @@ pub struct Passing {
 pub enum Way {
     /// An axis turns the part or the head, by so much in all.
     Turning { letter: char, by: Deg },
+    /// An axis of the table turns while the tool has been retracted less far than the reference says.
+    Low { letter: char, by: Deg },
     /// A rapid past the part.
     Past,
     /// A rapid that ends there.
     Towards,
 }
 
-/// One for each block and way, in the order in which they came up.
+/// One for each block and way, in the order in which they came up: the nearest.
 #[derive(Debug, Default)]
-pub(super) struct Passings {
-    list: Vec<Passing>,
-    /// By the block, and how it passes.
-    seen: BTreeMap<(u32, u32, u8), usize>,
-}
+pub(super) struct Passings(PerBlock<u8, Passing>);
 
 impl Passings {
     fn add(&mut self, event: &Event<'_>, way: Way, tip: f64, edge: Option<f64>) {
@@ -61,24 +61,17 @@ impl Passings {
             Way::Turning { .. } => 0,
             Way::Past => 1,
             Way::Towards => 2,
+            Way::Low { .. } => 3,
         };
-        let key = (event.block.source.0, event.block.start, kind);
-        match self.seen.get(&key).map(|index| &mut self.list[*index]) {
-            Some(known) => {
-                known.times += 1;
-                if tip < known.tip {
-                    (known.place, known.way, known.tip, known.edge) = (event.place(), way, tip, edge);
-                }
-            }
-            None => {
-                self.seen.insert(key, self.list.len());
-                self.list.push(Passing { place: event.place(), way, tip, edge, times: 1 });
-            }
+        let passing = || Passing { place: event.place(), way, tip, edge, times: 0 };
+        let (_, entry) = self.0.count(event.block, kind, passing);
+        if tip < entry.value.tip {
+            entry.value = passing();
         }
     }
 
     pub(super) fn finish(self) -> Vec<Passing> {
-        self.list
+        self.0.into_entries().map(|entry| Passing { times: entry.times, ..entry.value }).collect()
     }
 }
 
@@ -115,49 +108,78 @@ impl Extractor<'_> {
                 && self.machine.carries(*axis)
         });
         let Some((axis, letter)) = turned else { return };
-        let Some((tip, pose)) = self.nearest_on(surface, travel) else { return };
         let by = Deg(travel.to[axis] - travel.from[axis]).abs();
+        let reach =
+            self.setup.tool.and_then(|tool| self.machine.find_tool(tool)?.diameter).unwrap_or(0.0) / 2.0;
+        let (clearance, retract) = (self.conduct.clearance, self.conduct.retract);
+        let asked = clearance.map_or(CONTACT, |clearance| (clearance + ROUNDED + reach).max(CONTACT));
+        let retract = retract.filter(|_| self.machine.table.has(axis));
+        let limit = retract.map_or(asked, |retract| retract.max(asked));
+        let Some((tip, pose)) = self.nearest_on(surface, travel, limit) else { return };
         let edge = self.edge(surface, &pose);
-        self.passings.add(event, Way::Turning { letter, by }, tip, edge);
+        let near = edge.map_or(tip, |edge| edge.min(tip));
+        if tip < CONTACT || clearance.is_some_and(|clearance| near <= clearance + ROUNDED) {
+            self.passings.add(event, Way::Turning { letter, by }, tip, edge);
+            return;
+        }
+        // Beside the part the tool may be as low as it likes.
+        let above = pose.axis.and_then(|axis| {
+            let top = surface.exit(&pose.tip, &axis)?;
+            Some((pose.tip - top).dot(&axis))
+        });
+        if let Some((above, retract)) = above.zip(retract)
+            && 0.0 <= above
+            && above < retract - ROUNDED
+        {
+            self.passings.add(event, Way::Low { letter, by }, above, None);
+        }
     }
 
-    /// Where a curved way comes nearest to the surface, if that is near.
-    fn nearest_on(&self, surface: &Surface, travel: &Travel<'_>) -> Option<(f64, Pose)> {
-        // Coarse chords first: most ways stay far away.
-        let mut nearest = (0u32, 0u32);
-        for tolerance in [40.0, 5.0, 0.5, TOUCH] {
-            let mut last: Option<Pose> = None;
-            let mut least = f64::INFINITY;
-            let mut steps = 0;
-            self.machine.follow(travel, &self.setup, tolerance, |pose| {
-                if let Some(from) = last.replace(pose) {
-                    steps += 1;
-                    let bound = surface.clearance(&from.tip, &pose.tip);
-                    if bound < least {
-                        least = bound;
-                        nearest.0 = steps;
-                    }
-                }
-            });
-            nearest.1 = steps;
-            if TURNS + tolerance < least {
-                return None;
-            }
+    /// Where a curved way comes nearest to the surface, if that is nearer than `limit`.
+    ///
+    /// Along a chord the distance from a convex body is a convex function, so nowhere below both tangents at its ends, and
+    /// the way is no nearer than its chord less what it strays from it. Parts that can't be nearer than what is known are
+    /// left; halving the others quarters what they stray.
+    fn nearest_on(&self, surface: &Surface, travel: &Travel<'_>, limit: f64) -> Option<(f64, Pose)> {
+        let end = |t: f64| {
+            let pose = self.machine.forward(&travel.position(t), &self.setup);
+            End { t, pose, nearest: surface.nearest(&pose.tip) }
+        };
+        let mut best = end(0.0);
+        if self.turns_into_itself(surface, travel) {
+            return (best.nearest.distance < limit).then_some((best.nearest.distance, best.pose));
         }
-        // On the nearest chord's part of the way the distance falls and rises again: thirds close in on the least.
-        let pose = |t: f64| self.machine.forward(&travel.position(t), &self.setup);
-        let distance = |t: f64| surface.nearest(&pose(t).tip).distance;
-        let share = |step: u32| f64::from(step) / f64::from(nearest.1);
-        let (mut low, mut high) = (share(nearest.0.saturating_sub(1)), share(nearest.0));
-        for _ in 0..THIRDS {
-            let third = (high - low) / 3.0;
-            match distance(low + third) <= distance(high - third) {
-                true => high -= third,
-                false => low += third,
-            }
+        let steps = self.machine.steps(travel, &self.setup, STRAY);
+        let ends: Vec<End> = (0..=steps).map(|step| end(f64::from(step) / f64::from(steps))).collect();
+        for one in &ends {
+            best = best.nearer(*one);
         }
-        let least = distance(low);
-        (least < TURNS).then(|| (least, pose(low)))
+        let mut open: Vec<(End, End, f64)> = ends.windows(2).map(|pair| (pair[0], pair[1], STRAY)).collect();
+        while let Some((from, to, stray)) = open.pop() {
+            let least = from.least_to(&to) - stray;
+            let middle = (from.t + to.t) / 2.0;
+            if limit <= least || best.nearest.distance - KNOWN <= least || middle <= from.t || to.t <= middle
+            {
+                continue;
+            }
+            let middle = end(middle);
+            best = best.nearer(middle);
+            open.push((middle, to, stray / 4.0));
+            open.push((from, middle, stray / 4.0));
+        }
+        (best.nearest.distance < limit).then_some((best.nearest.distance, best.pose))
+    }
+
+    /// Whether a motion turns the part about the axis of its own surface and does nothing else: the tool stays as far from
+    /// it as it is.
+    fn turns_into_itself(&self, surface: &Surface, travel: &Travel<'_>) -> bool {
+        let [link] = self.machine.table.0.as_slice() else { return false };
+        let LinkMotion::Turn { about, centre } = &link.motion else { return false };
+        let moved = (0..travel.to.0.len()).filter(|axis| travel.from[*axis] != travel.to[*axis]);
+        let part = self.machine.part.frame();
+        let (about, centre) =
+            (part.rotation.inverse_transform_unit_vector(about), part.inverse_transform_point(centre));
+        travel.arc.is_none() && moved.eq([link.axis]) && surface.is_round(&centre, &about)
     }
 
     /// How far the edge of a flat end would be from the surface, on the side that leans towards it.
@@ -168,5 +190,115 @@ impl Extractor<'_> {
         let across = normal.into_inner() - axis.into_inner() * normal.dot(&axis);
         let towards = across.try_normalize(1e-9)? * (diameter / -2.0);
         Some(surface.nearest(&(pose.tip + towards)).distance)
+    }
+}
+
+/// A place of a curved way.
+#[derive(Clone, Copy)]
+struct End {
+    /// The part of the way, 0 to 1.
+    t: f64,
+    pose: Pose,
+    nearest: Nearest,
+}
+
+impl End {
+    fn nearer(self, other: Self) -> Self {
+        if other.nearest.distance < self.nearest.distance { other } else { self }
+    }
+
+    /// No point of the chord to another end is nearer than this.
+    fn least_to(&self, to: &Self) -> f64 {
+        let along = to.pose.tip - self.pose.tip;
+        let (low, high) = (self.nearest.distance, to.nearest.distance);
+        let (falling, rising) = (self.nearest.normal.dot(&along), to.nearest.normal.dot(&along));
+        if falling >= 0.0 || rising <= 0.0 {
+            return low.min(high);
+        }
+        // Where the tangents low + falling·t and high − rising·(1 − t) meet.
+        low + falling * ((high - low - rising) / (falling - rising))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::machine::{Head, HeadKind, Machine};
+    use crate::motion::Position;
+    use crate::units::Deg;
+
+    fn turning(surface: Surface) -> Machine {
+        let link = match surface {
+            Surface::Ellipsoid { .. } => nalgebra::Vector3::y_axis(),
+            Surface::Cylinder { .. } => nalgebra::Vector3::x_axis(),
+        };
+        let mut machine = Machine {
+            head: Head::new(HeadKind::Fixed(nalgebra::Vector3::z_axis()), 0.0),
+            ..Machine::default()
+        };
+        if let LinkMotion::Turn { about, .. } = &mut machine.table.0[0].motion {
+            *about = link;
+        }
+        machine
+    }
+
+    fn at(values: [f64; 4]) -> Position {
+        let mut at = Position::default();
+        (at[0], at[1], at[2], at[4]) = (values[0], values[1], values[2], values[3]);
+        at
+    }
+
+    fn nearest(machine: &Machine, surface: &Surface, from: &Position, to: &Position) -> f64 {
+        let extractor = Extractor::new(machine).with_surface(Some(*surface));
+        let travel = Travel { from, to, arc: None };
+        extractor.nearest_on(surface, &travel, f64::INFINITY).unwrap().0
+    }
+
+    /// A tool at x 60, z 0 beside a sphere of 50 about the axis: 10 mm off however far B turns. Sent to x −60 meanwhile it
+    /// stands at the centre half way.
+    #[test]
+    fn turns_worked_by_hand() {
+        let sphere = Surface::Ellipsoid { a: 50.0, b: 50.0 };
+        let machine = turning(sphere);
+        let from = at([60.0, 0.0, 0.0, 0.0]);
+        assert!((nearest(&machine, &sphere, &from, &at([60.0, 0.0, 0.0, 725.0])) - 10.0).abs() < 1e-9);
+        assert!((nearest(&machine, &sphere, &from, &at([-60.0, 0.0, 0.0, 180.0])) + 50.0).abs() < 2e-3);
+        assert!((nearest(&machine, &sphere, &from, &from) - 10.0).abs() < 1e-9, "no way at all");
+        // The tip stands on the axis, above the pole: turning doesn't move it.
+        let above = at([0.0, 53.0, 0.0, 0.0]);
+        assert!((nearest(&machine, &sphere, &above, &at([0.0, 53.0, 0.0, 90.0])) - 3.0).abs() < 1e-9);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        /// No place of the way is nearer than what is found, and what is found is a place of the way.
+        #[test]
+        fn the_nearest_place_is_found(
+            (a, b, cylinder) in (5.0..80.0, 5.0..80.0f64, any::<bool>()),
+            ends in prop::array::uniform6(-120.0..120.0f64),
+            turns in (-400.0..400.0f64, -400.0..400.0f64),
+            aside in prop::array::uniform3(-20.0..20.0f64),
+        ) {
+            let (a, b): (f64, f64) = (a, b);
+            let surface = if cylinder { Surface::Cylinder { radius: a } } else { Surface::Ellipsoid { a, b } };
+            let mut machine = turning(surface);
+            machine.part.shift = nalgebra::Vector3::new(aside[0], aside[1], aside[2]);
+            machine.part.tilt = [Deg(aside[2]), Deg(aside[0]), Deg(aside[1])];
+            let from = at([ends[0], ends[1], ends[2], turns.0]);
+            let to = at([ends[3], ends[4], ends[5], turns.1]);
+            let found = nearest(&machine, &surface, &from, &to);
+            let travel = Travel { from: &from, to: &to, arc: None };
+            let mut least = f64::INFINITY;
+            for step in 0..=1000 {
+                let tip = machine.forward(&travel.position(f64::from(step) / 1000.0), &crate::machine::Setup::default()).tip;
+                least = least.min(surface.nearest(&tip).distance);
+            }
+            prop_assert!(found <= least + KNOWN, "{} {}", found, least);
+            // Between two of so many places it may be a little nearer.
+            prop_assert!(least <= found + 2.0, "{} {}", found, least);
+        }
     }
 }

@@ -107,6 +107,12 @@ impl Chain {
         })
     }
 
+    /// The axes that turn what stands on the chain.
+    pub fn turning(&self) -> impl Iterator<Item = Axis> + '_ {
+        let turns = self.0.iter().filter(|link| matches!(link.motion, LinkMotion::Turn { .. }));
+        turns.map(|link| link.axis)
+    }
+
     /// The sum of the angles its rotary axes turn by between two positions.
     pub fn turned(&self, a: &Position, b: &Position) -> Deg {
         let turns = self.0.iter().filter(|link| matches!(link.motion, LinkMotion::Turn { .. }));

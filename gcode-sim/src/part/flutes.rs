@@ -2,7 +2,7 @@
 use nalgebra::Point3;
 
 use super::profile::Profile;
-use crate::job::{Burr, FluteLaw};
+use crate::job::{AxisSigns, Burr, FluteLaw};
 use crate::units::Deg;
 
 /// What a burr's program is held against; lengths in mm.
@@ -33,6 +33,8 @@ pub struct Flutes {
     pub speed: Option<f64>,
     /// From the C axis to the end of the cylinder at C 0, x and y, as the job has it.
     pub c_offset: [f64; 2],
+    /// Which way the axes run, where the job says it.
+    pub signs: Option<AxisSigns>,
 }
 
 impl Flutes {
@@ -53,6 +55,7 @@ impl Flutes {
             index_tolerance: Deg(job.tolerance.index),
             speed: job.program.speed_said.then_some(job.program.speed),
             c_offset: job.grinder.c_offset,
+            signs: job.grinder.signs_said.then_some(job.grinder.signs),
         }
     }
 

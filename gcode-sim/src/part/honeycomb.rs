@@ -5,11 +5,12 @@
 //! +z, and azimuth counts from z towards y. Both senses give the same holes.
 use nalgebra::{Point3, Vector3};
 
+use super::conduct::{Conduct, Duty};
 use super::hole::Hole;
 use super::read::ReferenceError;
 use super::reference::Reference;
 use super::surface::Surface;
-use crate::job::{Cylinder, Honeycomb, Metric, Spacing};
+use crate::job::{Cylinder, Drill, Honeycomb, Metric, Spacing};
 use crate::units::Deg;
 
 /// No cylinder that is drilled hole by hole has more.
@@ -129,10 +130,25 @@ pub(super) fn reference(job: &Honeycomb) -> Result<Reference, ReferenceError> {
         position: Some(job.position_tolerance),
         depth: Some(job.depth_tolerance),
         surface: Some(Surface::Cylinder { radius: outer }),
-        clearance: Some(job.machine.clearance),
-        clamp: job.machine.clamp,
+        conduct: conduct(job),
         pattern: Some(pattern),
     })
+}
+
+fn conduct(job: &Honeycomb) -> Conduct {
+    let Drill { number, speed, feed, said, .. } = job.drill;
+    Conduct {
+        clearance: Some(job.machine.clearance),
+        retract: job.machine.retract_said.then_some(job.machine.retract),
+        rotary: Some(job.machine.rotary),
+        clamp: job.machine.clamp,
+        tools: vec![Duty {
+            number,
+            offset: said.number.then_some(number),
+            speed: said.speed.then_some(speed),
+            feed: said.feed.then_some(feed),
+        }],
+    }
 }
 
 /// How many rows, and the pitch at which all six neighbours are equally far.

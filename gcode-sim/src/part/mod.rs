@@ -2,6 +2,7 @@
 //!
 //! This module knows no NC code and shares no formula with the generator: a verifier that did would agree with
 //! its mistakes.
+pub mod conduct;
 pub mod distance;
 pub mod flutes;
 pub mod hole;

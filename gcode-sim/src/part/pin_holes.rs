@@ -2,11 +2,12 @@
 //! the direction is the surface's gradient there.
 use nalgebra::{Point3, Vector3};
 
+use super::conduct::{Conduct, Duty};
 use super::hole::Hole;
 use super::read::ReferenceError;
 use super::reference::Reference;
 use super::surface::Surface;
-use crate::job::{AxisDirection, HoleWanted, PinHoles};
+use crate::job::{AxisDirection, HoleWanted, PinHoles, Tool};
 use crate::units::Deg;
 
 /// What the job's part should get.
@@ -18,10 +19,25 @@ pub(super) fn reference(job: &PinHoles) -> Result<Reference, ReferenceError> {
         position: Some(job.position_tolerance),
         depth: Some(job.depth_tolerance),
         surface: Some(surface),
-        clearance: Some(job.machine.clearance),
-        clamp: None,
+        conduct: conduct(job),
         pattern: None,
     })
+}
+
+fn conduct(job: &PinHoles) -> Conduct {
+    let duty = |tool: &Tool| Duty {
+        number: tool.number,
+        offset: Some(tool.number),
+        speed: Some(tool.speed),
+        feed: Some(tool.feed),
+    };
+    Conduct {
+        clearance: Some(job.machine.clearance),
+        retract: job.machine.retract_said.then_some(job.machine.retract),
+        rotary: Some(job.machine.rotary),
+        clamp: None,
+        tools: job.tools.iter().filter(|_| job.tools_said).map(duty).collect(),
+    }
 }
 
 /// The upper half's point over (r·cos α, r·sin α).

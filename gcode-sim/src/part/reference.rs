@@ -1,10 +1,10 @@
 //! The wanted holes: computed from a job's geometry, or read from a list.
+use super::conduct::Conduct;
 use super::hole::{Hole, HoleList, Unit};
 use super::honeycomb::Pattern;
 use super::read;
 pub use super::read::ReferenceError;
 use super::surface::Surface;
-use crate::job::Clamp;
 
 /// What the holes of a program are held against.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,10 +16,8 @@ pub struct Reference {
     /// How far a depth may be off, in mm, where the reference says it.
     pub depth: Option<f64>,
     pub surface: Option<Surface>,
-    /// From so far above the surface the tool feeds, in mm, where the reference says it.
-    pub clearance: Option<f64>,
-    /// The M codes that clamp and free the rotary table, where the reference says them: all that they do is known.
-    pub clamp: Option<Clamp>,
+    /// How the part is to be worked, as far as the reference says it.
+    pub conduct: Conduct,
     /// What the holes' neighbours must be like, of a part where that matters.
     pub pattern: Option<Pattern>,
 }
@@ -32,8 +30,7 @@ impl Reference {
             position: None,
             depth: None,
             surface: None,
-            clearance: None,
-            clamp: None,
+            conduct: Conduct::default(),
             pattern: None,
         })
     }

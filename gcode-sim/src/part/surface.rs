@@ -60,6 +60,16 @@ impl Surface {
         Some(at(bisect(inside, beyond, |t| self.value(&at(t)) > 0.0)))
     }
 
+    /// Whether turning about an axis through a point leaves the body as it is, to the last digits.
+    pub fn is_round(&self, on: &Point3<f64>, about: &Unit<Vector3<f64>>) -> bool {
+        let (own, all) = match *self {
+            Self::Ellipsoid { a, b } => (Vector3::y_axis(), a == b),
+            Self::Cylinder { .. } => (Vector3::x_axis(), false),
+        };
+        let along = all || own.cross(about).norm() < 1e-12;
+        along && on.coords.cross(about).norm() < 1e-9
+    }
+
     /// At least this far from a straight way; below 0 where that can't be said.
     ///
     /// For a convex function no value between two points is below both tangents, and the way to a point of the

@@ -13,9 +13,9 @@ use crate::diag::{Diagnostic, Severity};
 use crate::exec::{Control, Limits, Note, Outcome, Progress, Watcher};
 use crate::flutes::{Follower, Ground, NoGrinder};
 use crate::holes::{Extracted, Extractor};
-use crate::job::Clamp;
 use crate::machine::Machine;
 use crate::motion::{Place, Sink};
+use crate::part::conduct::Conduct;
 use crate::part::flutes::Flutes;
 use crate::part::hole::HoleList;
 use crate::part::reference::Reference;
@@ -39,8 +39,8 @@ pub struct Request {
     pub variables: Vec<(u32, f64)>,
     /// The part's surface, where it is there to be probed.
     pub part: Option<Surface>,
-    /// The M codes of the rotary's clamp, where the job names them: they start no spindle.
-    pub clamp: Option<Clamp>,
+    /// How the part is to be worked, as far as the reference says it.
+    pub conduct: Conduct,
     /// Who sees how far the run is, and may end it.
     pub progress: Option<Arc<Progress>>,
 }
@@ -59,7 +59,7 @@ impl Request {
             limits: Limits::default(),
             variables: Vec::new(),
             part: None,
-            clamp: None,
+            conduct: Conduct::default(),
             progress: None,
         }
     }
@@ -228,8 +228,9 @@ pub fn simulate_beside<S: Sink>(
     listener: &mut S,
     watcher: &mut impl Watcher,
 ) -> Result<Simulation, SessionError> {
-    let mut extractor =
-        Extractor::new(&request.machine).with_surface(surface.or(request.part)).with_clamp(request.clamp);
+    let mut extractor = Extractor::new(&request.machine)
+        .with_surface(surface.or(request.part))
+        .with_conduct(&request.conduct);
     let run = run_watched(request, library, &mut (&mut extractor, listener), watcher)?;
     let mut extracted = extractor.finish();
     extracted.findings.extend(run.notes());

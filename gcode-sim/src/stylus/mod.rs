@@ -250,7 +250,7 @@ impl Sink for Stylus<'_> {
                 self.close();
                 self.setup.tool = Some(*number);
             }
-            EventKind::ToolLength { offset } => {
+            EventKind::ToolLength { offset, .. } => {
                 self.close();
                 self.setup.offset = *offset;
             }

@@ -1,5 +1,6 @@
 //! Rapids on which a stylus' ball meets the part: no probe is asked there, and nothing gives.
 use crate::diag::Diagnostic;
+use crate::holes::per_block::PerBlock;
 use crate::machine::path::Travel;
 use crate::machine::{Machine, Setup};
 use crate::motion::{Event, EventKind, Position, Sink};
@@ -19,19 +20,19 @@ pub struct Rapids<'m> {
     setup: Setup,
     /// Whether the ball has been outside: a run begins at machine zero, where no ball is.
     outside: bool,
-    findings: Vec<Diagnostic>,
+    findings: PerBlock<(), Diagnostic>,
 }
 
 impl<'m> Rapids<'m> {
     /// Starts with every axis at machine zero.
     pub fn new(machine: &'m Machine, surface: Surface, radius: f64) -> Self {
         let (at, setup) = (Position::default(), Setup::default());
-        Self { machine, surface, radius, at, setup, outside: false, findings: Vec::new() }
+        Self { machine, surface, radius, at, setup, outside: false, findings: PerBlock::default() }
     }
 
     /// One for each block, the first time.
     pub fn finish(self) -> Vec<Diagnostic> {
-        self.findings
+        self.findings.into_entries().map(|entry| entry.value).collect()
     }
 
     fn rapid(&mut self, event: &Event<'_>, to: &Position) {
@@ -52,16 +53,13 @@ impl<'m> Rapids<'m> {
         if !self.outside || deepest <= begins.max(0.0) + STRAY {
             return;
         }
-        let place = event.place();
-        let known = |finding: &Diagnostic| finding.place.as_ref().is_some_and(|at| at.block == place.block);
-        if self.findings.iter().any(known) {
-            return;
-        }
-        let message =
-            format!("rapid with the stylus' ball {deepest:.3} mm into the part, which no probe hears");
-        let help =
-            "the part stands farther out than the touch allows: begin farther away, look at the first touch";
-        self.findings.push(Diagnostic::error("rapid-into-part", message).at(place).help(help));
+        self.findings.count(event.block, (), || {
+            let message =
+                format!("rapid with the stylus' ball {deepest:.3} mm into the part, which no probe hears");
+            Diagnostic::error("rapid-into-part", message).at(event.place()).help(
+                "the part stands farther out than the touch allows: begin farther away, look at the first touch",
+            )
+        });
     }
 }
 
@@ -76,7 +74,7 @@ impl Sink for Rapids<'_> {
                 self.at = *to;
             }
             EventKind::Tool { number } => self.setup.tool = Some(*number),
-            EventKind::ToolLength { offset } => self.setup.offset = *offset,
+            EventKind::ToolLength { offset, .. } => self.setup.offset = *offset,
             EventKind::Stop { .. }
             | EventKind::Dwell { .. }
             | EventKind::Spindle { .. }

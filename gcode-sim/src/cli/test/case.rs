@@ -74,7 +74,7 @@ impl Case {
             max_blocks: Limits::default().blocks,
             ..RunConditions::default()
         };
-        let (request, mut folders) = options::request(&conditions.of(program))?;
+        let (mut request, mut folders) = options::request(&conditions.of(program))?;
         if let (Some(one), Some(other)) = (there("reference.json"), there("reference.csv")) {
             let both = format!("{} and {}", one.display(), other.display());
             return Err(Refusal::new(format!("{both}: which of them says what is wanted? delete the other")));
@@ -82,7 +82,10 @@ impl Case {
         let reference = ["reference.json", "reference.csv", "job.toml"].into_iter().find_map(there);
         let wanted = reference.as_deref().map(options::wanted).transpose()?;
         let surface = match &wanted {
-            Some(Wanted::Holes(reference)) => reference.surface,
+            Some(Wanted::Holes(reference)) => {
+                request.conduct = reference.conduct.clone();
+                reference.surface
+            }
             Some(Wanted::Flutes(_)) | None => None,
         };
         let refused = |error: SessionError| Refusal::new(error.to_string());

@@ -314,6 +314,7 @@ impl FileMachine {
                 b: of("B", given.and_then(|s| s.b.as_ref()))?,
                 c: of("C", given.and_then(|s| s.c.as_ref()))?,
             },
+            signs_said: given.is_some(),
             clearance: optional(
                 reader,
                 "machine.clearance",

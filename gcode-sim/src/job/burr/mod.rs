@@ -81,6 +81,8 @@ pub struct Grinder {
     /// From the C axis to the end of the burr's cylinder (a ball's centre), x and y at C = 0.
     pub c_offset: [f64; 2],
     pub signs: AxisSigns,
+    /// Whether the job says them: where it doesn't, the default is no demand on other programs.
+    pub signs_said: bool,
     /// How far from the blank rapid becomes feed, and the burr stands off while it is turned.
     pub clearance: f64,
 }

@@ -2,7 +2,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{Clamp, CombMachine, Cylinder, Drill, Honeycomb, Metric, Spacing};
+use super::{Clamp, CombMachine, Cylinder, Drill, Honeycomb, Metric, Said, Spacing};
 use crate::job::reader::{Spanned, names};
 use crate::job::sections::{FileControl, FileRotary, FileTolerance, heights, length, within};
 use crate::job::sheet::FileSheet;
@@ -147,7 +147,8 @@ impl FileMachine {
     fn check(&self, reader: &Reader<'_>) -> Result<CombMachine, JobError> {
         let (clearance, retract) = heights(reader, self.clearance.as_ref(), self.retract.as_ref())?;
         let clamp = self.clamp.as_ref().map(|clamp| clamp.check(reader)).transpose()?;
-        Ok(CombMachine { rotary: self.rotary.check(reader)?, clearance, retract, clamp })
+        let retract_said = self.retract.is_some();
+        Ok(CombMachine { rotary: self.rotary.check(reader)?, clearance, retract, retract_said, clamp })
     }
 }
 
@@ -228,6 +229,11 @@ impl FileDrill {
             speed,
             feed: or("drill.feed", &self.feed, "0.01 to 240000 mm/min", 0.01, 240_000.0, FEED)?,
             peck: or("drill.peck", &self.peck, "0.01 to 9999 mm", 0.01, 9_999.0, diameter)?,
+            said: Said {
+                number: self.number.is_some(),
+                speed: self.speed.is_some(),
+                feed: self.feed.is_some(),
+            },
         })
     }
 }

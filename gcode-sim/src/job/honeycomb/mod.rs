@@ -28,6 +28,8 @@ pub struct CombMachine {
     pub clearance: f64,
     /// How far above the surface the tool is while the rotary turns.
     pub retract: f64,
+    /// Whether the job says that: where it doesn't, the default is no demand on other programs.
+    pub retract_said: bool,
     pub clamp: Option<Clamp>,
 }
 
@@ -91,6 +93,15 @@ pub struct Drill {
     pub feed: f64,
     /// Of G83, which a hole deeper than three diameters gets.
     pub peck: f64,
+    pub said: Said,
+}
+
+/// Which of its numbers the job says: where it doesn't, the default is no demand on other programs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Said {
+    pub number: bool,
+    pub speed: bool,
+    pub feed: bool,
 }
 
 #[cfg(test)]

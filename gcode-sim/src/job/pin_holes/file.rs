@@ -157,6 +157,7 @@ pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<PinHoles, JobError> {
         position_tolerance: file.tolerance.position(reader)?,
         depth_tolerance: file.tolerance.depth(reader)?,
         tools,
+        tools_said: file.tool.is_some(),
         macros: MacroSettings { common },
         holes,
         sheet: FileSheet::of(file.sheet, reader)?,
@@ -210,7 +211,7 @@ impl FileMachine {
             None => Head { kind: HeadKind::Manual, pivot: 0.0 },
         };
         let (clearance, retract) = heights(reader, self.clearance.as_ref(), self.retract.as_ref())?;
-        Ok(PinMachine { rotary, head, clearance, retract })
+        Ok(PinMachine { rotary, head, clearance, retract, retract_said: self.retract.is_some() })
     }
 }
 

@@ -17,6 +17,8 @@ pub struct PinHoles {
     /// How far a hole's depth may be off.
     pub depth_tolerance: f64,
     pub tools: Vec<Tool>,
+    /// Whether the job says them: where it doesn't, those of the paper are no demand on other programs.
+    pub tools_said: bool,
     pub macros: MacroSettings,
     pub holes: Vec<HoleWanted>,
     pub sheet: SheetWords,
@@ -39,6 +41,8 @@ pub struct PinMachine {
     pub clearance: f64,
     /// How far from the surface, along the hole, the tool retracts before the rotary table turns.
     pub retract: f64,
+    /// Whether the job says that: where it doesn't, the default is no demand on other programs.
+    pub retract_said: bool,
 }
 
 /// The head that tilts the tool in the xy plane.

@@ -2,6 +2,7 @@
 pub(super) mod alike;
 mod aside;
 pub(super) mod clearance;
+pub(super) mod cutting;
 mod depth;
 mod diameter;
 mod mirrored;
@@ -14,6 +15,7 @@ mod row_missing;
 mod row_pitch;
 mod row_seam;
 mod row_short;
+pub(super) mod signs;
 pub(super) mod stopped;
 pub(super) mod surplus;
 pub(super) mod through;

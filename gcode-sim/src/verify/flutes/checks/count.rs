@@ -53,7 +53,7 @@ fn missing(inspection: &Inspection<'_>, found: usize, wanted: usize) -> Diagnost
     let dives = inspection.ground.dives.iter();
     let rapid: Vec<_> = dives.filter(|dive| matches!(dive.kind, Kind::RapidPass(_))).collect();
     if let Some(first) = rapid.first() {
-        let all: usize = rapid.iter().map(|dive| dive.times).sum();
+        let all: u64 = rapid.iter().map(|dive| dive.times).sum();
         let which = match first.kind {
             Kind::RapidPass(number) if all == 1 => format!("flute {number}'s pass is"),
             _ => format!("{all} passes are"),

@@ -6,6 +6,7 @@ mod head;
 mod helix;
 mod index;
 mod offset;
+mod signs;
 mod spacing;
 mod speed;
 mod surface;
@@ -21,6 +22,7 @@ type Check = fn(&Inspection<'_>, &mut Vec<Diagnostic>);
 
 pub(super) const ALL: &[Check] = &[
     offset::check,
+    signs::check,
     count::check,
     surface::check,
     helix::check,

@@ -1,0 +1,59 @@
+//! What is in force while a tool cuts: its direction of rotation, S, F and length offset, which the verdict holds against
+//! what the reference says of the tool.
+use super::per_block::PerBlock;
+use crate::motion::{Lengthening, Place, Spindle};
+use crate::units::{MmPerMin, Rpm};
+
+/// How a block feeds a tool into the part.
+#[derive(Clone, Debug)]
+pub struct Cutting {
+    pub place: Place,
+    pub tool: Option<u32>,
+    pub by: Lengthening,
+    pub turning: Spindle,
+    pub speed: Rpm,
+    /// The slowest and the fastest of the feeds.
+    pub feeds: [MmPerMin; 2],
+    /// How many cuts were made so at that block.
+    pub times: u64,
+}
+
+/// What the program has said so far.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct InForce {
+    pub tool: Option<u32>,
+    pub by: Lengthening,
+    pub turning: Spindle,
+    pub speed: Rpm,
+}
+
+/// One for each block and what was in force there, in the order in which they came up.
+#[derive(Debug, Default)]
+pub(super) struct Cuttings(PerBlock<[u64; 6], Cutting>);
+
+impl Cuttings {
+    pub(super) fn add(&mut self, place: &Place, force: &InForce, feeds: [MmPerMin; 2]) {
+        let InForce { tool, by, turning, speed } = *force;
+        let length = match by {
+            Lengthening::Off => 0,
+            Lengthening::Plus(h) => 1 << 32 | u64::from(h),
+            Lengthening::Minus(h) => 2 << 32 | u64::from(h),
+        };
+        let tool_key = tool.map_or(u64::MAX, u64::from);
+        let [least, most] = feeds.map(|feed| feed.0.to_bits());
+        let kind = [tool_key, length, turning as u64, speed.0.to_bits(), least, most];
+        self.0.count(place.block, kind, || Cutting {
+            place: place.clone(),
+            tool,
+            by,
+            turning,
+            speed,
+            feeds,
+            times: 0,
+        });
+    }
+
+    pub(super) fn finish(self) -> Vec<Cutting> {
+        self.0.into_entries().map(|entry| Cutting { times: entry.times, ..entry.value }).collect()
+    }
+}

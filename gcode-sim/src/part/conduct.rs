@@ -1,0 +1,37 @@
+//! How a part is to be worked, as far as a reference says it: heights, the rotary and its clamp, what the tools run at.
+use crate::job::{Clamp, Rotary};
+
+/// What a program's motion is held against besides the holes that come of it. What isn't said is no demand.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Conduct {
+    /// From so far above the surface the tool feeds, mm.
+    pub clearance: Option<f64>,
+    /// So far above the surface the tool is at least while the rotary table turns, mm.
+    pub retract: Option<f64>,
+    pub rotary: Option<Rotary>,
+    /// The M codes that hold the rotary table and let it go: all that they do is known.
+    pub clamp: Option<Clamp>,
+    pub tools: Vec<Duty>,
+}
+
+/// What is said of a tool.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Duty {
+    pub number: u32,
+    /// The number of its length offset, H.
+    pub offset: Option<u32>,
+    /// r/min.
+    pub speed: Option<f64>,
+    /// Into the part, mm/min.
+    pub feed: Option<f64>,
+}
+
+impl Conduct {
+    /// What is said of a tool; where the program puts none in, the only one there is is in the spindle.
+    pub fn duty(&self, tool: Option<u32>) -> Option<&Duty> {
+        match tool {
+            Some(number) => self.tools.iter().find(|duty| duty.number == number),
+            None => self.tools.first().filter(|_| self.tools.len() == 1),
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! While a tool cuts it turns and is fed as the reference says of it, and the right length offset is in force.
+use std::collections::BTreeMap;
+
+use crate::diag::{Diagnostic, Severity};
+use crate::holes::Cutting;
+use crate::machine::Machine;
+use crate::motion::{Lengthening, Spindle};
+use crate::part::conduct::Conduct;
+
+/// S and F may be off by this part of what is said: of F what an inch rounds to. More is told, …
+const ROUNDED: f64 = 0.005;
+
+/// … and beyond this part it is no other choice but a slip: an error. Tables of cutting data leave so much open.
+const OPEN: f64 = 0.25;
+
+pub(in crate::verify) fn findings(
+    cuttings: &[Cutting],
+    conduct: &Conduct,
+    machine: &Machine,
+) -> Vec<Diagnostic> {
+    let checks = [reversed, speed, feed, length];
+    let found = checks.iter().flat_map(|check| cuttings.iter().map(move |cutting| (check, cutting)));
+    let mut told: Vec<(Diagnostic, u64)> = Vec::new();
+    let mut known: BTreeMap<String, usize> = BTreeMap::new();
+    for (check, cutting) in found {
+        let Some(finding) = check(cutting, conduct, machine) else { continue };
+        match known.get(&finding.message) {
+            Some(index) => told[*index].1 += cutting.times,
+            None => {
+                known.insert(finding.message.clone(), told.len());
+                told.push((finding.at(cutting.place.clone()), cutting.times));
+            }
+        }
+    }
+    let counted = |(finding, times): (Diagnostic, u64)| match times {
+        1 => finding,
+        more => finding.note(format!("in {more} cuts; the first of them is here")),
+    };
+    told.into_iter().map(counted).collect()
+}
+
+fn reversed(cutting: &Cutting, _: &Conduct, _: &Machine) -> Option<Diagnostic> {
+    (cutting.turning == Spindle::Counterclockwise).then(|| {
+        Diagnostic::warning("spindle-reversed", format!("{} cuts with M04", name(cutting)))
+            .note("a drill that is no left-hand one rubs and breaks; which it is no reference says")
+            .help("M03, if the tool isn't a left-hand one")
+    })
+}
+
+fn speed(cutting: &Cutting, conduct: &Conduct, _: &Machine) -> Option<Diagnostic> {
+    let wanted = conduct.duty(cutting.tool)?.speed?;
+    let found = cutting.speed.0;
+    // One that stands is told already.
+    let severity = severity(found, wanted).filter(|_| cutting.turning != Spindle::Off)?;
+    let message = format!("{} cuts at S{found} where S{wanted} is asked for", name(cutting));
+    Some(Diagnostic::new(severity, "drill-speed", message).help("correct S, or the tool's speed in the job"))
+}
+
+fn feed(cutting: &Cutting, conduct: &Conduct, _: &Machine) -> Option<Diagnostic> {
+    let wanted = conduct.duty(cutting.tool)?.feed?;
+    let off = |found: &f64| (found / wanted).max(wanted / found);
+    let found = cutting.feeds.map(|feed| feed.0).into_iter().max_by(|a, b| off(a).total_cmp(&off(b)))?;
+    let severity = severity(found, wanted)?;
+    let message = format!(
+        "{} is fed at {} mm/min where {wanted} is asked for",
+        name(cutting),
+        (found * 1e3).round() / 1e3
+    );
+    Some(
+        Diagnostic::new(severity, "drill-feed", message)
+            .help("correct F, or the tool's feed in the job; is G94 in force, and G21?"),
+    )
+}
+
+fn severity(found: f64, wanted: f64) -> Option<Severity> {
+    match (found - wanted).abs() / wanted {
+        off if off <= ROUNDED => None,
+        off if off <= OPEN => Some(Severity::Warning),
+        _ => Some(Severity::Error),
+    }
+}
+
+/// Where the machine file has the tool's length, the holes tell whether the offset is right; else only its number does.
+fn length(cutting: &Cutting, conduct: &Conduct, machine: &Machine) -> Option<Diagnostic> {
+    let known = |number| machine.find_tool(number).and_then(|tool| tool.length).is_some();
+    if cutting.tool.is_some_and(known) {
+        return None;
+    }
+    let asked = conduct.duty(cutting.tool).and_then(|duty| duty.offset);
+    let tool = name(cutting);
+    let note =
+        "the machine file has no length of it, so that the holes come out alike here whatever is in force";
+    let finding = |severity, message| Diagnostic::new(severity, "length-offset", message).note(note);
+    match (cutting.by, asked) {
+        (Lengthening::Minus(h), asked) => {
+            let severity = if asked.is_some() { Severity::Error } else { Severity::Warning };
+            let message = format!("{tool} cuts with G44 H{h}: its length is taken away instead of added");
+            Some(finding(severity, message).help("G43, if offsets are measured as lengths"))
+        }
+        (Lengthening::Off | Lengthening::Plus(0), Some(asked)) => {
+            let message = format!("{tool} cuts without its length offset, and the job has H{asked} for it");
+            Some(finding(Severity::Warning, message).help(format!(
+                "G43 H{asked} before the first hole, if the work zero isn't that of this tool's tip"
+            )))
+        }
+        (Lengthening::Plus(h), Some(asked)) if h != asked => {
+            let message = format!(
+                "{tool} cuts with H{h} where the job has H{asked} for it: the length of another tool"
+            );
+            Some(
+                finding(Severity::Error, message)
+                    .help(format!("G43 H{asked}, or correct the tool's number in the job")),
+            )
+        }
+        (Lengthening::Plus(h), None) => {
+            let number = cutting.tool.filter(|number| *number != h)?;
+            machine.find_tool(h)?;
+            let message = format!("{tool} cuts with H{h}, which has the number of another tool");
+            Some(
+                finding(Severity::Warning, message)
+                    .help(format!("H{number}, if offsets have the numbers of their tools")),
+            )
+        }
+        (Lengthening::Off | Lengthening::Plus(_), _) => None,
+    }
+}
+
+fn name(cutting: &Cutting) -> String {
+    cutting.tool.map_or("the tool".to_owned(), |number| format!("T{number}"))
+}

@@ -1,0 +1,102 @@
+//! What a verdict on holes says nothing about, in words.
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::{Comparison, Pair};
+use crate::holes::Extracted;
+use crate::machine::{HeadKind, Machine};
+use crate::motion::Lengthening;
+use crate::part::conduct::Duty;
+use crate::part::reference::Reference;
+use crate::units::Deg;
+
+/// What a pass says nothing about, in words: nobody should take it for checked.
+pub(super) fn lines(
+    comparison: &Comparison<'_>,
+    extracted: &Extracted,
+    reference: &Reference,
+    machine: &Machine,
+) -> Vec<String> {
+    let mut all = Vec::new();
+    all.extend(diameters(comparison, machine));
+    all.extend(lengths(extracted, machine));
+    all.extend(conduct(extracted, reference, machine));
+    let along_feed = comparison.pairs.iter().all(|pair| comparison.found[pair.found].off_tool == Deg::ZERO);
+    if machine.head.kind == HeadKind::Free && along_feed {
+        all.push("head angles: the head is not known, each axis is taken along its feed".to_owned());
+    }
+    if reference.surface.is_none() {
+        all.push("rapid motion through the part: the reference has no surface, as a job file has".to_owned());
+    }
+    all
+}
+
+/// Whose diameters aren't checked: by which tools, where the tool table has others.
+fn diameters(comparison: &Comparison<'_>, machine: &Machine) -> Vec<String> {
+    let unknown = |pair: &&Pair| {
+        comparison.wanted[pair.wanted].diameter.is_some() && comparison.found[pair.found].diameter.is_none()
+    };
+    let mut made: BTreeMap<Option<u32>, Vec<&str>> = BTreeMap::new();
+    for pair in comparison.pairs.iter().filter(unknown) {
+        let tool = comparison.found[pair.found].tool.filter(|_| !machine.tools.is_empty());
+        made.entry(tool).or_default().push(comparison.id(pair.wanted));
+    }
+    let words = |(tool, ids): (Option<u32>, Vec<&str>)| match (tool, ids.as_slice()) {
+        (None, _) if machine.tools.is_empty() => "diameters: the machine has no tool table".to_owned(),
+        (None, ids) => format!("the diameter of {} made before any tool was put in", some(ids)),
+        (Some(tool), ids) => {
+            format!("the diameter of {} made by T{tool}, which the machine file doesn't describe", some(ids))
+        }
+    };
+    made.into_iter().map(words).collect()
+}
+
+/// `hole 1,` or `63 holes (r0h0 the first),`.
+fn some(ids: &[&str]) -> String {
+    match ids {
+        [one] => format!("hole {one},"),
+        [first, ..] => format!("{} holes ({first} the first),", ids.len()),
+        [] => String::new(),
+    }
+}
+
+/// Tools that cut and whose lengths the machine file doesn't have: which offset stands for each.
+fn lengths(extracted: &Extracted, machine: &Machine) -> Vec<String> {
+    let known = |number| machine.find_tool(number).and_then(|tool| tool.length).is_some();
+    let unknown = extracted.cuttings.iter().filter(|cutting| !cutting.tool.is_some_and(known));
+    let tools: BTreeSet<_> = unknown.map(|cutting| (cutting.tool, cutting.by)).collect();
+    let words = |(tool, by): (Option<u32>, Lengthening)| {
+        let whose = tool.map_or("the tool's length".to_owned(), |number| format!("the length of T{number}"));
+        let taken = match by {
+            Lengthening::Off | Lengthening::Plus(0) | Lengthening::Minus(0) => {
+                "its tip to be what is programmed".to_owned()
+            }
+            Lengthening::Plus(h) | Lengthening::Minus(h) => format!("H{h} to hold it"),
+        };
+        format!("{whose}: the machine file doesn't have it, and takes {taken}")
+    };
+    tools.into_iter().map(words).collect()
+}
+
+/// What the reference doesn't say of how the part is to be worked.
+fn conduct(extracted: &Extracted, reference: &Reference, machine: &Machine) -> Option<String> {
+    let conduct = &reference.conduct;
+    let tools: BTreeSet<_> = extracted.cuttings.iter().map(|cutting| cutting.tool).collect();
+    let unsaid = |of: &dyn Fn(&Duty) -> Option<f64>| {
+        tools.iter().any(|tool| conduct.duty(*tool).and_then(of).is_none())
+    };
+    let turns = machine.table.turning().next().is_some();
+    let missing = [
+        (unsaid(&|duty| duty.speed), "S"),
+        (unsaid(&|duty| duty.feed), "F"),
+        (turns && conduct.clearance.is_none(), "the clearance while an axis turns"),
+        (turns && conduct.retract.is_none(), "the retract before the rotary turns"),
+        (turns && conduct.clamp.is_none(), "the rotary's clamp"),
+    ];
+    let names: Vec<_> = missing.iter().filter(|(missing, _)| *missing).map(|(_, name)| *name).collect();
+    if extracted.conduct != *conduct {
+        return Some(
+            "how the part is worked: the run was followed without what the reference says of it".to_owned(),
+        );
+    }
+    (!names.is_empty()).then(|| format!("{}: the reference doesn't say", names.join(", ")))
+}
