@@ -1,89 +1,100 @@
 //! The blocks of a program, lowered when they are asked for and kept for a while: a loop lowers its blocks once, and a
 //! long file never has all of its blocks lowered at a time.
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use super::loops::Loops;
 use super::lower::{Lowering, lower_case};
 use super::{Code, Instruction, Op, OpIndex, OpKind, Statement};
 use crate::alarm::Alarm;
 use crate::source::SourceId;
-use crate::syntax::{ast, block_at, plain_block_at};
+use crate::syntax::{ast, block_at, sequence_number_at};
 
 /// As many operations are kept. Loops are shorter; some megabytes at most.
 const KEPT: usize = 8192;
+
+/// The text that a program stands in.
+#[derive(Clone, Debug)]
+pub(super) struct Text {
+    pub(super) source: SourceId,
+    pub(super) bytes: Arc<[u8]>,
+    /// How much of it is written on.
+    pub(super) length: usize,
+}
+
+impl Text {
+    pub(super) fn written(&self) -> &[u8] {
+        &self.bytes[..self.length]
+    }
+}
 
 /// Where a block begins, and where its operation is.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Entry {
     start: u32,
-    /// The place of its operation, [`Entry::UNREAD`] where it isn't lowered; [`Entry::PLAIN`] as the highest bit.
+    /// The place of its operation, [`Entry::UNREAD`] where it isn't lowered.
     op: u32,
 }
 
 impl Entry {
-    /// It is alone in its line and can be read as [`plain_block_at`] does.
-    const PLAIN: u32 = 1 << 31;
-    const UNREAD: u32 = !Self::PLAIN;
+    /// No operation has this place.
+    const UNREAD: u32 = u32::MAX;
 
-    pub(super) fn new(start: u32, plain: bool) -> Self {
-        Self { start, op: Self::UNREAD | if plain { Self::PLAIN } else { 0 } }
-    }
-
-    fn is_plain(self) -> bool {
-        self.op & Self::PLAIN != 0
-    }
-
-    /// The place of its operation; that of none where it isn't lowered.
-    fn op(self) -> usize {
-        (self.op & Self::UNREAD) as usize
-    }
-
-    fn set_op(&mut self, op: u32) {
-        self.op = self.op & Self::PLAIN | op;
+    pub(super) fn new(start: u32) -> Self {
+        Self { start, op: Self::UNREAD }
     }
 }
 
 /// All blocks of a program, and the operations of some.
 #[derive(Debug)]
 pub(super) struct Blocks {
+    text: Text,
     entries: Vec<Entry>,
     /// The trees of blocks that don't begin their line.
     apart: BTreeMap<u32, ast::Block>,
-    /// How much of the text is written on.
-    length: u32,
     /// Operations with the places of their blocks.
     ops: Vec<Op>,
     places: Vec<u32>,
-    /// The tree of the block that was lowered last.
-    tree: ast::Block,
     lowering: Lowering,
 }
 
 impl Blocks {
-    pub(super) fn new(entries: Vec<Entry>, apart: BTreeMap<u32, ast::Block>, length: u32) -> Self {
-        let (ops, places, tree) = (Vec::new(), Vec::new(), ast::Block::default());
-        Self { entries, apart, length, ops, places, tree, lowering: Lowering::default() }
+    pub(super) fn new(text: Text, entries: Vec<Entry>, apart: BTreeMap<u32, ast::Block>) -> Self {
+        let (ops, places, lowering) = (Vec::new(), Vec::new(), Lowering::default());
+        Self { text, entries, apart, ops, places, lowering }
     }
 
     /// The tree of a block, read anew.
-    pub(super) fn tree(&self, place: OpIndex, source: SourceId, bytes: &[u8]) -> Option<ast::Block> {
+    pub(super) fn tree(&self, place: OpIndex) -> Option<ast::Block> {
         let start = self.entries.get(place)?.start;
-        if !self.apart.is_empty()
-            && let Some(block) = self.apart.get(&(place as u32))
-        {
-            return Some(block.clone());
+        match self.apart.get(&(place as u32)) {
+            Some(block) => Some(block.clone()),
+            None => block_at(self.text.source, self.text.written(), start),
         }
-        block_at(source, bytes.get(..self.length as usize)?, start)
+    }
+
+    /// The sequence numbers with their blocks, by number, then by place.
+    pub(super) fn sequence_numbers(&self) -> Vec<(u32, u32)> {
+        let mut numbers = Vec::new();
+        for (place, entry) in (0..).zip(&self.entries) {
+            let number = match self.apart.get(&place) {
+                Some(block) => block.number.map(|number| number.node),
+                None => sequence_number_at(self.text.source, self.text.written(), entry.start),
+            };
+            numbers.extend(number.map(|number| (number, place)));
+        }
+        numbers.sort_unstable();
+        numbers
     }
 
     #[inline]
     pub(super) fn is_ready(&self, place: OpIndex) -> bool {
-        self.entries.get(place).is_some_and(|entry| entry.op() < self.ops.len())
+        self.entries.get(place).is_some_and(|entry| (entry.op as usize) < self.ops.len())
     }
 
     #[inline]
     pub(super) fn op(&self, place: OpIndex) -> Option<&Op> {
-        self.ops.get(self.entries.get(place)?.op())
+        self.ops.get(self.entries.get(place)?.op as usize)
     }
 
     /// All operations; to ask before all are lowered, in order, is a mistake of ours.
@@ -102,24 +113,24 @@ impl Blocks {
     }
 
     /// Lowers a block that isn't. Where too many are, the others are forgotten.
-    pub(super) fn ready(&mut self, place: OpIndex, source: SourceId, bytes: &[u8], loops: &Loops) {
+    pub(super) fn ready(&mut self, place: OpIndex, loops: &Loops) {
         if self.ops.len() >= KEPT {
             self.forget();
         }
-        self.lower(place, source, bytes, loops);
+        self.lower(place, loops);
     }
 
     /// Lowers all blocks, in order.
-    pub(super) fn lower_all(&mut self, source: SourceId, bytes: &[u8], loops: &Loops) {
+    pub(super) fn lower_all(&mut self, loops: &Loops) {
         self.forget();
         for place in 0..self.entries.len() {
-            self.lower(place, source, bytes, loops);
+            self.lower(place, loops);
         }
     }
 
     fn forget(&mut self) {
         for place in self.places.drain(..) {
-            self.entries[place as usize].set_op(Entry::UNREAD);
+            self.entries[place as usize].op = Entry::UNREAD;
         }
         for op in self.ops.drain(..) {
             self.lowering.give_up(op);
@@ -127,19 +138,23 @@ impl Blocks {
         self.lowering.forget();
     }
 
-    fn lower(&mut self, place: OpIndex, source: SourceId, bytes: &[u8], loops: &Loops) {
+    fn lower(&mut self, place: OpIndex, loops: &Loops) {
         let Some(entry) = self.entries.get(place) else { return };
-        let plain = entry.is_plain();
-        if plain {
-            plain_block_at(source, &bytes[..self.length as usize], entry.start, &mut self.tree);
-        } else {
-            let Some(tree) = self.tree(place, source, bytes) else { return };
-            self.tree = tree;
-        }
-        let small = if plain { None } else { lower_case(&self.tree, bytes) };
-        let mut op = self.lowering.block(&self.tree, small);
-        join(&mut op, place, loops);
-        self.entries[place].set_op(self.ops.len() as u32);
+        let apart = self.apart.contains_key(&(place as u32));
+        let Text { source, .. } = self.text;
+        let numbers =
+            if apart { None } else { self.lowering.numbers(source, self.text.written(), entry.start) };
+        let op = match numbers {
+            Some(op) => op,
+            None => {
+                let Some(tree) = self.tree(place) else { return };
+                let small = lower_case(&tree, &self.text.bytes);
+                let mut op = self.lowering.block(&tree, small);
+                join(&mut op, place, loops);
+                op
+            }
+        };
+        self.entries[place].op = self.ops.len() as u32;
         self.places.push(place as u32);
         self.ops.push(op);
     }

@@ -38,10 +38,15 @@ impl Lowering {
 
     /// Gives up a block; its list of words can be used again.
     pub(super) fn give_up(&mut self, op: Op) {
-        if let OpKind::Words(Words { mut list, .. }) = op.kind {
-            list.clear();
-            self.spare.push(list);
+        if let OpKind::Words(Words { list, .. }) = op.kind {
+            self.give_back(list);
         }
+    }
+
+    /// Takes back a list of [`Lowering::spare_words`].
+    pub(super) fn give_back(&mut self, mut list: Vec<Coded>) {
+        list.clear();
+        self.spare.push(list);
     }
 
     /// An empty list of words.

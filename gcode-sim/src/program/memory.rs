@@ -111,11 +111,10 @@ impl Memory {
 
     /// Lowers one block of a program, so that it can be executed; `None` behind the last.
     pub(crate) fn ready(&mut self, id: ProgramId, place: OpIndex) -> Option<(&Program, &Op)> {
-        let Self { sources, programs, .. } = self;
-        let program = &mut programs[id.0 as usize];
+        let program = &mut self.programs[id.0 as usize];
         if !program.blocks.is_ready(place) {
-            let Program { blocks, span, loops, .. } = program;
-            blocks.ready(place, span.source, &sources.get(span.source).bytes, loops);
+            let Program { blocks, loops, .. } = program;
+            blocks.ready(place, loops);
         }
         let program = &*program;
         program.op(place).map(|op| (program, op))
@@ -123,18 +122,15 @@ impl Memory {
 
     /// A program with all of its blocks lowered: [`Program::ops`].
     pub(crate) fn lowered(&mut self, id: ProgramId) -> &Program {
-        let Self { sources, programs, .. } = self;
-        let program = &mut programs[id.0 as usize];
-        let Program { blocks, span, loops, .. } = program;
-        blocks.lower_all(span.source, &sources.get(span.source).bytes, loops);
+        let program = &mut self.programs[id.0 as usize];
+        let Program { blocks, loops, .. } = program;
+        blocks.lower_all(loops);
         program
     }
 
     /// The place of a block, read anew.
     pub(crate) fn place_of(&self, id: ProgramId, place: OpIndex) -> Option<Span> {
-        let Program { blocks, span, .. } = self.get(id);
-        let tree = blocks.tree(place, span.source, &self.sources.get(span.source).bytes)?;
-        Some(tree.span)
+        self.get(id).blocks.tree(place).map(|tree| tree.span)
     }
 
     /// The program with this O number.

@@ -16,6 +16,7 @@ pub mod m_codes;
 mod memory;
 pub mod modes;
 pub mod names;
+mod numbers;
 mod outline;
 mod words;
 
@@ -24,6 +25,8 @@ pub use code::{Code, Instruction, Operand, Operation, STACK, Slot, Source, Targe
 pub use forms::Form;
 pub use memory::{Library, Memory, NoLibrary, ProgramId};
 pub use words::{CallOp, CallTarget, Calling, Coded, Input, Words};
+
+use std::sync::OnceLock;
 
 use self::blocks::Blocks;
 use self::loops::Loops;
@@ -44,8 +47,8 @@ pub struct Program {
     /// From the O word, or the first block, to the end of the last block.
     pub span: Span,
     blocks: Blocks,
-    /// Sequence numbers with their blocks, by number, then by place.
-    numbers: Vec<(u32, u32)>,
+    /// Sequence numbers with their blocks, by number, then by place; looked for when the first jump asks.
+    numbers: OnceLock<Vec<(u32, u32)>>,
     loops: Loops,
     /// Whether `%` or another program stands behind its last block.
     pub(crate) closed: bool,
@@ -176,10 +179,14 @@ impl Program {
         self.blocks.variable_name(index)
     }
 
+    fn numbers(&self) -> &[(u32, u32)] {
+        self.numbers.get_or_init(|| self.blocks.sequence_numbers())
+    }
+
     /// Whether several blocks have this sequence number.
     pub(crate) fn has_twice(&self, number: u32) -> bool {
-        let first = self.numbers.partition_point(|entry| *entry < (number, 0));
-        self.numbers.get(first + 1).is_some_and(|(n, _)| *n == number)
+        let first = self.numbers().partition_point(|entry| *entry < (number, 0));
+        self.numbers().get(first + 1).is_some_and(|(n, _)| *n == number)
     }
 
     /// The number of a loop that `to` lies in and that isn't among those open.
@@ -189,15 +196,15 @@ impl Program {
 
     /// The last block with this sequence number before `from`.
     pub fn find_number_above(&self, number: u32, from: OpIndex) -> Option<OpIndex> {
-        let next = self.numbers.partition_point(|entry| *entry < (number, from as u32));
-        self.numbers.get(next.checked_sub(1)?).filter(|(n, _)| *n == number).map(|(_, op)| *op as OpIndex)
+        let next = self.numbers().partition_point(|entry| *entry < (number, from as u32));
+        self.numbers().get(next.checked_sub(1)?).filter(|(n, _)| *n == number).map(|(_, op)| *op as OpIndex)
     }
 
     /// The block with this sequence number: the next one from `from` on, else the first of the program.
     pub fn find_number(&self, number: u32, from: OpIndex) -> Option<OpIndex> {
-        let first = self.numbers.partition_point(|entry| *entry < (number, 0));
-        let next = self.numbers.partition_point(|entry| *entry < (number, from as u32));
-        let is_it = |index: usize| self.numbers.get(index).filter(|(n, _)| *n == number);
+        let first = self.numbers().partition_point(|entry| *entry < (number, 0));
+        let next = self.numbers().partition_point(|entry| *entry < (number, from as u32));
+        let is_it = |index: usize| self.numbers().get(index).filter(|(n, _)| *n == number);
         is_it(next).or_else(|| is_it(first)).map(|(_, op)| *op as OpIndex)
     }
 }

@@ -135,13 +135,8 @@ impl Lowering {
     fn word(&mut self, word: &Word) -> Result<Coded, Placed> {
         let letter = word.address.letter;
         let value = match &word.value {
-            WordValue::Literal(number) if letter == b'G' => match g_code(*number) {
-                Some(code) => Input::G(code, codes::find(code)),
-                None => {
-                    return Err(Alarm::ImproperGCode { code: number.value().to_string() }.at(word.span));
-                }
-            },
-            WordValue::Literal(number) => Input::Literal(*number),
+            WordValue::Literal(number) => literal(letter, *number)
+                .ok_or_else(|| Alarm::ImproperGCode { code: number.value().to_string() }.at(word.span))?,
             // Axes have one increment.
             WordValue::Expr(expr) if letter == AX => Input::Operand(self.word_value(expr, b'X')?),
             WordValue::Expr(expr) => Input::Operand(self.word_value(expr, letter)?),
@@ -157,6 +152,16 @@ impl Lowering {
         };
         Ok(Coded { letter, axis, comma: word.address.comma, value, span: word.span })
     }
+}
+
+/// What a number is behind its address; `None` for a G code that none can be.
+#[inline]
+pub(super) fn literal(letter: u8, number: Decimal) -> Option<Input> {
+    if letter == b'G' {
+        let code = g_code(number)?;
+        return Some(Input::G(code, codes::find(code)));
+    }
+    Some(Input::Literal(number))
 }
 
 /// G code × 10 of a literal with at most one decimal.

@@ -1,22 +1,22 @@
 //! One line: skip, sequence number, words and statements in the order they stand in.
 use nom::Err;
 
-use super::ast::{Block, Item, Unreadable, Word, WordValue};
+use super::ast::{Address, Block, Item, Unreadable, Word, WordValue};
 use super::number::integer;
+use super::numbers::number_word;
 use super::statement::{assignment, keyword, statement};
 use super::token::{Fault, Input, Line, Read, fail, next, other, spaces};
 use super::word::{name_word, word};
 use crate::alarm::Alarm;
 use crate::source::Spanned;
 
-/// Reads one line, its end not included, into a block that may have been used for another. What can't be read is the
-/// block's last item.
+/// The largest sequence number.
+pub(super) const MOST_SEQUENCE: u32 = 99_999_999;
+
+/// Reads one line, its end not included, into an empty block. What can't be read is the block's last item.
 ///
 /// `%`, and an O word after M02, M30 or M99 (`M99O0810(TEXT)`), end the block; they and the rest are handed back.
 pub(super) fn read_block<'a>(line: Line, input: Input<'a>, block: &mut Block) -> Input<'a> {
-    (block.skip, block.number, block.short) = (None, None, None);
-    block.items.clear();
-    block.comments.clear();
     let mut rest = spaces(input);
     while !rest.is_empty() && !ends_block(rest, block) {
         match item(line, rest, block) {
@@ -90,8 +90,12 @@ fn item<'a>(line: Line, at: Input<'a>, block: &mut Block) -> Read<'a, ()> {
             (rest, Item::Word(word))
         }
         [b'O' | b'o' | b':', ..] if beginning && begins_program(at) => return fail(at, Alarm::ProgramNumber),
-        [b',' | b'A'..=b'Z' | b'a'..=b'z', ..] => match keyword(at) {
-            Some(begun) => {
+        [b',' | b'A'..=b'Z' | b'a'..=b'z', ..] => match (number_word(at), keyword(at)) {
+            (Some((rest, letter, number)), _) => {
+                let (address, value) = (Address { letter, comma: false }, WordValue::Literal(number));
+                (rest, Item::Word(Word { address, axis: None, value, span: line.span(at, rest) }))
+            }
+            (None, Some(begun)) => {
                 let (rest, (found, short)) = statement(line, &begun)?;
                 let found = line.spanned(found, at, rest);
                 if short {
@@ -99,10 +103,9 @@ fn item<'a>(line: Line, at: Input<'a>, block: &mut Block) -> Read<'a, ()> {
                 }
                 (rest, Item::Statement(Box::new(found)))
             }
-            None => {
+            (None, None) => {
                 let (rest, word) = word(line, at)?;
-                block.items.push(Item::Word(word));
-                return Ok((rest, ()));
+                (rest, Item::Word(word))
             }
         },
         [b']', ..] => return fail(at, Alarm::MissingOpenBracket),
@@ -140,7 +143,7 @@ pub(super) fn sequence_number(line: Line, at: Input<'_>) -> Read<'_, Spanned<u32
         read => read?,
     };
     match u32::try_from(number) {
-        Ok(number) if number <= 99_999_999 => Ok((rest, line.spanned(number, at, rest))),
+        Ok(number) if number <= MOST_SEQUENCE => Ok((rest, line.spanned(number, at, rest))),
         _ => fail(at, Alarm::TooManyDigits),
     }
 }

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use proptest::sample::select;
 
 use super::ast::*;
-use super::{Outlined, block_at, outline, parse, plain_block_at, print, written};
+use super::{Outlined, block_at, outline, parse, print, sequence_number_at, written};
 use crate::source::{SourceId, Span, Spanned};
 
 const NOWHERE: Span = Span { source: SourceId(0), start: 0, end: 0 };
@@ -283,19 +283,11 @@ proptest! {
         let text = lines.join(end);
         let whole = written(text.as_bytes());
         let tree = parse(SourceId(0), text.as_bytes());
+        let at = |start| (sequence_number_at(SourceId(0), whole, start), block_at(SourceId(0), whole, start));
         let outlined = outline(SourceId(0), text.as_bytes(), |(), block| match block {
-            Outlined::Words { span, number, plain: false } => {
-                (number, block_at(span.source, whole, span.start))
-            }
-            Outlined::Words { span, number, plain: true } => {
-                let mut block = Block { short: Some(span), ..parse(SourceId(0), b"/N5 X1 (A)")[0].blocks[0].clone() };
-                plain_block_at(span.source, whole, span.start, &mut block);
-                (number, Some(block))
-            }
-            Outlined::Read(block) => {
-                (block.number.as_ref().map(|n| n.node), block_at(block.span.source, whole, block.span.start))
-            }
-            Outlined::Apart(block) => (block.number.as_ref().map(|n| n.node), Some(*block)),
+            Outlined::Words(span) => at(span.start),
+            Outlined::Read(block) => at(block.span.start),
+            Outlined::Apart(block) => (block.number.map(|n| n.node), Some(*block)),
         });
         prop_assert_eq!(tree.len(), outlined.len());
         for (tree, outlined) in tree.into_iter().zip(outlined) {

@@ -1,8 +1,8 @@
 //! Text to tree: reading never fails, and nothing but this module knows the parser library.
 //!
 //! A file is read line by line ([`Pieces`]): the line's comments are found and blanked (`comment`), then its
-//! block is read (`block`) from words (`word`) and statements (`statement`, `output`), which hold expressions (`expr`,
-//! `function`) and numbers (`number`). What can't be read stays in its block as text with its alarm.
+//! block is read (`block`) from words (`word`, `numbers`) and statements (`statement`, `output`), which hold expressions
+//! (`expr`, `function`) and numbers (`number`). What can't be read stays in its block as text with its alarm.
 pub mod ast;
 mod block;
 mod comment;
@@ -12,6 +12,7 @@ mod function;
 #[cfg(test)]
 mod laws;
 mod number;
+mod numbers;
 mod outline;
 mod output;
 mod pieces;
@@ -21,6 +22,7 @@ mod token;
 mod word;
 
 pub use file::{Parts, parse};
-pub use outline::{Outlined, block_at, outline, plain_block_at};
+pub use numbers::{NumberWord, Numbers};
+pub use outline::{Outlined, block_at, outline, sequence_number_at};
 pub use pieces::{Piece, Pieces, written};
 pub use print::print;

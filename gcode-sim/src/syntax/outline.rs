@@ -3,22 +3,16 @@
 //! Most lines of long files are one block of words. That much is seen without reading them; the others are read, so that
 //! an outline has the same programs and blocks as the tree.
 use super::ast::Block;
-use super::block::sequence_number;
 use super::file::{Parts, programs};
-use super::pieces::{Piece, Pieces, read_plain, says_nothing};
-use super::token::Line;
+use super::numbers::Numbers;
+use super::pieces::{Piece, Pieces, says_nothing};
 use crate::source::{SourceId, Span};
 
 /// A block as its outline has it.
 #[derive(Debug)]
 pub enum Outlined {
-    /// Not looked at but for its sequence number: neither DO nor END.
-    Words {
-        span: Span,
-        number: Option<u32>,
-        /// [`plain_block_at`] reads it.
-        plain: bool,
-    },
+    /// Not looked at: neither DO nor END.
+    Words(Span),
     Read(Box<Block>),
     /// Something else stands before it in its line: it can't be read from its own beginning on.
     Apart(Box<Block>),
@@ -27,15 +21,8 @@ pub enum Outlined {
 impl Outlined {
     pub fn span(&self) -> Span {
         match self {
-            Self::Words { span, .. } => *span,
+            Self::Words(span) => *span,
             Self::Read(block) | Self::Apart(block) => block.span,
-        }
-    }
-
-    pub fn number(&self) -> Option<u32> {
-        match self {
-            Self::Words { number, .. } => *number,
-            Self::Read(block) | Self::Apart(block) => block.number.as_ref().map(|number| number.node),
         }
     }
 }
@@ -58,9 +45,21 @@ pub fn block_at(source: SourceId, bytes: &[u8], start: u32) -> Option<Block> {
     })
 }
 
-/// Reads a plain block from where an outline has it into one that may have been used for another.
-pub fn plain_block_at(source: SourceId, bytes: &[u8], start: u32, block: &mut Block) {
-    read_plain(source, bytes, start, block);
+/// The sequence number of that block.
+pub fn sequence_number_at(source: SourceId, bytes: &[u8], start: u32) -> Option<u32> {
+    match bytes.get(start as usize)? {
+        b'N' => {
+            // A comment may go on with the number, and only the whole block tells.
+            if let Some(numbers) = Numbers::new(source, bytes, start)
+                && (numbers.is_at_end() || numbers.is_at_letter())
+            {
+                return numbers.sequence_number.map(|number| number.node);
+            }
+        }
+        b'#' | b'A'..=b'Z' => return None,
+        _ => {}
+    }
+    block_at(source, bytes, start)?.number.map(|number| number.node)
 }
 
 /// The pieces of a file, most blocks unread.
@@ -76,17 +75,12 @@ impl Iterator for Outlines<'_> {
     fn next(&mut self) -> Option<Piece<Outlined>> {
         loop {
             if self.told
-                && let Some((span, text, plain)) = self.pieces.plain_line()
+                && let Some(span) = self.pieces.plain_line()
             {
-                if text.is_empty() {
+                if span.start == span.end {
                     continue;
                 }
-                let line = Line { source: span.source, end: span.end };
-                let number = match text {
-                    [b'N' | b'n', ..] => sequence_number(line, text).ok().map(|(_, number)| number.node),
-                    _ => None,
-                };
-                return Some(Piece::Block(Outlined::Words { span, number, plain }));
+                return Some(Piece::Block(Outlined::Words(span)));
             }
             let begins = self.pieces.begins_line();
             match self.pieces.piece() {

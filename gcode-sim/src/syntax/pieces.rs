@@ -27,8 +27,6 @@ pub enum Piece<B = Block> {
 const REMARK: u8 = 1;
 /// May end a block before its line does (`%`, `O`, `:`, `<`), or be of DO, END or EN, or of a folder line.
 const DIVIDES: u8 = 2;
-/// A letter in lower case.
-const SMALL: u8 = 4;
 
 const MEANINGS: [u8; 256] = {
     let mut all = [0; 256];
@@ -36,9 +34,7 @@ const MEANINGS: [u8; 256] = {
     while byte < all.len() {
         all[byte] = match byte as u8 {
             b'(' | b';' | b'/' => REMARK,
-            b'%' | b'O' | b':' | b'<' | b'D' | b'E' | b'&' => DIVIDES,
-            b'o' | b'd' | b'e' => DIVIDES | SMALL,
-            b'a'..=b'z' => SMALL,
+            b'%' | b'O' | b'o' | b':' | b'<' | b'D' | b'd' | b'E' | b'e' | b'&' => DIVIDES,
             _ => 0,
         };
         byte += 1;
@@ -182,14 +178,14 @@ impl<'a> Pieces<'a> {
     }
 
     /// The line in hand without spaces around it, where it is one block whatever stands in it: nothing divides it and
-    /// nothing in it is a remark. It counts as read then. The last answer is whether all of its letters are capitals.
-    pub(super) fn plain_line(&mut self) -> Option<(Span, &'a [u8], bool)> {
-        if self.meanings & !SMALL != 0 || self.at == self.end {
+    /// nothing in it is a remark. It counts as read then.
+    pub(super) fn plain_line(&mut self) -> Option<Span> {
+        if self.meanings != 0 || self.at == self.end {
             return None;
         }
         let span = trimmed(self.source, self.bytes, self.at, self.end);
         self.at = self.end;
-        Some((span, &self.bytes[span.start as usize..span.end as usize], self.meanings == 0))
+        Some(span)
     }
 
     /// Whether nothing of the line in hand has been read.
@@ -226,18 +222,6 @@ impl Iterator for Pieces<'_> {
             }
             self.next_line()?;
         }
-    }
-}
-
-/// Reads a block that is alone in its line from its beginning on, of a text as [`written`]: one without comments and
-/// without letters in lower case.
-pub(super) fn read_plain(source: SourceId, bytes: &[u8], start: u32, block: &mut Block) {
-    let start = start as usize;
-    let end = start + line_length(&bytes[start..]);
-    read_block(Line { source, end: end as u32 }, &bytes[start..end], block);
-    block.span = trimmed(source, bytes, start, end);
-    if let Some(Item::Unreadable(unreadable)) = block.items.last_mut() {
-        show(unreadable, bytes, end);
     }
 }
 
