@@ -24,14 +24,14 @@ impl Default for Places {
     }
 }
 
-/// Values waiting for their operators. Lowering refuses what would need more places than there are; going round in them
-/// saves the question at every step.
-struct Stack<'a> {
+/// The values that wait for their operators. Lowering refuses what would need more places than there are; going round in
+/// them saves the question at every step.
+struct Waiting<'a> {
     places: &'a [Cell<Value>; STACK],
     used: usize,
 }
 
-impl Stack<'_> {
+impl Waiting<'_> {
     #[inline]
     fn push(&mut self, value: Value) {
         self.places[self.used % STACK].set(value);
@@ -78,20 +78,14 @@ impl Core {
     }
 
     #[inline]
-    fn fetch(&self, source: Source, stack: &mut Stack<'_>) -> Value {
+    fn fetch(&self, source: Source, last: Value, waiting: &mut Waiting<'_>) -> Value {
         match source {
-            Source::Stack => stack.pop(),
+            Source::Last => last,
+            Source::Waiting => waiting.pop(),
             Source::Number(number) => Value::Number(number),
             Source::Local(index) => self.vars.locals()[usize::from(index)],
             Source::Common(index) => self.vars.common(usize::from(index)),
         }
-    }
-
-    /// Two values, of which the second waits above the first.
-    #[inline]
-    fn fetch_two(&self, [left, right]: [Source; 2], stack: &mut Stack<'_>) -> [Value; 2] {
-        let right = self.fetch(right, stack);
-        [self.fetch(left, stack), right]
     }
 
     #[inline]
@@ -114,75 +108,95 @@ impl Core {
     }
 
     fn run_code(&self, program: &Program, code: Code, rounds: RoundsTo) -> Checked<Value> {
-        let mut stack = Stack { places: &self.waiting.0, used: 0 };
-        for instruction in program.code(code) {
-            let value = self
-                .instruction(program, instruction, &mut stack, rounds)
-                .map_err(|alarm| alarm.at(instruction.span))?;
-            stack.push(value);
+        let mut last = Value::Vacant;
+        let mut waiting = Waiting { places: &self.waiting.0, used: 0 };
+        for Instruction { operation, span } in program.code(code) {
+            let mut fetch = |source| self.fetch(source, last, &mut waiting);
+            let value = match *operation {
+                Operation::Load(source) => Ok(fetch(source)),
+                Operation::Wait => {
+                    waiting.push(last);
+                    continue;
+                }
+                Operation::Binary(op, [left, right]) => {
+                    let (left, right) = (fetch(left).number(), fetch(right).number());
+                    binary(op, left, right, &self.settings.unsure).map(Value::Number)
+                }
+                Operation::Compare(relation, [left, right]) => {
+                    let holds = compare(relation, fetch(left), fetch(right));
+                    Ok(Value::Number(f64::from(u8::from(holds))))
+                }
+                Operation::Function(name, argument) => {
+                    self.function(name, fetch(argument).number()).map(Value::Number)
+                }
+                Operation::Atan2([y, x]) => {
+                    self.atan(fetch(y).number(), fetch(x).number()).map(Value::Number)
+                }
+                other => self.other(program, other, last, &mut waiting, rounds),
+            };
+            last = at(value, *span)?;
         }
-        Ok(stack.pop())
+        Ok(last)
     }
 
-    #[inline]
-    fn instruction(
+    fn function(&self, name: Function, argument: f64) -> Result<f64, Alarm> {
+        let value = function(name, argument, &self.settings)?;
+        if name == Function::Tan && (argument % 180.0).abs() == 90.0 {
+            self.told.set(Some(Note::TangentOf90));
+        }
+        Ok(value)
+    }
+
+    /// ATAN of two values.
+    fn atan(&self, y: f64, x: f64) -> Result<f64, Alarm> {
+        let value = atan2(y, x, &self.settings)?;
+        if y == 0.0 && x == 0.0 {
+            self.told.set(Some(Note::AtanOf0));
+        }
+        Ok(value)
+    }
+
+    /// What only some expressions contain. It stands apart so that the others needn't carry it.
+    #[inline(never)]
+    fn other(
         &self,
         program: &Program,
-        code: &Instruction,
-        stack: &mut Stack<'_>,
+        operation: Operation,
+        last: Value,
+        waiting: &mut Waiting<'_>,
         rounds: RoundsTo,
     ) -> Result<Value, Alarm> {
         let unsure = &self.settings.unsure;
-        Ok(match code.operation {
-            Operation::Load(source) => self.fetch(source, stack),
+        Ok(match operation {
+            Operation::Load(_)
+            | Operation::Wait
+            | Operation::Binary(..)
+            | Operation::Compare(..)
+            | Operation::Function(..)
+            | Operation::Atan2(_) => last,
             Operation::Read(number) => self.read(number)?,
-            Operation::LoadIndirect => self.read(index(stack.pop())?)?,
-            Operation::Negate => match stack.pop() {
+            Operation::LoadIndirect => self.read(index(last)?)?,
+            Operation::Negate => match last {
                 Value::Vacant if unsure.minus_keeps_vacancy => Value::Vacant,
                 value => Value::Number(-value.number()),
             },
-            Operation::Reverse => match stack.pop() {
+            Operation::Reverse => match last {
                 Value::Vacant => Value::Vacant,
                 Value::Number(number) => Value::Number(-number),
             },
-            Operation::Plus => stack.pop(),
-            Operation::Bracket => match stack.pop() {
+            Operation::Plus => last,
+            Operation::Bracket => match last {
                 Value::Vacant if !unsure.brackets_keep_vacancy => Value::Number(0.0),
                 value => value,
             },
-            Operation::Binary(op, values) => {
-                let [left, right] = self.fetch_two(values, stack).map(Value::number);
-                Value::Number(binary(op, left, right, unsure)?)
+            Operation::Power([base, exponent]) => {
+                let base = self.fetch(base, last, waiting).number();
+                Value::Number(power(base, self.fetch(exponent, last, waiting).number())?)
             }
-            Operation::Function(name, value) => {
-                let argument = self.fetch(value, stack).number();
-                let value = function(name, argument, &self.settings)?;
-                if name == Function::Tan && (argument % 180.0).abs() == 90.0 {
-                    self.told.set(Some(Note::TangentOf90));
-                }
-                Value::Number(value)
-            }
-            Operation::Atan2(values) => {
-                let [left, right] = self.fetch_two(values, stack).map(Value::number);
-                let value = atan2(left, right, &self.settings)?;
-                if left == 0.0 && right == 0.0 {
-                    self.told.set(Some(Note::AtanOf0));
-                }
-                Value::Number(value)
-            }
-            Operation::Power(values) => {
-                let [base, exponent] = self.fetch_two(values, stack).map(Value::number);
-                Value::Number(power(base, exponent)?)
-            }
-            Operation::RoundTo(_) if rounds == RoundsTo::Whole => Value::Number(round(stack.pop().number())),
-            Operation::RoundTo(letter) => Value::Number(self.round_to(letter, stack.pop().number())),
-            Operation::Compare(relation, values) => {
-                let [left, right] = self.fetch_two(values, stack);
-                Value::Number(f64::from(u8::from(compare(relation, left, right))))
-            }
+            Operation::RoundTo(_) if rounds == RoundsTo::Whole => Value::Number(round(last.number())),
+            Operation::RoundTo(letter) => Value::Number(self.round_to(letter, last.number())),
             Operation::Logic(op) => {
-                let right = stack.pop().number() != 0.0;
-                let left = stack.pop().number() != 0.0;
+                let (left, right) = (waiting.pop().number() != 0.0, last.number() != 0.0);
                 let holds = match op {
                     BinaryOp::And => left && right,
                     BinaryOp::Xor => left != right,
@@ -191,9 +205,11 @@ impl Core {
                 Value::Number(f64::from(u8::from(holds)))
             }
             Operation::Parameter { bit, axis } => {
-                let axis = if axis { Some(stack.pop().number()) } else { None };
-                let bit = if bit { Some(stack.pop().number()) } else { None };
-                Value::Number(self.parameter(stack.pop().number(), bit, axis)?)
+                let mut part = last;
+                let mut before =
+                    |is_there: bool| is_there.then(|| std::mem::replace(&mut part, waiting.pop()).number());
+                let (axis, bit) = (before(axis), before(bit));
+                Value::Number(self.parameter(part.number(), bit, axis)?)
             }
             Operation::AxisNumber(letter) => {
                 let axis = self.settings.axes.find(letter);
@@ -201,7 +217,7 @@ impl Core {
                 Value::Number(axis.ok_or_else(unknown)? as f64 + 1.0)
             }
             Operation::AddPoint => {
-                let number = index(stack.pop())?;
+                let number = index(last)?;
                 match self.vars.kind(number) {
                     Kind::Local(local) => Value::Number(self.vars.locals().with_point(local)),
                     _ => return Err(Alarm::ArgumentFormat { function: "ADP".into() }),
@@ -213,7 +229,7 @@ impl Core {
                 let place = match row.suffix {
                     None => 0,
                     Some((from, to)) => {
-                        let suffix = integer(stack.pop().number())?;
+                        let suffix = integer(last.number())?;
                         if !(i64::from(from)..=i64::from(to)).contains(&suffix) {
                             return Err(Alarm::Suffix { name: row.name.into() });
                         }

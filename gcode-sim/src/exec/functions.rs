@@ -13,25 +13,30 @@ fn finite(value: f64) -> Result<f64, Alarm> {
 
 #[inline]
 pub(crate) fn binary(op: BinaryOp, left: f64, right: f64, unsure: &Unsure) -> Result<f64, Alarm> {
-    let bits = |value| bits(value, unsure);
     finite(match op {
         BinaryOp::Add => left + right,
         BinaryOp::Sub => left - right,
         BinaryOp::Mul => left * right,
-        BinaryOp::Div if right == 0.0 => return Err(Alarm::DivideByZero),
-        BinaryOp::Div => left / right,
-        BinaryOp::Mod => {
-            let (left, right) = (round(left), round(right));
-            if right == 0.0 {
-                return Err(Alarm::DivideByZero);
-            }
-            // The remainder has the sign of the dividend.
-            left % right
-        }
-        BinaryOp::And => f64::from(bits(left)? & bits(right)?),
-        BinaryOp::Or => f64::from(bits(left)? | bits(right)?),
-        BinaryOp::Xor => f64::from(bits(left)? ^ bits(right)?),
+        BinaryOp::Div if right != 0.0 => left / right,
+        BinaryOp::Div => return Err(Alarm::DivideByZero),
+        BinaryOp::Mod | BinaryOp::And | BinaryOp::Or | BinaryOp::Xor => whole(op, left, right, unsure)?,
     })
+}
+
+/// The operators on whole numbers.
+#[inline(never)]
+fn whole(op: BinaryOp, left: f64, right: f64, unsure: &Unsure) -> Result<f64, Alarm> {
+    if op == BinaryOp::Mod {
+        let (left, right) = (round(left), round(right));
+        // The remainder has the sign of the dividend.
+        return if right == 0.0 { Err(Alarm::DivideByZero) } else { Ok(left % right) };
+    }
+    let (left, right) = (bits(left, unsure)?, bits(right, unsure)?);
+    Ok(f64::from(match op {
+        BinaryOp::And => left & right,
+        BinaryOp::Or => left | right,
+        _ => left ^ right,
+    }))
 }
 
 /// AND, OR and XOR work on 32-bit integers.
@@ -63,6 +68,7 @@ pub(super) fn compare(relation: Relation, left: Value, right: Value) -> bool {
     }
 }
 
+#[inline(never)]
 pub(crate) fn function(name: Function, x: f64, settings: &Settings) -> Result<f64, Alarm> {
     let domain = |ok: bool| {
         let function = || format!("{name:?}").to_uppercase();

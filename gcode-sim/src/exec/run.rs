@@ -8,7 +8,7 @@ use super::plan::Flow;
 use super::{Control, Core, Limits, Outcome, Stopped, Watcher};
 use crate::alarm::Alarm;
 use crate::motion::{Place, Sink};
-use crate::program::{Form, Library, Op, OpKind};
+use crate::program::{Form, Library, Memory, Op, OpKind};
 use crate::source::Span;
 
 /// A run ends after so many moves, and so many for every block that it may execute: a cycle with K or with small
@@ -41,15 +41,18 @@ impl Control {
         watcher: &mut impl Watcher,
     ) -> Outcome {
         let moves = limits.blocks.saturating_mul(MOVES_PER_BLOCK).max(MOVES);
+        if let Some(outcome) = self.over() {
+            return outcome;
+        }
         while self.core.blocks < limits.blocks && self.core.moves <= moves {
             if self.core.blocks.is_multiple_of(TOLD) && self.is_told_to_stop() {
                 break;
             }
             watcher.before(self);
-            let outcome = self.step(library, sink);
+            let outcome = self.advance(library, sink);
             watcher.after(self);
             if let Some(outcome) = outcome {
-                return outcome;
+                return *outcome;
             }
         }
         self.outcome = Some(Outcome::Limit);
@@ -66,14 +69,28 @@ impl Control {
 
     /// Does one block; `Some` when the run is over. A block that alarms has changed nothing.
     pub fn step<S: Sink>(&mut self, library: &mut impl Library, sink: &mut S) -> Option<Outcome> {
-        if let Some(outcome @ (Outcome::End | Outcome::Alarm(_))) = &self.outcome {
-            return Some(outcome.clone());
-        }
-        let mut done = self.block(library, sink);
+        self.over().or_else(|| self.advance(library, sink).map(|outcome| *outcome))
+    }
+
+    /// How the run ended, if it can't go on; a limit is no end.
+    fn over(&self) -> Option<Outcome> {
+        self.outcome.clone().filter(|outcome| !matches!(outcome, Outcome::Limit))
+    }
+
+    /// As [`Control::step`], of a run that isn't over.
+    #[inline]
+    fn advance<S: Sink>(&mut self, library: &mut impl Library, sink: &mut S) -> Option<Box<Outcome>> {
+        let done = self.block(library, sink);
         // Most blocks end nothing and have nothing to tell.
         if matches!(done, Ok(None)) && self.core.told.get().is_none() {
             return None;
         }
+        self.conclude(done, sink)
+    }
+
+    /// Takes note of what a block has to tell, and of the end of the run.
+    #[inline(never)]
+    fn conclude<S: Sink>(&mut self, mut done: Checked<Option<Over>>, sink: &mut S) -> Option<Box<Outcome>> {
         if matches!(done, Ok(Some(Over::End)))
             && let Err(alarm) = self.core.end_ahead(sink)
         {
@@ -94,33 +111,24 @@ impl Control {
             }
         };
         self.outcome = Some(outcome.clone());
-        Some(outcome)
+        Some(Box::new(outcome))
     }
 
     /// Reads the next block and does what it says.
     fn block<S: Sink>(&mut self, library: &mut impl Library, sink: &mut S) -> Checked<Option<Over>> {
         let Self { memory, core, plan, given, watch, endless, .. } = self;
-        if memory.programs().is_empty() {
-            return Err(Alarm::EndOfRecord.at(Span::default()));
-        }
         let frame = core.frame();
-        let (id, place, main) = (frame.program, frame.next, frame.kind == FrameKind::Main);
-        let Some((program, op)) = memory.ready(id, place) else {
-            let program = memory.get(id);
-            core.block = Span { start: program.span.end, ..program.span };
-            // A text may just stop; running into `%` or another program is running off the tape.
-            if main && !program.closed {
-                return Ok(Some(Over::End));
-            }
-            return Err(Alarm::EndOfRecord.at(core.block));
-        };
+        let (id, place) = (frame.program, frame.next);
+        let Some((program, op)) = memory.ready(id, place) else { return core.behind_last(memory) };
         core.block = op.span;
         core.blocks += 1;
         core.frame_mut().next = place + 1;
         if op.skip.is_some_and(|switch| core.skips(switch)) {
             return Ok(None);
         }
-        core.take_forms(op)?;
+        if !op.forms.is_empty() {
+            core.take_forms(op)?;
+        }
         let mut kind = &op.kind;
         if let OpKind::If { condition, then } = kind
             && core.holds(program, *condition)?
@@ -221,7 +229,23 @@ impl Control {
 }
 
 impl Core {
+    #[cold]
+    /// There is no block any more. A text may just stop; running into `%` or another program is running off the tape.
+    fn behind_last(&mut self, memory: &Memory) -> Checked<Option<Over>> {
+        let frame = self.frame();
+        let main = frame.kind == FrameKind::Main;
+        let Some(program) = memory.programs().get(frame.program.0 as usize) else {
+            return Err(Alarm::EndOfRecord.at(Span::default()));
+        };
+        self.block = Span { start: program.span.end, ..program.span };
+        if main && !program.closed {
+            return Ok(Some(Over::End));
+        }
+        Err(Alarm::EndOfRecord.at(self.block))
+    }
+
     /// Ways of writing that not every control reads.
+    #[inline(never)]
     fn take_forms(&mut self, op: &Op) -> Checked<()> {
         for form in &op.forms {
             if !form.node.is_taken(&self.settings) {

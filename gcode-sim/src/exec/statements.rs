@@ -71,6 +71,7 @@ impl Core {
         Ok(())
     }
 
+    #[inline(never)]
     fn name_variables(
         &mut self,
         program: &Program,
@@ -93,6 +94,7 @@ impl Core {
         }
     }
 
+    #[inline(never)]
     fn goto(&mut self, program: &Program, to: &Spanned<Operand>) -> Checked<()> {
         let value = self.operand(program, to.node)?.number();
         let number = integer(value).map_err(|alarm| alarm.at(to.span))?;
@@ -153,6 +155,7 @@ impl Core {
     }
 
     /// Writes a variable that is neither local nor common on every control.
+    #[inline(never)]
     fn write_other<S: Sink>(
         &mut self,
         number: u32,

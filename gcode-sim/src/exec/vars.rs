@@ -1,4 +1,5 @@
 //! Local and common variables. Vacant is a state of its own: it is neither 0 nor a number.
+use crate::program::Slot;
 
 /// What a variable holds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -109,10 +110,17 @@ impl Vars {
     /// What kind of variable `number` is.
     #[inline]
     pub(super) fn kind(&self, number: u32) -> Kind {
+        match Slot::of(number) {
+            Slot::Local(local) => Kind::Local(usize::from(local)),
+            Slot::Common(common) => Kind::Common(usize::from(common)),
+            Slot::Other(number) => self.other_kind(number),
+        }
+    }
+
+    /// What kind of variable one is that settings of the control decide about.
+    fn other_kind(&self, number: u32) -> Kind {
         match number {
             0 => Kind::Vacant,
-            1..=33 => Kind::Local(number as usize),
-            100..=199 | 500..=999 => Kind::Common(number as usize),
             10_100..=10_199 | 10_500..=10_999 if self.aliased => Kind::Common(number as usize - 10_000),
             _ if (self.more.0..=self.more.1).contains(&number) => {
                 Kind::Common(COMMONS + (number - self.more.0) as usize)
@@ -128,14 +136,28 @@ impl Vars {
 
     #[inline]
     pub(super) fn set_local(&mut self, index: usize, value: Value) {
-        let place = place(self.level() + 1, index);
-        self.digest ^= mix(place, self.locals[index]) ^ mix(place, value);
+        self.note(self.level() + 1, index, self.locals[index], value);
         self.locals.set(index, value, 0);
     }
 
     pub(super) fn set_locals(&mut self, locals: &Locals) {
-        self.digest ^= mix_all(self.level() + 1, &self.locals) ^ mix_all(self.level() + 1, locals);
+        self.note_all(self.level() + 1, &self.locals.clone(), locals);
         self.locals = *locals;
+    }
+
+    /// Keeps the digest up with a variable.
+    #[inline]
+    fn note(&mut self, level: usize, index: usize, old: Value, new: Value) {
+        // Each variable counts by an odd factor of its own, so that none makes up for another.
+        let factor = ((level << 16 | index) as u64).wrapping_mul(0x3C6E_F372_FE94_F82A) | 1;
+        let change = mixed(new).wrapping_sub(mixed(old)).wrapping_mul(factor);
+        self.digest = self.digest.wrapping_add(change);
+    }
+
+    fn note_all(&mut self, level: usize, old: &Locals, new: &Locals) {
+        for (index, (old, new)) in old.values.iter().zip(new.values).enumerate() {
+            self.note(level, index, *old, new);
+        }
     }
 
     /// Differs almost surely where any value differs.
@@ -158,21 +180,19 @@ impl Vars {
 
     #[inline]
     pub(super) fn set_common(&mut self, index: usize, value: Value) {
-        let place = &mut self.commons[index];
-        let mixed = self::place(0, index);
-        self.digest ^= mix(mixed, *place) ^ mix(mixed, value);
-        *place = value;
+        self.note(0, index, self.commons[index], value);
+        self.commons[index] = value;
     }
 
     /// A macro call: a new level with these locals.
     pub(super) fn enter(&mut self, locals: &Locals) {
         self.outer.push(std::mem::replace(&mut self.locals, *locals));
-        self.digest ^= mix_all(self.level() + 1, locals);
+        self.note_all(self.level() + 1, &VACANT, locals);
     }
 
     /// Back to the caller's locals.
     pub(super) fn leave(&mut self) {
-        self.digest ^= mix_all(self.level() + 1, &self.locals);
+        self.note_all(self.level() + 1, &self.locals.clone(), &VACANT);
         if let Some(callers) = self.outer.pop() {
             self.locals = callers;
         }
@@ -188,19 +208,13 @@ impl Vars {
     }
 }
 
-/// What stands for a variable in the digest.
-fn place(level: usize, index: usize) -> u64 {
-    ((level << 16 | index) as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15)
-}
-
-fn mix(place: u64, value: Value) -> u64 {
-    let Value::Number(number) = value else { return 0 };
-    (number.to_bits() ^ place).wrapping_mul(0xD6E8_FEB8_6659_FD93).rotate_left(29) ^ place
-}
-
-fn mix_all(level: usize, locals: &Locals) -> u64 {
-    let values = locals.values.iter().enumerate();
-    values.fold(0, |digest, (index, value)| digest ^ mix(place(level, index), *value))
+/// A value's part of the digest. What tells numbers apart is in their highest bits, and a product only carries upwards.
+#[inline]
+fn mixed(value: Value) -> u64 {
+    match value {
+        Value::Vacant => 0,
+        Value::Number(number) => !number.to_bits().rotate_left(24),
+    }
 }
 
 #[cfg(test)]

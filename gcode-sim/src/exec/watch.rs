@@ -45,8 +45,6 @@ impl Control {
     pub fn next_block(&mut self) -> Option<Span> {
         let frame = self.core.frames.last()?;
         let (program, place) = (frame.program, frame.next);
-        // A memory without any program has a main program all the same.
-        self.memory.programs().get(program.0 as usize)?;
         self.memory.ready(program, place).map(|(_, op)| op.span)
     }
 

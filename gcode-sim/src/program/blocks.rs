@@ -87,14 +87,15 @@ impl Blocks {
         numbers
     }
 
-    #[inline]
-    pub(super) fn is_ready(&self, place: OpIndex) -> bool {
-        self.entries.get(place).is_some_and(|entry| (entry.op as usize) < self.ops.len())
+    /// The operation of a block, if it is lowered.
+    pub(super) fn op(&self, place: OpIndex) -> Option<&Op> {
+        self.op_at(self.entries.get(place)?.op)
     }
 
+    /// An operation by the place that [`Blocks::ready`] tells.
     #[inline]
-    pub(super) fn op(&self, place: OpIndex) -> Option<&Op> {
-        self.ops.get(self.entries.get(place)?.op as usize)
+    pub(super) fn op_at(&self, place: u32) -> Option<&Op> {
+        self.ops.get(place as usize)
     }
 
     /// All operations; to ask before all are lowered, in order, is a mistake of ours.
@@ -112,12 +113,23 @@ impl Blocks {
         self.lowering.names.get(index as usize).map_or("", String::as_str)
     }
 
-    /// Lowers a block that isn't. Where too many are, the others are forgotten.
-    pub(super) fn ready(&mut self, place: OpIndex, loops: &Loops) {
+    /// The place of a block's operation, which is lowered where it isn't; `None` behind the last block. Where too many are,
+    /// the others are forgotten.
+    #[inline]
+    pub(super) fn ready(&mut self, place: OpIndex, loops: &Loops) -> Option<u32> {
+        let op = self.entries.get(place)?.op;
+        if op != Entry::UNREAD {
+            return Some(op);
+        }
+        self.make_ready(place, loops)
+    }
+
+    #[inline(never)]
+    fn make_ready(&mut self, place: OpIndex, loops: &Loops) -> Option<u32> {
         if self.ops.len() >= KEPT {
             self.forget();
         }
-        self.lower(place, loops);
+        self.lower(place, loops)
     }
 
     /// Lowers all blocks, in order.
@@ -138,8 +150,8 @@ impl Blocks {
         self.lowering.forget();
     }
 
-    fn lower(&mut self, place: OpIndex, loops: &Loops) {
-        let Some(entry) = self.entries.get(place) else { return };
+    fn lower(&mut self, place: OpIndex, loops: &Loops) -> Option<u32> {
+        let entry = self.entries.get(place)?;
         let apart = self.apart.contains_key(&(place as u32));
         let Text { source, .. } = self.text;
         let numbers =
@@ -147,16 +159,18 @@ impl Blocks {
         let op = match numbers {
             Some(op) => op,
             None => {
-                let Some(tree) = self.tree(place) else { return };
+                let tree = self.tree(place)?;
                 let small = lower_case(&tree, &self.text.bytes);
                 let mut op = self.lowering.block(&tree, small);
                 join(&mut op, place, loops);
                 op
             }
         };
-        self.entries[place].op = self.ops.len() as u32;
+        let at = self.ops.len() as u32;
+        self.entries[place].op = at;
         self.places.push(place as u32);
         self.ops.push(op);
+        Some(at)
     }
 }
 

@@ -76,17 +76,22 @@ pub struct Instruction {
 /// Where an operator finds a value that it needs. Most are numbers and variables, which then needn't wait on the stack.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Source {
+    /// What the instruction before has given.
+    Last,
     /// The last of the values that wait, which it takes away.
-    Stack,
+    Waiting,
     Number(f64),
     Local(u8),
     Common(u16),
 }
 
-/// Acts on a stack of values, on which it leaves its own. Conditions are numbers here, 0 or 1; the tree keeps them apart.
+/// Gives a value, mostly of the one that the instruction before has given; where that is needed later it waits on a stack.
+/// Conditions are numbers here, 0 or 1; the tree keeps them apart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Operation {
     Load(Source),
+    /// Lets the last value wait for its operator.
+    Wait,
     /// A variable that may not be read.
     Read(u32),
     /// Takes a variable's number, gives its value.
@@ -104,8 +109,9 @@ pub enum Operation {
     /// ROUND in a word: to the increment of that address.
     RoundTo(u8),
     Compare(Relation, [Source; 2]),
+    /// Of the value that waits and the last one.
     Logic(BinaryOp),
-    /// PRM: takes the axis, the bit and the number, the last of them always.
+    /// PRM: the number, the bit and the axis, of which the last is the last value and those before it wait.
     Parameter {
         bit: bool,
         axis: bool,

@@ -67,7 +67,7 @@ impl Lowering {
     /// Writes the code of `expr`; the answer is how many values it needs on the stack at once.
     fn expr(&mut self, expr: &Expr, context: Context, brackets: usize) -> Lowered<usize> {
         let (source, depth) = self.source(expr, context, brackets)?;
-        if source != Source::Stack {
+        if source != Source::Last {
             self.emit(Operation::Load(source), expr.span);
         }
         Ok(depth)
@@ -88,18 +88,18 @@ impl Lowering {
                         Slot::Common(common) => Source::Common(common),
                         Slot::Other(number) => {
                             self.emit(Operation::Read(number), expr.span);
-                            Source::Stack
+                            Source::Last
                         }
                     };
                     return Ok((source, 1));
                 }
                 let depth = self.expr(index, Context::Macro, brackets)?;
                 self.emit(Operation::LoadIndirect, expr.span);
-                return Ok((Source::Stack, depth));
+                return Ok((Source::Last, depth));
             }
             _ => {}
         }
-        self.computed(expr, context, brackets).map(|depth| (Source::Stack, depth))
+        self.computed(expr, context, brackets).map(|depth| (Source::Last, depth))
     }
 
     /// The sources of an operator's two values. The second may have to wait for the first.
@@ -109,9 +109,15 @@ impl Lowering {
         context: Context,
         brackets: usize,
     ) -> Lowered<([Source; 2], usize)> {
-        let (left, left_depth) = self.source(left, context, brackets)?;
-        let (right, right_depth) = self.source(right, context, brackets)?;
-        Ok(([left, right], left_depth.max(right_depth + 1)))
+        let (mut left_source, left_depth) = self.source(left, context, brackets)?;
+        let behind_left = self.instructions.len();
+        let (right_source, right_depth) = self.source(right, context, brackets)?;
+        if (left_source, right_source) == (Source::Last, Source::Last) {
+            left_source = Source::Waiting;
+            let wait = Instruction { operation: Operation::Wait, span: left.span };
+            self.instructions.insert(behind_left, wait);
+        }
+        Ok(([left_source, right_source], left_depth.max(right_depth + 1)))
     }
 
     /// Writes the code of what is no number and no variable.
@@ -140,6 +146,7 @@ impl Lowering {
                 self.note(Form::NewWord("PRM"), span);
                 let mut depth = self.expr(number, Context::Macro, brackets + 1)?;
                 for (place, part) in bit.iter().chain(axis).enumerate() {
+                    self.emit(Operation::Wait, span);
                     depth = depth.max(self.expr(part, Context::Macro, brackets + 1)? + place + 1);
                 }
                 self.emit(Operation::Parameter { bit: bit.is_some(), axis: axis.is_some() }, span);
@@ -283,6 +290,8 @@ impl Lowering {
             }
             Condition::Logic(op, written, first, second) => {
                 let left = self.test(first)?;
+                let span = self.instructions.last().map_or_else(Span::default, |i| i.span);
+                self.emit(Operation::Wait, span);
                 let right = self.test(second)?;
                 let span = self.instructions.last().map_or_else(Span::default, |i| i.span);
                 if *written == Written::Sign {

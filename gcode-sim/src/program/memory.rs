@@ -110,14 +110,13 @@ impl Memory {
     }
 
     /// Lowers one block of a program, so that it can be executed; `None` behind the last.
+    #[inline]
     pub(crate) fn ready(&mut self, id: ProgramId, place: OpIndex) -> Option<(&Program, &Op)> {
-        let program = &mut self.programs[id.0 as usize];
-        if !program.blocks.is_ready(place) {
-            let Program { blocks, loops, .. } = program;
-            blocks.ready(place, loops);
-        }
+        let program = self.programs.get_mut(id.0 as usize)?;
+        let Program { blocks, loops, .. } = program;
+        let place = blocks.ready(place, loops)?;
         let program = &*program;
-        program.op(place).map(|op| (program, op))
+        program.blocks.op_at(place).map(|op| (program, op))
     }
 
     /// A program with all of its blocks lowered: [`Program::ops`].
