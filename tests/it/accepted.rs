@@ -55,7 +55,7 @@ fn request(main: &Path) -> Request {
     let mut request = Request::new(name, std::fs::read(main).unwrap(), machine);
     request.limits = Limits { blocks: BLOCKS };
     // Programs that probe find the part of their job there.
-    if let Some(Ok(Probed { surface, radius: Some(radius) })) =
+    if let Some(Ok(Probed { surface, radius: Some(radius), .. })) =
         read("job.toml").map(|text| Probed::parse(&text))
     {
         request.part = Some(surface);

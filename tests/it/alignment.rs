@@ -151,9 +151,11 @@ fn corrected(shift: [f64; 3], tilt: [f64; 3], found: [f64; 4]) -> Placement {
     part
 }
 
-/// What alignment is for: before it the holes are out, after it they are within Φ0.1.
+/// What alignment is for: before it the holes are out, after it they are within Φ0.1. The positions are those of the table in
+/// docs/methods/alignment.md.
 #[test]
 fn after_the_correction_the_five_holes_hold_and_before_they_do_not() {
+    let mut rows: Vec<String> = (1..=5).map(|id| format!("| {id} |")).collect();
     for (shift, tilt) in [
         ([0.3, 0.0, -0.2], [0.15, 0.0, -0.3]),
         ([-0.25, 0.0, 0.3], [-0.3, 0.0, 0.2]),
@@ -166,6 +168,39 @@ fn after_the_correction_the_five_holes_hold_and_before_they_do_not() {
         assert_eq!(after.verdict, Answer::Pass, "{found:?}: {:?}", after.worst);
         assert_eq!(after.holes.len(), 5);
         assert!(after.worst.unwrap() < 0.05, "{found:?}: {:?}", after.worst);
+        for (row, after) in rows.iter_mut().zip(&after.holes) {
+            // A hole that is far off is none of the wanted ones.
+            let before = before.holes.iter().find(|hole| hole.id == after.id);
+            let before = before.map_or("not there".to_owned(), |hole| format!("{:.3}", hole.phi));
+            row.push_str(&format!(" {before} | {:.3} |", after.phi));
+        }
+    }
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/methods/alignment.md");
+    let page = std::fs::read_to_string(page).unwrap();
+    assert!(
+        rows.iter().all(|row| page.contains(row)),
+        "docs/methods/alignment.md has other figures than\n{}",
+        rows.join("\n")
+    );
+}
+
+/// B's own errors, of which the fit knows nothing: the table of docs/methods/alignment.md. By hand: about an axis at z = 0.01 the
+/// part goes round by −0.01·sin φ in x, as if it stood at z = −0.01; about one that leans by 0.001° about x, as if it leaned by
+/// −0.001°. An axis at x = 0.01 is a part at x = −0.01 and a touch that is always noted 0.01 farther out, which the page has as +0.012
+/// and −0.0014°.
+#[test]
+fn an_axis_that_is_not_where_the_program_believes_it_is_taken_for_the_part() {
+    for (error, expected) in [
+        ("centre.x = { fixed = 0.01 }", [0.0017, 0.0, 0.0, -0.0014]),
+        ("centre.z = { fixed = 0.01 }", [0.0, -0.01, 0.0, 0.0]),
+        ("tilt.x = { fixed = 0.001 }", [0.0, 0.0, -0.001, 0.0]),
+        ("tilt.z = { fixed = 0.001 }", [0.0011, 0.0, 0.0, -0.0011]),
+    ] {
+        let more = format!("\n[errors.rotary]\n{error}\n");
+        let found = found(&measured(&example("alignment"), 8210, Placement::default(), &more, Vec::new()));
+        for (found, expected) in found.into_iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-4, "{error}: {found} is not {expected}");
+        }
     }
 }
 

@@ -60,6 +60,19 @@ fn the_program_names_the_blocks() {
     assert!(text.contains("(THEY MAKE 0.10 SECONDS OF ARC TOO MUCH)"), "{text}");
 }
 
+/// sin 0 = 0: nothing goes under the table, and nothing is left of the angle.
+#[test]
+fn a_table_that_lies_flat_has_no_blocks() {
+    let text =
+        std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/alignment/job.toml"));
+    let package = families::emit(&Job::parse(&text.unwrap().replace("phi = 38.5", "phi = 0.0")).unwrap());
+    let text = &package.program(8230).unwrap().text;
+    assert!(
+        text.contains("(GAUGE BLOCKS METRIC-87)\n(NO BLOCKS, THE TABLE LIES FLAT)\n(AFTER O8210"),
+        "{text}"
+    );
+}
+
 #[test]
 fn what_no_table_can_be_set_to_is_refused() {
     let cases = [

@@ -1,18 +1,27 @@
 //! What all resident macros share: marks filled in, and what has to be true of the text for any control.
 
+#[cfg(test)]
+use crate::nc::program::REMARK;
+
 /// A macro's text with every `{mark}` replaced by what it stands for.
 pub(super) fn fill(text: &str, marks: &[(&str, String)]) -> String {
     marks.iter().fold(text.to_owned(), |text, (mark, value)| text.replace(mark, value))
 }
 
-/// Fails where a mark is left, a control can't show a character, or a message is longer than the 26 characters that an
-/// old control shows.
+/// Fails where a mark is left, a control can't show a character, a remark is longer than those of main programs, or a message
+/// longer than the 26 characters that an old control shows.
 #[cfg(test)]
 pub(super) fn hold(text: &str) {
     assert!(!text.contains(['{', '}']), "a mark is left:\n{text}");
     let shown = |b: u8| b == b'\n' || (b.is_ascii_graphic() || b == b' ') && !b.is_ascii_lowercase();
     assert!(text.bytes().all(shown), "a character no control shows:\n{text}");
     for line in text.lines() {
+        let remark = line.strip_prefix('(').map(|rest| rest.trim_end_matches(')'));
+        assert!(
+            remark.is_none_or(|remark| remark.len() <= REMARK),
+            "{line} has {} characters",
+            line.len() - 2
+        );
         for stop in ["#3000=", "#3006="] {
             let Some((_, rest)) = line.split_once(stop) else { continue };
             let message = rest.split_once('(').expect(line).1.trim_end_matches(')');

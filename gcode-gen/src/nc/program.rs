@@ -5,7 +5,7 @@ use super::block::Block;
 use super::text::displayable;
 
 /// The longest line of a remark.
-const REMARK: usize = 72;
+pub(crate) const REMARK: usize = 72;
 
 /// The largest sequence number of all three dialects.
 const LARGEST_N: usize = 99_999;

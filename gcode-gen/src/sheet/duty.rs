@@ -1,5 +1,5 @@
 //! What the operator does at a stop, step by step, in the order in which it has to be done.
-use gcode_sim::job::{HeadKind, Job, PinHoles};
+use gcode_sim::job::{Alignment, HeadKind, Job, PinHoles};
 use gcode_sim::motion::StopKind;
 use gcode_sim::report::figures::short;
 
@@ -12,6 +12,11 @@ pub fn duty(job: &Job, stop: &Stop) -> Vec<String> {
         && *variable == job.macros.common
     {
         return set_head(job, *angle);
+    }
+    if let Job::Alignment(job) = job
+        && let Some(steps) = set_up(job, stop)
+    {
+        return steps;
     }
     let mut steps = Vec::new();
     for (variable, value) in &stop.named {
@@ -45,6 +50,50 @@ fn set_head(job: &PinHoles, angle: f64) -> Vec<String> {
     }
     steps.push("CYCLE START goes on; the program starts spindle and coolant.".to_owned());
     steps
+}
+
+/// The stops of the measurements, told by the first variable that they name. Its value isn't shown: the simulated part stands
+/// right, and what it leaves there is rounding.
+fn set_up(job: &Alignment, stop: &Stop) -> Option<Vec<String>> {
+    let (first, _) = stop.named.first()?;
+    let steps = match first {
+        580 => vec![
+            "Read #580 to #583 at the control: the part is off by #580 in X and #581 in Z (mm), and tilted by #582 about X and \
+             #583 about Z (degrees)."
+                .to_owned(),
+            "Move the part by #580 and #581 and shim it by #582, each against its sign. The tilt #583 is left to O8230, the \
+             sine table."
+                .to_owned(),
+            "CYCLE START measures again: #580 to #583 then tell what remains, #590 to #593 what was found first.".to_owned(),
+        ],
+        596 => vec![
+            format!(
+                "#596 is the angle at which the sine table is taken to stand: {}° for a new part. Compare it with the blocks \
+                 that are under the table.",
+                short(job.sine_table.phi)
+            ),
+            "Where it is another one: RESET, write the right angle to #596, start again.".to_owned(),
+            "CYCLE START goes on.".to_owned(),
+        ],
+        587 => vec![
+            "Wring blocks to the height #587 (mm) and put them under the table.".to_owned(),
+            "Then CYCLE START, and not before: it says that the table is set. #596 becomes its angle, and the tilt is used up."
+                .to_owned(),
+            "Run O8210 again, for a part that is turned on the table moves; then this program again, until #580 to #583 are as \
+             small as is wanted."
+                .to_owned(),
+        ],
+        573 => vec![
+            format!(
+                "Read #573 to #575 (mm) and #576 (degrees), which are to be added to X, Y, Z and {} of the work offset.",
+                job.machine.rotary.letter
+            ),
+            "CYCLE START adds them: nothing is set by hand. RESET keeps them out. The points are used up either way.".to_owned(),
+            "#573 or #575 larger than the run-out has left is no correction: RESET, and O8210 first.".to_owned(),
+        ],
+        _ => return None,
+    };
+    Some(steps)
 }
 
 /// X and Y are told the tool's tip, not the head's pivot.

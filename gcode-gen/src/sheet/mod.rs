@@ -45,12 +45,13 @@ impl<'a> Sheet<'a> {
         pictures: Vec<(String, Vec<u8>)>,
     ) -> Result<Self, CheckError> {
         let rates = rates.or(job.sheet().rates.as_ref());
+        let record = record::record(job, package)?;
         Ok(Self {
             job,
             package,
             checked,
-            record: record::record(job, package)?,
-            needed: settings::needed(package)?,
+            needed: settings::needed(job, package, &record.begins)?,
+            record,
             rates,
             pictures,
         })

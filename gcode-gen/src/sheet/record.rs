@@ -10,19 +10,31 @@ use gcode_sim::session::{Request, Run, SessionError, run};
 use crate::check::{CheckError, Programs, told};
 use crate::package::{Package, file_name, stem};
 
+/// The common variables that a control keeps from one program to the next, and while it is switched off.
+const KEPT: std::ops::RangeInclusive<u32> = 500..=999;
+
 /// What happens at the machine, in the order in which it does.
 #[derive(Debug, Default)]
 pub struct Record {
+    /// What each main program finds in the common variables that are kept.
+    pub begins: Vec<Begin>,
     pub stops: Vec<Stop>,
     /// The numbers that M06 puts into the spindle.
     pub tools: Vec<u32>,
     pub times: Times,
     /// M codes that are left to the machine builder.
     pub passed_on: Vec<u32>,
-    /// Main programs that end in an alarm as long as nobody has measured what they read.
+    /// Main programs that end in an alarm on a part that stands right.
     pub waiting: Vec<String>,
     /// Rapid rates that the times count with: of sliding axes, mm/min, and of turning ones, degrees/min.
     pub rapids: [f64; 2],
+}
+
+/// A main program, and the variables that those before it have left it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Begin {
+    pub main: u32,
+    pub variables: Vec<(u32, f64)>,
 }
 
 /// The program waits for the operator.
@@ -54,45 +66,59 @@ impl Times {
     }
 }
 
-/// Runs the package's main programs on its own machine file, one after the other.
+/// Runs the package's main programs on its own machine file, one after the other, each with the common variables that the one
+/// before it has left: O8230 reads what O8210 has found.
 ///
 /// # Errors
 /// A package that contradicts itself, which [`crate::check::check`] has refused before.
 pub fn record(job: &Job, package: &Package) -> Result<Record, CheckError> {
     let mut listener = Listener::default();
     let mut record = Record::default();
+    let mut kept = Vec::new();
     for main in &package.mains {
-        let request = request(package, *main)?;
+        let begin = Begin { main: *main, variables: std::mem::take(&mut kept) };
+        let request = request(package, &begin)?;
         record.rapids = [request.settings.rapid.0, request.settings.rapid_rotary];
-        let broken = |error: SessionError| told(&file_name(*main), &error);
-        let run = match job {
-            // A probe needs a part to touch.
-            Job::Alignment(job) => {
-                let surface = Surface::Ellipsoid { a: job.surface.a, b: job.surface.b };
-                let mut probe = Extractor::new(&request.machine).with_surface(Some(surface));
-                run(&request, &mut Programs(package), &mut (&mut probe, &mut listener)).map_err(broken)?
-            }
-            Job::PinHoles(_) | Job::Honeycomb(_) | Job::Burr(_) => {
-                run(&request, &mut Programs(package), &mut listener).map_err(broken)?
-            }
-        };
+        let run = attended(job, package, &request, &mut listener)
+            .map_err(|error| told(&file_name(*main), &error))?;
         if !matches!(run.outcome, Outcome::End) {
             record.waiting.push(stem(*main));
         }
+        kept.extend(run.control.variables().filter(|(number, _)| KEPT.contains(number)));
         let stops = listener.stops.drain(..);
         record.stops.extend(stops.map(|(stop, place)| Stop { at: places(&run, &place), ..stop }));
         record.passed_on.extend(run.control.passed_on().keys());
+        record.begins.push(begin);
     }
     record.passed_on.sort_unstable();
     record.passed_on.dedup();
     Ok(Record { tools: listener.tools, times: listener.times, ..record })
 }
 
+/// A run with the part on the machine, where the programs are to touch it.
+pub(super) fn attended<S: Sink>(
+    job: &Job,
+    package: &Package,
+    request: &Request,
+    sink: &mut S,
+) -> Result<Run, SessionError> {
+    match job {
+        Job::Alignment(job) => {
+            let surface = Surface::Ellipsoid { a: job.surface.a, b: job.surface.b };
+            let mut probe = Extractor::new(&request.machine).with_surface(Some(surface));
+            run(request, &mut Programs(package), &mut (&mut probe, sink))
+        }
+        Job::PinHoles(_) | Job::Honeycomb(_) | Job::Burr(_) => run(request, &mut Programs(package), sink),
+    }
+}
+
 /// To run a main program on the package's own machine file.
-pub(super) fn request(package: &Package, main: u32) -> Result<Request, CheckError> {
+pub(super) fn request(package: &Package, begin: &Begin) -> Result<Request, CheckError> {
+    let main = begin.main;
     let machine = Machine::parse(&package.machine).map_err(|e| told("machine.toml", &e))?;
     let program = package.program(main).ok_or_else(|| told(&file_name(main), &"it was not emitted"))?;
-    Ok(Request::new(file_name(main), program.text.as_bytes(), machine))
+    let request = Request::new(file_name(main), program.text.as_bytes(), machine);
+    Ok(Request { variables: begin.variables.clone(), ..request })
 }
 
 fn places(run: &Run, place: &Place) -> Vec<(String, u32)> {

@@ -2,11 +2,12 @@
 //! with all of them as the family of controls has them.
 use gcode_sim::control::{ROWS, Row, Settings};
 use gcode_sim::exec::{Limits, Outcome};
+use gcode_sim::job::Job;
 use gcode_sim::motion::{Event, EventKind, Position, Sink, StopKind};
-use gcode_sim::session::{Request, SessionError, run};
+use gcode_sim::session::{Request, SessionError};
 
-use super::record::request;
-use crate::check::{CheckError, Programs, told};
+use super::record::{Begin, attended, request};
+use crate::check::{CheckError, told};
 use crate::package::Package;
 
 /// A run is followed so far: loops only repeat blocks that have been seen by then.
@@ -23,19 +24,19 @@ pub struct Needed {
     pub otherwise: String,
 }
 
-/// Runs the main programs once for every switch; those that don't end without values measured before say nothing.
+/// Runs the main programs once for every switch; those that end in an alarm with all as it should be say nothing.
 ///
 /// # Errors
 /// A package that contradicts itself.
-pub fn needed(package: &Package) -> Result<Vec<Needed>, CheckError> {
+pub fn needed(job: &Job, package: &Package, begins: &[Begin]) -> Result<Vec<Needed>, CheckError> {
     let mut found: Vec<Needed> = Vec::new();
-    for main in &package.mains {
-        let mut request = request(package, *main)?;
+    for begin in begins {
+        let mut request = request(package, begin)?;
         request.limits = Limits { blocks: BLOCKS };
         let usual = request.settings.clone();
         let mut trace = |settings: Settings| {
             request.settings = settings;
-            Trace::of(&request, package).map_err(|error| told(&request.name, &error))
+            Trace::of(job, package, &request).map_err(|error| told(&request.name, &error))
         };
         let wanted = trace(usual.clone())?;
         if wanted.alarm.is_some() {
@@ -75,9 +76,9 @@ struct Trace {
 }
 
 impl Trace {
-    fn of(request: &Request, package: &Package) -> Result<Self, SessionError> {
+    fn of(job: &Job, package: &Package, request: &Request) -> Result<Self, SessionError> {
         let mut trace = Self::default();
-        let run = run(request, &mut Programs(package), &mut trace)?;
+        let run = attended(job, package, request, &mut trace)?;
         trace.alarm = match &run.outcome {
             Outcome::Alarm(stopped) => {
                 let (program, line) = run.locate(stopped.place.block);
@@ -112,12 +113,15 @@ impl Sink for Trace {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::families;
     use crate::package::Program;
 
     fn found(text: &str) -> Vec<(&'static str, &'static str, String)> {
         let programs = vec![Program { number: 1, text: text.to_owned() }];
         let package = Package { mains: vec![1], programs, machine: String::new() };
-        let needed = needed(&package).unwrap();
+        // Any job that isn't touched by a probe.
+        let job = Job::parse(families::ALL[0].new_job).unwrap();
+        let needed = needed(&job, &package, &[Begin { main: 1, variables: Vec::new() }]).unwrap();
         needed.into_iter().map(|one| (one.key, one.value, one.otherwise)).collect()
     }
 

@@ -42,13 +42,13 @@ impl<'h> Planned<'h> {
         id(self.wanted)
     }
 
-    /// The hole that this machine makes; `None` where its axis runs across the wanted one.
+    /// The hole that this machine makes; `None` where its axis runs across the wanted one. Its axis is the tool's where that is
+    /// known, else the feed's, as in [`crate::holes`].
     pub(super) fn deviation(&self, machine: &Machine) -> Option<Deviation> {
         let frame = machine.part_frame(&self.end);
-        let [start, end] = [&self.start, &self.end]
-            .map(|at| frame.inverse_transform_point(&machine.tool(at, &self.setup).tip));
-        let axis = Unit::try_new(start - end, 1e-9)?;
-        Deviation::new(self.wanted, &end, &axis)
+        let [start, end] = [&self.start, &self.end].map(|at| machine.tool(at, &self.setup).on(&frame));
+        let axis = end.axis.or_else(|| Unit::try_new(start.tip - end.tip, 1e-9))?;
+        Deviation::new(self.wanted, &end.tip, &axis)
     }
 
     pub(super) fn phi(&self, machine: &Machine) -> f64 {

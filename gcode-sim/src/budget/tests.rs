@@ -2,6 +2,7 @@
 use super::*;
 use crate::machine::error::Spread;
 use crate::machine::sources::Quantity;
+use crate::units::Deg;
 
 /// An axial hole at azimuth 0, or 180, of places that are whole increments: rounding leaves nothing.
 fn hole(x: f64) -> Hole {
@@ -102,6 +103,18 @@ fn a_run_out_is_a_position_of_the_same_size() {
     assert!(statistics.max <= 0.15 + 1e-9);
     // The mean square of the way is (0.15/2)²/3.
     assert!((found.shares[0].moves - 0.075 / 3f64.sqrt()).abs() < 1e-9);
+}
+
+/// A head that stands 0.1° beyond its angle, its tip where it was told (no pivot, no tool length): the tool lies across the
+/// hole, whose mouth is 15·tan 0.1° aside.
+#[test]
+fn a_heads_angle_is_off_at_the_mouth_as_verify_says() {
+    for angle in [0.1, -0.1] {
+        let found = found(&[hole(300.0)], &[source(Quantity::Head, Spread::Fixed(angle))], 1, 1);
+        let aside = 15.0 * Deg(0.1).tan();
+        assert!((found.holes[0].statistics.max - 2.0 * aside).abs() < 1e-9, "{found:?}");
+        assert!((found.shares[0].moves - aside).abs() < 1e-6);
+    }
 }
 
 /// The sum of the sources' squares is the mean square that the samples show, for a hole where one end decides.

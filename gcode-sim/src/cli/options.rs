@@ -5,7 +5,7 @@ use super::conditions::ProgramArguments;
 use super::library::Folders;
 use super::{Refusal, input};
 use crate::exec::Limits;
-use crate::job::control_file;
+use crate::job::{Rotary, control_file};
 use crate::machine::{Machine, Probe};
 use crate::part::probed::Probed;
 use crate::part::wanted::Wanted;
@@ -46,13 +46,13 @@ pub(super) fn request(program: &ProgramArguments) -> Result<(Request, Folders), 
     }
     request.limits = Limits { blocks: arguments.max_blocks };
     if let Some(path) = &arguments.part {
-        probed(&mut request, path)?;
+        probed(&mut request, path, arguments.machine.as_deref())?;
     }
     Ok((request, folders))
 }
 
-/// Puts a part on the machine that can be probed.
-fn probed(request: &mut Request, path: &Path) -> Result<(), Refusal> {
+/// Puts a part on the machine that can be probed; `file` is the machine's.
+fn probed(request: &mut Request, path: &Path, file: Option<&Path>) -> Result<(), Refusal> {
     let refused = |why: &dyn std::fmt::Display| Refusal::new(format!("{}, {why}", path.display()));
     if request.settings.skip_signal.is_some() {
         return Err(Refusal::new(
@@ -75,8 +75,33 @@ fn probed(request: &mut Request, path: &Path) -> Result<(), Refusal> {
         }
         (Some(_), _) => {}
     }
+    if let Some(rotary) = part.rotary {
+        let machine =
+            file.map_or("the machine without --machine".to_owned(), |file| file.display().to_string());
+        same_rotary(rotary, &request.machine, &machine).map_err(|why| refused(&why))?;
+    }
     request.part = Some(part.surface);
     Ok(())
+}
+
+/// Whether the machine turns the part as the job says. Of two signs no fit could tell which is the right one.
+fn same_rotary(rotary: Rotary, machine: &Machine, file: &str) -> Result<(), String> {
+    let letter = rotary.letter;
+    let turns = machine.axes.find(letter as u8).and_then(|axis| machine.table.turns(axis));
+    let Some(sign) = turns else {
+        return Err(format!(
+            "key 'machine.rotary.letter' is {letter}, and {file} has no [[table]] with such a letter that turns the part: give the \
+             machine file that belongs to the job"
+        ));
+    };
+    if sign == f64::from(rotary.sign) {
+        return Ok(());
+    }
+    Err(format!(
+        "key 'machine.rotary.sign' is {}, and {file} says sign = {sign} in [[table]] {letter}: turn {letter} to 10 at the machine, see \
+         which way the part goes, and correct the one that is wrong",
+        rotary.sign
+    ))
 }
 
 /// A machine file.

@@ -67,15 +67,17 @@ impl Extractor<'_> {
         match asked {
             HeadMessage::Angle(angle) => Some(angle),
             HeadMessage::Other | HeadMessage::Unclear => {
-                self.findings.add("head-message-unclear", &event.place(), 0, || {
-                    Diagnostic::warning(
-                        "head-message-unclear",
-                        format!("the message ({text}) doesn't name one variable with a value: the head stays as it is"),
-                    )
-                    .help("name the variable that holds the angle, as in #3006=1(SET HEAD TO #140)")
-                });
+                self.findings.add("head-message-unclear", &event.place(), 0, || unclear_head(text));
                 None
             }
         }
     }
+}
+
+/// A message about the head from which no angle can be read.
+pub(crate) fn unclear_head(text: &str) -> Diagnostic {
+    let message =
+        format!("the message ({text}) doesn't name one variable with a value: the head stays as it is");
+    Diagnostic::warning("head-message-unclear", message)
+        .help("name the variable that holds the angle, as in #3006=1(SET HEAD TO #140)")
 }

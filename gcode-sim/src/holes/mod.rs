@@ -23,6 +23,7 @@ pub use cutting::Cutting;
 pub use group::Found;
 use group::Pass;
 use line::{After, Line};
+pub(crate) use machine_words::unclear_head;
 pub use passing::{CONTACT, Passing, ROUNDED, Way};
 
 use self::clamping::Hold;

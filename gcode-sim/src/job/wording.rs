@@ -83,12 +83,13 @@ impl Place {
         }
     }
 
-    /// A key that the line sets, or that an inline table on it holds.
+    /// A key that the line or its table's header sets, dotted or not, or that an inline table on it holds.
     fn beside(&self, field: &str) -> String {
-        match &self.key {
-            Some(key) if key != field => join(&[&self.table, key, field]),
-            None if self.table == field || self.table.ends_with(&format!(".{field}")) => self.table.clone(),
-            _ => join(&[&self.table, field]),
+        let path = self.name();
+        let names: Vec<_> = path.split('.').map(str::trim).collect();
+        match names.iter().rposition(|name| *name == field) {
+            Some(last) => names[..=last].join("."),
+            None => join(&[&path, field]),
         }
     }
 }
@@ -136,5 +137,17 @@ mod tests {
             reword(nested, Some(8..12), "unknown field `part`, expected `linear` or `head`"),
             "key 'errors.part' is not known; allowed: linear, head"
         );
+        for dotted in [
+            "[part]\nshif.x = { fixed = 1 }\n",
+            "[part.shif]\nx = { fixed = 1 }\n",
+            "part.shif.x = { fixed = 1 }\n",
+        ] {
+            let at = dotted.find("shif").unwrap();
+            assert_eq!(
+                reword(dotted, Some(at..at + 4), "unknown field `shif`, expected `shift` or `tilt`"),
+                "key 'part.shif' is not known; allowed: shift, tilt",
+                "{dotted}"
+            );
+        }
     }
 }

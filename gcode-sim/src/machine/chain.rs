@@ -59,6 +59,12 @@ impl Link {
 }
 
 impl Chain {
+    /// The sign of an axis that turns; `None` where the chain has no such axis.
+    pub fn turns(&self, axis: Axis) -> Option<f64> {
+        let turns = |link: &&Link| link.axis == axis && matches!(link.motion, LinkMotion::Turn { .. });
+        self.0.iter().find(turns).map(|link| link.sign)
+    }
+
     /// The table of the paper's machine: B turns the part about y through its origin, if the control has a B.
     pub fn of_the_paper(axes: &Axes, origin: Point3<f64>) -> Self {
         let b = axes.find(b'B').map(|axis| Link::turn(axis, Vector3::y_axis(), origin, 1.0));

@@ -15,4 +15,5 @@ pub mod profile;
 mod read;
 pub mod reference;
 pub mod surface;
+pub mod touched;
 pub mod wanted;

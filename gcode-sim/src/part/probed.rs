@@ -2,7 +2,7 @@
 use super::reference::ReferenceError;
 use super::surface::Surface;
 use super::wanted::Wanted;
-use crate::job::Job;
+use crate::job::{Job, Rotary};
 
 /// A surface that is there to be touched.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -10,6 +10,8 @@ pub struct Probed {
     pub surface: Surface,
     /// Of the stylus ball, mm, where the job says it.
     pub radius: Option<f64>,
+    /// The axis that its programs turn it by, where they measure while it turns.
+    pub rotary: Option<Rotary>,
 }
 
 impl Probed {
@@ -19,11 +21,11 @@ impl Probed {
         let job = Job::parse(text).map_err(told)?;
         if let Job::Alignment(job) = job {
             let surface = Surface::Ellipsoid { a: job.surface.a, b: job.surface.b };
-            return Ok(Self { surface, radius: Some(job.probe_radius) });
+            return Ok(Self { surface, radius: Some(job.probe_radius), rotary: Some(job.machine.rotary) });
         }
         let surface = Wanted::of_job(&job)?.into_holes().and_then(|reference| reference.surface);
         let message = "this family's part has no surface that could be probed".to_owned();
         let surface = surface.ok_or(ReferenceError { line: None, message })?;
-        Ok(Self { surface, radius: None })
+        Ok(Self { surface, radius: None, rotary: None })
     }
 }

@@ -2,6 +2,7 @@
 //!
 //! Feeds along the surface are a pass; approach and retract cross it. What is farther away than [`REACH`] or lies across
 //! has no reading: where the path should have gone on there, that is an error.
+mod ball;
 mod rapids;
 #[cfg(test)]
 mod tests;
@@ -10,12 +11,13 @@ mod unread;
 use nalgebra::{Point3, Unit};
 
 use crate::diag::{Diagnostic, Severity};
+use crate::holes::unclear_head;
 use crate::machine::path::Travel;
-use crate::machine::{Head, Machine, Placement, Setup};
-use crate::motion::{Arc2, Event, EventKind, Place, Position, Sink, StopKind};
+use crate::machine::{Machine, Placement};
+use crate::motion::{Event, Place, Sink};
 use crate::part::surface::Surface;
-use crate::units::Deg;
 
+use self::ball::{Ball, By, Heard};
 use self::unread::{Missed, Unread, Way};
 
 pub use self::rapids::Rapids;
@@ -25,10 +27,14 @@ pub use self::unread::Gap;
 pub const REACH: f64 = 5.0;
 /// A curved way is taken as chords that stray from it by no more than this, mm.
 const STRAY: f64 = 1e-5;
+/// The same where nothing is read, and the way's length and depth are told.
+const ROUGH: f64 = 0.01;
 /// So many points of each chord are kept, besides the nearest.
 const PARTS: u32 = 4;
 /// More points than this aren't kept: no path has so many, but a loop that never ends makes them.
 const KEPT: usize = 500_000;
+/// More points than this aren't looked at on feeds that have no reading, which takes some seconds.
+const LOOKED_AT: usize = 2_000_000;
 /// The sine of the angle to the surface up to which a feed goes along it: 30°.
 const ALONG: f64 = 0.5;
 
@@ -95,12 +101,13 @@ pub struct Stylus<'m> {
     surface: Surface,
     /// Of the ball, mm.
     radius: f64,
-    at: Position,
-    setup: Setup,
+    ball: Ball,
     open: Option<Pass>,
     missed: Missed,
     followed: Followed,
+    /// Points of passes, and of feeds that have no reading.
     kept: usize,
+    looked_at: usize,
 }
 
 impl<'m> Stylus<'m> {
@@ -112,12 +119,12 @@ impl<'m> Stylus<'m> {
             believed: Machine { part, ..machine.clone() },
             surface,
             radius,
-            at: Position::default(),
-            setup: Setup::default(),
+            ball: Ball::default(),
             open: None,
             missed: Missed::default(),
             followed: Followed::default(),
             kept: 0,
+            looked_at: 0,
         }
     }
 
@@ -133,24 +140,22 @@ impl<'m> Stylus<'m> {
         self.followed.passes.extend(self.open.take());
     }
 
-    fn motion(&mut self, event: &Event<'_>, feed: bool, to: &Position, arc: Option<&Arc2>) {
-        let from = self.at;
-        self.at = *to;
-        if self.kept > KEPT || (from == *to && arc.is_none()) {
+    fn motion(&mut self, event: &Event<'_>, travel: &Travel<'_>, by: By) {
+        if self.is_full() || (travel.from == travel.to && travel.arc.is_none()) {
             return;
         }
-        let travel = Travel { from: &from, to, arc };
-        if !feed {
+        if by != By::Feed {
             self.close();
             return self.missed.leave(self.followed.passes.len());
         }
-        match self.course(&travel) {
+        match self.course(travel) {
             Course::Along => {}
             Course::Still => return,
             Course::Off(way) => {
                 self.close();
-                let unread = self.unread(event, &travel, way);
-                return self.missed.feed(unread);
+                let unread = self.unread(event, travel, way);
+                self.missed.feed(unread);
+                return self.stop_where_full(event);
             }
         }
         if self.open.is_none() {
@@ -160,24 +165,39 @@ impl<'m> Stylus<'m> {
         let before = pass.readings.len();
         pass.places.push(event.place());
         let first = pass.readings.is_empty().then_some(0.0);
-        for t in first.into_iter().chain(self.stations(&travel)) {
-            let reading = self.read(&travel, t, &pass);
+        for t in first.into_iter().chain(self.stations(travel)) {
+            let reading = self.read(travel, t, &pass);
             pass.readings.push(reading);
         }
         let added = pass.readings.len() - before;
         self.kept += added;
         self.open = Some(pass);
-        if self.kept > KEPT {
-            let message = format!("more than {KEPT} points along the surface: from here on none is read");
-            let finding = Diagnostic::new(Severity::Alarm, "limit", message).at(event.place());
-            let finding = finding.help("does a loop never end? else split the program");
-            self.followed.findings.push(finding);
-        }
+        self.stop_where_full(event);
+    }
+
+    fn is_full(&self) -> bool {
+        self.kept > KEPT || self.looked_at > LOOKED_AT
+    }
+
+    /// Tells it where nothing more is read.
+    fn stop_where_full(&mut self, event: &Event<'_>) {
+        let message = if self.kept > KEPT {
+            format!("more than {KEPT} points along the surface: from here on none is read")
+        } else if self.looked_at > LOOKED_AT {
+            format!(
+                "more than {LOOKED_AT} points of feeds that have no reading: from here on nothing is read"
+            )
+        } else {
+            return;
+        };
+        let finding = Diagnostic::new(Severity::Alarm, "limit", message).at(event.place());
+        let finding = finding.help("does a loop never end? else split the program");
+        self.followed.findings.push(finding);
     }
 
     /// How the ball goes, all the way.
     fn course(&self, travel: &Travel<'_>) -> Course {
-        let tip = |t: f64| self.machine.forward(&travel.position(t), &self.setup).tip;
+        let tip = |t: f64| self.machine.forward(&travel.position(t), &self.ball.setup).tip;
         // The distance from the surface where it is looked at, and the sine of the angle at which the way leaves it.
         let looks = [0.0, 0.5, 1.0].map(|t| {
             let (near, here) = (1e-3, tip(t));
@@ -201,23 +221,27 @@ impl<'m> Stylus<'m> {
     }
 
     /// A feed on which the dial isn't read.
-    fn unread(&self, event: &Event<'_>, travel: &Travel<'_>, way: Way) -> Unread {
-        let tip = |t: f64| self.machine.forward(&travel.position(t), &self.setup).tip;
-        let (mut length, mut last) = (0.0, tip(0.0));
+    fn unread(&mut self, event: &Event<'_>, travel: &Travel<'_>, way: Way) -> Unread {
+        let tip = |t: f64| self.machine.forward(&travel.position(t), &self.ball.setup).tip;
         let far = |tip: &Point3<f64>| self.surface.nearest(tip).distance - self.radius;
+        let steps = self.machine.steps(travel, &self.ball.setup, ROUGH);
+        let (mut length, mut last) = (0.0, tip(0.0));
         let (mut least, mut greatest) = (far(&last), far(&last));
-        for here in self.stations(travel).into_iter().map(tip) {
+        for step in 1..=steps {
+            let here = tip(f64::from(step) / f64::from(steps));
+            let between = last + (here - last) * self.surface.nearest_between(&last, &here);
             length += (here - last).norm();
+            (least, greatest) = (least.min(far(&between)).min(far(&here)), greatest.max(far(&here)));
             last = here;
-            (least, greatest) = (least.min(far(&here)), greatest.max(far(&here)));
         }
+        self.looked_at += steps as usize;
         Unread { place: event.place(), way, length, least, greatest }
     }
 
     /// Where along a motion the ball is read: beyond 0, up to 1.
     fn stations(&self, travel: &Travel<'_>) -> Vec<f64> {
-        let steps = self.machine.steps(travel, &self.setup, STRAY);
-        let tip = |t: f64| self.machine.forward(&travel.position(t), &self.setup).tip;
+        let steps = self.machine.steps(travel, &self.ball.setup, STRAY);
+        let tip = |t: f64| self.machine.forward(&travel.position(t), &self.ball.setup).tip;
         let mut stations = Vec::new();
         for step in 0..steps {
             let part = |t: f64| (f64::from(step) + t) / f64::from(steps);
@@ -232,8 +256,8 @@ impl<'m> Stylus<'m> {
 
     fn read(&self, travel: &Travel<'_>, t: f64, pass: &Pass) -> Reading {
         let position = travel.position(t);
-        let tip = self.machine.forward(&position, &self.setup).tip;
-        let at = self.believed.forward(&position, &self.setup).tip;
+        let tip = self.machine.forward(&position, &self.ball.setup).tip;
+        let at = self.believed.forward(&position, &self.ball.setup).tip;
         let along = pass.readings.last().map_or(0.0, |last| last.along + (at - last.at).norm());
         let value = self.surface.nearest(&tip).distance - self.radius;
         Reading { along, at, value, place: pass.places.len() - 1 }
@@ -242,31 +266,15 @@ impl<'m> Stylus<'m> {
 
 impl Sink for Stylus<'_> {
     fn event(&mut self, event: &Event<'_>) {
-        match event.kind {
-            EventKind::Rapid { to } | EventKind::Skip { to, .. } => self.motion(event, false, to, None),
-            EventKind::Feed { to, .. } => self.motion(event, true, to, None),
-            EventKind::Arc { to, arc, .. } => self.motion(event, true, to, Some(arc)),
-            EventKind::Tool { number } => {
-                self.close();
-                self.setup.tool = Some(*number);
+        match self.ball.follow(self.machine, event) {
+            Heard::Gone { from, to, arc, by } => {
+                self.motion(event, &Travel { from: &from, to, arc }, by);
             }
-            EventKind::ToolLength { offset, .. } => {
-                self.close();
-                self.setup.offset = *offset;
+            Heard::Changed => self.close(),
+            Heard::Unclear(text) => {
+                self.followed.findings.push(unclear_head(text).at(event.place()));
             }
-            EventKind::Stop { kind: StopKind::Message, text, named } => {
-                let named =
-                    named.first().filter(|_| self.machine.head.is_set_by_hand() && Head::is_meant(text));
-                if let Some((_, angle)) = named {
-                    self.close();
-                    self.setup.head_angle = Some(Deg(*angle));
-                }
-            }
-            EventKind::Stop { .. }
-            | EventKind::Dwell { .. }
-            | EventKind::Spindle { .. }
-            | EventKind::Coolant { .. }
-            | EventKind::Auxiliary { .. } => {}
+            Heard::Still => {}
         }
     }
 }

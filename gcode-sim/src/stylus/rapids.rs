@@ -1,10 +1,12 @@
 //! Rapids on which a stylus' ball meets the part: no probe is asked there, and nothing gives.
 use crate::diag::Diagnostic;
 use crate::holes::per_block::PerBlock;
+use crate::machine::Machine;
 use crate::machine::path::Travel;
-use crate::machine::{Machine, Setup};
-use crate::motion::{Event, EventKind, Position, Sink};
+use crate::motion::{Event, Sink};
 use crate::part::surface::Surface;
+
+use super::ball::{Ball, By, Heard};
 
 /// A curved way is taken as chords that stray from it by no more than this, mm; nor is less than this told.
 const STRAY: f64 = 0.001;
@@ -16,8 +18,7 @@ pub struct Rapids<'m> {
     surface: Surface,
     /// Of the ball, mm.
     radius: f64,
-    at: Position,
-    setup: Setup,
+    ball: Ball,
     /// Whether the ball has been outside: a run begins at machine zero, where no ball is.
     outside: bool,
     findings: PerBlock<(), Diagnostic>,
@@ -26,8 +27,14 @@ pub struct Rapids<'m> {
 impl<'m> Rapids<'m> {
     /// Starts with every axis at machine zero.
     pub fn new(machine: &'m Machine, surface: Surface, radius: f64) -> Self {
-        let (at, setup) = (Position::default(), Setup::default());
-        Self { machine, surface, radius, at, setup, outside: false, findings: PerBlock::default() }
+        Self {
+            machine,
+            surface,
+            radius,
+            ball: Ball::default(),
+            outside: false,
+            findings: PerBlock::default(),
+        }
     }
 
     /// One for each block, the first time.
@@ -35,11 +42,10 @@ impl<'m> Rapids<'m> {
         self.findings.into_entries().map(|entry| entry.value).collect()
     }
 
-    fn rapid(&mut self, event: &Event<'_>, to: &Position) {
-        let travel = Travel { from: &self.at, to, arc: None };
-        let tip = |t: f64| self.machine.forward(&travel.position(t), &self.setup).tip;
+    fn rapid(&mut self, event: &Event<'_>, travel: &Travel<'_>) {
+        let tip = |t: f64| self.machine.forward(&travel.position(t), &self.ball.setup).tip;
         let pushed = |t: f64| self.radius - self.surface.nearest(&tip(t)).distance;
-        let steps = self.machine.steps(&travel, &self.setup, STRAY);
+        let steps = self.machine.steps(travel, &self.ball.setup, STRAY);
         let deepest = (0..steps)
             .map(|step| {
                 let part = |t: f64| (f64::from(step) + t) / f64::from(steps);
@@ -65,21 +71,8 @@ impl<'m> Rapids<'m> {
 
 impl Sink for Rapids<'_> {
     fn event(&mut self, event: &Event<'_>) {
-        match &event.kind {
-            EventKind::Rapid { to } => {
-                self.rapid(event, to);
-                self.at = *to;
-            }
-            EventKind::Skip { to, .. } | EventKind::Feed { to, .. } | EventKind::Arc { to, .. } => {
-                self.at = *to;
-            }
-            EventKind::Tool { number } => self.setup.tool = Some(*number),
-            EventKind::ToolLength { offset, .. } => self.setup.offset = *offset,
-            EventKind::Stop { .. }
-            | EventKind::Dwell { .. }
-            | EventKind::Spindle { .. }
-            | EventKind::Coolant { .. }
-            | EventKind::Auxiliary { .. } => {}
+        if let Heard::Gone { from, to, arc, by: By::Rapid } = self.ball.follow(self.machine, event) {
+            self.rapid(event, &Travel { from: &from, to, arc });
         }
     }
 }

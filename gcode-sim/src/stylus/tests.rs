@@ -152,3 +152,41 @@ fn a_rapid_with_the_ball_into_the_part_is_told() {
         assert!(deepest.is_none_or(|deepest| told.contains(deepest)), "{ways:?}: {told}");
     }
 }
+
+/// A head with its pivot 100 mm from the ball's centre, set by hand to 90° and to 0°: the ball hangs 100 mm below the pivot,
+/// then 100 mm beside it towards −x. A rapid of the pivot to x = 200, y = 0 brings it to x = 100, with a ball of 3 that is 3 mm in a
+/// sphere of 100; upright it would stand at (200, −100), 123.6 mm off.
+#[test]
+fn a_rapid_into_the_part_is_told_for_a_head_that_is_set_by_hand() {
+    let kind = crate::machine::HeadKind::Manual { start: Some(Deg(90.0)) };
+    let machine = Machine { head: crate::machine::Head::new(kind, 100.0), ..Machine::default() };
+    for (angle, told) in [(0.0, Some("3.000")), (90.0, None)] {
+        let script = Script::new().rapid("X400 Y100").head(angle).rapid("X400 Y0").rapid("X200");
+        let mut rapids = Rapids::new(&machine, SPHERE, 3.0);
+        script.play(&mut rapids);
+        let found: Vec<_> = rapids.finish().into_iter().map(|finding| finding.message).collect();
+        assert_eq!(found.len(), usize::from(told.is_some()), "{angle}: {found:?}");
+        assert!(told.is_none_or(|told| found[0].contains(told)), "{angle}: {found:?}");
+    }
+}
+
+/// Half turns of the table under a ball 97 mm off the part: each is some hundred chords, and a loop that never ends makes any number
+/// of them.
+#[test]
+fn feeds_without_a_reading_are_looked_at_so_long_and_no_longer() {
+    let turns = |count: usize| {
+        let begin = Script::new().rapid("X200 Y0");
+        (0..count).fold(begin, |script, n| script.feed(if n % 2 == 0 { "B180" } else { "B0" }))
+    };
+    let mut machine = Machine::default();
+    machine.part.shift.x = 30.0;
+    let few = followed(&machine, SPHERE, &turns(10));
+    assert!(few.findings.iter().all(|finding| finding.code != "limit"), "{:?}", few.findings);
+    let mut stylus = Stylus::new(&machine, SPHERE, 3.0);
+    stylus.looked_at = LOOKED_AT - 1000;
+    turns(20).play(&mut stylus);
+    let many = stylus.finish();
+    let told: Vec<_> = many.findings.iter().filter(|finding| finding.code == "limit").collect();
+    assert_eq!(told.len(), 1, "{told:?}");
+    assert!(told[0].message.contains("nothing is read"), "{told:?}");
+}

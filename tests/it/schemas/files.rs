@@ -212,7 +212,7 @@ fn changed(root: &Value, numbers: &[f64]) -> Vec<(String, Value)> {
 }
 
 /// What a schema can't say: the words of the readers that compare one key with another.
-const ACROSS: [&str; 30] = [
+const ACROSS: [&str; 32] = [
     "which is not in [[tool]]",
     "names tools of [[tool]], and there are none",
     "no tool of [[tool]] is as small",
@@ -235,6 +235,8 @@ const ACROSS: [&str; 30] = [
     "each less than b =",
     "from, to and the number of readings",
     "all its blocks together",
+    "comes nearer to it than none",
+    "0 has to be among them",
     "one of the control's axes",
     "doesn't go with",
     "whose direction isn't known",

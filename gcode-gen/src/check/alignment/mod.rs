@@ -24,6 +24,8 @@ struct Tried {
     /// A paragraph for the terminal.
     report: String,
     refusals: Vec<String>,
+    /// For the terminal too.
+    warnings: Vec<String>,
     /// Of one run.
     seconds: f64,
 }
@@ -32,10 +34,10 @@ type Trial = fn(&Bench<'_>) -> Result<Tried, CheckError>;
 
 /// What each main program has to find.
 const TRIALS: &[(u32, Trial)] = &[
-    (alignment::CHORD, chord::tried),
     (alignment::RUNOUT, runout::tried),
-    (alignment::ELLIPSE, ellipse::tried),
     (alignment::SINE_TABLE, sine::tried),
+    (alignment::CHORD, chord::tried),
+    (alignment::ELLIPSE, ellipse::tried),
 ];
 
 pub(super) fn check(job: &Alignment, package: &Package) -> Result<Checked, CheckError> {
@@ -52,6 +54,7 @@ pub(super) fn check(job: &Alignment, package: &Package) -> Result<Checked, Check
         let (_, trial) = trial.ok_or_else(|| told(&file_name(*main), &"nothing says what it has to find"))?;
         let tried = trial(&Bench { job, package, main: *main })?;
         checked.refusals.extend(tried.refusals);
+        checked.warnings.extend(tried.warnings);
         checked.seconds += tried.seconds;
         checked.report.push_str(&tried.report);
     }

@@ -1,5 +1,9 @@
 //! The run-out program on parts whose shift and tilt are known: it has to find them by probing alone.
+use gcode_sim::job::Alignment;
 use gcode_sim::machine::Placement;
+use gcode_sim::part::surface::Surface;
+use gcode_sim::part::touched::{PassedOn, Touches, Untold};
+use gcode_sim::report::figures::short;
 use gcode_sim::units::Deg;
 
 use super::{Bench, CheckError, Tried, common};
@@ -18,6 +22,13 @@ const STANDS: [[[f64; 3]; 2]; 4] = [
 
 pub(super) fn tried(bench: &Bench<'_>) -> Result<Tried, CheckError> {
     let mut tried = Tried::default();
+    let noise = match passed_on(bench.job) {
+        Ok(passed) => Noise::of(bench.job, passed),
+        Err(why) => {
+            tried.refusals.push(format!("{}: {}\n", bench.name(), untold(bench.job, why)));
+            return Ok(tried);
+        }
+    };
     let mut worst = [0.0_f64; 2];
     for [shift, tilt] in STANDS {
         let part = Placement { shift: shift.into(), tilt: tilt.map(Deg), ..Placement::default() };
@@ -43,9 +54,148 @@ pub(super) fn tried(bench: &Bench<'_>) -> Result<Tried, CheckError> {
         }
     }
     let [shift, tilt] = worst;
+    tried.warnings.extend(noise.warning().map(|warning| format!("warning: {}: {warning}\n", bench.name())));
     tried.report = format!(
-        "{}  shifts of up to 0.3 mm and tilts of up to 0.3 degrees are found to {shift:.4} mm and {tilt:.4} degrees\n",
-        bench.name()
+        "{}  shifts of up to 0.3 mm and tilts of up to 0.3 degrees are found to {shift:.4} mm and {tilt:.4} degrees; {}\n",
+        bench.name(),
+        noise.sentence()
     );
     Ok(tried)
+}
+
+/// What the noise of one touch becomes in the results, by the job's own angles and heights.
+fn passed_on(job: &Alignment) -> Result<PassedOn, Untold> {
+    let runout = &job.runout;
+    let sign = f64::from(job.machine.rotary.sign);
+    let step = (runout.to - runout.from) / f64::from(runout.readings - 1);
+    let touches = Touches {
+        surface: Surface::Ellipsoid { a: job.surface.a, b: job.surface.b },
+        radius: job.probe_radius,
+        heights: runout.heights.into(),
+        azimuths: (0..runout.readings).map(|n| Deg(sign * (runout.from + step * f64::from(n)))).collect(),
+    };
+    touches.passed_on()
+}
+
+fn untold(job: &Alignment, why: Untold) -> String {
+    let runout = &job.runout;
+    let [low, high] = runout.heights.map(short);
+    match why {
+        Untold::Missed { height } => {
+            format!(
+                "key 'runout.heights': at y {} the ball passes the part and touches nothing",
+                short(height)
+            )
+        }
+        Untold::Alike if job.surface.a == job.surface.b => {
+            "keys 'surface.a' and 'surface.b' are alike: a sphere has no tilt that touches could find"
+                .to_owned()
+        }
+        Untold::Alike => format!(
+            "tilt can't be told from shift at y {low} and {high} over {} {} to {} (keys 'runout.heights', 'runout.angles'): noise of a \
+             touch would come out more than 300 times as large; take heights farther apart, or wider angles",
+            job.machine.rotary.letter,
+            short(runout.from),
+            short(runout.to)
+        ),
+    }
+}
+
+/// What the job's own noise of a touch leaves in the results.
+struct Noise {
+    /// Of a touch, mm.
+    touch: f64,
+    /// The largest standard deviations for noise of 1 mm: of #580 and #581 in mm, of #582 and #583 in degrees.
+    factors: [f64; 2],
+}
+
+impl Noise {
+    fn of(job: &Alignment, passed: PassedOn) -> Self {
+        let [x, _, z] = passed.shift;
+        let [about_x, about_z] = passed.tilt;
+        Self { touch: job.probe_noise, factors: [x.max(z), about_x.max(about_z)] }
+    }
+
+    fn deviations(&self) -> [f64; 2] {
+        self.factors.map(|factor| factor * self.touch)
+    }
+
+    fn sentence(&self) -> String {
+        let [shift, tilt] = self.deviations();
+        format!(
+            "noise of {} mm a touch leaves standard deviations of {shift:.4} mm and {tilt:.4} degrees",
+            short(self.touch)
+        )
+    }
+
+    /// Where two standard deviations are more than what is promised: one pass in twenty is off by more than they are.
+    fn warning(&self) -> Option<String> {
+        let twice = self.deviations().map(|deviation| 2.0 * deviation);
+        (twice[0] > ALLOWED[0] || twice[1] > ALLOWED[1]).then(|| {
+            format!(
+                "noise of {} mm a touch ('probe.noise') doesn't allow {} mm and {} degrees: one pass in twenty is off by more than \
+                 {:.4} mm or {:.4} degrees (two standard deviations, {:.2} mm and {:.3} degrees for 1 mm of noise); take wider \
+                 'runout.angles', heights farther apart, more readings, or a better probe",
+                short(self.touch),
+                ALLOWED[0],
+                ALLOWED[1],
+                twice[0],
+                twice[1],
+                self.factors[0],
+                self.factors[1]
+            )
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use gcode_sim::job::Job;
+
+    use super::*;
+    use crate::families;
+
+    fn job(change: (&str, &str)) -> Alignment {
+        let text = families::ALL.iter().find(|family| family.name == "alignment").unwrap().new_job;
+        assert!(text.contains(change.0), "{}", change.0);
+        match Job::parse(&text.replacen(change.0, change.1, 1)) {
+            Ok(Job::Alignment(job)) => job,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    fn warned(change: (&str, &str)) -> Option<String> {
+        let job = job(change);
+        Noise::of(&job, passed_on(&job).unwrap()).warning()
+    }
+
+    /// By the table of docs/methods/alignment.md a touch's 0.001 makes 0.0018 mm and 0.00087 degrees over ±25: 0.002 is allowed, for
+    /// twice the deviations are 0.0072 and 0.0035; 0.003 is not, for they are 0.0108. Over ±15 0.001 makes 0.0024 degrees.
+    #[test]
+    fn a_probe_or_a_petal_that_the_promise_is_too_much_for_is_warned_of() {
+        assert_eq!(warned(("radius = 3.0", "radius = 3.0")), None);
+        assert!(
+            warned(("radius = 3.0", "radius = 3.0\nnoise = 0.003"))
+                .unwrap()
+                .contains("noise of 0.003 mm a touch")
+        );
+        assert!(warned(("[-25.0, 25.0, 11]", "[-15.0, 15.0, 11]")).is_some());
+        assert_eq!(warned(("[-25.0, 25.0, 11]", "[-40.0, 40.0, 11]")), None);
+    }
+
+    #[test]
+    fn what_cannot_be_told_apart_is_named_for_what_it_is() {
+        for (change, wanted) in [
+            (
+                ("[150.0, 420.0]", "[150.0, 151.0]"),
+                "tilt can't be told from shift at y 150 and 151 over B -25 to 25",
+            ),
+            (("[-25.0, 25.0, 11]", "[-1.0, 1.0, 11]"), "wider angles"),
+            (("b = 724.3", "b = 1158.8"), "a sphere has no tilt"),
+        ] {
+            let job = job(change);
+            let told = untold(&job, passed_on(&job).unwrap_err());
+            assert!(told.contains(wanted), "{told}");
+        }
+    }
 }

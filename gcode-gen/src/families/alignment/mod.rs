@@ -36,9 +36,9 @@ struct Measurement {
     macros: &'static [Macro],
 }
 
-/// Every measurement there is.
+/// Every measurement there is, in the order in which a part is set up: each needs what those before it have put right.
 const ALL: &[Measurement] =
-    &[chord::MEASUREMENT, runout::MEASUREMENT, ellipse::MEASUREMENT, sine::MEASUREMENT];
+    &[runout::MEASUREMENT, sine::MEASUREMENT, chord::MEASUREMENT, ellipse::MEASUREMENT];
 
 /// The main programs, the resident macros and the machine file of a job.
 pub fn emit(job: &Alignment) -> Package {

@@ -2,7 +2,7 @@
 //!
 //! The macro gives the height and not the blocks: the fewest of a set are a search through all stacks, which is done here for
 //! the job's φ; for the corrected one they are found by the digits of the height, the last one first, as always at the machine.
-use gcode_sim::gauge;
+use gcode_sim::gauge::{self, SineSetting};
 use gcode_sim::job::Alignment;
 use gcode_sim::units::{Deg, Mm};
 
@@ -33,11 +33,9 @@ fn write(job: &Alignment, text: &mut Text) {
     let setting = gauge::setting(Mm(table.length), Deg(table.phi), &set);
     text.remark(format!("L {length} PHI {phi}, H = L*SIN[PHI] = {:.5}", setting.height.0));
     text.remark(format!("GAUGE BLOCKS {}", set.name));
-    for line in stack(&setting.stack) {
+    for line in stack(&setting) {
         text.remark(line);
     }
-    let over = if setting.left < 0.0 { "TOO LITTLE" } else { "TOO MUCH" };
-    text.remark(format!("THEY MAKE {:.2} SECONDS OF ARC {over}", setting.left.abs()));
     for line in [
         "AFTER O8210 HAS FOUND THE TILT #583 THIS PROGRAM TELLS".to_owned(),
         "#586 PHI TO SET, #587 HEIGHT OF THE BLOCKS, #588 ITS CHANGE".to_owned(),
@@ -68,11 +66,14 @@ fn write(job: &Alignment, text: &mut Text) {
     text.block(Block::of("M30"));
 }
 
-/// The blocks in lines that a control can show.
-fn stack(stack: &gauge::Stack) -> Vec<String> {
-    if stack.blocks.is_empty() {
-        return vec!["BLOCKS NONE".to_owned()];
+/// The blocks in lines that a control can show, and what they leave of the angle. Jobs in which no block comes near are refused.
+fn stack(setting: &SineSetting) -> Vec<String> {
+    if setting.stack.blocks.is_empty() {
+        return vec!["NO BLOCKS, THE TABLE LIES FLAT".to_owned()];
     }
-    let names: Vec<_> = stack.blocks.iter().map(ToString::to_string).collect();
-    names.chunks(8).map(|names| format!("BLOCKS {}", names.join(" + "))).collect()
+    let names: Vec<_> = setting.stack.blocks.iter().map(ToString::to_string).collect();
+    let mut lines: Vec<_> = names.chunks(8).map(|names| format!("BLOCKS {}", names.join(" + "))).collect();
+    let over = if setting.left < 0.0 { "TOO LITTLE" } else { "TOO MUCH" };
+    lines.push(format!("THEY MAKE {:.2} SECONDS OF ARC {over}", setting.left.abs()));
+    lines
 }

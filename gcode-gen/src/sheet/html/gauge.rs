@@ -26,7 +26,11 @@ pub(super) fn blocks(sheet: &Sheet<'_>) -> Markup {
                 " mm, with the fewest blocks of the set " (sine.gauge_blocks.name) " that come nearest. They leave "
                 (signed_to(setting.left, 2)) "″ (seconds of arc)."
             }
-            (table(&["#block", "#mm", "wrung"], rows.chain([sum])))
+            @if setting.stack.blocks.is_empty() {
+                p { "No blocks: the table lies flat." }
+            } @else {
+                (table(&["#block", "#mm", "wrung"], rows.chain([sum])))
+            }
             p.note { "To turn the part by one minute of arc more the stack gets " (near(minute, 4)) " mm higher." }
         }
     }

@@ -52,6 +52,7 @@ pub(super) fn verdict(sheet: &Sheet<'_>) -> Markup {
                 Judgement::Measured => {
                     "On simulated parts that stand in known wrong places:"
                     @for line in sheet.checked.report.lines() { p { (line) } }
+                    @for warning in &sheet.checked.warnings { p { b { (warning.trim_end()) } } }
                 }
             }
             " The machine's own errors are not in these numbers."

@@ -176,7 +176,7 @@ fn needed(sheet: &Sheet<'_>) -> Markup {
             @if needed.is_empty() { "none" } @else { "no other" }
             " changes what the first " (BLOCKS) " blocks of a run do."
             @if !waiting.is_empty() {
-                " Not tried with " (waiting.join(", ")) ", which ends in an alarm until what it reads has been measured."
+                " Not tried with " (waiting.join(", ")) ", which ends in an alarm on a part that stands right."
             }
           }
         }

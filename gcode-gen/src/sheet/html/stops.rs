@@ -1,4 +1,5 @@
 //! The operator's stops in their order: what the control shows, what to do, a box to tick.
+use gcode_sim::job::Job;
 use gcode_sim::report::figures::{count, near};
 use maud::{Markup, html};
 
@@ -31,9 +32,21 @@ pub(super) fn stops(sheet: &Sheet<'_>) -> Markup {
     });
     html! {
         h2 { "Operator stops, and what to do" }
+        @if let Job::Alignment(_) = sheet.job { (order_of_the_work()) }
         p { (count(stops.len(), "stop")) ", in this order. The minutes are those the machine has run before the stop." }
         (table(&["#stop", "the control shows", "tool", "what to do", "#min", "done"], rows))
         (unknown(waiting))
+    }
+}
+
+/// Of a part to be set up: each program needs what those before it have put right.
+fn order_of_the_work() -> Markup {
+    html! {
+        p {
+            "The order of the work: O8210 run-out, O8230 sine table, O8210 again; O8200 chord; O8220 ellipse; then the part's own "
+            "programs, which have a sheet of their own. Stops and minutes are those of each program once: every further O8210 "
+            "and O8230 adds its own."
+        }
     }
 }
 
@@ -42,7 +55,7 @@ fn unknown(waiting: &[String]) -> Markup {
     html! {
         @if !waiting.is_empty() {
             p {
-                "Not known of " (waiting.join(", ")) ", which ends in an alarm until what it reads has been measured: read its remarks."
+                "Not known of " (waiting.join(", ")) ", which ends in an alarm on a part that stands right: read its remarks."
             }
         }
     }

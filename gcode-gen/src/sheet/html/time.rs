@@ -19,7 +19,7 @@ pub(super) fn time(sheet: &Sheet<'_>) -> Markup {
                 "without acceleration, which makes it longer at the machine."
             } }
             @if !sheet.record.waiting.is_empty() {
-                p { "Not in it: " (sheet.record.waiting.join(", ")) ", which ends in an alarm until what it reads has been measured." }
+                p { "Not in it: " (sheet.record.waiting.join(", ")) ", which ends in an alarm on a part that stands right." }
             }
             @match sheet.rates {
                 Some(rates) => {

@@ -87,7 +87,15 @@ fn alignment(job: &Alignment) -> Vec<String> {
              the stylus ball.",
             short(job.surface.b)
         ),
-        format!("{letter} = {minus}azimuth; the azimuth counts from X towards Z. The head does not turn."),
+        format!(
+            "{letter} = {minus}azimuth (sign {}); the azimuth counts from X towards Z. The head does not turn.",
+            if minus.is_empty() { "+1" } else { "−1" }
+        ),
+        format!(
+            "Check the sign before the first touch: turn {letter} from 0 to +10. The side of the part at X+ must go towards Z{}. If it \
+             goes the other way the sign is wrong, and the run-out tells #581 and #582 with the wrong sign, which no fit can see.",
+            if minus.is_empty() { "−" } else { "+" }
+        ),
         format!(
             "E and F are points of the surface in the plane Z0, at X{} and X{}.",
             short(job.chord.e_radius),

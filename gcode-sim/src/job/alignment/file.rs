@@ -179,6 +179,15 @@ impl FileSineTable {
             );
             return Err(reader.error(&self.gauge_blocks, message));
         }
+        let setting = gauge::setting(Mm(table.length), Deg(table.phi), &table.gauge_blocks);
+        if setting.stack.blocks.is_empty() && table.phi > 0.0 {
+            let message = format!(
+                "key 'sine_table.phi' is {}: L*sin(phi) is {:.4} mm, and no block of '{}' comes nearer to it than none; put blocks under \
+                 both rollers and choose the phi that their difference makes, or 0",
+                table.phi, setting.height.0, table.gauge_blocks.name
+            );
+            return Err(reader.error(&self.phi, message));
+        }
         Ok(table)
     }
 }
@@ -266,6 +275,13 @@ impl FileRunout {
         let fits = from.abs() <= 360.0 && to.abs() <= 360.0 && from < to;
         if !(fits && (3.0..=100.0).contains(&readings) && readings.fract() == 0.0) {
             let message = "key 'runout.angles' is from, to and the number of readings: degrees, -360 to 360, and 3 to 100";
+            return Err(reader.error(&self.angles, message));
+        }
+        if from > 0.0 || to < 0.0 {
+            let message = format!(
+                "key 'runout.angles' is from {from} to {to}: 0 has to be among them, for the chord and the ellipse are touched at B0; \
+                 shift the work zero of the rotary so that 0 is on the petal"
+            );
             return Err(reader.error(&self.angles, message));
         }
         let y_shift = match &self.y_shift {
@@ -382,6 +398,24 @@ angles = [-25.0, 25.0, 11]
                 "[150.0, 420.0]",
                 "[150.0]",
                 "line 23: key 'runout.heights' is two different y, each less than b = 724.3 mm from 0",
+            ),
+            (
+                "phi = 38.5",
+                "phi = 0.01",
+                "line 15: key 'sine_table.phi' is 0.01: L*sin(phi) is 0.0349 mm, and no block of 'metric-87' comes nearer to it than \
+                 none; put blocks under both rollers and choose the phi that their difference makes, or 0",
+            ),
+            (
+                "[-25.0, 25.0",
+                "[10.0, 60.0",
+                "line 24: key 'runout.angles' is from 10 to 60: 0 has to be among them, for the chord and the ellipse are touched at \
+                 B0; shift the work zero of the rotary so that 0 is on the petal",
+            ),
+            (
+                "[-25.0, 25.0",
+                "[-60.0, -0.5",
+                "line 24: key 'runout.angles' is from -60 to -0.5: 0 has to be among them, for the chord and the ellipse are touched \
+                 at B0; shift the work zero of the rotary so that 0 is on the petal",
             ),
             (
                 "25.0, 11]",
