@@ -60,9 +60,11 @@ pub fn verify(
     let comparison = Comparison::new(&reference.holes, &extracted.holes, tolerances, pattern);
     let rounding = rounding::shares(&comparison, machine);
     let mut objections = Vec::new();
+    checks::mirrored::check(&comparison, machine, &mut objections);
     for check in checks::ALL {
         check(&comparison, &mut objections);
     }
+    checks::air::check(&comparison, reference.surface, &mut objections);
     checks::through::check(&comparison, reference.surface, &mut objections);
     checks::tool_short::check(&comparison, machine, &mut objections);
     let stopped = extracted.findings.iter().any(|finding| finding.severity == Severity::Alarm);

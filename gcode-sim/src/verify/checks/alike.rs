@@ -1,7 +1,8 @@
 //! One wrong number makes many holes wrong alike: said once of all of them, instead of hole by hole.
 use nalgebra::{Point3, Vector3};
 
-use super::{Comparison, Objection};
+use super::mirrored::Mirrored;
+use super::{Comparison, Objection, of_rows};
 use crate::diag::Diagnostic;
 use crate::machine::Machine;
 use crate::motion::Axis;
@@ -28,11 +29,11 @@ pub(in crate::verify) fn check(
     objections: &mut Vec<Objection>,
 ) {
     // What a whole pattern of rows has wrong is explained by its own checks.
-    let rows = ["row-angle", "row-pitch", "row-group", "row-seam", "rotary-sign"];
-    let explained = objections.iter().position(|objection| rows.contains(&objection.finding.code.as_str()));
+    let whole = ["row-angle", "row-pitch", "row-group", "row-seam", "rotary-sign", "mirror-image"];
+    let explained = objections.iter().position(|objection| whole.contains(&objection.finding.code.as_str()));
     let mut told = match explained {
         Some(explained) => {
-            let folded = fold(objections, &OF_PLACES, |_| true) + fold_leaning(comparison, objections);
+            let folded = fold_explained(comparison, objections) + fold_leaning(comparison, objections);
             objections[explained].finding.notes.extend(behind(folded));
             Vec::new()
         }
@@ -46,6 +47,20 @@ pub(in crate::verify) fn check(
     };
     told.extend(depths(comparison, objections));
     objections.splice(0..0, told.into_iter().map(Objection::whole));
+}
+
+/// Puts the places behind what is wrong with the whole, as far as that puts them there.
+fn fold_explained(comparison: &Comparison<'_>, objections: &mut [Objection]) -> usize {
+    if let Some(mirrored) = Mirrored::of(comparison) {
+        return fold(objections, &OF_PLACES, |objection| {
+            objection.wanted.is_some_and(|wanted| mirrored.wanted[wanted])
+                || objection.extra.is_some_and(|extra| mirrored.found[extra])
+        });
+    }
+    match comparison.pattern.and_then(|pattern| of_rows::explains(comparison, pattern)) {
+        Some(explains) => fold(objections, &OF_PLACES, explains),
+        None => 0,
+    }
 }
 
 /// A hole of a row that is turned is deeper for that alone: its bottom, on its way round the cylinder's axis, sinks below
@@ -108,7 +123,11 @@ fn places(comparison: &Comparison<'_>, machine: &Machine, objections: &mut [Obje
     }
     let mut wrong = offs(comparison, machine);
     let phi: Vec<f64> = phis(comparison);
-    wrong.retain(|off| !off.near || tolerance < phi[off.wanted]);
+    // What is off along the hole alone stands over its place or below it: that is no matter of places.
+    wrong.retain(|off| {
+        let aside = off.turned.is_some() || 0.0005 <= off.aside.norm();
+        aside && (!off.near || tolerance < phi[off.wanted])
+    });
     let mut told = Vec::new();
     for group in groups(&wrong.iter().collect::<Vec<_>>(), |a, b| a.is_like(b)) {
         let members: Vec<usize> = group.iter().map(|off| off.wanted).collect();

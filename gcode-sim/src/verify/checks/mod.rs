@@ -1,12 +1,14 @@
 //! The checks: one file each, one line here.
+pub(super) mod air;
 pub(super) mod alike;
 mod aside;
 pub(super) mod clearance;
 pub(super) mod cutting;
 mod depth;
 mod diameter;
-mod mirrored;
+pub(super) mod mirrored;
 mod missing;
+mod of_rows;
 mod overlap;
 mod position;
 mod row_angle;
@@ -27,7 +29,6 @@ use super::{Comparison, Objection};
 type Check = fn(&Comparison<'_>, &mut Vec<Objection>);
 
 pub(super) const ALL: &[Check] = &[
-    mirrored::check,
     row_group::check,
     row_angle::check,
     row_seam::check,

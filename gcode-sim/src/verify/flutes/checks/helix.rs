@@ -11,18 +11,30 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
     let Some(worst) = inspection.helix.worst.filter(|worst| tolerance < worst.off()) else { return };
     let pass = &inspection.ground.passes[worst.pass];
     let here = format!(
-        "the helix angle is {:.2}° at polar angle {:.1}° where {:.2}° is wanted: {}° either way is allowed",
-        worst.found.0, worst.polar.0, worst.wanted.0, tolerance.0
+        "{} has a helix angle of {:.2}° at polar angle {:.1}° where {:.2}° is wanted: {}° either way is allowed",
+        inspection.name(worst.pass),
+        worst.found.0,
+        worst.polar.0,
+        worst.wanted.0,
+        tolerance.0
     );
+    let mut all: Vec<_> = inspection.helix.of_passes.iter().filter(|w| tolerance < w.off()).collect();
     let error = |message: String| Diagnostic::error("flute-helix", message);
     let finding = match all_alike(inspection) {
         Some((message, help)) => {
             heads(inspection).into_iter().fold(error(message).note(here).help(help), Diagnostic::note)
         }
-        None => error(here).help("check how A is computed, in degrees, and its sign in the machine file"),
+        None => {
+            let finding =
+                error(here).help("check how A is computed, in degrees, and its sign in the machine file");
+            match all.len() - 1 {
+                0 => finding,
+                more => finding
+                    .note(format!("beyond that are {more} more of the passes too, this one the farthest")),
+            }
+        }
     };
     let place = worst.place(&pass.trace, inspection.wanted.gauge).unwrap_or(&pass.place);
-    let mut all: Vec<_> = inspection.helix.of_passes.iter().filter(|w| tolerance < w.off()).collect();
     all.sort_by(|one, other| other.off().0.total_cmp(&one.off().0));
     let sites = all.into_iter().map(|worst| Site { pass: Some(worst.pass), at: worst.at });
     findings.push(finding.at(place.clone()).on(sites));
