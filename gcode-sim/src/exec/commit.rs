@@ -12,6 +12,7 @@ impl Core {
     pub(super) fn commit<S: Sink>(&mut self, plan: &mut Plan, sink: &mut S) {
         // The plan's next block begins with a copy of it.
         std::mem::swap(&mut self.state, &mut plan.state);
+        self.note_work(plan.state.modal.work, plan.moved);
         if plan.reads_ahead {
             self.advance(&mut plan.ahead, sink);
         }
@@ -26,7 +27,10 @@ impl Core {
         }
         for write in &plan.writes {
             match *write {
-                Write::Work { system, axis, value } => self.offsets.work_mut(system)[axis] = value,
+                Write::Work { system, axis, value } => {
+                    self.offsets.work_mut(system)[axis] = value;
+                    self.note_set(system);
+                }
                 Write::Tool { register, number, value } => {
                     self.offsets.register(register)[number as usize] = value;
                 }

@@ -48,6 +48,7 @@ mod vars;
 mod view;
 mod watch;
 mod words;
+mod work_use;
 
 use std::cell::Cell;
 use std::collections::BTreeMap;
@@ -70,6 +71,7 @@ use self::modal_calls::ModalCall;
 use self::offsets::Offsets;
 use self::plan::Plan;
 use self::words::Given;
+use self::work_use::WorkUse;
 use crate::alarm::Alarm;
 use crate::control::{ParameterPlace, Settings};
 use crate::program::{Memory, ProgramId, Slot};
@@ -130,6 +132,7 @@ pub(crate) struct Core {
     /// M codes that went to the machine builder's logic, with the block of the first of each.
     passed_on: BTreeMap<u32, Span>,
     notes: BTreeMap<Note, Span>,
+    work_use: WorkUse,
     /// Parameters that the program has written and that have no effect.
     parameters: BTreeMap<ParameterPlace, f64>,
     block: Span,
@@ -165,6 +168,7 @@ impl Control {
             printed: print::Printed::default(),
             passed_on: BTreeMap::new(),
             notes: BTreeMap::new(),
+            work_use: WorkUse::default(),
             parameters: BTreeMap::new(),
             block: Span::default(),
         };

@@ -314,6 +314,7 @@ impl Core {
         let axis = self.known_axis(axis)?;
         let value = self.offset_in_range(self.stored(&self.state, Some(axis), value))?;
         self.offsets.work_mut(system)[axis] = value;
+        self.note_set(system);
         self.offsets_changed();
         Ok(())
     }
