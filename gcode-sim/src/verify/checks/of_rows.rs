@@ -57,7 +57,8 @@ pub(super) fn explains<'c>(
                     .iter()
                     .flatten()
                     .any(|(at, place)| near_row(row, *at, rows.usual.0 / 4.0) && (place - x).abs() <= within);
-                there || pattern.length < x - within
+                // A row that ends right there may end before it.
+                there || pattern.length < x + within
             }
             (None, None) => true,
         }
