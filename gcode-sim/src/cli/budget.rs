@@ -100,9 +100,9 @@ pub(super) fn run(arguments: &BudgetArguments) -> Result<Status, Refusal> {
         TextFormat::Text => output::print(&report.text())?,
     }
     if let Some(path) = &arguments.picture {
-        let size: Size = "1200x500"
-            .parse()
-            .map_err(|error: crate::picture::PictureError| Refusal::new(error.to_string()))?;
+        // As high as its bars are many.
+        let height = 120 + 25 * sources.len() as u32;
+        let size = Size::new(1200, height.max(360)).map_err(|error| Refusal::new(error.to_string()))?;
         let png = report.bars().draw(size).map_err(|error| Refusal::new(error.to_string()))?;
         output::write(path, &png)?;
         if arguments.format == TextFormat::Text {

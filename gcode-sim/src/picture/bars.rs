@@ -35,7 +35,7 @@ impl Bars {
         png(&paint(&self.lay_out(size)))
     }
 
-    /// The names stand on the left, the bars begin behind the longest, and a bar of length 1 leaves room for its text.
+    /// The names stand on the left, the bars begin behind the longest of them, and the longest bar leaves room for its text.
     pub fn lay_out(&self, size: Size) -> Sheet {
         let font = Font::embedded();
         let text = size.text();
@@ -52,18 +52,21 @@ impl Bars {
         let full = (page.right - numbers - text - left).max(0.0);
         let room = ((page.bottom - y) / (2.0 * text)) as usize;
         let shown = if self.bars.len() <= room { self.bars.len() } else { room.saturating_sub(1) };
+        // Few bars are thicker, so that they fill the page.
+        let pitch = ((page.bottom - y) / shown.max(1) as f64).clamp(2.0 * text, 4.0 * text);
+        let longest = self.bars.iter().map(|bar| bar.length).fold(f64::MIN_POSITIVE, f64::max);
         for bar in &self.bars[..shown] {
-            let length = full * bar.length.clamp(0.0, 1.0);
-            let (top, bottom) = (y, y + 1.3 * text);
+            let length = full * (bar.length / longest).clamp(0.0, 1.0);
+            let (top, bottom) = (y, y + pitch - 0.7 * text);
             let corners =
                 [px(left, top), px(left + length, top), px(left + length, bottom), px(left, bottom)];
             words.inks.push(Ink::Area { points: corners.to_vec(), color: palette::standing(Standing::Good) });
-            let base = y + 1.05 * text;
+            let base = (top + bottom) / 2.0 + 0.4 * text;
             let dark = palette::TEXT;
             words.write(px(page.left, base), Align::Left, text, dark, &bar.name, names);
             let behind = px(left + length + 0.5 * text, base);
             words.write(behind, Align::Left, text, dark, &bar.text, numbers);
-            y += 2.0 * text;
+            y += pitch;
         }
         let mut notes = Vec::new();
         if shown < self.bars.len() {

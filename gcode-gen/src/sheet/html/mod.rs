@@ -66,8 +66,10 @@ fn sections(sheet: &Sheet<'_>) -> Markup {
         (inspection::holes(sheet))
         (inspection::pictures(sheet))
         (time::time(sheet))
-        (end::unknown(sheet))
-        (end::sign())
+        div.together {
+            (end::unknown(sheet))
+            (end::sign())
+        }
     }
 }
 
