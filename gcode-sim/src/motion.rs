@@ -17,6 +17,8 @@ pub struct Axes {
     letters: Vec<u8>,
     /// The same as bits, A the lowest.
     mask: u32,
+    /// The axes that turn as bits, axis 1 the lowest.
+    rotary: u32,
 }
 
 impl Axes {
@@ -30,7 +32,9 @@ impl Axes {
 
     fn of(letters: &[u8]) -> Self {
         let mask = letters.iter().fold(0, |mask, letter| mask | 1 << (letter - b'A'));
-        Self { letters: letters.to_vec(), mask }
+        let turns = |(axis, letter): (Axis, &u8)| u32::from(matches!(letter, b'A' | b'B' | b'C')) << axis;
+        let rotary = letters.iter().enumerate().map(turns).sum();
+        Self { letters: letters.to_vec(), mask, rotary }
     }
 
     pub fn find(&self, letter: u8) -> Option<Axis> {
@@ -43,7 +47,7 @@ impl Axes {
 
     /// A B C turn; all others slide.
     pub fn is_rotary(&self, axis: Axis) -> bool {
-        matches!(self.letter(axis), 'A' | 'B' | 'C')
+        axis < MAX_AXES && self.rotary >> axis & 1 == 1
     }
 
     pub fn len(&self) -> usize {

@@ -73,7 +73,10 @@ impl Core {
             self.look_ahead(act, given, plan, span)?;
         }
         self.check_unread(given, plan)?;
-        if self.settings.stroke.is_none() { Ok(()) } else { self.check_stroke(plan, span) }
+        match &self.settings.stroke {
+            Some(stroke) => self.check_stroke(stroke, plan, span),
+            None => Ok(()),
+        }
     }
 
     /// Whether a block has anything else than axis words and codes of group 01, or the state depends on D and F alone.

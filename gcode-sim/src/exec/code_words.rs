@@ -35,7 +35,7 @@ impl Core {
         }
         self.misplaced_words(given, plan, span)?;
         let compensates = plan.state.modal.cutter != CutterSide::Off;
-        let sides = || given.has_code(|effect| matches!(effect, Effect::Cutter(_)));
+        let sides = || given.has_code_beyond_moves(|effect| matches!(effect, Effect::Cutter(_)));
         if given.has(b'D') || compensates && (self.settings.new_radius_at_once || sides()) {
             plan.state.radius = self.offset_radius(plan.state.codes.d).unwrap_or(0.0);
         }
@@ -44,17 +44,17 @@ impl Core {
 
     /// Words that need a code which the block doesn't have, or must not stand beside one it has.
     fn misplaced_words(&self, given: &Given, plan: &Plan, span: Span) -> Checked<()> {
-        let smooth = given.has_code(|effect| effect == Effect::Smoothness);
-        for letter in b"ENO".iter().copied().filter(|_| given.has_any(b"ENO")) {
-            if given.has(letter) && !(smooth && letter == b'E') {
-                return Err(Alarm::ImproperAddress { letter: char::from(letter) }.at(given.span(letter)));
-            }
+        let smooth = given.has_code_beyond_moves(|effect| effect == Effect::Smoothness);
+        if let Some(letter) = given.first_of(letters(if smooth { b"NO" } else { b"ENO" })) {
+            return Err(Alarm::ImproperAddress { letter: char::from(letter) }.at(given.span(letter)));
         }
-        if given.has_code(|effect| effect == Effect::LookAhead) && given.count(b'P')?.is_none_or(|p| p > 1) {
+        if given.has_code_beyond_moves(|effect| effect == Effect::LookAhead)
+            && given.count(b'P')?.is_none_or(|p| p > 1)
+        {
             return Err(Alarm::LookAheadFormat.at(span));
         }
         // The axis words behind G22 are limits, no move.
-        let limits = given.has_code(|effect| effect == Effect::StrokeCheck(StrokeCheck::On));
+        let limits = given.has_code_beyond_moves(|effect| effect == Effect::StrokeCheck(StrokeCheck::On));
         if limits && (self.names_axis(given) || given.has_any(b"IJK")) {
             return Err(Alarm::NotSimulated { what: "G22 with limits".into() }.at(span));
         }
@@ -62,7 +62,7 @@ impl Core {
             use OneShot::{DataInput, Dwell};
             matches!(effect, Effect::OneShot(Dwell | DataInput) | Effect::Scaling(Scaling::Off))
         };
-        if given.has(b'T') && given.has_code(keeps_tool) {
+        if given.has(b'T') && given.has_code_beyond_moves(keeps_tool) {
             return Err(Alarm::TNotAllowed.at(given.span(b'T')));
         }
         let repeats = || {
@@ -72,16 +72,10 @@ impl Core {
         if given.has(b'L') && !repeats() {
             return Err(Alarm::ImproperAddress { letter: 'L' }.at(given.span(b'L')));
         }
-        let dwells = given.has_code(|effect| effect == Effect::OneShot(OneShot::Dwell));
-        let axes = letters(b"ABCUVWXYZ") & !self.settings.axes.mask();
-        if !given.has_of(axes) {
-            return Ok(());
-        }
-        for letter in [b'A', b'B', b'C', b'U', b'V', b'W', b'X', b'Y', b'Z'] {
-            let known = || self.settings.axes.find(letter).is_some() || (letter == b'U' && dwells);
-            if given.has(letter) && !known() {
-                return Err(Alarm::ImproperAddress { letter: char::from(letter) }.at(given.span(letter)));
-            }
+        let dwells = given.has_code_beyond_moves(|effect| effect == Effect::OneShot(OneShot::Dwell));
+        let axes = letters(if dwells { b"ABCVWXYZ" } else { b"ABCUVWXYZ" });
+        if let Some(letter) = given.first_of(axes & !self.settings.axes.mask()) {
+            return Err(Alarm::ImproperAddress { letter: char::from(letter) }.at(given.span(letter)));
         }
         Ok(())
     }

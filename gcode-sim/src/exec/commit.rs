@@ -8,9 +8,9 @@ use crate::motion::{Event, EventKind, Sink};
 use crate::units::Seconds;
 
 impl Core {
-    /// Everything a plan says, in the order it says it.
+    /// Everything a plan says, in the order it says it. The plan's next block begins by clearing it.
     pub(super) fn commit<S: Sink>(&mut self, plan: &mut Plan, sink: &mut S) {
-        // The plan's next block begins with a copy of it.
+        // What was the state stays in the plan until its next block begins.
         std::mem::swap(&mut self.state, &mut plan.state);
         self.note_work(plan.state.modal.work, plan.moved);
         if plan.reads_ahead {

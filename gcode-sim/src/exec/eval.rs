@@ -34,12 +34,14 @@ struct Waiting<'a> {
 impl Waiting<'_> {
     #[inline]
     fn push(&mut self, value: Value) {
+        debug_assert!(self.used < STACK, "lowering counts the places");
         self.places[self.used % STACK].set(value);
         self.used += 1;
     }
 
     #[inline]
     fn pop(&mut self) -> Value {
+        debug_assert!(self.used > 0, "what an operator takes has waited");
         self.used = self.used.wrapping_sub(1);
         self.places[self.used % STACK].get()
     }

@@ -85,7 +85,7 @@ impl Core {
         let additional = given.has(b'P')
             && act.is_none()
             && modal.cycle.is_none()
-            && given.has_code(|effect| effect == Effect::Work(1));
+            && given.has_code_beyond_moves(|effect| effect == Effect::Work(1));
         Ok(if additional { Some(Act::AdditionalWork) } else { act })
     }
 }

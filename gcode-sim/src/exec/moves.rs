@@ -3,7 +3,7 @@ use super::Core;
 use super::eval::{Checked, at};
 use super::notes::Note;
 use super::plan::Plan;
-use super::words::Given;
+use super::words::{Given, letters};
 use crate::alarm::Alarm;
 use crate::motion::EventKind;
 use crate::program::codes::{Effect, Row};
@@ -13,7 +13,8 @@ use crate::source::Span;
 impl Core {
     /// 3. G43, G44, G49 and a new H; whether the offset changed.
     pub(super) fn length(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<bool> {
-        let commanded = given.has(b'H') || given.has_code(|effect| matches!(effect, Effect::Length(_)));
+        let commanded =
+            given.has(b'H') || given.has_code_beyond_moves(|effect| matches!(effect, Effect::Length(_)));
         if !commanded || (plan.state.modal.length == Length::Off && self.state.modal.length == Length::Off) {
             return Ok(false);
         }
@@ -53,7 +54,7 @@ impl Core {
         let arcs = matches!(motion, Motion::Clockwise | Motion::Counterclockwise);
         let named = self.names_axis(given);
         // A code of group 01 behind that of a cycle: a plain move, the cycle's own words are nothing.
-        let overruled = given.has_code(|effect| matches!(effect, Effect::Cycle(Some(_))));
+        let overruled = given.has_code_beyond_moves(|effect| matches!(effect, Effect::Cycle(Some(_))));
         if overruled {
             given.accept(b"KPQR");
         }
@@ -61,13 +62,12 @@ impl Core {
             return self.settle(given, plan, lengthened, span);
         }
         // Some controls round corners by R or read I J K here; the end of cutter compensation takes a vector.
-        let vector = given.has_code(|effect| effect == Effect::Cutter(CutterSide::Off));
-        if given.has_any(b"IJKR")
-            && !(arcs || vector || overruled)
-            && let Some(letter) = b"IJKR".iter().find(|letter| given.has(**letter))
+        let vector = given.has_code_beyond_moves(|effect| effect == Effect::Cutter(CutterSide::Off));
+        if !(arcs || vector || overruled)
+            && let Some(letter) = given.first_of(letters(b"IJKR"))
         {
-            let what = format!("{} beside a straight move", char::from(*letter));
-            return Err(Alarm::NotSimulated { what }.at(given.span(*letter)));
+            let what = format!("{} beside a straight move", char::from(letter));
+            return Err(Alarm::NotSimulated { what }.at(given.span(letter)));
         }
         let goal = self.goal(given, &mut plan.state)?;
         if motion == Motion::Thread && given.has_corner() {

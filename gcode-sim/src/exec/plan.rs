@@ -134,19 +134,33 @@ pub(super) enum Target {
 
 impl Plan {
     pub(super) fn begin(&mut self, state: &State) {
-        *self.state = *state;
-        self.events.clear();
-        self.probing = None;
-        self.after.clear();
-        self.writes.clear();
-        self.drill = None;
-        self.corner = None;
-        self.reads_ahead = false;
-        self.moved = false;
-        self.stops.clear();
-        self.passed_on.clear();
-        self.notes.clear();
-        self.flow = Flow::Next;
+        let Self {
+            state: own,
+            events,
+            probing,
+            after,
+            drill,
+            writes,
+            corner,
+            reads_ahead,
+            // Taken from the control where it is read.
+            ahead: _,
+            moved,
+            stops,
+            passed_on,
+            notes,
+            flow,
+        } = self;
+        **own = *state;
+        events.clear();
+        (*probing, *drill, *corner) = (None, None, None);
+        after.clear();
+        writes.clear();
+        (*reads_ahead, *moved) = (false, false);
+        stops.clear();
+        passed_on.clear();
+        notes.clear();
+        *flow = Flow::Next;
     }
 
     pub(super) fn tell(&mut self, kind: EventKind) {

@@ -26,7 +26,7 @@ impl Core {
     }
 
     /// Whole increments: literals are cut off (or rounded, by setting), computed values rounded half away from 0.
-    #[inline]
+    #[inline(always)]
     fn increments(&self, raw: Raw, decimals: usize) -> Result<f64, Alarm> {
         let number = match raw {
             Raw::Computed(value) => nearest(value, POWERS[decimals]),

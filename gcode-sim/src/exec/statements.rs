@@ -46,10 +46,13 @@ impl Core {
             Statement::While { condition, number, end } => {
                 let holds = self.holds(program, *condition)?;
                 let frame = self.frame_mut();
-                if !holds {
+                let open = &mut frame.loops[usize::from(*number) - 1];
+                if holds {
+                    *open = Some((frame.next - 1, *end));
+                } else {
+                    *open = None;
                     frame.jump(end + 1);
                 }
-                frame.loops[usize::from(*number) - 1] = holds.then_some((frame.next - 1, *end));
             }
             Statement::Do { number, end } => {
                 let start = self.frame().next - 1;

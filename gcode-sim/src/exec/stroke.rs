@@ -4,15 +4,16 @@ use super::ahead::Ahead;
 use super::eval::{Checked, at};
 use super::plan::Plan;
 use crate::alarm::Alarm;
+use crate::control::Stroke;
 use crate::motion::{Arc2, EventKind, Position};
 use crate::source::Span;
 use crate::units::Deg;
 
 impl Core {
     /// Looks at every move of a block before it happens. A real control stops on the way; here nothing has moved.
-    pub(super) fn check_stroke(&self, plan: &Plan, span: Span) -> Checked<()> {
+    pub(super) fn check_stroke(&self, stroke: &Stroke, plan: &Plan, span: Span) -> Checked<()> {
         for (kind, _) in &plan.events {
-            at(self.within_stroke(kind), span)?;
+            at(self.within(stroke, kind), span)?;
         }
         if plan.reads_ahead {
             self.check_told(&plan.ahead)?;
@@ -21,7 +22,7 @@ impl Core {
         if let Some(drill) = &plan.drill {
             self.drill(drill, &mut |kind, _| {
                 if beyond.is_ok() {
-                    beyond = self.within_stroke(&kind);
+                    beyond = self.within(stroke, &kind);
                 }
             });
         }
@@ -33,17 +34,21 @@ impl Core {
         ahead.told().try_for_each(|(kind, place)| at(self.within_stroke(kind), place.block))
     }
 
+    /// Whether a move stays within the stroke, if the control has limits.
     pub(super) fn within_stroke(&self, kind: &EventKind) -> Result<(), Alarm> {
+        self.settings.stroke.as_ref().map_or(Ok(()), |stroke| self.within(stroke, kind))
+    }
+
+    fn within(&self, stroke: &Stroke, kind: &EventKind) -> Result<(), Alarm> {
         let Some(to) = kind.end() else { return Ok(()) };
-        self.point_within(to)?;
+        self.point_within(stroke, to)?;
         if let EventKind::Arc { arc, .. } = kind {
-            extremes(arc, to).iter().flatten().try_for_each(|point| self.point_within(point))?;
+            extremes(arc, to).iter().flatten().try_for_each(|point| self.point_within(stroke, point))?;
         }
         Ok(())
     }
 
-    fn point_within(&self, point: &Position) -> Result<(), Alarm> {
-        let Some(stroke) = &self.settings.stroke else { return Ok(()) };
+    fn point_within(&self, stroke: &Stroke, point: &Position) -> Result<(), Alarm> {
         for (axis, letter) in self.settings.axes.iter() {
             // An axis that rolls over has no end.
             if self.settings.roll_over[axis] {

@@ -77,9 +77,6 @@ impl Core {
     /// A position has nine digits in increments, as a word has; an axis that rolls over begins anew with each turn.
     fn in_range(&self, given: &Given, machine: &Position) -> Checked<()> {
         let most = 999_999_999.0 / self.settings.increment.per_unit();
-        if machine.0.iter().fold(true, |all, value| all & (value.abs() <= most)) {
-            return Ok(());
-        }
         for (axis, letter) in self.settings.axes.iter() {
             if machine[axis].abs() > most && !self.settings.roll_over[axis] {
                 let alarm = Alarm::PositionOverflow { letter, value: machine[axis] };

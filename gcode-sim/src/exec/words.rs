@@ -5,6 +5,7 @@ use std::cell::Cell;
 use super::Core;
 use super::code_calls::CallingWord;
 use super::eval::{Checked, at, integer};
+use super::vars::Value;
 use crate::alarm::Alarm;
 use crate::control::{CodeSet, Settings};
 use crate::program::codes::{self, Effect, Row};
@@ -139,6 +140,12 @@ impl Given {
         self.has_of(letters(some))
     }
 
+    /// The first of some [`letters`], in the order of the alphabet, that it has.
+    pub(super) fn first_of(&self, letters: u32) -> Option<u8> {
+        let some = self.present & letters;
+        (some != 0).then(|| b'A' + some.trailing_zeros() as u8)
+    }
+
     /// Whether a G code stands in it that is not of group 01.
     pub(super) fn has_more_than_moves(&self) -> bool {
         self.beyond_moves
@@ -159,8 +166,7 @@ impl Given {
 
     /// The first word, by its letter, that nothing in the block had a use for.
     pub(super) fn unread(&self) -> Option<(char, Span)> {
-        let left = self.present & !self.read.get();
-        let letter = (left != 0).then(|| b'A' + left.trailing_zeros() as u8)?;
+        let letter = self.first_of(!self.read.get())?;
         Some((char::from(letter), self.span(letter)))
     }
 
@@ -182,8 +188,8 @@ impl Given {
         self.g[..self.g_count].iter().flatten().copied()
     }
 
-    /// Whether the block has a G code of an effect, which is none of group 01.
-    pub(super) fn has_code(&self, is_it: impl Fn(Effect) -> bool) -> bool {
+    /// Whether the block has a G code of an effect; those of group 01 are not asked.
+    pub(super) fn has_code_beyond_moves(&self, is_it: impl Fn(Effect) -> bool) -> bool {
         self.beyond_moves && self.g_codes().any(|row| is_it(row.effect))
     }
 
@@ -230,37 +236,56 @@ impl Core {
             if calling.is_some_and(|calling| calling.takes(place, word)) {
                 continue;
             }
-            let Some(raw) = self.raw(program, word)? else { continue };
-            if word.comma {
-                at(given.put_corner(word, raw), word.span)?;
-                continue;
-            }
-            let letter = match &word.axis {
-                Some(axis) => {
-                    let number = self.operand(program, **axis)?.number();
-                    self.settings.axes.letter(at(self.axis_of(number), word.span)?) as u8
+            let raw = match word.value {
+                Input::G(code, found) if !word.comma => {
+                    let row = found.on(self.settings.codes);
+                    let improper = || Alarm::ImproperGCode { code: codes::spelled(code) }.at(word.span);
+                    at(given.put_g(row.ok_or_else(improper)?), word.span)?;
+                    continue;
                 }
-                None => word.letter,
+                Input::G(code, _) => Raw::Computed(f64::from(code) / 10.0),
+                Input::Literal(number) => Raw::Literal(number),
+                Input::Operand(operand) => match self.operand(program, operand)? {
+                    Value::Number(value) => Raw::Computed(value),
+                    Value::Vacant => continue,
+                },
             };
-            match letter {
-                b'G' => {
-                    let row = at(g_row(&word.value, raw, self.settings.codes), word.span)?;
-                    at(given.put_g(row), word.span)?;
-                }
-                b'M' => {
-                    let code = at(count(raw, b'M'), word.span)?;
-                    at(given.put_m(code, word.span, &self.settings), word.span)?;
-                }
-                letter => {
-                    if self.settings.no_repeated_address && given.has(letter) {
-                        return Err(Alarm::RepeatedAddress { letter: char::from(letter) }.at(word.span));
-                    }
-                    given.present |= 1 << (letter - b'A');
-                    given.values[usize::from(letter - b'A')] = (raw, word.span);
-                }
-            }
+            self.put(program, word, raw, given)?;
         }
         Ok(())
+    }
+
+    /// Puts a word to those of its block.
+    #[inline]
+    fn put(&self, program: &Program, word: &Coded, raw: Raw, given: &mut Given) -> Checked<()> {
+        if word.comma {
+            return at(given.put_corner(word, raw), word.span);
+        }
+        let letter = match &word.axis {
+            Some(axis) => {
+                let number = self.operand(program, **axis)?.number();
+                self.settings.axes.letter(at(self.axis_of(number), word.span)?) as u8
+            }
+            None => word.letter,
+        };
+        match letter {
+            b'G' => {
+                let row = at(computed_row(raw, self.settings.codes), word.span)?;
+                at(given.put_g(row), word.span)
+            }
+            b'M' => {
+                let code = at(count(raw, b'M'), word.span)?;
+                at(given.put_m(code, word.span, &self.settings), word.span)
+            }
+            letter => {
+                if self.settings.no_repeated_address && given.has(letter) {
+                    return Err(Alarm::RepeatedAddress { letter: char::from(letter) }.at(word.span));
+                }
+                given.present |= 1 << (letter - b'A');
+                given.values[usize::from(letter - b'A')] = (raw, word.span);
+                Ok(())
+            }
+        }
     }
 
     /// The value of a word, or `None` where it is vacant and the word therefore not there.
@@ -274,19 +299,17 @@ impl Core {
     }
 }
 
-/// The row of a G code, written or computed.
-fn g_row(input: &Input, raw: Raw, set: CodeSet) -> Result<&'static Row, Alarm> {
-    let (code, found) = match (input, raw) {
-        (Input::G(code, found), _) => (*code, *found),
-        (_, Raw::Computed(value)) => {
-            // A computed code keeps one decimal.
-            let tenths = round(value * 10.0);
-            if !(0.0..=9999.0).contains(&tenths) {
-                return Err(Alarm::ImproperGCode { code: value.to_string() });
-            }
-            (tenths as u32, codes::find(tenths as u32))
-        }
-        (_, Raw::Literal(number)) => return Err(Alarm::ImproperGCode { code: number.value().to_string() }),
+/// The row of a G code that is computed.
+fn computed_row(raw: Raw, set: CodeSet) -> Result<&'static Row, Alarm> {
+    let value = match raw {
+        Raw::Computed(value) => value,
+        Raw::Literal(number) => return Err(Alarm::ImproperGCode { code: number.value().to_string() }),
     };
-    found.on(set).ok_or_else(|| Alarm::ImproperGCode { code: codes::spelled(code) })
+    // A computed code keeps one decimal.
+    let tenths = round(value * 10.0);
+    if !(0.0..=9999.0).contains(&tenths) {
+        return Err(Alarm::ImproperGCode { code: value.to_string() });
+    }
+    let code = tenths as u32;
+    codes::find(code).on(set).ok_or_else(|| Alarm::ImproperGCode { code: codes::spelled(code) })
 }

@@ -144,9 +144,10 @@ impl Blocks {
         for place in self.places.drain(..) {
             self.entries[place as usize].op = Entry::UNREAD;
         }
-        for op in self.ops.drain(..) {
+        for op in &mut self.ops {
             self.lowering.give_up(op);
         }
+        self.ops.clear();
         self.lowering.forget();
     }
 

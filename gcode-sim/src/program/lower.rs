@@ -37,9 +37,9 @@ impl Lowering {
     }
 
     /// Gives up a block; its list of words can be used again.
-    pub(super) fn give_up(&mut self, op: Op) {
-        if let OpKind::Words(Words { list, .. }) = op.kind {
-            self.give_back(list);
+    pub(super) fn give_up(&mut self, op: &mut Op) {
+        if let OpKind::Words(Words { list, .. }) = &mut op.kind {
+            self.give_back(std::mem::take(list));
         }
     }
 

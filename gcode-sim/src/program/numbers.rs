@@ -3,7 +3,7 @@ use super::lower::Lowering;
 use super::words::{Coded, Input, Words, literal};
 use super::{Op, OpKind};
 use crate::source::{SourceId, Span};
-use crate::syntax::Numbers;
+use crate::syntax::{NumberWord, Numbers};
 
 impl Lowering {
     /// The block that begins at `start`; `None` where more stands in it than numbers, or a call: then its tree is lowered.
@@ -12,19 +12,15 @@ impl Lowering {
         let number = numbers.sequence_number;
         let mut end = number.map_or(start, |number| number.span.end);
         let mut list = self.spare_words();
-        let fits = numbers.by_ref().all(|word| {
-            end = word.span.end;
-            let value = literal(word.letter, word.number).filter(|value| !calls(word.letter, value));
-            list.extend(value.map(|value| Coded {
-                letter: word.letter,
-                axis: None,
-                comma: false,
-                value,
-                span: word.span,
-            }));
-            value.is_some()
-        });
-        if !fits || !numbers.is_at_end() {
+        while let Some(NumberWord { letter, number, span }) = numbers.next() {
+            let Some(value) = literal(letter, number).filter(|value| !calls(letter, value)) else {
+                self.give_back(list);
+                return None;
+            };
+            list.push(Coded { letter, axis: None, comma: false, value, span });
+            end = span.end;
+        }
+        if !numbers.is_at_end() {
             self.give_back(list);
             return None;
         }

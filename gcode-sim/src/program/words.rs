@@ -155,7 +155,7 @@ impl Lowering {
 }
 
 /// What a number is behind its address; `None` for a G code that none can be.
-#[inline]
+#[inline(always)]
 pub(super) fn literal(letter: u8, number: Decimal) -> Option<Input> {
     if letter == b'G' {
         let code = g_code(number)?;
