@@ -229,8 +229,8 @@ impl Control {
 }
 
 impl Core {
-    #[cold]
     /// There is no block any more. A text may just stop; running into `%` or another program is running off the tape.
+    #[cold]
     fn behind_last(&mut self, memory: &Memory) -> Checked<Option<Over>> {
         let frame = self.frame();
         let main = frame.kind == FrameKind::Main;

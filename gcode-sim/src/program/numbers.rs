@@ -12,7 +12,7 @@ impl Lowering {
         let number = numbers.sequence_number;
         let mut end = number.map_or(start, |number| number.span.end);
         let mut list = self.spare_words();
-        while let Some(NumberWord { letter, number, span }) = numbers.next() {
+        for NumberWord { letter, number, span } in numbers.by_ref() {
             let Some(value) = literal(letter, number).filter(|value| !calls(letter, value)) else {
                 self.give_back(list);
                 return None;
