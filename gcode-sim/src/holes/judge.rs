@@ -79,6 +79,19 @@ impl Extractor<'_> {
         }
     }
 
+    /// A feed outwards that ends with a spindle that stands and a bar that is shifted: G87. The holes of a list are open
+    /// where the tool comes from.
+    pub(super) fn bored_from_the_back(&mut self, line: &Line) {
+        let length = line.cut();
+        self.findings.add("back-bored", line.place(), 0, || {
+            Diagnostic::warning(
+                "back-bored",
+                format!("the tool bores {length:.3} mm backwards, out of the part: not taken for a hole"),
+            )
+            .help("look at the bore's depth and place in the picture or the review page: nothing checks them")
+        });
+    }
+
     /// The spindle and the head during a feed, and its direction.
     fn judge_feed(&mut self, line: &Line, off: Option<Deg>) {
         let place = line.place();

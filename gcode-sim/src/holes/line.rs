@@ -10,6 +10,9 @@ use crate::units::MmPerMin;
 /// A stroke counts as deeper than the last when it is so by this much, in mm.
 const DEEPER: f64 = 0.001;
 
+/// A boring bar is shifted off the wall by no more than this, in mm.
+const SHIFT: f64 = 5.0;
+
 /// Where a tool that was on a line is after a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum After {
@@ -39,6 +42,8 @@ pub(super) struct Line {
     stroke: Option<Stroke>,
     /// The tool's depth now.
     depth: f64,
+    /// How far beside the line the tool stands: a boring bar shifted off the wall.
+    aside: Vector3<f64>,
     /// The block, and the axes' position, of the deepest point of the finished strokes.
     place: Place,
     at: Position,
@@ -76,6 +81,7 @@ impl Line {
             deepest: 0.0,
             stroke: Some(Stroke { from: 0.0, reach: depth, place: place.clone(), at }),
             depth,
+            aside: Vector3::zeros(),
             place,
             at,
             rounding,
@@ -116,8 +122,32 @@ impl Line {
     /// Rounded end points let a line through two of them wander: once for each point, and more beyond them.
     fn is_beside(&self, p: &Point3<f64>) -> bool {
         let depth = self.depth_of(p);
-        let aside = (p - self.start + self.out.into_inner() * depth).norm();
+        let aside = (p - self.start - self.aside + self.out.into_inner() * depth).norm();
         aside > 3.0 * self.rounding * (1.0 + depth.abs() / self.cut().max(1e-3)) + 1e-9
+    }
+
+    /// The feed leads along the tool into the part, and not out of it.
+    pub(super) fn leads_in(&self) -> bool {
+        self.tool_axis.is_none_or(|axis| axis.dot(&self.out) > 0.0)
+    }
+
+    /// A rapid to `to` while the spindle stands: whether it shifts a boring bar off the wall at the depth reached, square
+    /// to the line (G76), or back. The tool then goes on along the line beside it.
+    pub(super) fn shift(&mut self, to: &Point3<f64>) -> bool {
+        let depth = self.depth_of(to);
+        let aside = to - self.start + self.out.into_inner() * depth;
+        let is_square = (depth - self.depth).abs() <= 2.0 * self.rounding;
+        let is_below = self.depth > 2.0 * self.rounding;
+        let is_shift = is_square && is_below && self.is_beside(to) && aside.norm() <= SHIFT;
+        if is_shift {
+            self.aside = aside;
+        }
+        is_shift
+    }
+
+    /// A boring bar stands beside it.
+    pub(super) fn is_shifted(&self) -> bool {
+        self.aside.norm() > 0.0
     }
 
     /// Whether a rapid to `to` goes on in the direction of the feed from its very end: then the feed may have led

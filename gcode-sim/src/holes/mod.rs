@@ -207,8 +207,17 @@ impl<'m> Extractor<'m> {
         let Some(mut line) = self.line.take() else { return Some(from) };
         let tip = self.pose.tip;
         if pace == Pace::Rapid && line.is_overrun(&tip) {
-            self.judge_overrun(event, &line, &tip);
+            if line.is_shifted() {
+                self.bored_from_the_back(&line);
+            } else {
+                self.judge_overrun(event, &line, &tip);
+            }
             return Some(from);
+        }
+        let stands = pace == Pace::Rapid && self.force.turning == Spindle::Off;
+        if stands && line.leads_in() && line.shift(&tip) {
+            self.line = Some(line);
+            return None;
         }
         match line.after(&from, &tip) {
             After::On => {
@@ -232,6 +241,9 @@ impl<'m> Extractor<'m> {
                 None
             }
             after @ (After::Out | After::Aside { .. }) => {
+                if stands && !line.leads_in() && after != After::Out {
+                    self.bored_from_the_back(&line);
+                }
                 let free = if after == After::Out { line.top_between(&from, &tip) } else { from };
                 self.judge_line(line, after, pace == Pace::Feed);
                 Some(free)

@@ -123,6 +123,7 @@ pub const PAGES: &[Page] = pages![
     "axis-carries-nothing"
     "axis-left-out"
     "axis-signs"
+    "back-bored"
     "ball-into-part"
     "burr-offset"
     "centre-here"
