@@ -18,7 +18,7 @@ const BLOCKS: u64 = 2000;
 const TOLERANCE: f64 = 0.0001;
 const REMEDY: &str = "look at the change; where it is meant, cargo xtask bless accepts it";
 
-fn workspace() -> PathBuf {
+pub(crate) fn workspace() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
 }
 
@@ -29,7 +29,7 @@ fn folder(path: &Path) -> Vec<PathBuf> {
 }
 
 /// The main programs of the examples, macros and subprograms left out.
-fn mains() -> Vec<PathBuf> {
+pub(crate) fn mains() -> Vec<PathBuf> {
     let files = folder(&workspace().join("examples")).into_iter().filter(|path| path.is_dir());
     let files = files.flat_map(|path| folder(&path));
     let is_main = |path: &PathBuf| {
@@ -47,7 +47,7 @@ fn home(main: &Path) -> PathBuf {
     }
 }
 
-fn request(main: &Path) -> Request {
+pub(crate) fn request(main: &Path) -> Request {
     let home = home(main);
     let read = |name: &str| std::fs::read_to_string(home.join(name)).ok();
     let machine = read("machine.toml").map_or_else(Machine::default, |text| Machine::parse(&text).unwrap());
@@ -87,7 +87,7 @@ fn resident() -> impl Iterator<Item = String> {
     names.filter_map(|name| Some(name.split_once('_')?.0.to_owned()))
 }
 
-fn folders(main: &Path) -> Folders {
+pub(crate) fn folders(main: &Path) -> Folders {
     Folders::new(main, &[home(main)]).unwrap()
 }
 

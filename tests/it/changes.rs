@@ -193,3 +193,132 @@ fn behind_an_alarm_nothing_is_compared() {
     assert_eq!(found.len(), 1, "{found:?}");
     assert!(found[0].starts_with("outcome: "), "{found:?}");
 }
+
+#[test]
+fn a_block_skip_and_codes_that_move_nothing_here_are_one_entry_each() {
+    for (from, to, told) in [
+        ("G0 X0 Y30. M1", "/G0 X0 Y30. M1", "block-skip: the block skip / is new"),
+        ("G0 X0 Y30. M1", "/3 G0 X0 Y30. M1", "block-skip: the block skip /3 is new"),
+        ("G0 X0 Y30. M1", "G0 X0 /2 Y30. M1", "block-skip: the block skip /2 is new"),
+        ("X50.\nG40", "G9 X50.\nG40", "path-mode: G09 is new"),
+        ("T1 M6", "G5.1 Q1\nT1 M6", "path-mode: G05.1 Q1 is new"),
+        ("T1 M6", "G8 P1\nT1 M6", "path-mode: G08 P1 is new"),
+        ("T1 M6", "G25\nT1 M6", "g-code: G25 is new"),
+        ("T1 M6", "M29 S500\nT1 M6", "m-code: M29 is new"),
+    ] {
+        assert_eq!(changed(from, to), [told], "{to}");
+        let gone = PART.replace(from, to);
+        assert_eq!(
+            self::told(&gone, PART),
+            [told.replace(" is new", " is no longer there")],
+            "{to} taken away"
+        );
+    }
+    let (off, on) = (PART.replace("T1 M6", "G5.1 Q0\nT1 M6"), PART.replace("T1 M6", "G5.1 Q1\nT1 M6"));
+    assert_eq!(told(&off, &on), ["path-mode: G05.1 Q1 instead of G05.1 Q0"]);
+}
+
+/// Also in front of what makes no step: an assignment, a jump, a call.
+#[test]
+fn a_block_skip_before_a_statement_is_told_at_its_block() {
+    let old = "O1\n#100=5.\nG0 X#100\nIF[#100 GT 9.]GOTO 9\nM98 P2\nN9 M30\nO2\nG0 Y1.\nM99\n";
+    for block in ["#100=5.", "IF[#100", "M98 P2"] {
+        let new = old.replace(block, &format!("/{block}"));
+        let found = changes(&revision(old).record, &revision(&new).record, 0.0001);
+        let codes: Vec<_> = found.iter().map(|change| &*change.code).collect();
+        assert_eq!(codes, ["block-skip"], "{block}");
+        let place = found[0].new.as_ref().unwrap();
+        assert!(place.block.starts_with(&format!("/{block}")) && place.calls.is_empty(), "{place:?}");
+    }
+}
+
+/// The block that wrote it last, and the call that led there.
+#[test]
+fn what_is_left_names_the_block_that_wrote_it() {
+    let old = "O1\n#500=1.\nG65 P2 A2.\nM30\nO2\n#501=#1\n#502=7.\nG10 L2 P1 X#1\n#2005=#1\nM99\n";
+    let new = old.replace("A2.", "A3.");
+    let found = changes(&revision(old).record, &revision(&new).record, 0.0001);
+    let shown: Vec<String> = found
+        .iter()
+        .map(|change| {
+            let place = change.new.as_ref().unwrap();
+            format!("{}: {} by {}, from {}", change.code, change.message, place.block, place.calls[0].block)
+        })
+        .collect();
+    assert_eq!(
+        shown,
+        [
+            "variable: #501 is left 3 instead of 2 by #501=#1, from G65 P2 A3.",
+            "work-offset: G54 X is left 3 instead of 2 by G10 L2 P1 X#1, from G65 P2 A3.",
+            "tool-offset: H5 wear is left 3 instead of 2 by #2005=#1, from G65 P2 A3.",
+        ]
+    );
+}
+
+/// T1 drills both holes, T2 one, and then T1 comes once more with G81 as the first time.
+#[test]
+fn a_hole_that_a_tool_makes_once_more_is_one_entry() {
+    let again = "T1 M6\nG43 H1 G0 Z50.\nG98 G81 X10. Y0 Z-1. R2. F100\nG80\n";
+    let found = changed("T2 M6", &format!("{again}T2 M6"));
+    assert_eq!(found, ["hole-tool: hole 1: made once more by T1, in all by T1, T1 and T2"]);
+}
+
+#[test]
+fn a_swapped_tool_is_one_entry_for_all_its_holes() {
+    // T2 drills what T1 has drilled, and one hole alone: in all of them T3 stands for T2.
+    let more = PART.replace("Z-9. R2. F80\nX20.\n", "Z-9. R2. F80\nX20.\nX30.\n");
+    assert_eq!(
+        told(&more, &more.replace("T2 M6", "T3 M6")),
+        ["hole-tool: holes 1, 2, 3: made by T3 instead of T2"]
+    );
+    // T1 twice: T2 isn't there any more.
+    assert_eq!(
+        told(&more, &more.replace("T2 M6", "T1 M6")),
+        ["hole-tool: holes 1, 2, 3: made by T1 instead of T2"]
+    );
+}
+
+/// Behind the first cycle the next block goes to Z50 anyway. Behind the second one, R2, 48 mm below the initial level, is
+/// where the contour is milled: that has to be seen, and that G99 stays for the next program.
+#[test]
+fn the_return_level_alone_is_one_entry() {
+    let found = changed("G98 G81 X10. Y0 Z-1.", "G99 G81 X10. Y0 Z-1.");
+    assert_eq!(found.len(), 1, "{found:#?}");
+    assert!(found[0].starts_with("return-level: G99 instead of G98: "), "{found:#?}");
+
+    let found = changed("G98 G81 X10. Y0 Z-9.", "G99 G81 X10. Y0 Z-9.");
+    assert_eq!(found.len(), 3, "{found:#?}");
+    assert!(found[0].starts_with("return-level: G99 instead of G98: "), "{found:#?}");
+    assert_eq!(found[1], "move-shifted: moves end elsewhere, by Z -48.0000 (a rapid, 3 feeds)");
+    assert_eq!(found[2], "mode: the program leaves G99 instead of G98");
+}
+
+/// A move elsewhere by the same in rapids, feeds and arcs is one entry at the first of them.
+#[test]
+fn one_shifted_word_is_one_entry() {
+    let old = "O1\nG90 G54 G0 X0 Y0\nZ5.\nG1 Z-1. F100\nG1 X20.\nG2 X30. I5. J0\nG1 Y9.\nG0 Z5.\nM30\n";
+    // The rapid to X0 wasn't needed before.
+    assert_eq!(
+        told(old, &old.replace("G0 X0 Y0", "G0 X0.01 Y0")),
+        ["move-shifted: moves end elsewhere, by X +0.0100 (2 rapids, a feed, the first of them new)"]
+    );
+    let of_arc = told(old, &old.replace("X30. I5.", "X30.02 I5.01"));
+    assert_eq!(of_arc, ["move-shifted: moves end elsewhere, by X +0.0200 (an arc, a feed, a rapid)"]);
+}
+
+/// In G93 a way that is longer takes the same time.
+#[test]
+fn a_longer_way_in_inverse_time_has_no_other_feed() {
+    let old = "O1\nG90 G93\nG1 X10. F10.\nX20. F10.\nX30. F20.\nG94\nM30\n";
+    let longer = told(old, &old.replace("X20.", "X20.01"));
+    assert_eq!(longer, ["move-shifted: a feed ends elsewhere, by X +0.0100"]);
+    // F10 over 10 mm is 100 mm/min, F12 is 120.
+    let faster = told(old, &old.replace("X20. F10.", "X20. F12."));
+    assert_eq!(faster, ["feed: feed F120 instead of F100"]);
+    // One block makes ways of 1, 2 and 3 mm in a tenth of a minute each, then in an eighth.
+    let all = "O1\nG91 G93\n#1=1\nWHILE[#1 LE 3]DO1\nG1 X#1 F10.\n#1=#1+1\nEND1\nG94\nM30\n";
+    assert_eq!(
+        told(all, &all.replace("F10.", "F8.")),
+        ["feed: feed F8 instead of F10 (3 moves, all by the same factor)"]
+    );
+}

@@ -27,6 +27,7 @@ mod formats;
 mod honeycomb;
 mod limits;
 mod misplaced;
+mod mutations;
 mod packaging;
 mod page;
 mod pin_holes;

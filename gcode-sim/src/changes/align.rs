@@ -3,7 +3,7 @@
 //! First the longest common sequence of steps that do the same (E. Myers, *An O(ND) Difference Algorithm and Its
 //! Variations*); in the gaps between them moves that go the same way from another point; in what is left the pairs
 //! whose ends lie nearest to one another.
-use super::steps::{Step, difference};
+use super::steps::{Kind, Step, difference};
 use crate::motion::MAX_AXES;
 
 /// A step of the old run, of the new one, or one of each that belong together.
@@ -33,19 +33,60 @@ const MOST_EDITS: usize = 1_000;
 /// Gaps up to this many possible pairs are searched for the nearest ends; in larger ones the steps are paired in order.
 const MOST_PAIRS: usize = 10_000;
 
-/// All steps of both runs, in an order that keeps both.
+/// All steps of both runs, in an order that keeps both: with the fewest lost and added, or tool by tool where that loses
+/// and adds no more.
 pub(super) fn align(old: &[Step], new: &[Step], tolerance: f64) -> Vec<Link> {
-    let mut links = Vec::with_capacity(old.len().max(new.len()));
-    let same = common(old.len(), new.len(), |i, j| old[i].is_same(&new[j], tolerance));
-    let (mut i, mut j) = (0, 0);
-    for (to_i, to_j) in same.into_iter().chain([(old.len(), new.len())]) {
-        gap((old, i..to_i), (new, j..to_j), tolerance, &mut links);
-        if to_i < old.len() {
-            links.push(Link::Same(to_i, to_j));
+    let whole = [(old.len(), new.len())];
+    let mut links = between((old, new), &whole, tolerance);
+    if links.iter().any(|link| !matches!(link, Link::Same(..))) {
+        let (was, is) = (tool_changes(old), tool_changes(new));
+        let tools = common(was.len(), is.len(), |i, j| old[was[i]].kind == new[is[j]].kind);
+        let mut stops: Vec<(usize, usize)> = tools.into_iter().map(|(i, j)| (was[i], is[j])).collect();
+        stops.extend(whole);
+        let by_tool = between((old, new), &stops, tolerance);
+        let edits = |links: &[Link]| edits(links, (old, new));
+        if edits(&by_tool) <= edits(&links) {
+            links = by_tool;
         }
-        (i, j) = (to_i + 1, to_j + 1);
     }
     moves_stay((old, new), tolerance, &mut links);
+    links
+}
+
+fn tool_changes(steps: &[Step]) -> Vec<usize> {
+    (0..steps.len()).filter(|step| matches!(steps[*step].kind, Kind::Tool(_))).collect()
+}
+
+/// How many steps are lost and added; a tool change counts for three, so that moves go with their tool.
+fn edits(links: &[Link], (old, new): (&[Step], &[Step])) -> usize {
+    let of = |step: &Step| if matches!(step.kind, Kind::Tool(_)) { 3 } else { 1 };
+    let each = |link: &Link| match *link {
+        Link::Same(..) => 0,
+        Link::Lost(i) => of(&old[i]),
+        Link::Added(j) => of(&new[j]),
+        Link::Changed(i, j) => of(&old[i]) + of(&new[j]),
+    };
+    links.iter().map(each).sum()
+}
+
+/// Links the steps from stop to stop, each of which is the same in both; the last one is where both end.
+fn between((old, new): (&[Step], &[Step]), stops: &[(usize, usize)], tolerance: f64) -> Vec<Link> {
+    let mut links = Vec::with_capacity(old.len().max(new.len()));
+    let (mut i, mut j) = (0, 0);
+    for &(stop_i, stop_j) in stops {
+        let (from_i, from_j) = (i, j);
+        let same = common(stop_i - from_i, stop_j - from_j, |a, b| {
+            old[from_i + a].is_same(&new[from_j + b], tolerance)
+        });
+        let same = same.into_iter().map(|(a, b)| (from_i + a, from_j + b));
+        for (to_i, to_j) in same.chain([(stop_i, stop_j)]) {
+            gap((old, i..to_i), (new, j..to_j), tolerance, &mut links);
+            if to_i < old.len() && to_j < new.len() {
+                links.push(Link::Same(to_i, to_j));
+            }
+            (i, j) = (to_i + 1, to_j + 1);
+        }
+    }
     links
 }
 
@@ -63,7 +104,12 @@ fn moves_stay((old, new): (&[Step], &[Step]), tolerance: f64, links: &mut [Link]
         let is_move = old[i].is_move() && old[i].is_same(&new[j], tolerance);
         // More than one between them would be more entries than it saves.
         let Link::Same(other_i, other_j) = links[first + 1] else { continue };
-        if !is_move || between != 1 {
+        // A move of a pass that comes or goes stays with it, and so does the tool.
+        let is_of_pass = matches!(old[other_i].kind, Kind::Tool(_))
+            && first
+                .checked_sub(1)
+                .is_some_and(|before| matches!(links[before], Link::Lost(_) | Link::Added(_)));
+        if !is_move || between != 1 || is_of_pass {
             continue;
         }
         let (lost, added) = (Link::Lost(other_i), Link::Added(other_j));

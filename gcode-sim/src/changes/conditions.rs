@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::Change;
 use super::align::Link;
 use super::record::Record;
-use super::steps::{Step, difference};
+use super::steps::{Kind, Step, difference};
 use crate::exec::State;
 use crate::motion::MAX_AXES;
 use crate::program::modes::WorkSystem;
@@ -171,10 +171,10 @@ impl<'a> Conditions<'a> {
         (self.old.under(i).word(aspect), self.new.under(j).word(aspect))
     }
 
-    /// What explains that a cycle's strokes are others: cycles and return levels before and now.
+    /// What explains that a cycle's strokes and lengths that are put in force are others: the words before and now.
     pub(super) fn strokes(&self, links: &[Link]) -> Strokes {
         let mut strokes = Strokes::default();
-        for group in self.groups(links).iter().filter(|group| is_of_stroke(group.aspect)) {
+        for group in self.groups(links).iter().filter(|group| is_told_once(group.aspect)) {
             strokes.old.insert((group.aspect, group.was.text.clone()));
             strokes.new.insert((group.aspect, group.is.text.clone()));
         }
@@ -222,11 +222,11 @@ impl<'a> Conditions<'a> {
     }
 }
 
-fn is_of_stroke(aspect: Aspect) -> bool {
-    matches!(aspect, Aspect::Cycle | Aspect::Level)
+fn is_told_once(aspect: Aspect) -> bool {
+    matches!(aspect, Aspect::Cycle | Aspect::Level | Aspect::Length)
 }
 
-/// What of a cycle is told once for all its strokes.
+/// What is told once for all strokes of a cycle, and for a length and its end.
 #[derive(Default)]
 pub(super) struct Strokes {
     old: BTreeSet<(Aspect, String)>,
@@ -234,11 +234,15 @@ pub(super) struct Strokes {
 }
 
 impl Strokes {
-    /// A step is different because its cycle is.
+    /// A step is different because its cycle is, or the length that it puts in force or ends.
     pub(super) fn explain(&self, link: &Link, old: &Record, new: &Record) -> bool {
         let is_in = |known: &BTreeSet<(Aspect, String)>, record: &Record, step: usize| {
-            let is_known =
-                |aspect: Aspect| known.contains(&(aspect, record.under(step).word(aspect).text.clone()));
+            let text = |aspect: Aspect| record.under(step).word(aspect).text.clone();
+            let is_known = |aspect: Aspect| known.contains(&(aspect, text(aspect)));
+            if matches!(record.steps[step].kind, Kind::Length(_)) {
+                let is_any = known.iter().any(|(aspect, _)| *aspect == Aspect::Length);
+                return is_any && (is_known(Aspect::Length) || text(Aspect::Length) == "G49");
+            }
             is_known(Aspect::Cycle) || is_known(Aspect::Level) && record.steps[step].is_rapid()
         };
         let (i, j) = link.sides();

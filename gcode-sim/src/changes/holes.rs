@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::{Point3, Vector3};
 
 use super::align::Link;
+use super::passes::{Passes, in_words, more_or_fewer};
 use super::record::{Record, Where};
-use super::steps::Kind;
 use super::{Change, listed};
 use crate::holes::Found;
 use crate::part::hole::Hole;
@@ -47,16 +47,19 @@ pub(super) struct Explained {
 }
 
 pub(super) fn compare(old: &Record, new: &Record, links: &[Link], tolerance: f64) -> Compared {
-    let wanted: Vec<Hole> = old.holes.iter().map(|hole| hole.hole(nowhere)).collect();
+    let passes = (Passes::of(old), Passes::of(new));
+    let (was, is) = (passes.0.firsts(), passes.1.firsts());
+    let wanted: Vec<Hole> = was.iter().map(|hole| old.holes[*hole].hole(nowhere)).collect();
+    let found: Vec<Found> = is.iter().map(|hole| new.holes[*hole].clone()).collect();
     let limits = Tolerances { position: 2.0 * tolerance, depth: tolerance, diameter: tolerance };
-    let comparison = Comparison::new(&wanted, &new.holes, limits, None);
+    let comparison = Comparison::new(&wanted, &found, limits, None);
     let mut partner: Vec<Option<usize>> = vec![None; old.holes.len()];
     for pair in &comparison.pairs {
-        partner[pair.wanted] = Some(pair.found);
+        partner[was[pair.wanted]] = Some(is[pair.found]);
     }
-    pair_by_motion(&mut partner, &comparison.extra, links, (old, new));
-    let tools = (tools(old), tools(new));
-    let mut told = Told { old, new, tolerance, tools, moved: Explained::default() };
+    let extra = comparison.extra.iter().map(|hole| is[*hole]).collect();
+    pair_by_motion(&mut partner, extra, links, &passes);
+    let mut told = Told { old, new, tolerance, passes, moved: Explained::default() };
     let mut changes = told.pairs(&partner);
     changes.extend(told.order(&partner));
     changes.extend(told.lost_and_added(&partner));
@@ -75,34 +78,32 @@ fn nowhere(_: Span) -> (String, u32) {
 /// A hole too far from its old place to be known by it is the same hole if the same feed makes it.
 fn pair_by_motion(
     partner: &mut [Option<usize>],
-    extra: &[usize],
+    mut extra: BTreeSet<usize>,
     links: &[Link],
-    (old, new): (&Record, &Record),
+    (old, new): &(Passes, Passes),
 ) {
-    let mut left: BTreeSet<usize> = extra.iter().copied().collect();
     let (of_old, of_new) = (hole_of_step(old), hole_of_step(new));
     for link in links {
         let Link::Changed(i, j) = link else { continue };
         if let (Some(hole), Some(other)) = (of_old.get(i), of_new.get(j))
             && partner[*hole].is_none()
-            && left.remove(other)
+            && extra.remove(other)
         {
             partner[*hole] = Some(*other);
         }
     }
 }
 
-fn hole_of_step(record: &Record) -> BTreeMap<usize, usize> {
-    let holes = record.feeds.iter().enumerate();
-    holes.flat_map(|(hole, feeds)| feeds.iter().map(move |step| (*step, hole))).collect()
+fn hole_of_step(passes: &Passes) -> BTreeMap<usize, usize> {
+    let holes = passes.steps.iter().enumerate();
+    holes.flat_map(|(hole, steps)| steps.iter().map(move |step| (*step, hole))).collect()
 }
 
 struct Told<'a> {
     old: &'a Record,
     new: &'a Record,
     tolerance: f64,
-    /// As [`tools`].
-    tools: (Vec<Vec<u32>>, Vec<Vec<u32>>),
+    passes: (Passes, Passes),
     moved: Explained,
 }
 
@@ -118,8 +119,8 @@ impl Told<'_> {
             let Some((code, _)) = aspects.first() else { continue };
             if aspects.iter().any(|(code, _)| ["hole-moved", "hole-tilted", "hole-depth"].contains(code)) {
                 let with = |step: &usize| (*step, apart.deeper);
-                self.moved.shifted.0.extend(self.old.feeds[hole].iter().map(with));
-                self.moved.shifted.1.extend(self.new.feeds[*other].iter().map(with));
+                self.moved.shifted.0.extend(self.passes.0.steps[hole].iter().map(with));
+                self.moved.shifted.1.extend(self.passes.1.steps[*other].iter().map(with));
             }
             let text = aspects.iter().map(|(_, text)| text.as_str()).collect::<Vec<_>>().join(", ");
             match groups.iter_mut().find(|(_, known, _)| *known == text) {
@@ -144,6 +145,12 @@ impl Told<'_> {
         let alone =
             Paired { old: None, new: None, changed: true, moved: 0.0, tilted: Deg::ZERO, deeper: 0.0 };
         let (old, new) = (self.old, self.new);
+        let mut partner = partner.to_vec();
+        for first in self.passes.0.firsts() {
+            let Some(other) = partner[first] else { continue };
+            let again = self.passes.0.again[first].iter().zip(&self.passes.1.again[other]);
+            again.for_each(|(old, new)| partner[*old] = Some(*new));
+        }
         let known: BTreeSet<usize> = partner.iter().flatten().copied().collect();
         let mut pairs = Vec::with_capacity(partner.len());
         for (hole, other) in partner.iter().enumerate() {
@@ -190,20 +197,24 @@ impl Told<'_> {
         {
             aspects.push(("hole-diameter", format!("Φ{now} instead of Φ{before}")));
         }
-        let (was, is) = (self.tools.0[hole].clone(), self.tools.1[other].clone());
-        match passes(&was, &is) {
+        let (was, is) = (&self.passes.0.tools[hole], &self.passes.1.tools[other]);
+        match more_or_fewer(was, is) {
             None if was.is_empty() || is.is_empty() => {}
             None => {
-                let others = was.iter().zip(&is).filter(|(before, now)| before != now);
-                self.moved.tools.extend(others.map(|(before, now)| (*before, *now)));
-                if was != is {
-                    let text = format!("made by {} instead of {}", in_words(&is), in_words(&was));
-                    aspects.push(("hole-tool", text));
-                }
+                let others = was.iter().zip(is).filter(|(before, now)| before != now);
+                let others: BTreeSet<(u32, u32)> = others.map(|(before, now)| (*before, *now)).collect();
+                let text = match others.iter().collect::<Vec<_>>()[..] {
+                    [] => None,
+                    // The same for holes that other tools make as well.
+                    [(before, now)] => Some(format!("made by T{now} instead of T{before}")),
+                    _ => Some(format!("made by {} instead of {}", in_words(is), in_words(was))),
+                };
+                aspects.extend(text.map(|text| ("hole-tool", text)));
+                self.moved.tools.extend(others);
             }
             Some(text) => {
-                self.moved.elsewhen.0.extend(&self.old.feeds[hole]);
-                self.moved.elsewhen.1.extend(&self.new.feeds[other]);
+                self.moved.elsewhen.0.extend(&self.passes.0.steps[hole]);
+                self.moved.elsewhen.1.extend(&self.passes.1.steps[other]);
                 aspects.push(("hole-tool", text));
             }
         }
@@ -216,14 +227,14 @@ impl Told<'_> {
             partner.iter().enumerate().filter_map(|(old, new)| Some((old, (*new)?))).collect();
         // A hole that is made by fewer passes or more is begun at another time because of that.
         let as_often =
-            |(old, new): &(usize, usize)| passes(&self.tools.0[*old], &self.tools.1[*new]).is_none();
+            |(old, new): &(usize, usize)| self.passes.0.tools[*old].len() == self.passes.1.tools[*new].len();
         let paired: Vec<(usize, usize)> = paired.into_iter().filter(as_often).collect();
         let stays = rising(&paired.iter().map(|(_, new)| *new).collect::<Vec<_>>());
         let late: Vec<_> = (0..paired.len()).filter(|k| !stays.contains(k)).map(|k| paired[k]).collect();
         let (first, other) = *late.first()?;
         for (old, new) in &late {
-            self.moved.elsewhen.0.extend(&self.old.feeds[*old]);
-            self.moved.elsewhen.1.extend(&self.new.feeds[*new]);
+            self.moved.elsewhen.0.extend(&self.passes.0.steps[*old]);
+            self.moved.elsewhen.1.extend(&self.passes.1.steps[*new]);
         }
         let holes: Vec<usize> = late.iter().map(|(old, _)| *old).collect();
         let before = paired.iter().filter(|(_, new)| *new < other).max_by_key(|(_, new)| *new);
@@ -242,70 +253,21 @@ impl Told<'_> {
 
     fn lost_and_added(&mut self, partner: &[Option<usize>]) -> Vec<Change> {
         let mut changes = Vec::new();
-        for (hole, found) in self.old.holes.iter().enumerate().filter(|(hole, _)| partner[*hole].is_none()) {
-            self.moved.elsewhen.0.extend(&self.old.feeds[hole]);
+        let gone = self.passes.0.firsts().into_iter().filter(|hole| partner[*hole].is_none());
+        for hole in gone {
+            let found = &self.old.holes[hole];
+            self.moved.elsewhen.0.extend(&self.passes.0.steps[hole]);
             let message = format!("hole {}: lost, {}", hole + 1, described(found));
             changes.push(Change::new("hole-lost", message).once_at(place(self.old, hole)));
         }
         let known: BTreeSet<usize> = partner.iter().flatten().copied().collect();
-        for (hole, found) in self.new.holes.iter().enumerate().filter(|(hole, _)| !known.contains(hole)) {
-            self.moved.elsewhen.1.extend(&self.new.feeds[hole]);
+        for hole in self.passes.1.firsts().into_iter().filter(|hole| !known.contains(hole)) {
+            let found = &self.new.holes[hole];
+            self.moved.elsewhen.1.extend(&self.passes.1.steps[hole]);
             let message = format!("a hole added: {}", described(found));
             changes.push(Change::new("hole-added", message).now_at(place(self.new, hole)));
         }
         changes
-    }
-}
-
-/// The tools that make each hole, pass by pass; nothing where a pass has none.
-fn tools(record: &Record) -> Vec<Vec<u32>> {
-    let in_spindle = record.steps.iter().scan(None, |tool, step| {
-        if let Kind::Tool(number) = step.kind {
-            *tool = Some(number);
-        }
-        Some(*tool)
-    });
-    let in_spindle: Vec<Option<u32>> = in_spindle.collect();
-    let of = |feeds: &Vec<usize>| feeds.iter().map(|step| in_spindle[*step]).collect::<Option<Vec<u32>>>();
-    record.feeds.iter().map(|feeds| of(feeds).unwrap_or_default()).collect()
-}
-
-/// Which passes are gone and which are new; `None` where as many are made.
-fn passes(was: &[u32], is: &[u32]) -> Option<String> {
-    if was.len() == is.len() || was.is_empty() || is.is_empty() {
-        return None;
-    }
-    let common = super::align::common(was.len(), is.len(), |i, j| was[i] == is[j]);
-    let of = |all: &[u32], kept: &dyn Fn(usize) -> bool| -> Vec<u32> {
-        all.iter().enumerate().filter(|(k, _)| !kept(*k)).map(|(_, tool)| *tool).collect()
-    };
-    let gone = of(was, &|k| common.iter().any(|(i, _)| *i == k));
-    let new = of(is, &|k| common.iter().any(|(_, j)| *j == k));
-    let mut words = Vec::new();
-    if !gone.is_empty() {
-        let times =
-            if gone.iter().any(|tool| is.contains(tool)) { "made fewer times" } else { "no longer made" };
-        words.push(format!("{times} by {}", in_words(&gone)));
-    }
-    if !new.is_empty() {
-        let again = new.iter().any(|tool| was.contains(tool));
-        words.push(match (again, is) {
-            (true, [_, _]) => "made twice now".to_owned(),
-            (true, _) => format!("made once more by {}", in_words(&new)),
-            (false, _) => format!("made by {} as well", in_words(&new)),
-        });
-    }
-    words.push(format!("in all by {}", in_words(is)));
-    Some(words.join(", "))
-}
-
-/// `T1`, `T1 and T2`, `T1, T2 and T2`.
-fn in_words(tools: &[u32]) -> String {
-    let names: Vec<String> = tools.iter().map(|tool| format!("T{tool}")).collect();
-    match names.as_slice() {
-        [] => String::new(),
-        [only] => only.clone(),
-        [before @ .., last] => format!("{} and {last}", before.join(", ")),
     }
 }
 

@@ -4,9 +4,11 @@
 //! make no difference unless the control does something else because of them.
 mod align;
 mod conditions;
+mod groups;
 mod holes;
 mod left;
 mod motion;
+mod passes;
 mod path;
 mod record;
 mod steps;
@@ -26,7 +28,7 @@ pub use store::StoreError;
 use self::align::{Link, align};
 
 /// What a change can be called, in the order of their sections in docs/changes.md.
-pub const CODES: [&str; 35] = [
+pub const CODES: [&str; 37] = [
     "outcome",
     "hole-moved",
     "hole-tilted",
@@ -53,6 +55,8 @@ pub const CODES: [&str; 35] = [
     "spindle",
     "coolant",
     "m-code",
+    "g-code",
+    "block-skip",
     "stop",
     "output",
     "variable",

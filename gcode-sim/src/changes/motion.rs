@@ -1,12 +1,13 @@
 //! Moves, feeds, tools, spindle and stops that are different and that no changed hole explains.
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::Change;
 use super::align::Link;
 use super::conditions::{Conditions, Strokes};
+use super::groups::{Groups, Sides, short};
 use super::holes::Explained;
 use super::record::Record;
-use super::steps::{Category, Kind, Step, difference, is_same_arc};
+use super::steps::{Category, Kind, Quiet, Step, difference, is_same_arc, near};
 use crate::motion::{Axes, MAX_AXES, Position, Spindle, StopKind};
 
 pub(super) fn compare(
@@ -19,21 +20,30 @@ pub(super) fn compare(
     let conditions = Conditions::new(old, new);
     let strokes = conditions.strokes(links);
     let (records, axes) = ((old, new), &old.axes);
-    let mut motion =
-        Motion { old: &old.steps, new: &new.steps, axes, tolerance, groups: Vec::new(), strokes, records };
+    let mut motion = Motion {
+        old: &old.steps,
+        new: &new.steps,
+        axes,
+        tolerance,
+        groups: Groups::default(),
+        strokes,
+        records,
+    };
     for region in regions(links, &old.steps, &new.steps) {
         motion.region(&region, explained);
     }
     let shifted = shifted(links, &old.steps, &new.steps, tolerance);
+    let set_up = set_up(links, explained, (&old.steps, &new.steps));
     for (k, link) in links.iter().enumerate() {
         match shifted.get(&k) {
+            None if set_up.contains(&k) => {}
             None => motion.step(*link, explained),
             Some(Some((i, j, word))) => motion.shifted(&old.steps[*i], &new.steps[*j], word),
             Some(None) => {}
         }
     }
     let mut changes = conditions.changes(links);
-    changes.extend(motion.groups.into_iter().map(|group| group.change(old, new)));
+    changes.extend(motion.groups.changes(old, new));
     changes
 }
 
@@ -83,6 +93,29 @@ fn shifted(links: &[Link], old: &[Step], new: &[Step], tolerance: f64) -> BTreeM
         if let Some((l, found)) = others.find(|(_, (i, j, _))| old[*i].is_same(&new[*j], tolerance)) {
             known.extend([(*k, Some(found)), (l, None)]);
         }
+    }
+    known
+}
+
+/// Tool changes, lengths, spindle and coolant that come or go together with a pass of a hole.
+fn set_up(links: &[Link], explained: &Explained, (old, new): (&[Step], &[Step])) -> BTreeSet<usize> {
+    let mut known = BTreeSet::new();
+    let runs = (0..links.len()).collect::<Vec<_>>();
+    let side = |k: &usize| match links[*k] {
+        Link::Lost(i) => (Some(false), Some(&old[i])),
+        Link::Added(j) => (Some(true), Some(&new[j])),
+        Link::Same(..) | Link::Changed(..) => (None, None),
+    };
+    for run in runs.chunk_by(|a, b| side(a).0.is_some() && side(a).0 == side(b).0) {
+        if !run.iter().any(|k| feed_of(&links[*k], explained).is_some_and(|feed| feed.deeper.is_none())) {
+            continue;
+        }
+        let is_set_up = |k: &&usize| {
+            let category = side(k).1.map(|step| step.kind.category());
+            use Category::{Coolant, Length, Spindle, Tool};
+            category.is_some_and(|category| [Coolant, Length, Spindle, Tool].contains(&category))
+        };
+        known.extend(run.iter().filter(is_set_up));
     }
     known
 }
@@ -144,57 +177,17 @@ fn goes_with(
     moved_alike || is_on_line && above.abs() <= ROUNDED
 }
 
-/// Differences of one kind that say the same.
-struct Group {
-    code: &'static str,
-    /// What is different, without how often.
-    text: String,
-    /// What it is that is different: "move", "dwell".
-    what: &'static str,
-    count: usize,
-    old: Option<usize>,
-    new: Option<usize>,
-}
-
-impl Group {
-    fn change(self, old: &Record, new: &Record) -> Change {
-        let times = match self.count {
-            1 => String::new(),
-            n => format!(" ({n} {}s)", self.what),
-        };
-        Change::new(self.code, format!("{}{times}", self.text))
-            .once_at(self.old.and_then(|place| old.places.get(place)))
-            .now_at(self.new.and_then(|place| new.places.get(place)))
-    }
-}
-
 struct Motion<'a> {
     old: &'a [Step],
     new: &'a [Step],
     axes: &'a Axes,
     tolerance: f64,
-    groups: Vec<Group>,
+    groups: Groups,
     strokes: Strokes,
     records: (&'a Record, &'a Record),
 }
 
 impl<'a> Motion<'a> {
-    fn tell(
-        &mut self,
-        code: &'static str,
-        what: &'static str,
-        text: String,
-        old: Option<&'a Step>,
-        new: Option<&'a Step>,
-    ) {
-        if let Some(group) = self.groups.iter_mut().find(|g| g.code == code && g.text == text) {
-            group.count += 1;
-            return;
-        }
-        let place = |step: Option<&Step>| step.map(|step| step.place);
-        self.groups.push(Group { code, text, what, count: 1, old: place(old), new: place(new) });
-    }
-
     /// Moves that are different, but for those of changed holes: the way there and back is part of the change.
     fn region(&mut self, region: &[Link], explained: &Explained) {
         // For every move the nearest feed of a changed hole before and behind it.
@@ -202,9 +195,13 @@ impl<'a> Motion<'a> {
         let mut behind = nearest(region.iter().rev(), |link| feed_of(link, explained));
         behind.reverse();
         let gone = before.iter().flatten().any(|feed| feed.deeper.is_none());
-        for (k, link) in region.iter().enumerate() {
-            let is_part =
-                [before[k], behind[k]].iter().flatten().any(|feed| self.is_part_of_hole(link, feed));
+        let is_part = |k: usize| {
+            let feeds = [before[k], behind[k]];
+            feeds.iter().flatten().any(|feed| self.is_part_of_hole(&region[k], feed))
+        };
+        let parts: Vec<bool> = (0..region.len()).map(is_part).collect();
+        let shifts = self.shifts(region, &parts);
+        for (link, is_part) in region.iter().zip(parts) {
             if self.strokes.explain(link, self.records.0, self.records.1) {
                 continue;
             }
@@ -213,16 +210,53 @@ impl<'a> Motion<'a> {
                 Link::Lost(i) if !(is_part && gone) => {
                     let step = &self.old[i];
                     let text = format!("{} to {} is no longer there", step.kind.one(), self.point(step));
-                    self.tell("move-lost", "move", text, Some(step), None);
+                    self.alone(&shifts, "move-lost", text, (Some(step), None));
                 }
                 Link::Added(j) if !(is_part && gone) => {
                     let step = &self.new[j];
                     let text = format!("{} to {} is new", step.kind.one(), self.point(step));
-                    self.tell("move-added", "move", text, None, Some(step));
+                    self.alone(&shifts, "move-added", text, (None, Some(step)));
                 }
                 _ => {}
             }
         }
+    }
+
+    /// A move that is there once only. One that goes the way by which those next to it end elsewhere, where none was
+    /// needed before, is one of these; one that makes up for that way is no difference of its own.
+    fn alone(&mut self, shifts: &[(Position, bool)], code: &'static str, text: String, sides: Sides<'a>) {
+        let (Some(step), is_new) = (sides.0.or(sides.1), sides.1.is_some()) else { return };
+        let way = if is_new { step.way() } else { opposite(&step.way()) };
+        let with = shifts.iter().find(|(shift, _)| self.near(&way, shift));
+        let back = shifts.iter().any(|(shift, _)| self.near(&opposite(&way), shift));
+        match with {
+            Some((shift, false)) => {
+                let text = self.coordinates(shift, self.tolerance, true);
+                self.groups.tell("move-shifted", step.kind.name(), text, sides);
+            }
+            None if !back => self.groups.tell(code, "move", text, sides),
+            _ => {}
+        }
+    }
+
+    /// How far moves of a region end from where they ended, and whether that is because a hole is moved.
+    fn shifts(&self, region: &[Link], parts: &[bool]) -> Vec<(Position, bool)> {
+        let mut shifts: Vec<(Position, bool)> = Vec::new();
+        for (link, is_part) in region.iter().zip(parts) {
+            let Link::Changed(i, j) = link else { continue };
+            let shift = difference(&self.new[*j].to, &self.old[*i].to);
+            let is_none = self.near(&shift, &Position::default());
+            match shifts.iter_mut().find(|(known, _)| self.near(known, &shift)) {
+                Some((_, is_hole)) => *is_hole &= is_part,
+                None if !is_none => shifts.push((shift, *is_part)),
+                None => {}
+            }
+        }
+        shifts
+    }
+
+    fn near(&self, a: &Position, b: &Position) -> bool {
+        near(a, b, self.tolerance)
     }
 
     /// Whether a move belongs to the hole that `feed` cuts. Of a hole that is there before and now, it does what it did,
@@ -247,23 +281,31 @@ impl<'a> Motion<'a> {
 
     /// A move that goes elsewhere or in another way.
     fn changed(&mut self, old: &'a Step, new: &'a Step) {
+        let sides = (Some(old), Some(new));
         let (was, is) = (old.kind.one(), new.kind.one());
         if was != is {
-            self.tell("move-kind", "move", format!("{is} where {was} was"), Some(old), Some(new));
+            self.groups.tell("move-kind", "move", format!("{is} where {was} was"), sides);
         }
         let way = difference(&new.to, &old.to);
         let shift = self.coordinates(&way, self.tolerance, true);
         if !shift.is_empty() {
-            let text = format!("{is} ends elsewhere, by {shift}");
-            self.tell("move-shifted", "move", text, Some(old), Some(new));
+            self.groups.tell("move-shifted", new.kind.name(), shift, sides);
         } else if let (Kind::Arc(a, _), Kind::Arc(b, _)) = (&old.kind, &new.kind)
             && !is_same_arc(a, b, self.tolerance)
         {
+            let begins = difference(&new.from, &old.from);
+            let is_with = |axis: usize, was: f64, is: f64| {
+                begins[axis].abs() > 0.0 && (is - was - begins[axis]).abs() <= self.tolerance
+            };
+            // I, J and K count from where the arc begins: its centre goes with that.
+            if is_with(a.plane.0, a.centre.0, b.centre.0) || is_with(a.plane.1, a.centre.1, b.centre.1) {
+                return;
+            }
             let text = format!(
                 "an arc sweeps {:+.3}° about {:.4} {:.4} instead of {:+.3}° about {:.4} {:.4}",
                 b.sweep.0, b.centre.0, b.centre.1, a.sweep.0, a.centre.0, a.centre.1
             );
-            self.tell("move-arc", "arc", text, Some(old), Some(new));
+            self.groups.tell("move-arc", "arc", text, sides);
         }
     }
 
@@ -276,8 +318,12 @@ impl<'a> Motion<'a> {
                 if let (Some(was), Some(is)) = (old.kind.rate(), new.kind.rate())
                     && (was - is).abs() > 1e-6 * was.abs().max(is.abs())
                 {
-                    let text = format!("feed F{} instead of F{}", short(is), short(was));
-                    self.tell("feed", "move", text, Some(old), Some(new));
+                    // In G93 a move takes its time, and is slower where its way is shorter.
+                    let (before, now) = (old.length() / was, new.length() / is);
+                    let is_way = (old.length() - new.length()).abs() > 1e-9;
+                    if !(is_way && (before - now).abs() <= 1e-5 * before) {
+                        self.groups.tell_feed(was, is, (old, new));
+                    }
                 }
                 if matches!(link, Link::Changed(..)) && !is_stroke {
                     self.swapped(old, new, explained);
@@ -286,12 +332,12 @@ impl<'a> Motion<'a> {
             Link::Lost(i) if !self.old[i].is_move() && !is_stroke => {
                 let step = &self.old[i];
                 let text = format!("{} is no longer there", self.described(&step.kind));
-                self.tell(lost_code(&step.kind), step.kind.name(), text, Some(step), None);
+                self.groups.tell(lost_code(&step.kind), step.kind.name(), text, (Some(step), None));
             }
             Link::Added(j) if !self.new[j].is_move() && !is_stroke => {
                 let step = &self.new[j];
                 let text = format!("{} is new", self.described(&step.kind));
-                self.tell(lost_code(&step.kind), step.kind.name(), text, None, Some(step));
+                self.groups.tell(lost_code(&step.kind), step.kind.name(), text, (None, Some(step)));
             }
             Link::Lost(_) | Link::Added(_) => {}
         }
@@ -300,7 +346,7 @@ impl<'a> Motion<'a> {
     /// A step that comes at another time.
     fn shifted(&mut self, old: &'a Step, new: &'a Step, word: &str) {
         let text = format!("{} comes {word} than before", self.described(&old.kind));
-        self.tell(lost_code(&old.kind), old.kind.name(), text, Some(old), Some(new));
+        self.groups.tell(lost_code(&old.kind), old.kind.name(), text, (Some(old), Some(new)));
     }
 
     /// The same kind of step with other values.
@@ -312,7 +358,7 @@ impl<'a> Motion<'a> {
         }
         if !old.is_move() {
             let text = format!("{} instead of {}", self.described(&new.kind), self.described(&old.kind));
-            self.tell(lost_code(&old.kind), old.kind.name(), text, Some(old), Some(new));
+            self.groups.tell(lost_code(&old.kind), old.kind.name(), text, (Some(old), Some(new)));
         }
     }
 
@@ -336,6 +382,8 @@ impl<'a> Motion<'a> {
                 let values = named.iter().map(|(number, value)| format!(", #{number} = {}", short(*value)));
                 format!("the stop #3006 ({text}){}", values.collect::<String>())
             }
+            Kind::Silent(Quiet::Skip, text) => format!("the block skip {text}"),
+            Kind::Silent(_, text) => text.clone(),
             Kind::Rapid | Kind::Feed(_) | Kind::Arc(..) | Kind::Probe(_) => kind.one(),
         }
     }
@@ -363,6 +411,10 @@ impl<'a> Motion<'a> {
     }
 }
 
+fn opposite(way: &Position) -> Position {
+    difference(&Position::default(), way)
+}
+
 fn lost_code(kind: &Kind) -> &'static str {
     match kind.category() {
         Category::Move => "move",
@@ -371,12 +423,10 @@ fn lost_code(kind: &Kind) -> &'static str {
         Category::Length => "tool-length",
         Category::Spindle => "spindle",
         Category::Coolant => "coolant",
-        Category::Auxiliary => "m-code",
+        Category::Auxiliary | Category::Silent(Quiet::MCode) => "m-code",
         Category::Stop => "stop",
+        Category::Silent(Quiet::Skip) => "block-skip",
+        Category::Silent(Quiet::Path) => "path-mode",
+        Category::Silent(Quiet::GCode) => "g-code",
     }
-}
-
-/// A feed without digits nobody can set.
-fn short(rate: f64) -> f64 {
-    (rate * 1e4).round() / 1e4
 }

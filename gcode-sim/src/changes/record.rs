@@ -84,7 +84,7 @@ pub(super) struct Left {
     /// What a change of it is called.
     pub code: String,
     pub value: f64,
-    /// The block that has put a mode in force.
+    /// The block that has put a mode in force, or has written the value last.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub place: Option<Where>,
 }
@@ -169,13 +169,19 @@ impl<A: Watcher, B: Watcher> Watcher for Beside<A, B> {
 fn record(simulation: &Simulation, recorder: Recorder) -> Record {
     let (run, holes) = (&simulation.run, simulation.extracted.holes.clone());
     let feeds = feeds(&recorder, &holes);
-    let Recorder { mut steps, places, mut conditions, mut set, .. } = recorder;
+    let Recorder { mut steps, places, mut conditions, mut set, assigned, written, .. } = recorder;
     if conditions.is_empty() {
         conditions.push(Condition::default());
     }
     let words = conditions.iter_mut().flat_map(|condition| &mut condition.0);
     let named = words.filter_map(|word| word.place.as_mut()).chain(set.values_mut());
     let places = resolve(run, &places, steps.iter_mut().map(|step| &mut step.place).chain(named));
+    let modes =
+        set.iter().map(|(group, place)| (format!("the mode of group {group:02}"), places[*place].clone()));
+    let at = |place: &Place| Where::of(run, place);
+    let variables = assigned.iter().map(|(number, place)| (format!("#{number}"), at(place)));
+    let tables = written.iter().map(|(name, place)| (name.clone(), at(place)));
+    let by: BTreeMap<String, Where> = modes.chain(variables).chain(tables).collect();
     Record {
         axes: run.control.settings().axes.clone(),
         totals: Totals {
@@ -184,7 +190,7 @@ fn record(simulation: &Simulation, recorder: Recorder) -> Record {
             blocks: run.control.blocks(),
             seconds: run.control.seconds().0,
         },
-        ending: ending(run, &set, &places),
+        ending: ending(run, &by),
         conditions,
         steps,
         holes,
@@ -283,7 +289,8 @@ impl Where {
     }
 }
 
-fn ending(run: &Run, set: &BTreeMap<u32, usize>, places: &[Where]) -> Ending {
+/// `by` has the blocks that what is left behind comes from, by its name.
+fn ending(run: &Run, by: &BTreeMap<String, Where>) -> Ending {
     let (outcome, words, stopped) = match &run.outcome {
         Outcome::End => ("end", "the program ends".to_owned(), None),
         Outcome::Alarm(stopped) => {
@@ -298,17 +305,15 @@ fn ending(run: &Run, set: &BTreeMap<u32, usize>, places: &[Where]) -> Ending {
         words,
         stopped,
         output: run.control.output().iter().map(|line| crate::exec::printable(line)).collect(),
-        left: left(run, set, places),
+        left: left(run, by),
     }
 }
 
 /// What the next program finds, by name.
-fn left(run: &Run, set: &BTreeMap<u32, usize>, places: &[Where]) -> BTreeMap<String, Left> {
-    let by: BTreeMap<String, &Where> =
-        set.iter().map(|(group, place)| (format!("the mode of group {group:02}"), &places[*place])).collect();
+fn left(run: &Run, by: &BTreeMap<String, Where>) -> BTreeMap<String, Left> {
     let all = run.control.left_behind().into_iter();
     let left = |r: Remainder| {
-        let place = by.get(&r.name).map(|place| (*place).clone());
+        let place = by.get(&r.name).cloned();
         (r.name, Left { code: code(r.kind).to_owned(), value: r.value, place })
     };
     all.map(left).collect()

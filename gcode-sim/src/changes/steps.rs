@@ -1,11 +1,18 @@
 //! What a machine was told, step by step, in a form that two runs can be compared by.
 use std::cell::RefCell;
 use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::conditions::Condition;
 use super::record::{MOST_STEPS, is_same_place};
-use crate::exec::{Control, Modal, Watcher};
+use crate::exec::{Control, Modal, Remainder, RemainderKind, Silent, Watcher};
 use crate::motion::{Arc2, Event, EventKind, MAX_AXES, Place, Position, Sink, Spindle, StopKind};
+
+/// Variables that outlive a program.
+const COMMON: RangeInclusive<u32> = 100..=999;
 
 /// One thing the machine was told.
 #[derive(Clone, Debug)]
@@ -42,6 +49,22 @@ pub(super) enum Kind {
     Auxiliary(u32),
     /// With its text, and the variables that the text names with their values.
     Stop(StopKind, String, Vec<(u32, f64)>),
+    /// What a block says that moves nothing here.
+    Silent(Quiet, String),
+}
+
+/// What moves nothing here and means something on a machine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Quiet {
+    /// A block skip in front of a block that is done, or inside.
+    Skip,
+    /// How exactly corners are cut in this block, how far is read ahead.
+    Path,
+    /// Another G code without effect here.
+    GCode,
+    /// An M code without effect here.
+    MCode,
 }
 
 /// What can be paired with what.
@@ -55,6 +78,7 @@ pub(super) enum Category {
     Coolant,
     Auxiliary,
     Stop,
+    Silent(Quiet),
 }
 
 impl Kind {
@@ -68,6 +92,7 @@ impl Kind {
             Self::Coolant(..) => Category::Coolant,
             Self::Auxiliary(_) => Category::Auxiliary,
             Self::Stop(..) => Category::Stop,
+            Self::Silent(what, _) => Category::Silent(*what),
         }
     }
 
@@ -99,6 +124,9 @@ impl Kind {
             Self::Coolant(..) => "coolant command",
             Self::Auxiliary(_) => "M code",
             Self::Stop(..) => "stop",
+            Self::Silent(Quiet::Skip, _) => "block skip",
+            Self::Silent(Quiet::Path | Quiet::GCode, _) => "G code",
+            Self::Silent(Quiet::MCode, _) => "M code",
         }
     }
 }
@@ -150,12 +178,17 @@ impl Step {
 
     /// From where it ends to where `other` ends, all axes as equal numbers.
     pub(super) fn distance(&self, other: &Self) -> f64 {
-        let way = difference(&self.to, &other.to);
-        (0..MAX_AXES).map(|axis| way[axis] * way[axis]).sum::<f64>().sqrt()
+        norm(&difference(&self.to, &other.to))
     }
 
-    fn way(&self) -> Position {
+    /// From where it begins to where it ends.
+    pub(super) fn way(&self) -> Position {
         difference(&self.to, &self.from)
+    }
+
+    /// The length of its way, straight, all axes as equal numbers.
+    pub(super) fn length(&self) -> f64 {
+        norm(&self.way())
     }
 }
 
@@ -174,7 +207,11 @@ pub(super) fn difference(to: &Position, from: &Position) -> Position {
     way
 }
 
-fn near(a: &Position, b: &Position, tolerance: f64) -> bool {
+fn norm(way: &Position) -> f64 {
+    (0..MAX_AXES).map(|axis| way[axis] * way[axis]).sum::<f64>().sqrt()
+}
+
+pub(super) fn near(a: &Position, b: &Position, tolerance: f64) -> bool {
     (0..MAX_AXES).all(|axis| (a[axis] - b[axis]).abs() <= tolerance)
 }
 
@@ -188,12 +225,28 @@ pub(super) struct Recorder {
     pub conditions: Vec<Condition>,
     /// The block that has put a mode in force, by its group.
     pub set: BTreeMap<u32, usize>,
+    /// The block that has written a common variable last.
+    pub assigned: BTreeMap<u32, Place>,
+    /// The block that has changed an offset, a parameter, an output or a counter last, by its name.
+    pub written: BTreeMap<String, Place>,
+    block: Option<Block>,
     at: Position,
     length: Position,
     /// What the conditions were read from.
     seen: Option<Seen>,
     /// Steps whose conditions are known.
     settled: usize,
+}
+
+/// A block that is about to be done.
+#[derive(Debug)]
+struct Block {
+    place: Place,
+    silent: Silent,
+    /// Common variables that it assigns.
+    assigned: Vec<u32>,
+    /// What stands in the tables before it, where it may write there.
+    tables: Vec<Remainder>,
 }
 
 /// What of a control's state conditions depend on.
@@ -212,6 +265,42 @@ impl Recorder {
             self.places.push(place);
         }
         self.places.len() - 1
+    }
+
+    /// A block is about to be done.
+    fn look(&mut self, control: &mut Control) {
+        self.block = control.next_block().map(|block| {
+            let silent = control.next_silent();
+            let tables = if silent.writes { control.left_behind() } else { Vec::new() };
+            let mut assigned = control.will_assign();
+            assigned.retain(|number| COMMON.contains(number));
+            Block { place: Place { block, ..control.place() }, silent, assigned, tables }
+        });
+    }
+
+    /// A block is done: what it said that moves nothing, and what it has written.
+    fn note(&mut self, control: &Control) {
+        let Some(Block { place, silent, assigned, tables }) = self.block.take() else { return };
+        let Silent { skips, path, g_codes, m_codes, writes } = silent;
+        let all =
+            [(Quiet::Skip, skips), (Quiet::Path, path), (Quiet::GCode, g_codes), (Quiet::MCode, m_codes)];
+        for (what, texts) in all {
+            for text in texts {
+                self.push(Kind::Silent(what, text), self.at, place.clone());
+            }
+        }
+        self.assigned.extend(assigned.into_iter().map(|number| (number, place.clone())));
+        if !writes {
+            return;
+        }
+        let value = |all: &[Remainder], name: &str| all.iter().find(|r| r.name == name).map(|r| r.value);
+        let now = control.left_behind();
+        let names = tables.iter().chain(&now).filter(|r| r.kind != RemainderKind::Variable);
+        for name in names.map(|r| &r.name) {
+            if value(&tables, name) != value(&now, name) {
+                self.written.insert(name.clone(), place.clone());
+            }
+        }
     }
 
     /// A block is done: what is in force now was so for its steps.
@@ -236,10 +325,9 @@ impl Recorder {
         self.settled = self.steps.len();
     }
 
-    fn push(&mut self, kind: Kind, from: Position, event: &Event<'_>) {
+    fn push(&mut self, kind: Kind, from: Position, place: Place) {
         self.too_many |= self.steps.len() >= MOST_STEPS;
         if !self.too_many {
-            let place = event.place();
             let place = self.place(place);
             let (from, to) = (difference(&from, &self.length), difference(&self.at, &self.length));
             self.steps.push(Step { kind, from, to, at: self.at, place, under: 0 });
@@ -250,7 +338,7 @@ impl Recorder {
         let from = std::mem::replace(&mut self.at, to);
         // A move to where the axes stand does nothing; a full circle ends where it begins.
         if from != to || matches!(kind, Kind::Arc(..)) {
-            self.push(kind, from, event);
+            self.push(kind, from, event.place());
         }
     }
 }
@@ -260,10 +348,14 @@ impl Recorder {
 pub(super) struct Shared<'a>(pub &'a RefCell<Recorder>);
 
 impl Watcher for Shared<'_> {
-    fn before(&mut self, _: &mut Control) {}
+    fn before(&mut self, control: &mut Control) {
+        self.0.borrow_mut().look(control);
+    }
 
     fn after(&mut self, control: &Control) {
-        self.0.borrow_mut().settle(control);
+        let mut recorder = self.0.borrow_mut();
+        recorder.note(control);
+        recorder.settle(control);
     }
 }
 
@@ -281,22 +373,24 @@ impl Recorder {
             EventKind::Feed { to, rate } => self.go(Kind::Feed(rate.0), *to, event),
             EventKind::Arc { to, arc, rate } => self.go(Kind::Arc(*arc, rate.0), *to, event),
             EventKind::Skip { to, rate, .. } => self.go(Kind::Probe(rate.0), *to, event),
-            EventKind::Dwell { time } => self.push(Kind::Dwell(time.0), here, event),
-            EventKind::Tool { number } => self.push(Kind::Tool(*number), here, event),
+            EventKind::Dwell { time } => self.push(Kind::Dwell(time.0), here, event.place()),
+            EventKind::Tool { number } => self.push(Kind::Tool(*number), here, event.place()),
             EventKind::ToolLength { offset, .. } if *offset == self.length => {}
             EventKind::ToolLength { offset, .. } => {
                 self.length = *offset;
-                self.push(Kind::Length(*offset), here, event);
+                self.push(Kind::Length(*offset), here, event.place());
             }
             EventKind::Spindle { turning, speed } => {
                 // At a standstill the speed is what it will turn at later: that is told then.
                 let speed = if *turning == Spindle::Off { 0.0 } else { speed.0 };
-                self.push(Kind::Spindle(*turning, speed), here, event);
+                self.push(Kind::Spindle(*turning, speed), here, event.place());
             }
-            EventKind::Coolant { on, code } => self.push(Kind::Coolant(*on, Some(*code)), here, event),
-            EventKind::Auxiliary { code } => self.push(Kind::Auxiliary(*code), here, event),
+            EventKind::Coolant { on, code } => {
+                self.push(Kind::Coolant(*on, Some(*code)), here, event.place())
+            }
+            EventKind::Auxiliary { code } => self.push(Kind::Auxiliary(*code), here, event.place()),
             EventKind::Stop { kind, text, named } => {
-                self.push(Kind::Stop(*kind, text.clone(), named.clone()), here, event);
+                self.push(Kind::Stop(*kind, text.clone(), named.clone()), here, event.place());
             }
         }
     }

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::conditions::{Aspect, Condition, Word};
 use super::record::{Ending, Record, Totals, Where};
-use super::steps::{Kind, Step, difference};
+use super::steps::{Kind, Quiet, Step, difference};
 use crate::holes::Found;
 use crate::motion::{Arc2, Axes, Place, Position, Spindle, StopKind};
 use crate::units::Deg;
@@ -87,6 +87,12 @@ enum Line {
         named: Vec<(u32, f64)>,
         place: usize,
     },
+    /// What a block says that moves nothing.
+    Silent {
+        what: Quiet,
+        code: String,
+        place: usize,
+    },
     /// No step: what is in force from here on. Holes don't count it among their steps.
     Under {
         what: Aspect,
@@ -123,6 +129,9 @@ struct Hole {
     diameter: Option<f64>,
     tool: Option<u32>,
     steps: Vec<usize>,
+    /// The hole that this one makes again, counted from 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    again: Option<usize>,
 }
 
 /// Why a file of accepted results can't be used.
@@ -146,13 +155,14 @@ impl Record {
             steps.push(self.line(step, &at));
             at = step.at;
         }
-        let holes = self.holes.iter().zip(&self.feeds).map(|(hole, steps)| Hole {
+        let holes = self.holes.iter().zip(&self.feeds).enumerate().map(|(number, (hole, steps))| Hole {
             entry: hole.entry.coords.into(),
             axis: hole.axis.into_inner().into(),
             depth: hole.depth,
             diameter: hole.diameter,
             tool: hole.tool,
             steps: steps.clone(),
+            again: (hole.first != number).then_some(hole.first),
         });
         let axes: String = self.axes.iter().map(|(_, letter)| letter).collect();
         let mut text = String::from("{\n");
@@ -196,6 +206,10 @@ impl Record {
         for hole in file.holes {
             if hole.steps.iter().any(|step| steps.len() <= *step) {
                 return Err(StoreError("a hole names a step that isn't there".to_owned()));
+            }
+            if hole.again.is_some_and(|first| holes.get(first).is_none_or(|hole: &Found| hole.first != first))
+            {
+                return Err(StoreError("a hole makes one again that doesn't stand before it".to_owned()));
             }
             holes.push(hole.found(holes.len())?);
             feeds.push(hole.steps);
@@ -243,6 +257,7 @@ impl Record {
                 };
                 Line::Stop { kind, text: text.clone(), named: named.clone(), place }
             }
+            Kind::Silent(what, code) => Line::Silent { what: *what, code: code.clone(), place },
         }
     }
 }
@@ -308,6 +323,7 @@ impl Steps<'_> {
                 };
                 (Kind::Stop(kind, text, named), place)
             }
+            Line::Silent { what, code, place } => (Kind::Silent(what, code), place),
             Line::Under { what, code, place } => {
                 let mut next = self.conditions.last().cloned().unwrap_or_default();
                 next.set(what, Word { text: code, place });
@@ -354,7 +370,7 @@ impl Hole {
             at: Position::default(),
             off_tool: Deg::ZERO,
             others: Vec::new(),
-            first: number,
+            first: self.again.unwrap_or(number),
         })
     }
 }

@@ -300,7 +300,7 @@ impl Core {
 }
 
 /// The row of a G code that is computed.
-fn computed_row(raw: Raw, set: CodeSet) -> Result<&'static Row, Alarm> {
+pub(super) fn computed_row(raw: Raw, set: CodeSet) -> Result<&'static Row, Alarm> {
     let value = match raw {
         Raw::Computed(value) => value,
         Raw::Literal(number) => return Err(Alarm::ImproperGCode { code: number.value().to_string() }),

@@ -1,0 +1,164 @@
+//! What a block says that moves nothing in a run and means something on a machine: block skips, codes without effect here.
+use super::words::{computed_row, count};
+use super::{Control, Core};
+use crate::program::codes::{Effect, OneShot, spelled};
+use crate::program::m_codes::{self, MEffect};
+use crate::program::{Input, OpKind, Program, Words};
+
+/// Of a block that is about to be done.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Silent {
+    /// `/`, `/3`: at its beginning or inside.
+    pub skips: Vec<String>,
+    /// How exactly corners are cut, and how far is read ahead: `G09`, `G05.1 Q1`.
+    pub path: Vec<String>,
+    /// Other G codes without effect here: `G25`.
+    pub g_codes: Vec<String>,
+    /// Other M codes without effect here: `M29`.
+    pub m_codes: Vec<String>,
+    /// It may change offsets, parameters, outputs or counters.
+    pub writes: bool,
+}
+
+impl Control {
+    /// What [`Control::next_block`] says so; nothing for a block that is skipped.
+    pub fn next_silent(&self) -> Silent {
+        let mut silent = Silent::default();
+        let Some(frame) = self.core.frames.last() else { return silent };
+        let program = self.memory.get(frame.program);
+        let Some(op) = program.op(frame.next) else { return silent };
+        if op.skip.is_some_and(|switch| self.core.skips(switch)) {
+            return silent;
+        }
+        silent.skips.extend(op.skip.map(skip));
+        // To look is no part of the run: what a function has to tell is told when the block is done.
+        let told = self.core.told.take();
+        let mut kind = &op.kind;
+        if let OpKind::If { condition, then } = kind
+            && self.core.holds(program, *condition).unwrap_or(false)
+        {
+            kind = then;
+        }
+        match kind {
+            OpKind::Words(words) => self.core.silent(program, words, &mut silent),
+            OpKind::Statement(_) => silent.writes = self.will_assign().iter().any(|number| *number >= 1000),
+            OpKind::Empty | OpKind::If { .. } | OpKind::Alarm(_) => {}
+        }
+        self.core.told.set(told);
+        silent
+    }
+}
+
+/// The first switch needs no number.
+fn skip(switch: u8) -> String {
+    if switch <= 1 { "/".to_owned() } else { format!("/{switch}") }
+}
+
+impl Core {
+    fn silent(&self, program: &Program, words: &Words, silent: &mut Silent) {
+        silent.writes |= self.state.parameter_input;
+        let words = match &words.short {
+            Some((switch, short)) if self.skips(*switch) => short,
+            Some((switch, _)) => {
+                silent.skips.push(skip(*switch));
+                words
+            }
+            None => words,
+        };
+        for word in words.list.iter().filter(|word| matches!(word.letter, b'G' | b'M')) {
+            let Ok(Some(raw)) = self.raw(program, word) else { continue };
+            if word.letter == b'M' {
+                let Ok(code) = count(raw, b'M') else { continue };
+                if m_codes::find(code, self.settings.codes) == Some(MEffect::NoEffect) {
+                    silent.m_codes.push(format!("M{code:02}"));
+                }
+                continue;
+            }
+            let Ok(row) = computed_row(raw, self.settings.codes) else { continue };
+            let text = || self.with_values(program, words, row.code);
+            match row.effect {
+                Effect::NoEffect if [50, 51, 90].contains(&row.code) => silent.path.push(text()),
+                Effect::LookAhead | Effect::Smoothness => silent.path.push(text()),
+                Effect::NoEffect => silent.g_codes.push(text()),
+                Effect::OneShot(
+                    OneShot::DataInput | OneShot::SetSystem | OneShot::PresetSystem | OneShot::LocalSystem,
+                ) => silent.writes = true,
+                _ => {}
+            }
+        }
+    }
+
+    /// A code with the words that belong to it; exact stop has none.
+    fn with_values(&self, program: &Program, words: &Words, code: u32) -> String {
+        let name = if code.is_multiple_of(10) { format!("G{:02}", code / 10) } else { two_digits(code) };
+        let of_code = |letter: u8| code != 90 && b"EIPQR".contains(&letter);
+        let values = words.list.iter().filter(|word| of_code(word.letter) && !word.comma);
+        let shown = values.filter_map(|word| {
+            let value = match word.value {
+                Input::Literal(number) => number.value(),
+                Input::Operand(operand) => self.operand(program, operand).ok()?.given()?,
+                Input::G(..) => return None,
+            };
+            Some(format!(" {}{value}", char::from(word.letter)))
+        });
+        name + &shown.collect::<String>()
+    }
+}
+
+/// `G05.1`
+fn two_digits(code: u32) -> String {
+    if code < 100 { format!("G0{}", spelled(code)) } else { format!("G{}", spelled(code)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exec::{Limits, Watcher};
+    use crate::program::{Memory, NoLibrary};
+
+    /// What every block says, from the one behind the O number.
+    #[derive(Default)]
+    struct Said(Vec<Silent>);
+
+    impl Watcher for Said {
+        fn before(&mut self, control: &mut Control) {
+            if control.next_block().is_some() {
+                self.0.push(control.next_silent());
+            }
+        }
+
+        fn after(&mut self, _: &Control) {}
+    }
+
+    fn said(block: &str) -> Silent {
+        let mut memory = Memory::default();
+        memory.load("O1.nc", format!("O1\n{block}\nM30\n").into_bytes());
+        let mut control = Control::new(memory, crate::control::Settings::default());
+        let mut watcher = Said::default();
+        control.run_watched(Limits::default(), &mut NoLibrary, &mut (), &mut watcher);
+        let last = watcher.0.len() - 2;
+        watcher.0[last].clone()
+    }
+
+    #[test]
+    fn what_moves_nothing_is_seen() {
+        assert_eq!(said("/G1 X1. F100").skips, ["/"]);
+        assert_eq!(said("/3 M08").skips, ["/3"]);
+        assert_eq!(said("G1 X1. F100 /2 Y5.").skips, ["/2"]);
+        assert_eq!(said("G9 G1 X1. F100").path, ["G09"]);
+        assert_eq!(said("G5.1 Q1 R5").path, ["G05.1 Q1 R5"]);
+        assert_eq!(said("G8 P1").path, ["G08 P1"]);
+        assert_eq!(said("G25").g_codes, ["G25"]);
+        assert_eq!(said("M29 S500").m_codes, ["M29"]);
+    }
+
+    #[test]
+    fn what_may_change_offsets_says_so() {
+        for block in ["G10 L2 P1 X5.", "G92 X0", "G52 X1.", "#5221=3.", "#2001=1."] {
+            assert!(said(block).writes, "{block}");
+        }
+        for block in ["G1 X1. F100", "#500=3.", "G54", "G90 G0 X5."] {
+            assert_eq!(said(block), Silent::default(), "{block}");
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! One thing changed in a program is one entry of `diff` that names it: tried at every such word of the examples and of
+//! the programs that other tests are about.
+use std::path::{Path, PathBuf};
+
+use gcode_sim::changes::{Change, Record, Revision, changes};
+
+use crate::accepted::{folders, mains, request, workspace};
+
+/// What is changed in a block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Slip {
+    /// M00 before it is lost.
+    Stop,
+    /// Its feed is a quarter more.
+    Feed,
+    /// Its tool has the next number.
+    Tool,
+    /// Its X is 0.01 mm more.
+    Place,
+}
+
+/// Where another number of entries is right: in these programs, and why.
+const MORE: [(&str, Slip, &str); 8] = [
+    ("a_work_offset_by_a_computed_code_is_told", Slip::Place, "there and back: two moves where none was"),
+    (
+        "head-by-axis/O8100.nc",
+        Slip::Tool,
+        "a tool that isn't known has another length: its holes are elsewhere",
+    ),
+    (
+        "a_first_cut_aside_of_the_hole_stays_cut",
+        Slip::Tool,
+        "it makes another of two axes the hole's, by other ways",
+    ),
+    (
+        "a_hole_through_the_part_is_told",
+        Slip::Place,
+        "one hole isn't one any more: the tool goes past the part",
+    ),
+    (
+        "pecks_fed_by_g01_are_one_hole",
+        Slip::Place,
+        "one hole isn't one any more: its approach is off its line",
+    ),
+    ("sim_run_probes_a_part", Slip::Place, "a probe that touches goes no farther; one that doesn't is noted"),
+    ("sim_tells_what_a_control_does_in_silence", Slip::Place, "a block of a cycle with K0 does nothing"),
+    ("sim_tells_what_a_control_does_in_silence", Slip::Feed, "a block of a cycle with K0 does nothing"),
+];
+
+/// As many words of one program are changed; a long one has many alike.
+const MOST: usize = 24;
+
+fn record(main: &Path, text: &str) -> Option<Record> {
+    let mut request = request(main);
+    request.bytes = text.as_bytes().into();
+    Some(Revision::of(&request, &mut folders(main), None).ok()?.record)
+}
+
+/// The programs below the folders of some kinds of cases.
+fn cases() -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    let mut folders: Vec<PathBuf> =
+        ["verify", "cli", "picture"].map(|kind| workspace().join("tests/suite").join(kind)).to_vec();
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "nc") {
+                found.push(path);
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+/// Where the numbers of a block's words with a letter stand, written as numbers.
+fn words(block: &str, letter: char) -> Vec<std::ops::Range<usize>> {
+    let code = block.split('(').next().unwrap();
+    // X of a dwell is a time, and letters of a call mean what the macro makes of them. An offset that moves holes is left
+    // behind as well: two entries.
+    if ["=", "G65", "G04", "G4 ", "G10", "G52", "G92"].iter().any(|other| code.contains(other)) {
+        return Vec::new();
+    }
+    let number = |(at, _): (usize, &str)| {
+        let digits = code[at + 1..].find(|c: char| !(c.is_ascii_digit() || ".-".contains(c)));
+        let end = digits.map_or(code.len(), |digits| at + 1 + digits);
+        (at + 1 < end && !code[end..].starts_with(['[', '#'])).then_some(at + 1..end)
+    };
+    code.match_indices(letter).filter_map(number).collect()
+}
+
+/// A block with one of its numbers changed.
+fn slip(block: &str, slip: Slip) -> Option<String> {
+    let letter = match slip {
+        Slip::Stop => return Some(format!("M00\n{block}")),
+        Slip::Feed => 'F',
+        Slip::Tool if !block.contains("M6") && !block.contains("M06") => return None,
+        Slip::Tool => 'T',
+        Slip::Place => 'X',
+    };
+    let at = words(block, letter).into_iter().next()?;
+    let value: f64 = block[at.clone()].parse().ok()?;
+    let has_point = block[at.clone()].contains('.');
+    let value = match slip {
+        Slip::Feed => format!("{:.4}", value * 1.25),
+        Slip::Place if has_point => format!("{:.4}", value + 0.01),
+        // Thousandths.
+        Slip::Place => format!("{}", value + 10.0),
+        Slip::Stop | Slip::Tool => format!("{}", value + 1.0),
+    };
+    Some(format!("{}{value}{}", &block[..at.start], &block[at.end..]))
+}
+
+/// The entry that a slip has to be, and nothing else.
+fn is_named(slip: Slip, found: &[Change]) -> bool {
+    let [only] = found else { return false };
+    match slip {
+        Slip::Stop => only.code == "stop" && only.message.starts_with("the stop M00 is no longer there"),
+        Slip::Feed => only.code == "feed",
+        // A tool of another diameter or length: the entry names both.
+        Slip::Tool => only.message.contains("made by T") || only.message.starts_with("tool T"),
+        Slip::Place => only.code.starts_with("hole-") || only.code.starts_with("move-"),
+    }
+}
+
+#[test]
+fn one_slip_is_one_entry_that_names_it() {
+    let (mut wrong, mut tried) = (String::new(), [0; 4]);
+    for main in mains().into_iter().chain(cases()) {
+        let Ok(text) = std::fs::read_to_string(&main) else { continue };
+        let name = main.strip_prefix(workspace()).unwrap().display().to_string();
+        let Some(old) = record(&main, &text).filter(|old| old.outcome() == "end") else { continue };
+        let blocks: Vec<&str> = text.lines().collect();
+        let mut slips = Vec::new();
+        for (line, block) in blocks.iter().enumerate() {
+            let is_block = 1 < line && !block.is_empty() && !block.starts_with(['%', 'O', '(', '/']);
+            for kind in [Slip::Stop, Slip::Feed, Slip::Tool, Slip::Place] {
+                let expected = MORE.iter().any(|(part, slip, _)| name.contains(part) && *slip == kind);
+                if is_block && !expected && (kind != Slip::Stop || line % 5 == 3) {
+                    slips.extend(slip(block, kind).map(|new| (kind, line, new)));
+                }
+            }
+        }
+        let step = slips.len().div_ceil(MOST).max(1);
+        for (kind, line, block) in slips.into_iter().step_by(step) {
+            let mut lines = blocks.clone();
+            lines[line] = &block;
+            let Some(new) = record(&main, &(lines.join("\n") + "\n")) else { continue };
+            // A block that isn't reached.
+            if new.outcome() != "end" || new.to_json() == old.to_json() {
+                continue;
+            }
+            let found = match kind {
+                Slip::Stop => changes(&new, &old, 0.0001),
+                Slip::Feed | Slip::Tool | Slip::Place => changes(&old, &new, 0.0001),
+            };
+            tried[kind as usize] += 1;
+            if !is_named(kind, &found) {
+                let told = found.iter().map(|change| format!("    {}: {}\n", change.code, change.message));
+                wrong.push_str(&format!("{name}: {kind:?}: {block}\n{}", told.collect::<String>()));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong}");
+    assert!(tried.iter().all(|times| *times > 20), "too few to tell: {tried:?}");
+}
