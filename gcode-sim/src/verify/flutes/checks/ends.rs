@@ -4,16 +4,21 @@ use nalgebra::Point3;
 use super::super::Inspection;
 use super::on_passes;
 use crate::diag::Diagnostic;
-use crate::flutes::Pass;
+use crate::flutes::{Begun, Pass};
 
 /// How far an end may be off: along the axis at the shank, mm, and by the polar angle at the tip, degrees.
 const AT_SHANK: f64 = 0.05;
 const AT_TIP: f64 = 0.1;
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
-    let finding = on_passes(inspection, "flute-end", |pass| wrong(inspection, pass));
-    let help = "check the length of the cylinder (X) and the last C, 90° less the tip angle";
-    findings.extend(finding.map(|finding| finding.help(help)));
+    let wrong = |pass: &Pass| {
+        let (message, at) = wrong(inspection, pass)?;
+        Some((message, Begun { place: pass.place.clone(), at }))
+    };
+    findings.extend(on_passes(inspection, wrong, |message| {
+        Diagnostic::error("flute-end", message)
+            .help("check the length of the cylinder (X) and the last C, 90° less the tip angle")
+    }));
 }
 
 /// What is wrong with a pass, and the end where it is.

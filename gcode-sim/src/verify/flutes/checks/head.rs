@@ -1,25 +1,24 @@
 //! B stands at the helix angle and doesn't move during a pass.
-use nalgebra::Point3;
-
 use super::super::Inspection;
 use super::helix::follow;
 use super::on_passes;
 use crate::diag::Diagnostic;
-use crate::flutes::Pass;
+use crate::flutes::{Begun, Pass};
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
     // That is told with the helix angle.
     if follow(inspection) {
         return;
     }
-    let wrong = |pass| Some((wrong(inspection, pass)?, start(pass)?));
-    let finding = on_passes(inspection, "flute-head", wrong);
-    findings
-        .extend(finding.map(|f| f.help("set B once before each pass, to the helix angle on the cylinder")));
-}
-
-fn start(pass: &Pass) -> Option<Point3<f64>> {
-    pass.trace.samples.first().map(|sample| sample.at)
+    let wrong = |pass: &Pass| {
+        let message = wrong(inspection, pass)?;
+        let at = pass.trace.samples.first()?.at;
+        Some((message, Begun { place: pass.place.clone(), at }))
+    };
+    findings.extend(on_passes(inspection, wrong, |message| {
+        Diagnostic::error("flute-head", message)
+            .help("set B once before each pass, to the helix angle on the cylinder")
+    }));
 }
 
 fn wrong(inspection: &Inspection<'_>, pass: &Pass) -> Option<String> {

@@ -12,11 +12,9 @@ mod speed;
 mod surface;
 mod turning;
 
-use nalgebra::Point3;
-
 use super::Inspection;
 use crate::diag::{Diagnostic, Site};
-use crate::flutes::Pass;
+use crate::flutes::{Begun, Pass};
 
 type Check = fn(&Inspection<'_>, &mut Vec<Diagnostic>);
 
@@ -36,17 +34,17 @@ pub(super) const ALL: &[Check] = &[
 ];
 
 /// One finding on all passes that are wrong, in the words of the first: a loop makes every flute wrong alike. `wrong` says
-/// what of a pass is, and where on the burr.
-fn on_passes<'g>(
+/// what of a pass is, at which block and where on the burr.
+fn on_passes<'g, T>(
     inspection: &Inspection<'g>,
-    code: &str,
-    wrong: impl Fn(&'g Pass) -> Option<(String, Point3<f64>)>,
+    wrong: impl Fn(&'g Pass) -> Option<(T, Begun)>,
+    told: impl FnOnce(T) -> Diagnostic,
 ) -> Option<Diagnostic> {
     let passes = inspection.ground.passes.iter().enumerate();
-    let mut all = passes.filter_map(|(index, pass)| Some((index, pass, wrong(pass)?)));
-    let (index, pass, (message, at)) = all.next()?;
-    let others: Vec<Site> = all.map(|(index, _, (_, at))| Site { pass: Some(index), at }).collect();
-    let finding = Diagnostic::error(code, message).at(pass.place.clone());
+    let mut all = passes.filter_map(|(index, pass)| Some((index, wrong(pass)?)));
+    let (index, (what, Begun { place, at })) = all.next()?;
+    let others: Vec<Site> = all.map(|(index, (_, begun))| Site { pass: Some(index), at: begun.at }).collect();
+    let finding = told(what).at(place);
     let finding = match others.len() {
         0 => finding,
         more => finding.note(format!("and so with {more} more of the passes")),
