@@ -1,8 +1,8 @@
 //! Tree to operations: codes looked up, loops paired, sequence numbers found, expressions in postfix order.
 //!
 //! A [`Program`] is what will run. Nothing here depends on a control's settings. When a file is loaded only the places of
-//! its blocks, its sequence numbers and its loops are found (`outline`); a block is lowered when the run gets there
-//! (`blocks`), so that a long file takes little more memory than its text.
+//! its blocks and its loops are found (`outline`); a block is lowered when the run gets there (`blocks`), one of numbers
+//! straight from its text (`numbers`), so that a long file takes little more memory than its text.
 mod arguments;
 mod blocks;
 mod code;
