@@ -1,13 +1,17 @@
 //! Draws the view that a `case.toml` describes, or that of the burr in a `job.toml` beside it as a `case.nc` or its own program grinds it, and holds it against
-//! `expected.png`, one step per channel allowed.
+//! `expected.png`, one step per channel allowed. With an `old.nc` it is the holes of `new.nc` over those of `old.nc`.
 //!
 //! `says.snap` beside it has the picture's words. With an `other.toml` the picture is the comparison of both. What
 //! was drawn instead, and where it differs, is left in `target/pictures/`.
+use gcode_sim::machine::Machine;
 use gcode_sim::part::hole::Hole;
 use gcode_sim::picture::{
     Cylinder, Difference, DrawnHole, PathPiece, Question, Sheet, Side, Size, Standing, TopView, compare,
     development, lay_out, paint, png, top_view,
 };
+use gcode_sim::program::NoLibrary;
+use gcode_sim::report::top;
+use gcode_sim::session::{Request, simulate};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ImageFormat, RgbImage};
 use serde::Deserialize;
@@ -43,6 +47,15 @@ struct BurrPicture {
     crop: [u32; 4],
     /// `side`, `tip` or `helix`.
     view: String,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ChangedPicture {
+    size: String,
+    crop: [u32; 4],
+    /// What counts as the same, mm.
+    tolerance: f64,
 }
 
 #[derive(Deserialize)]
@@ -88,6 +101,13 @@ pub(crate) fn run(case: &Case) {
         case.snapshot("says", &words(&sheet));
         return hold(case, &cropped(&png(&paint(&sheet)).unwrap(), picture.crop));
     }
+    if let Some(old) = case.optional("old.nc") {
+        let picture: ChangedPicture = toml::from_str(&case.text("case.toml")).unwrap();
+        let view = changed(&old, &case.text("new.nc"), picture.tolerance);
+        let sheet = lay_out(&top_view(&view), picture.size.parse().unwrap()).unwrap();
+        case.snapshot("says", &words(&sheet));
+        return hold(case, &cropped(&png(&paint(&sheet)).unwrap(), picture.crop));
+    }
     let (picture, sheet) = draw(&case.text("case.toml"));
     let bytes = png(&paint(&sheet)).unwrap();
     let Some(other) = case.optional("other.toml") else {
@@ -98,6 +118,16 @@ pub(crate) fn run(case: &Case) {
     let difference = compare(&bytes, &png(&paint(&other)).unwrap(), 1).unwrap();
     case.snapshot("says", &told(&difference));
     hold(case, &cropped(&difference.png().unwrap(), picture.crop));
+}
+
+/// The holes of a new revision over those of the old one, on the machine that is taken where none is told.
+fn changed(old: &str, new: &str, tolerance: f64) -> TopView {
+    let machine = Machine::default();
+    let made = |text: &str| {
+        let request = Request::new("O0100.nc", text.as_bytes(), machine.clone());
+        simulate(&request, &mut NoLibrary, None).unwrap()
+    };
+    top::of_changes("O0100.nc", &made(old), &made(new), &machine, tolerance).unwrap()
 }
 
 fn draw(text: &str) -> (Picture, Sheet) {

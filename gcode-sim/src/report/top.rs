@@ -1,9 +1,12 @@
 //! What the top view shows: holes found, and where there is a reference, the verdict on each.
 use std::collections::BTreeMap;
 
+use nalgebra::Vector3;
+
 use crate::holes::Found;
 use crate::machine::{HeadKind, Link, LinkMotion, Machine};
 use crate::motion::Axis;
+use crate::part::hole::Hole;
 use crate::part::honeycomb::Pattern;
 use crate::part::reference::Reference;
 use crate::part::surface::Surface;
@@ -14,7 +17,9 @@ use crate::verify::{Neighbours, Tolerances, Verdict};
 /// The holes of a program nobody has judged.
 pub fn of_holes(name: &str, simulation: &Simulation, machine: &Machine) -> TopView {
     let rotary = Rotary::of(machine);
-    let holes = simulation.extracted.holes.iter().zip(simulation.list().holes).enumerate();
+    let found = simulation.list().holes;
+    let side = along(&found).unwrap_or_else(|| side(machine));
+    let holes = simulation.extracted.holes.iter().zip(found).enumerate();
     let drawn = holes.map(|(index, (found, hole))| DrawnHole {
         id: (index + 1).to_string(),
         nominal: None,
@@ -26,7 +31,7 @@ pub fn of_holes(name: &str, simulation: &Simulation, machine: &Machine) -> TopVi
     });
     TopView {
         name: name.to_owned(),
-        side: side(machine),
+        side,
         rotary: rotary.letter(),
         backwards: rotary.backwards(),
         holes: drawn.collect(),
@@ -82,7 +87,9 @@ pub fn of_verdict(
     });
     TopView {
         name: name.to_owned(),
-        side: side(machine),
+        side: along(&reference.holes)
+            .filter(|_| reference.surface.is_none())
+            .unwrap_or_else(|| side(machine)),
         outline: reference.surface.and_then(outline),
         cylinder: cylinder(reference),
         lines: reference
@@ -137,6 +144,13 @@ fn outline(surface: Surface) -> Option<f64> {
         Surface::Ellipsoid { a, .. } => Some(a),
         Surface::Cylinder { .. } => None,
     }
+}
+
+/// From where most of the holes are looked into: seen from beside them a plate would be a line.
+fn along(holes: &[Hole]) -> Option<Side> {
+    let is_along = |hole: &Hole, side: Side| 0.99 < Vector3::from(hole.axis).dot(&side.towards()).abs();
+    let are_most = |side: &Side| holes.len() < 2 * holes.iter().filter(|hole| is_along(hole, *side)).count();
+    [Side::Y, Side::Z, Side::X].into_iter().find(are_most)
 }
 
 /// A spindle that stands along z looks at the part from there.
@@ -200,4 +214,35 @@ impl Rotary {
 /// About x, the one direction a cylinder lies along.
 fn turns_backwards(link: &Link) -> bool {
     matches!(link.motion, LinkMotion::Turn { about, .. } if link.sign * about.x < 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn holes(axes: &[[f64; 3]]) -> Vec<Hole> {
+        let hole = |axis: &[f64; 3]| Hole {
+            id: None,
+            entry: [0.0; 3],
+            axis: *axis,
+            depth: 10.0,
+            diameter: None,
+            from: None,
+        };
+        axes.iter().map(hole).collect()
+    }
+
+    #[test]
+    fn a_part_is_seen_along_most_of_its_holes() {
+        let (x, y, z) = ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]);
+        assert_eq!(along(&holes(&[z, z])), Some(Side::Z));
+        assert_eq!(along(&holes(&[[0.0, 0.0, -1.0]])), Some(Side::Z), "drilled from below");
+        assert_eq!(along(&holes(&[x, x, y])), Some(Side::X));
+        assert_eq!(along(&holes(&[y])), Some(Side::Y));
+        // A tenth of a radian off z still counts as z, a fifth doesn't: cos 0.1 = 0.995, cos 0.2 = 0.980.
+        assert_eq!(along(&holes(&[[0.0, 0.0998, 0.9950]])), Some(Side::Z));
+        assert_eq!(along(&holes(&[[0.0, 0.1987, 0.9801]])), None);
+        assert_eq!(along(&holes(&[y, z])), None, "no more along one than along the other");
+        assert_eq!(along(&[]), None);
+    }
 }
