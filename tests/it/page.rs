@@ -99,14 +99,14 @@ fn a_person_sorts_the_holes_and_goes_to_a_block() {
     assert_eq!(column(&browser, 1), ["1", "2", "3", "4", "5"]);
 
     // By the new φ, downwards: the hole that the wrong digit moved by 0.95 mm is the worst.
-    browser.click(".holes th:nth-child(3) button");
+    browser.click(".holes th:nth-child(4) button");
     assert_eq!(column(&browser, 1).last().unwrap(), "5");
-    browser.click(".holes th:nth-child(3) button");
+    browser.click(".holes th:nth-child(4) button");
     assert_eq!(column(&browser, 1)[0], "5");
     let sorted = browser.run(
         "return [...document.querySelectorAll('.holes th[aria-sort]')].map((head) => head.getAttribute('aria-sort'))",
     );
-    assert_eq!(sorted[2], "descending");
+    assert_eq!(sorted[3], "descending");
     assert_eq!(sorted.as_array().unwrap().iter().filter(|sort| *sort != "none").count(), 1);
 
     // A click anywhere in its row leads to the block that made it, and marks the call with the wrong digit.
@@ -135,7 +135,7 @@ fn all_can_be_done_with_keys() {
     browser.open(&page);
 
     // A column head sorts, the arrows go from row to row, Enter goes to the block.
-    browser.run("document.querySelector('.holes th:nth-child(8) button').focus()");
+    browser.run("document.querySelector('.holes th:nth-child(9) button').focus()");
     browser.press(&key::ENTER.repeat(2));
     assert_eq!(column(&browser, 1)[0], "5", "moved the farthest");
     browser.run("document.querySelector('.holes tbody a').focus()");

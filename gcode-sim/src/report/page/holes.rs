@@ -66,7 +66,7 @@ impl HoleTable {
                 div.scroll {
                     table.holes {
                         thead { tr {
-                            @for (place, name) in ["Hole".to_owned()].iter().chain(&self.columns).chain([&"State".to_owned()]).enumerate() {
+                            @for (place, name) in ["Hole", "State"].into_iter().chain(self.columns.iter().map(String::as_str)).enumerate() {
                                 th scope="col" aria-sort="none" data-column=(place) { button type="button" { (name) } }
                             }
                         } }
@@ -96,6 +96,7 @@ impl Row {
                 th scope="row" data-value=(self.id) {
                     @match to { Some(to) => a.go href={ "#" (to) } { (self.id) }, None => (self.id) }
                 }
+                td.state { (self.words) }
                 @for cell in &self.cells {
                     td.number[cell.value.is_some()] data-value=[cell.value] {
                         (cell.text)
@@ -105,7 +106,6 @@ impl Row {
                         }
                     }
                 }
-                td.state { (self.words) }
             }
         }
     }
