@@ -82,6 +82,8 @@ impl Rows {
         let several = rows.iter().zip(&mut along).find(|(_, xs)| xs.len() > 2);
         let spacing = several.and_then(|(row, xs)| {
             xs.sort_by(f64::total_cmp);
+            // A hole drilled twice is no neighbour of itself.
+            xs.dedup_by(|x, last| *x - *last <= pattern.pitch / 100.0);
             Some((self::usual(xs.windows(2).map(|pair| pair[1] - pair[0]))?, *row))
         });
         Some(Self { rows, gaps, usual, spacing })

@@ -26,12 +26,16 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
         return;
     }
     let (half, count, first) = (pattern.pitch / 2.0, rows.rows.len(), rows.rows[0]);
+    let alike = rows.rows.iter().all(|row| (row.start - first.start).abs() < SAME);
+    let begin = match alike {
+        true => format!("begin at x {:.3}", first.start),
+        false => format!("begin whole pitches from x {:.3}", first.start),
+    };
     let (message, help) = match rows.one_group(pattern) {
         true => (
             format!(
-                "one of two groups of rows is missing, half of the pattern: all {count} rows begin at x {:.3}, none is \
+                "one of two groups of rows is missing, half of the pattern: all {count} rows {begin}, none is \
                  staggered; {second} of {} wanted holes belong to the other group",
-                first.start,
                 comparison.wanted.len()
             ),
             format!(
@@ -40,7 +44,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
             ),
         ),
         false => (
-            format!("no row is staggered: all {count} rows begin at x {:.3}", first.start),
+            format!("no row is staggered: all {count} rows {begin}"),
             format!("every second row begins half a pitch later in x: {half:.3} mm"),
         ),
     };
