@@ -184,7 +184,14 @@ impl FileCylinder {
         let bore = match &self.bore {
             Some(bore) => {
                 let allowed = format!("0 to the diameter of {diameter} mm");
-                reader.number("cylinder.bore", bore, &allowed, within(0.0, diameter))?
+                let wide = reader.number("cylinder.bore", bore, &allowed, within(0.0, diameter))?;
+                if wide >= outer {
+                    let message = format!(
+                        "key 'cylinder.bore' is {wide}: below the outer diameter of {outer} mm, for the tube needs a wall"
+                    );
+                    return Err(reader.error(bore, message));
+                }
+                wide
             }
             None => 0.0,
         };

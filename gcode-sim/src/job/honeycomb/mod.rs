@@ -205,6 +205,11 @@ depth = 12.0
                 "line 12: key 'cylinder.bore' is 501: 0 to the diameter of 500 mm",
             ),
             (
+                "length = 300.0",
+                "length = 300.0\nbore = 500",
+                "line 12: key 'cylinder.bore' is 500: below the outer diameter of 500 mm, for the tube needs a wall",
+            ),
+            (
                 "sign = 1 }",
                 "sign = 1 }\nclamp = { on = 10, off = 10 }",
                 "line 7: key 'machine.clamp.off' is 10, which is 'on' too",
