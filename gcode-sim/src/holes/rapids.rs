@@ -11,6 +11,9 @@ use crate::part::surface::Surface;
 /// Motion less than this below the surface, in mm, isn't told.
 pub(super) const TOUCH: f64 = 0.01;
 
+/// A straight way within some 6° of the tool's axis plunges.
+const PLUNGES: f64 = 0.995;
+
 /// What a curved motion is.
 #[derive(Clone, Copy)]
 pub(super) enum Curved {
@@ -68,6 +71,7 @@ impl Extractor<'_> {
         let deepest = surface.deepest_between(from, to);
         let depth = surface.depth(&deepest);
         if !self.outside {
+            self.check_first_rapid(event, &surface, from, to);
             return;
         }
         if depth <= TOUCH {
@@ -81,6 +85,34 @@ impl Extractor<'_> {
                 .help("go round at a safe height; only a feed may enter the part")
             });
         }
+    }
+
+    /// Where a rapid begins before the tool has been outside the part, nobody knows; where it ends is known as far as the
+    /// axes that haven't moved stand at machine zero. The height over the part is one that has moved.
+    fn check_first_rapid(
+        &mut self,
+        event: &Event<'_>,
+        surface: &Surface,
+        from: &Point3<f64>,
+        to: &Point3<f64>,
+    ) {
+        let (depth, way) = (surface.depth(to), to - from);
+        let inwards = self.pose.axis.is_some_and(|axis| way.dot(&axis) <= -PLUNGES * way.norm());
+        if depth <= TOUCH || !inwards {
+            return;
+        }
+        // Without work offsets machine zero is only taken for the work zero: nothing stands there.
+        let known = !self.machine.offsets.is_empty();
+        self.findings.add("rapid-into-part", &event.place(), 0, || {
+            let message = format!("the rapid ends {depth:.3} mm below the surface, at {}", shown(to));
+            let finding = match known {
+                true => Diagnostic::error("rapid-into-part", message),
+                false => Diagnostic::warning("rapid-into-part", message),
+            };
+            finding
+                .note("where it begins isn't known; axes that haven't moved yet are taken to stand at machine zero")
+                .help("end it at a safe height: is the sign of Z right, and the length offset?")
+        });
     }
 
     /// A motion that is curved on the part: a rapid must stay outside, a feed is no hole.
