@@ -202,7 +202,7 @@ fn a_correction_larger_than_the_circle_allows_is_an_alarm_before_the_stop() {
 /// asin(124.23/200) = 38.400 16. A run-out then finds 0.02 more: 38.380 16, and not 38.48.
 #[test]
 fn the_sine_table_is_corrected_from_where_it_stands() {
-    let first = ran(8230, None, &Placement::default(), &[(583, 0.1)]);
+    let first = ran(8230, None, &Placement::default(), &[(583, 0.1), (585, 0.001)]);
     assert_eq!((alarm(&first), value(&first, 587)), (None, 124.23));
     assert!((value(&first, 596) - 38.400_162).abs() < 2e-6, "{}", value(&first, 596));
     let used = ran(8230, None, &Placement::default(), &kept(&first));

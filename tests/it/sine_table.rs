@@ -17,12 +17,18 @@ fn package() -> Package {
 
 /// O8230 with a word changed, after a run-out that found this tilt.
 fn ran(change: (&str, &str), tilt: Option<f64>) -> Run {
+    after(change, tilt, Some(0.001))
+}
+
+/// The same, with what the run-out left in #585.
+fn after(change: (&str, &str), tilt: Option<f64>, left: Option<f64>) -> Run {
     let package = package();
     let text = &package.program(8230).unwrap().text;
     assert!(text.contains(change.0), "{} isn't in\n{text}", change.0);
     let text = text.replace(change.0, change.1);
     let mut request = Request::new("O8230.nc", text.into_bytes(), Machine::parse(&package.machine).unwrap());
     request.variables.extend(tilt.map(|tilt| (583, tilt)));
+    request.variables.extend(left.map(|left| (585, left)));
     run(&request, &mut Programs(&package), &mut ()).unwrap()
 }
 
@@ -84,13 +90,31 @@ fn what_no_table_can_be_set_to_is_refused() {
         ("U1.", "", Some(0.1), 3164),
         ("U1.", "U2.", Some(0.1), 3164),
         ("U1.", "U1.", None, 3165),
-        ("U1.", "U1.", Some(-6.6), 3166),
-        ("U1.", "U1.", Some(38.6), 3166),
+        ("THEN #596=38.5", "THEN #596=44.9", Some(-0.2), 3166),
+        ("THEN #596=38.5", "THEN #596=0.1", Some(0.2), 3166),
+        ("U1.", "U1.", Some(1.001), 3168),
+        ("U1.", "U1.", Some(-1.001), 3168),
+        ("U1.", "U1.", Some(-38.0), 3168),
     ];
     for (from, to, tilt, number) in cases {
         let ran = ran((from, to), tilt);
         let Outcome::Alarm(stopped) = &ran.outcome else { panic!("{to} in place of {from} runs") };
         assert_eq!(stopped.alarm.row().code, Code::Mc(number), "{to} in place of {from}, {tilt:?}");
         assert!(ran.control.variable(586).unwrap().is_vacant());
+    }
+}
+
+/// A run-out that came to no end leaves #585 vacant, whatever stands in #583; 1° is the most that is believed, and 38.5 − 1 is 37.5.
+#[test]
+fn a_tilt_of_no_finished_run_out_is_refused_before_a_stack_is_told() {
+    let ran = after(("U1.", "U1."), Some(0.1), None);
+    let Outcome::Alarm(stopped) = &ran.outcome else { panic!("it runs") };
+    assert_eq!(stopped.alarm.row().code, Code::Mc(3167));
+    assert!(ran.control.stops().is_empty());
+    assert!((586..590).all(|number| ran.control.variable(number).unwrap().is_vacant()));
+    for (tilt, angle) in [(1.0, 37.5), (-1.0, 39.5)] {
+        let ran = after(("U1.", "U1."), Some(tilt), Some(0.0));
+        assert!(matches!(ran.outcome, Outcome::End), "{:?}", ran.outcome);
+        assert!((ran.control.variable(586).unwrap().number() - angle).abs() < 1e-9);
     }
 }

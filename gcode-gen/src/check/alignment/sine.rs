@@ -23,7 +23,7 @@ pub(super) fn tried(bench: &Bench<'_>) -> Result<Tried, CheckError> {
         }
         let run = bench.run(
             Placement::default(),
-            std::iter::once((583, tilt)).chain(set.map(|set| (596, set))).collect(),
+            [(583, tilt), (585, 0.0)].into_iter().chain(set.map(|set| (596, set))).collect(),
         )?;
         tried.refusals.extend(bench.stopped(&run));
         tried.seconds = run.control.seconds().0;

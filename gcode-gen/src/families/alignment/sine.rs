@@ -46,7 +46,7 @@ fn write(job: &Alignment, text: &mut Text) {
         "CYCLE START AT THE SECOND SAYS THAT THE TABLE IS SET, #596 IS CHANGED".to_owned(),
         "AND #583 IS USED UP. THEN O8210 AGAIN".to_owned(),
         format!("CONTROL {}", control::remark(job.control)),
-        format!("CALLS O{TABLE}, ALARMS {k}161-{k}166. NOTHING MOVES"),
+        format!("CALLS O{TABLE}, ALARMS {k}161-{k}168. NOTHING MOVES"),
     ] {
         text.remark(line);
     }
