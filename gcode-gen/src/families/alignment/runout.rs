@@ -48,6 +48,10 @@ fn write(job: &Alignment, text: &mut Text) {
     }
     text.block(Block::of("G21"));
     text.block(Block::of("G00 G17 G40 G49 G54 G80 G90 G94"));
+    // What stands there is of the part before.
+    for number in 590..596 {
+        text.block(Block::of(format!("#{number}=#0")));
+    }
     text.block(pass(job).comment("FIRST PASS"));
     for of_pass in 0..6 {
         text.block(Block::of(format!("#{}=#{}", 590 + of_pass, 580 + of_pass)));
