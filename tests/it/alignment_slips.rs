@@ -163,6 +163,17 @@ fn what_was_entered_by_hand_is_neither_lost_nor_touched_over() {
     }
 }
 
+/// Any other number is a slip of the hand: nothing moves, and nothing that was typed in is cleared.
+#[test]
+fn a_flag_that_is_neither_vacant_nor_0_nor_1_is_an_alarm() {
+    for flag in [7.0, 0.001, -1.0, 2.0, 0.5, 1.5] {
+        let set = [marks(), vec![(578, flag)]].concat();
+        let run = ran(8200, None, &Placement::default(), &set);
+        assert_eq!((alarm(&run), run.control.moves()), (Some(3136), 0), "{flag}");
+        assert!(set.iter().all(|(number, entered)| value(&run, *number) == *entered), "{flag}");
+    }
+}
+
 #[test]
 fn a_touch_that_fails_leaves_no_points() {
     let run = ran(8200, None, &standing([0.0, -12.0, 0.0], [0.0; 3]), &[]);
