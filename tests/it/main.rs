@@ -4,6 +4,7 @@
 mod accepted;
 mod alignment;
 mod alignment_slips;
+mod alignment_touched;
 mod arithmetic;
 mod blocks;
 mod budget;

@@ -42,6 +42,7 @@ fn write(job: &Alignment, text: &mut Text) {
         "#570 #571 THE CHOSEN NUMBERS, #572 THEIR CHORD LESS THAT OF THE MODEL".to_owned(),
         "#573-#576 WHAT IS ADDED TO THE WORK OFFSET IN X Y Z AND THE ROTARY".to_owned(),
         "#577 TILT OF THE CHORD ABOUT Z, NOT CORRECTED".to_owned(),
+        "TOUCHED POINTS TELL Y ALONE, THEN #573 #575 #576 ARE 0".to_owned(),
         format!("CALLS O{TOUCH}. WHERE #501-#560 AND #578 ARE VACANT IT TOUCHES THEM WITH"),
         "THE PROBE. CANDIDATES OF MARKS ARE ENTERED BY HAND, ALL OF THEM, WITH".to_owned(),
         "#578 VACANT, THEN NOTHING MOVES. #578 1. IS A TOUCH BROKEN OFF, AN".to_owned(),
@@ -49,7 +50,7 @@ fn write(job: &Alignment, text: &mut Text) {
         "POINTS ARE USED ONCE, #501-#560 AND #578 ARE VACANT AT THE STOP".to_owned(),
         format!("CALLS O{MATCH}, THE PAIR AND THE WORK OFFSET"),
         "AT THE STOP CYCLE START ADDS #573-#576, RESET KEEPS THEM OUT".to_owned(),
-        format!("ALARMS {k}061-{k}071 BY O{MATCH}, {k}121-{k}135 BY O{TOUCH}"),
+        format!("ALARMS {k}061-{k}072 BY O{MATCH}, {k}121-{k}136 BY O{TOUCH}"),
         "START WITH THE BALL CLEAR OF THE PART, ABOVE IT OR AT +X".to_owned(),
         format!("AFTERWARDS {rotary}0. TURNS THE CHORD INTO THE PLANE Z 0"),
     ] {
