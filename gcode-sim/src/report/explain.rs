@@ -146,6 +146,7 @@ pub const PAGES: &[Page] = pages![
     "flute-missing"
     "flute-speed"
     "flute-surface"
+    "flute-twice"
     "flutes-meet"
     "g53-ignored"
     "head-message-unclear"

@@ -48,7 +48,7 @@ impl Inspection<'_> {
 
     /// A pass counted from 0, in words: by the flute it grinds where each flute has one pass.
     fn name(&self, pass: usize) -> String {
-        let what = if self.round.again == 0 { "flute" } else { "pass" };
+        let what = if self.round.again.is_empty() { "flute" } else { "pass" };
         format!("{what} {}", pass + 1)
     }
 }

@@ -12,12 +12,19 @@ pub struct Round {
     /// The distinct flutes in the order of their angle: the first pass of each, counted from 0, and its angle halfway
     /// along, 0° to 360°.
     pub flutes: Vec<(usize, Deg)>,
-    /// Passes that go over a flute that is there already.
-    pub again: usize,
+    /// Passes that go over a flute that is there already, in the order in which they are ground.
+    pub again: Vec<Again>,
     /// The gap that is most off, of the wanted number of flutes, anywhere along them.
     pub worst_gap: Option<Gap>,
     /// The least distance between the paths of neighbours, in a straight line, mm.
     pub nearest: Option<Near>,
+}
+
+/// A pass over a flute that an earlier one has ground; both counted from 0.
+#[derive(Clone, Copy, Debug)]
+pub struct Again {
+    pub pass: usize,
+    pub first: usize,
 }
 
 /// Where neighbours come nearest to each other.
@@ -91,18 +98,21 @@ impl Round {
             passes.iter().enumerate().filter_map(|(index, pass)| Some((index, angle(pass)?))).collect();
         all.sort_by(|one, other| one.1.0.total_cmp(&other.1.0));
         let mut round = Self::default();
+        let mut over: Vec<(usize, usize)> = Vec::new();
         for (pass, angle) in all {
             let same = |other: &(usize, Deg)| {
                 let gap = (angle.0 - other.1.0).rem_euclid(360.0);
                 gap.min(360.0 - gap) <= SAME * wanted.index_tolerance.0
             };
-            let last = round.flutes.last().is_some_and(same);
-            if last || round.flutes.first().is_some_and(same) {
-                round.again += 1;
+            if round.flutes.last().is_some_and(same) {
+                over.push((pass, round.flutes.len() - 1));
+            } else if round.flutes.first().is_some_and(same) {
+                over.push((pass, 0));
             } else {
                 round.flutes.push((pass, angle));
             }
         }
+        round.again = again(&round.flutes, &over);
         round.worst_gap = round.gaps(wanted, passes);
         round.nearest = round.nearest(passes);
         round
@@ -204,6 +214,19 @@ impl Round {
             })
             .reduce(|best, near| if near.apart < best.apart { near } else { best })
     }
+}
+
+/// Of each flute all passes but the one that grinds it first. `over`: passes, and over which of the flutes they go.
+fn again(flutes: &[(usize, Deg)], over: &[(usize, usize)]) -> Vec<Again> {
+    let mut all = Vec::new();
+    for (flute, (known, _)) in flutes.iter().enumerate() {
+        let others = over.iter().filter(|(_, of)| *of == flute).map(|(pass, _)| *pass);
+        let mut passes: Vec<usize> = others.chain([*known]).collect();
+        passes.sort_unstable();
+        all.extend(passes[1..].iter().map(|pass| Again { pass: *pass, first: passes[0] }));
+    }
+    all.sort_unstable_by_key(|again| again.pass);
+    all
 }
 
 /// Halfway along the flutes, by x.

@@ -121,6 +121,7 @@ pub fn in_words(code: &str) -> Option<&'static str> {
     Some(match code {
         "flute-missing" => "a flute is missing",
         "flute-extra" => "a flute too many",
+        "flute-twice" => "a flute is ground twice",
         "flute-surface" => "contact off the tooth bottom",
         "flute-helix" => "helix angle out",
         "flute-index" => "spacing uneven",

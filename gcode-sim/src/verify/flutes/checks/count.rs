@@ -1,6 +1,7 @@
 //! As many flutes as are wanted, no more and no fewer.
 use super::super::Inspection;
 use super::super::round::SAME;
+use super::twice;
 use crate::diag::{Diagnostic, Site};
 use crate::flutes::Kind;
 
@@ -69,6 +70,10 @@ fn missing(inspection: &Inspection<'_>, found: usize, wanted: usize) -> Diagnost
     }
     let pitch = 360.0 / wanted as f64;
     let mut finding = missing(format!("{found} flutes where {wanted} are wanted"));
+    let again = &inspection.round.again;
+    if let Some(first) = again.first() {
+        finding = finding.note(twice::sentence(*first));
+    }
     if let Some(note) = apart(inspection) {
         finding = finding.note(note);
     } else if let Some(gap) = inspection.round.worst_gap.filter(|gap| 1.5 * pitch < gap.found.0) {
@@ -80,7 +85,13 @@ fn missing(inspection: &Inspection<'_>, found: usize, wanted: usize) -> Diagnost
             ))
             .at(inspection.ground.passes[pass].place.clone());
     }
-    finding.help("the loop over the flutes ends too early, or an index move is missing").on(sites)
+    match again.first() {
+        Some(first) => finding
+            .at(inspection.ground.passes[first.pass].place.clone())
+            .help("is the index of that pass the one it should have?")
+            .on(sites),
+        None => finding.help("the loop over the flutes ends too early, or an index move is missing").on(sites),
+    }
 }
 
 /// In words how far the flutes are apart, where they are ground in even steps and those aren't the wanted ones.

@@ -11,6 +11,7 @@ mod spacing;
 mod speed;
 mod surface;
 mod turning;
+mod twice;
 
 use super::Inspection;
 use crate::diag::{Diagnostic, Site};
@@ -22,6 +23,7 @@ pub(super) const ALL: &[Check] = &[
     offset::check,
     signs::check,
     count::check,
+    twice::check,
     surface::check,
     helix::check,
     index::check,
