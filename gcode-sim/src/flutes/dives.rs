@@ -37,6 +37,24 @@ pub struct Dive {
     pub moves: usize,
 }
 
+/// A feed straight into the blank, behind which a pass begins.
+#[derive(Clone, Debug)]
+pub struct Plunge {
+    pub place: Place,
+    /// Of the contact, mm/min.
+    pub speed: f64,
+    /// Where it ends, on the burr.
+    pub at: Point3<f64>,
+}
+
+/// How a motion that is no pass is made.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum By {
+    /// Where it turns the burr: behind so many passes.
+    Rapid { turns: Option<usize> },
+    Feed { seconds: f64 },
+}
+
 /// Motion is straight in or out if it goes no more than this part of its way sideways: 3°.
 const STRAIGHT: f64 = 0.05;
 
@@ -54,7 +72,7 @@ enum Stand {
     #[default]
     Off,
     /// Fed straight in here, so far below the blank's surface, and no pass has begun yet.
-    Plunged(Place, Depth),
+    Plunged(Depth, Plunge),
     /// In the cut of a pass that began here, or of a dive that is told already.
     Ground,
 }
@@ -71,12 +89,15 @@ pub(super) struct Dives {
     /// The pass in rapid motion that goes on, in `found`, and how many there were.
     rapid: Option<usize>,
     rapids: usize,
+    pub(super) plunges: Vec<Plunge>,
 }
 
 impl Dives {
     /// A pass goes on, or begins where the wheel stands.
     pub(super) fn ground(&mut self) {
-        self.stand = Stand::Ground;
+        if let Stand::Plunged(_, plunge) = std::mem::replace(&mut self.stand, Stand::Ground) {
+            self.plunges.push(plunge);
+        }
     }
 
     pub(super) fn finish(mut self) -> Vec<Dive> {
@@ -86,8 +107,8 @@ impl Dives {
 
     /// The wheel stood in the blank and no pass began.
     fn pit(&mut self) {
-        if let Stand::Plunged(place, depth) = std::mem::take(&mut self.stand) {
-            self.add(place, Kind::Pit, depth);
+        if let Stand::Plunged(depth, plunge) = std::mem::take(&mut self.stand) {
+            self.add(plunge.place, Kind::Pit, depth);
         }
     }
 
@@ -124,13 +145,12 @@ impl Dives {
         self.rapid = Some(self.add(place, Kind::RapidPass(passes + self.rapids), depth));
     }
 
-    /// Looks at a motion that is no pass; `turns`: a rapid turns the burr behind so many passes.
+    /// Looks at a motion that is no pass.
     pub(super) fn look(
         &mut self,
         flutes: &Flutes,
         place: Place,
-        rapid: bool,
-        turns: Option<usize>,
+        by: By,
         path: &[Point3<f64>],
     ) {
         let way = Way::of(flutes, path);
@@ -140,11 +160,13 @@ impl Dives {
             self.stand = Stand::Off;
         }
         let depth = Depth { depth: (flutes.tooth_depth - way.nearest).max(0.0), at: way.deepest };
-        if let (true, Some(passes), true) = (rapid && known, turns, way.slants && way.starts && way.ends) {
+        if let (true, By::Rapid { turns: Some(passes) }, true) =
+            (known, by, way.slants && way.starts && way.ends)
+        {
             return self.rapid_pass(place, depth, passes);
         }
         self.rapid = None;
-        if rapid {
+        let By::Feed { seconds } = by else {
             self.pit();
             self.stand = if way.ends { Stand::Ground } else { Stand::Off };
             // A rapid that goes straight out of the cut begins on the tooth bottom.
@@ -155,7 +177,7 @@ impl Dives {
                 self.add(place, Kind::Rapid, depth);
             }
             return;
-        }
+        };
         if way.nearest < -flutes.surface_tolerance - ARITHMETIC {
             self.add(place.clone(), Kind::Below, Depth { depth: -way.nearest, at: way.deepest });
         }
@@ -167,8 +189,16 @@ impl Dives {
         } else if way.starts && matches!(self.stand, Stand::Off) {
             // Where the program begins in the cut, nobody knows how it came there.
             self.stand = Stand::Ground;
-        } else if matches!(self.stand, Stand::Off) {
-            self.stand = Stand::Plunged(place, depth);
+        } else if way.last < way.first && !matches!(self.stand, Stand::Ground) {
+            let length: f64 = path.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
+            let at = path.last().copied().unwrap_or(way.deepest);
+            let here = Plunge { place, speed: 60.0 * length / seconds, at };
+            // Of more feeds than one the fastest.
+            let plunge = match std::mem::take(&mut self.stand) {
+                Stand::Plunged(_, before) if here.speed <= before.speed => before,
+                Stand::Off | Stand::Plunged(..) | Stand::Ground => here,
+            };
+            self.stand = Stand::Plunged(depth, plunge);
         }
     }
 }

@@ -7,8 +7,8 @@ mod turning;
 
 use nalgebra::Point3;
 
-use dives::Dives;
-pub use dives::{Dive, Kind};
+use dives::{By, Dives};
+pub use dives::{Dive, Kind, Plunge};
 pub(crate) use trace::shorter;
 pub use trace::{Sample, Trace, Window};
 use turning::Turning;
@@ -19,7 +19,7 @@ use crate::machine::path::Travel;
 use crate::machine::{LinkMotion, Machine, Wheel};
 use crate::motion::{Arc2, Axis, Event, EventKind, Place, Position, Sink};
 use crate::part::flutes::Flutes;
-use crate::units::Deg;
+use crate::units::{Deg, Rpm};
 
 /// More moves than this aren't kept: no burr has so many, but a loop that never ends makes them.
 const MOVES: usize = 500_000;
@@ -60,6 +60,8 @@ pub struct Pass {
     /// The first of its moves during which the wheel stood, and the first with M04 in force.
     pub idle: Option<Idle>,
     pub reversed: Option<Begun>,
+    /// The speeds of the turning wheel, each from the move on that is the first with it.
+    pub speeds: Vec<(Rpm, Begun)>,
 }
 
 /// What a program does to a burr.
@@ -68,6 +70,8 @@ pub struct Ground {
     pub passes: Vec<Pass>,
     /// The deepest of each block.
     pub dives: Vec<Dive>,
+    /// The feeds into the blank behind which a pass begins.
+    pub plunges: Vec<Plunge>,
     /// Rapids before the wheel first stood off the blank: where they began nobody knows, and nothing is said of them.
     pub unseen: usize,
     /// From the C axis to the end of the burr's cylinder, x and y, as the machine file has it; `None` without a C that turns
@@ -130,6 +134,7 @@ impl<'m> Follower<'m> {
     pub fn finish(mut self) -> Ground {
         self.close();
         self.ground.unseen = self.dives.unseen;
+        self.ground.plunges = std::mem::take(&mut self.dives.plunges);
         self.ground.dives = self.dives.finish();
         self.ground
     }
@@ -173,7 +178,11 @@ impl<'m> Follower<'m> {
         if !grinds {
             self.close();
             let turns = (from[self.burr] != to[self.burr]).then_some(self.ground.passes.len());
-            self.dives.look(&self.flutes, event.place(), rapid, turns, &path);
+            let by = match rapid {
+                true => By::Rapid { turns },
+                false => By::Feed { seconds: event.seconds.0 },
+            };
+            self.dives.look(&self.flutes, event.place(), by, &path);
             return;
         }
         self.kept = KEPT.min(self.kept + path.len());
@@ -186,6 +195,7 @@ impl<'m> Follower<'m> {
             head: None,
             idle: None,
             reversed: None,
+            speeds: Vec::new(),
         });
         pass.moves += 1;
         pass.trace.follow(&self.flutes, &path, event.seconds.0, event.place());

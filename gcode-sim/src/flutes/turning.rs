@@ -24,6 +24,7 @@ pub struct Idle {
 #[derive(Debug, Default)]
 pub(super) struct Turning {
     wheel: Spindle,
+    speed: Rpm,
     builder: Option<u32>,
 }
 
@@ -33,6 +34,7 @@ impl Turning {
             // At S0 it stands.
             EventKind::Spindle { speed, turning } => {
                 self.wheel = if *speed == Rpm(0.0) { Spindle::Off } else { *turning };
+                self.speed = *speed;
                 self.builder = None;
             }
             EventKind::Auxiliary { code } => self.builder = Some(*code),
@@ -41,7 +43,10 @@ impl Turning {
     }
 
     /// Notes on a pass how the wheel turns during one of its moves.
-    pub(super) fn note(&self, pass: &mut Pass, begun: impl FnOnce() -> Begun) {
+    pub(super) fn note(&self, pass: &mut Pass, begun: impl Fn() -> Begun) {
+        if self.wheel != Spindle::Off && pass.speeds.last().is_none_or(|(last, _)| *last != self.speed) {
+            pass.speeds.push((self.speed, begun()));
+        }
         match self.wheel {
             Spindle::Off if pass.idle.is_none() => {
                 pass.idle = Some(Idle { begun: begun(), builder: self.builder });

@@ -31,6 +31,10 @@ pub struct Flutes {
     pub index_tolerance: Deg,
     /// Of the contact along a flute, mm/min, where the job says it.
     pub speed: Option<f64>,
+    /// Into the blank, mm/min, where the job says it.
+    pub plunge: Option<f64>,
+    /// Of the wheel, r/min, where the job says it.
+    pub wheel: Option<f64>,
     /// From the C axis to the end of the cylinder at C 0, x and y, as the job has it.
     pub c_offset: [f64; 2],
     /// Which way the axes run, where the job says it.
@@ -54,6 +58,8 @@ impl Flutes {
             helix_tolerance: Deg(job.tolerance.helix),
             index_tolerance: Deg(job.tolerance.index),
             speed: job.program.speed_said.then_some(job.program.speed),
+            plunge: job.program.plunge_said.then_some(job.program.plunge),
+            wheel: job.program.wheel_said.then_some(job.program.wheel),
             c_offset: job.grinder.c_offset,
             signs: job.grinder.signs_said.then_some(job.grinder.signs),
         }

@@ -201,8 +201,10 @@ pub const PAGES: &[Page] = pages![
     "tool-unknown"
     "turns-clamped"
     "turns-near-part"
+    "wheel-feed"
     "wheel-into-burr"
     "wheel-reversed"
+    "wheel-speed"
     "words-passed-on"
     "work-offset"
 ];

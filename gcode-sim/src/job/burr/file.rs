@@ -351,7 +351,9 @@ impl FileProgram {
             speed: number("speed", file.and_then(|f| f.speed.as_ref()), (1.0, 20_000.0, "mm/min"), 200.0)?,
             speed_said: file.is_some_and(|f| f.speed.is_some()),
             plunge: number("plunge", file.and_then(|f| f.plunge.as_ref()), (0.1, 5_000.0, "mm/min"), 30.0)?,
+            plunge_said: file.is_some_and(|f| f.plunge.is_some()),
             wheel: number("wheel", file.and_then(|f| f.wheel.as_ref()), (1.0, 99_999.0, "r/min"), 3000.0)?,
+            wheel_said: file.is_some_and(|f| f.wheel.is_some()),
         })
     }
 }

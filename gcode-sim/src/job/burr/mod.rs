@@ -106,8 +106,12 @@ pub struct BurrProgram {
     pub speed_said: bool,
     /// Into the blank, mm/min.
     pub plunge: f64,
+    /// Whether the job says it.
+    pub plunge_said: bool,
     /// Of the wheel, r/min.
     pub wheel: f64,
+    /// Whether the job says it.
+    pub wheel_said: bool,
 }
 
 /// How the moves of a flute are written.

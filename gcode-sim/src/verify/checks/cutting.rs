@@ -72,7 +72,8 @@ fn feed(cutting: &Cutting, conduct: &Conduct, _: &Machine) -> Option<Diagnostic>
     )
 }
 
-fn severity(found: f64, wanted: f64) -> Option<Severity> {
+/// How bad it is that S or F is another one than is said; `None` where it will do.
+pub(in crate::verify) fn severity(found: f64, wanted: f64) -> Option<Severity> {
     match (found - wanted).abs() / wanted {
         off if off <= ROUNDED => None,
         off if off <= OPEN => Some(Severity::Warning),

@@ -128,6 +128,8 @@ pub fn in_words(code: &str) -> Option<&'static str> {
         "flute-end" => "an end out of place",
         "flute-head" => "the wheel's angle out",
         "flute-speed" => "speed out",
+        "wheel-speed" => "the wheel's S out",
+        "wheel-feed" => "the feed into the blank out",
         "burr-offset" => "the burr's place isn't the job's",
         "spindle-stopped" => "the wheel stands",
         "flutes-meet" => "neighbours meet",
@@ -217,12 +219,17 @@ fn not_checked(wanted: &Flutes, ground: &Ground) -> Vec<String> {
          isn't known"
             .to_owned(),
         "which side of the wheel's swivel B is right: only its angle is held against the helix angle".to_owned(),
-        "which way round and how fast the wheel turns, and how fast it goes into the blank: the first the job doesn't say, \
-         and S and that F aren't held against it"
-            .to_owned(),
+        "which way round the wheel has to turn: the job doesn't say".to_owned(),
+        "how far off the blank rapid motion ends: only that it doesn't touch is seen to, not the job's clearance".to_owned(),
     ];
     if wanted.speed.is_none() {
         all.push("the speed along the flutes: the job has no program.speed".to_owned());
+    }
+    if wanted.wheel.is_none() {
+        all.push("how fast the wheel turns: the job has no program.wheel".to_owned());
+    }
+    if wanted.plunge.is_none() {
+        all.push("how fast the wheel is fed into the blank: the job has no program.plunge".to_owned());
     }
     if ground.offset.is_none() {
         all.push("the job's c_offset: the machine file has no axis C that turns about z".to_owned());

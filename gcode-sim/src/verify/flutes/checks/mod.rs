@@ -12,6 +12,7 @@ mod speed;
 mod surface;
 mod turning;
 mod twice;
+mod wheel;
 
 use super::Inspection;
 use crate::diag::{Diagnostic, Site};
@@ -31,6 +32,7 @@ pub(super) const ALL: &[Check] = &[
     spacing::check,
     head::check,
     turning::check,
+    wheel::check,
     speed::check,
     dive::check,
 ];
