@@ -165,6 +165,7 @@ pub fn grind(
     let run = run(request, library, &mut follower)?;
     let mut ground = follower.finish();
     ground.findings.extend(run.notes());
+    ground.findings.extend(slips::other_offsets(&run, &request.machine, "flutes"));
     ground.findings.extend(run.stopped());
     Ok(Grinding { run, ground, wanted: *wanted })
 }

@@ -8,7 +8,7 @@ use crate::program::{Memory, NoLibrary};
 
 /// `explain`: whether there is something that a slip may explain.
 pub(super) fn slips(run: &Run, machine: &Machine, explain: bool) -> Vec<Diagnostic> {
-    let mut found: Vec<Diagnostic> = other_offsets(run, machine).collect();
+    let mut found: Vec<Diagnostic> = other_offsets(run, machine, "holes").collect();
     if explain {
         let checked = check_loaded(loaded(run), run.control.settings(), &mut NoLibrary);
         let points = checked.findings.into_iter().filter(|finding| finding.code == rules::MISSING_POINT);
@@ -30,20 +30,24 @@ fn loaded(run: &Run) -> Memory {
 }
 
 /// Work offsets that the run moved in and of which the machine file says nothing, nor the program itself: each counts as 0,
-/// as G54 does, so that the holes come out alike whichever is in effect.
-fn other_offsets<'r>(run: &'r Run, machine: &'r Machine) -> impl Iterator<Item = Diagnostic> + 'r {
+/// as G54 does, so that what is `made` comes out alike whichever is in effect.
+pub(super) fn other_offsets<'r>(
+    run: &'r Run,
+    machine: &'r Machine,
+    made: &'r str,
+) -> impl Iterator<Item = Diagnostic> + 'r {
     let unset = run.control.unset_work_systems().iter();
-    unset.map(|(system, place)| finding(*system, machine).at(place.clone()))
+    unset.map(move |(system, place)| finding(*system, machine, made).at(place.clone()))
 }
 
-fn finding(system: WorkSystem, machine: &Machine) -> Diagnostic {
+fn finding(system: WorkSystem, machine: &Machine, made: &str) -> Diagnostic {
     let name = match system {
         WorkSystem::Standard(_) => format!("G{}", system.code() / 10),
         WorkSystem::Additional(number) => format!("G54.1 P{number}"),
     };
     let known: Vec<_> = machine.offsets.iter().map(|offset| format!("G{}", offset.code)).collect();
     let given = match known.as_slice() {
-        [] => "no work offset; all count as zero here, and the holes come out as with G54".to_owned(),
+        [] => format!("no work offset; all count as zero here, and the {made} come out as with G54"),
         known => format!("{} only; this one counts as zero here", known.join(", ")),
     };
     let message = format!(
