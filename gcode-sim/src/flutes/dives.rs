@@ -51,9 +51,26 @@ pub struct Plunge {
 #[derive(Clone, Copy, Debug)]
 pub(super) enum By {
     /// Where it turns the burr: behind so many passes.
-    Rapid { turns: Option<usize> },
-    Feed { seconds: f64 },
+    Rapid {
+        turns: Option<usize>,
+    },
+    Feed {
+        seconds: f64,
+    },
 }
+
+/// A rapid that ended in the cut, reckoned with axes at 0 that hadn't moved.
+#[derive(Debug)]
+struct Early {
+    place: Place,
+    depth: Depth,
+    /// The axes that had moved by its end.
+    moved: Moved,
+}
+
+/// The axes that the contact's place depends on and that have moved since the start, as bits, axis 1 the lowest.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Moved(pub(super) u32);
 
 /// Motion is straight in or out if it goes no more than this part of its way sideways: 3°.
 const STRAIGHT: f64 = 0.05;
@@ -86,6 +103,8 @@ pub(super) struct Dives {
     outside: bool,
     /// Rapids that weren't looked at for that reason.
     pub(super) unseen: usize,
+    /// Those of them that ended in the cut before the first pass began, if the axes stood as is reckoned.
+    early: Vec<Early>,
     /// The pass in rapid motion that goes on, in `found`, and how many there were.
     rapid: Option<usize>,
     rapids: usize,
@@ -93,8 +112,15 @@ pub(super) struct Dives {
 }
 
 impl Dives {
-    /// A pass goes on, or begins where the wheel stands.
-    pub(super) fn ground(&mut self) {
+    /// A pass goes on, or begins where the wheel stands. An axis that hadn't moved when a rapid ended and hasn't yet stood
+    /// there as it does now, where the flute is reckoned with it.
+    pub(super) fn ground(&mut self, moved: Moved) {
+        for early in std::mem::take(&mut self.early) {
+            if early.moved == moved {
+                self.unseen -= 1;
+                self.add(early.place, Kind::Rapid, early.depth);
+            }
+        }
         if let Stand::Plunged(_, plunge) = std::mem::replace(&mut self.stand, Stand::Ground) {
             self.plunges.push(plunge);
         }
@@ -146,13 +172,7 @@ impl Dives {
     }
 
     /// Looks at a motion that is no pass.
-    pub(super) fn look(
-        &mut self,
-        flutes: &Flutes,
-        place: Place,
-        by: By,
-        path: &[Point3<f64>],
-    ) {
+    pub(super) fn look(&mut self, flutes: &Flutes, place: Place, by: By, moved: Moved, path: &[Point3<f64>]) {
         let way = Way::of(flutes, path);
         let known = self.outside;
         self.outside |= flutes.tooth_depth < way.last;
@@ -173,6 +193,10 @@ impl Dives {
             let leaves = way.leaves && way.straight && -flutes.surface_tolerance - ARITHMETIC < way.first;
             if !known {
                 self.unseen += 1;
+                if let Some(at) = path.last().copied().filter(|_| way.ends) {
+                    let depth = Depth { depth: flutes.tooth_depth - way.last, at };
+                    self.early.push(Early { place, depth, moved });
+                }
             } else if !leaves && way.nearest < flutes.tooth_depth + ARITHMETIC {
                 self.add(place, Kind::Rapid, depth);
             }

@@ -7,7 +7,7 @@ mod turning;
 
 use nalgebra::Point3;
 
-use dives::{By, Dives};
+use dives::{By, Dives, Moved};
 pub use dives::{Dive, Kind, Plunge};
 pub(crate) use trace::shorter;
 pub use trace::{Sample, Trace, Window};
@@ -91,6 +91,7 @@ pub struct Follower<'m> {
     burr: Axis,
     flutes: Flutes,
     at: Position,
+    moved: Moved,
     open: Option<Pass>,
     ground: Ground,
     dives: Dives,
@@ -120,6 +121,7 @@ impl<'m> Follower<'m> {
             burr: turns.ok_or(NoGrinder::Burr)?,
             flutes,
             at: Position::default(),
+            moved: Moved::default(),
             open: None,
             ground: Ground { offset: offset(machine), signs: signs(machine), ..Ground::default() },
             dives: Dives::default(),
@@ -159,6 +161,8 @@ impl<'m> Follower<'m> {
         if self.full || (from == *to && arc.is_none()) {
             return;
         }
+        let before = self.moved;
+        self.note_moved(&from, to);
         self.moves += 1;
         if self.moves > MOVES {
             return self.stop(event, format!("more than {MOVES} moves"));
@@ -182,11 +186,11 @@ impl<'m> Follower<'m> {
                 true => By::Rapid { turns },
                 false => By::Feed { seconds: event.seconds.0 },
             };
-            self.dives.look(&self.flutes, event.place(), by, &path);
+            self.dives.look(&self.flutes, event.place(), by, self.moved, &path);
             return;
         }
         self.kept = KEPT.min(self.kept + path.len());
-        self.dives.ground();
+        self.dives.ground(before);
         let head = self.wheel.angle(&from).zip(self.wheel.angle(to));
         let pass = self.open.get_or_insert_with(|| Pass {
             trace: Trace::default(),
@@ -205,6 +209,13 @@ impl<'m> Follower<'m> {
             let (least, most) = pass.head.unwrap_or((low, high));
             pass.head = Some((if low < least { low } else { least }, if most < high { high } else { most }));
         }
+    }
+
+    /// Notes which axes move; how far the burr is turned about itself, no depth depends on.
+    fn note_moved(&mut self, from: &Position, to: &Position) {
+        let axes = self.machine.table.0.iter().map(|link| link.axis).filter(|axis| *axis != self.burr);
+        let moved = axes.filter(|axis| from[*axis] != to[*axis]);
+        self.moved.0 = moved.fold(self.moved.0, |mask, axis| mask | 1 << axis);
     }
 
     /// In how many steps a motion is looked at, so that no two points are farther apart than about `apart` mm; `None`

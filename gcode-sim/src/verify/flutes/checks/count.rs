@@ -90,7 +90,9 @@ fn missing(inspection: &Inspection<'_>, found: usize, wanted: usize) -> Diagnost
             .at(inspection.ground.passes[first.pass].place.clone())
             .help("is the index of that pass the one it should have?")
             .on(sites),
-        None => finding.help("the loop over the flutes ends too early, or an index move is missing").on(sites),
+        None => {
+            finding.help("the loop over the flutes ends too early, or an index move is missing").on(sites)
+        }
     }
 }
 

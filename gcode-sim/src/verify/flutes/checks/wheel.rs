@@ -32,7 +32,8 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
             place: &plunge.place,
             site: Site { pass: None, at: plunge.at },
         });
-        let message = |found| format!("the wheel is fed into the blank at {found} mm/min where {wanted} is asked for");
+        let message =
+            |found| format!("the wheel is fed into the blank at {found} mm/min where {wanted} is asked for");
         let told = worst("wheel-feed", wanted, plunges.collect(), message);
         findings.extend(told.map(|finding| {
             finding.help("correct F, or program.plunge in the job; is G94 in force here, and not G93?")
