@@ -76,7 +76,9 @@ fn missing(inspection: &Inspection<'_>, found: usize, wanted: usize) -> Diagnost
     }
     if let Some(note) = apart(inspection) {
         finding = finding.note(note);
-    } else if let Some(gap) = inspection.round.worst_gap.filter(|gap| 1.5 * pitch < gap.found.0) {
+    } else if let Some(gap) =
+        inspection.round.worst_gap.filter(|gap| again.is_empty() && 1.5 * pitch < gap.found.0)
+    {
         let (pass, _) = inspection.round.flutes[gap.from];
         finding = finding
             .note(format!(
