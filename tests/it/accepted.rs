@@ -11,16 +11,13 @@ use gcode_sim::program::Library;
 use gcode_sim::report::changes::ChangesReport;
 use gcode_sim::session::Request;
 use gcode_sim::units::Deg;
+use gcode_tests::workspace;
 
 /// Blocks of a program that are looked at: the first rows of a honeycomb tell what its macro does, and the whole is held
 /// against the reference elsewhere.
 const BLOCKS: u64 = 2000;
 const TOLERANCE: f64 = 0.0001;
 const REMEDY: &str = "look at the change; where it is meant, cargo xtask bless accepts it";
-
-pub(crate) fn workspace() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
-}
 
 fn folder(path: &Path) -> Vec<PathBuf> {
     let mut found: Vec<_> = std::fs::read_dir(path).unwrap().map(|entry| entry.unwrap().path()).collect();

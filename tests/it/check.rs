@@ -7,10 +7,7 @@ use gcode_sim::cli::library::Folders;
 use gcode_sim::control::Settings;
 use gcode_sim::diag::Severity;
 use gcode_sim::program::NoLibrary;
-
-fn workspace() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
-}
+use gcode_tests::workspace;
 
 /// The programs below `dir`.
 fn programs(dir: &Path) -> Vec<PathBuf> {

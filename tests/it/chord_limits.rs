@@ -1,7 +1,6 @@
 //! What chord matching can't see: a hundred parts that stand exactly right, each matched from candidates that don't, by the
 //! emitted program itself; and what the ellipse sees. The tables of docs/methods/alignment.md are what comes out here.
 use std::fmt::Write;
-use std::path::Path;
 
 use gcode_gen::check::Programs;
 use gcode_gen::families;
@@ -14,11 +13,8 @@ use gcode_sim::motion::Position;
 use gcode_sim::part::surface::Surface;
 use gcode_sim::session::{Request, follow, run};
 use gcode_sim::units::Deg;
+use gcode_tests::workspace;
 use nalgebra::{Point3, distance};
-
-fn workspace() -> std::path::PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
-}
 
 fn example() -> Alignment {
     let text = std::fs::read_to_string(workspace().join("examples/alignment/job.toml")).unwrap();

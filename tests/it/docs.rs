@@ -1,11 +1,7 @@
 //! The sessions shown in README.md and docs/ are run: what stands there is what comes out.
 use std::path::{Path, PathBuf};
 
-use gcode_tests::programs;
-
-fn workspace() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
-}
+use gcode_tests::{programs, workspace};
 
 /// A command of a ```` ```console ```` block and the lines under it; a line `...` stands for any lines.
 struct Shown {

@@ -1,11 +1,7 @@
 //! The examples' pictures are what the programs draw now.
-use std::path::{Path, PathBuf};
 
 use gcode_tests::programs::run_line;
-
-fn workspace() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
-}
+use gcode_tests::workspace;
 
 /// A folder of examples, a picture in it, and the command that draws it there as `{}`.
 const PICTURES: &[(&str, &str, &str)] = &[

@@ -1,13 +1,10 @@
 //! What is checked in is what the generator writes: the resident macros and the examples' programs.
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use gcode_gen::families;
 use gcode_gen::package::Program;
 use gcode_sim::job::Job;
-
-fn workspace() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
-}
+use gcode_tests::workspace;
 
 /// The file must hold `text`, byte for byte; `cargo xtask bless` writes it.
 fn holds(path: &Path, text: &str) {

@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use gcode_sim::changes::{Change, Record, Revision, changes};
+use gcode_tests::workspace;
 
-use crate::accepted::{folders, mains, request, workspace};
+use crate::accepted::{folders, mains, request};
 
 /// What is changed in a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

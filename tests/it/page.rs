@@ -2,12 +2,8 @@
 use std::path::{Path, PathBuf};
 
 use gcode_tests::browser::{Browser, key};
-use gcode_tests::programs;
+use gcode_tests::{programs, workspace};
 use serde_json::{Value, json};
-
-fn workspace() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
-}
 
 /// Runs `gcode-sim` in `dir` and gives the page that it wrote there.
 fn page(dir: &Path, command: &str) -> PathBuf {

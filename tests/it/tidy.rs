@@ -1,9 +1,7 @@
 //! House rules: the order of modules, opening sentences, no unfinished work.
 use std::path::{Path, PathBuf};
 
-fn workspace() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
-}
+use gcode_tests::workspace;
 
 /// Every Rust file below `dir`.
 fn sources(dir: &Path) -> Vec<PathBuf> {

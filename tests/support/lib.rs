@@ -75,6 +75,11 @@ impl Case {
     }
 }
 
+/// The folder that holds the crates, the examples and the documentation.
+pub fn workspace() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
+}
+
 /// The folder of all cases.
 pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("suite")

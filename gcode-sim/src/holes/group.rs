@@ -126,7 +126,7 @@ fn holes_of(group: &[&Pass], machine: &Machine, found: &mut Vec<Found>) {
     }
     let lowest = cutting.iter().map(|pass| height(&pass.bottom)).fold(f64::INFINITY, f64::min);
     let finish = finishing(&cutting, lowest, height, machine);
-    let diameter = |pass: &Pass| pass.tool.and_then(|tool| machine.find_tool(tool)?.diameter);
+    let diameter = |pass: &Pass| machine.diameter_of(pass.tool);
     let cut = |pass: &&Pass| Cut {
         bottom: pass.bottom,
         axis: pass.axis,
@@ -168,7 +168,7 @@ fn finishing<'p>(
     machine: &Machine,
 ) -> &'p Pass {
     let longest = cutting.iter().map(|pass| height(&pass.start) - lowest).fold(0.0, f64::max);
-    let diameter = |pass: &Pass| pass.tool.and_then(|tool| machine.find_tool(tool)?.diameter).unwrap_or(0.0);
+    let diameter = |pass: &Pass| machine.diameter_of(pass.tool).unwrap_or(0.0);
     let mut best = cutting[0];
     for pass in &cutting[1..] {
         let deep = |p: &Pass| height(&p.bottom) <= lowest + longest / 2.0;

@@ -109,8 +109,7 @@ impl Extractor<'_> {
         });
         let Some((axis, letter)) = turned else { return };
         let by = Deg(travel.to[axis] - travel.from[axis]).abs();
-        let reach =
-            self.setup.tool.and_then(|tool| self.machine.find_tool(tool)?.diameter).unwrap_or(0.0) / 2.0;
+        let reach = self.machine.diameter_of(self.setup.tool).unwrap_or(0.0) / 2.0;
         let (clearance, retract) = (self.conduct.clearance, self.conduct.retract);
         let asked = clearance.map_or(CONTACT, |clearance| (clearance + ROUNDED + reach).max(CONTACT));
         let retract = retract.filter(|_| self.machine.table.has(axis));
@@ -185,7 +184,7 @@ impl Extractor<'_> {
     /// How far the edge of a flat end would be from the surface, on the side that leans towards it.
     fn edge(&self, surface: &Surface, pose: &Pose) -> Option<f64> {
         let axis = pose.axis?;
-        let diameter = self.machine.find_tool(self.setup.tool?)?.diameter?;
+        let diameter = self.machine.diameter_of(self.setup.tool)?;
         let normal = surface.nearest(&pose.tip).normal;
         let across = normal.into_inner() - axis.into_inner() * normal.dot(&axis);
         let towards = across.try_normalize(1e-9)? * (diameter / -2.0);

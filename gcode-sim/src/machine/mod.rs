@@ -160,12 +160,22 @@ impl Machine {
 
     /// The tool's length: from the tool table, else what the length offset says (a tool measured right).
     pub fn tool_length(&self, setup: &Setup) -> f64 {
-        let known = setup.tool.and_then(|number| self.find_tool(number)).and_then(|tool| tool.length);
+        let known = self.length_of(setup.tool);
         known.unwrap_or_else(|| self.slides.displacement(&setup.offset).norm())
     }
 
     pub fn find_tool(&self, number: u32) -> Option<&Tool> {
         self.tools.iter().find(|tool| tool.number == number)
+    }
+
+    /// Of the tool in the spindle, mm; `None` where nothing says which, or how long it is.
+    pub fn length_of(&self, tool: Option<u32>) -> Option<f64> {
+        self.find_tool(tool?)?.length
+    }
+
+    /// The same of its diameter.
+    pub fn diameter_of(&self, tool: Option<u32>) -> Option<f64> {
+        self.find_tool(tool?)?.diameter
     }
 
     /// Whether the axis moves the tool or the part.

@@ -61,8 +61,7 @@ fn some(ids: &[&str]) -> String {
 
 /// Tools that cut and whose lengths the machine file doesn't have: which offset stands for each.
 fn lengths(extracted: &Extracted, machine: &Machine) -> Vec<String> {
-    let known = |number| machine.find_tool(number).and_then(|tool| tool.length).is_some();
-    let unknown = extracted.cuttings.iter().filter(|cutting| !cutting.tool.is_some_and(known));
+    let unknown = extracted.cuttings.iter().filter(|cutting| machine.length_of(cutting.tool).is_none());
     let tools: BTreeSet<_> = unknown.map(|cutting| (cutting.tool, cutting.by)).collect();
     let words = |(tool, by): (Option<u32>, Lengthening)| {
         let whose = tool.map_or("the tool's length".to_owned(), |number| format!("the length of T{number}"));
@@ -80,6 +79,11 @@ fn lengths(extracted: &Extracted, machine: &Machine) -> Vec<String> {
 /// What the reference doesn't say of how the part is to be worked.
 fn conduct(extracted: &Extracted, reference: &Reference, machine: &Machine) -> Option<String> {
     let conduct = &reference.conduct;
+    if extracted.conduct != *conduct {
+        return Some(
+            "how the part is worked: the run was followed without what the reference says of it".to_owned(),
+        );
+    }
     let tools: BTreeSet<_> = extracted.cuttings.iter().map(|cutting| cutting.tool).collect();
     let unsaid = |of: &dyn Fn(&Duty) -> Option<f64>| {
         tools.iter().any(|tool| conduct.duty(*tool).and_then(of).is_none())
@@ -93,10 +97,5 @@ fn conduct(extracted: &Extracted, reference: &Reference, machine: &Machine) -> O
         (turns && conduct.clamp.is_none(), "the rotary's clamp"),
     ];
     let names: Vec<_> = missing.iter().filter(|(missing, _)| *missing).map(|(_, name)| *name).collect();
-    if extracted.conduct != *conduct {
-        return Some(
-            "how the part is worked: the run was followed without what the reference says of it".to_owned(),
-        );
-    }
     (!names.is_empty()).then(|| format!("{}: the reference doesn't say", names.join(", ")))
 }

@@ -86,7 +86,7 @@ fn half_increment(
     if let HeadKind::Axis { axis: head, .. } = machine.head.kind
         && head == axis
     {
-        let length = found.tool.and_then(|tool| machine.find_tool(tool)?.length).unwrap_or(0.0);
+        let length = machine.length_of(found.tool).unwrap_or(0.0);
         let lever = machine.head.pivot + length - above;
         let across = frame.rotation * found.axis.into_inner();
         let across = Vector3::new(-across.y, across.x, 0.0) * (lever * Deg(half).to_rad());

@@ -5,6 +5,7 @@ use gcode_sim::control::Settings;
 use gcode_sim::job::control_file;
 use gcode_sim::job::{Job, Rates};
 use gcode_sim::machine::{Machine, error_file};
+use gcode_tests::workspace;
 use serde_json::Value as Json;
 use toml::{Table, Value};
 
@@ -25,10 +26,6 @@ const READERS: [(&str, Read); 5] = [
     }),
     ("rates", |text| Rates::parse(text).map(drop).map_err(|error| error.to_string())),
 ];
-
-fn workspace() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
-}
 
 fn files(dir: &Path, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(dir).unwrap() {

@@ -1,14 +1,10 @@
 //! Schemas of results: what the commands write is as they say, and nothing is written that they don't name.
-use std::path::{Path, PathBuf};
 
 use gcode_tests::programs::run_line;
+use gcode_tests::workspace;
 use serde_json::Value;
 
 use super::{schema, validator};
-
-fn workspace() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
-}
 
 /// The schema with every object closed: a key that it doesn't name is refused.
 fn closed(name: &str) -> jsonschema::Validator {

@@ -83,8 +83,7 @@ pub(in crate::verify) fn severity(found: f64, wanted: f64) -> Option<Severity> {
 
 /// Where the machine file has the tool's length, the holes tell whether the offset is right; else only its number does.
 fn length(cutting: &Cutting, conduct: &Conduct, machine: &Machine) -> Option<Diagnostic> {
-    let known = |number| machine.find_tool(number).and_then(|tool| tool.length).is_some();
-    if cutting.tool.is_some_and(known) {
+    if machine.length_of(cutting.tool).is_some() {
         return None;
     }
     let asked = conduct.duty(cutting.tool).and_then(|duty| duty.offset);
