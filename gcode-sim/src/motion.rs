@@ -162,6 +162,11 @@ pub enum EventKind {
         offset: Position,
         by: Lengthening,
     },
+    /// From the next move's end on these axes stand where G28, G30 or G53 sends them, as bits, axis 1 the lowest, while
+    /// nothing has set the work offset in effect: where that is on the part isn't known. Moves nothing itself.
+    Unplaced {
+        axes: u8,
+    },
     Spindle {
         turning: Spindle,
         speed: Rpm,
@@ -193,6 +198,7 @@ impl EventKind {
             Self::Dwell { .. }
             | Self::Tool { .. }
             | Self::ToolLength { .. }
+            | Self::Unplaced { .. }
             | Self::Spindle { .. }
             | Self::Coolant { .. }
             | Self::Auxiliary { .. }

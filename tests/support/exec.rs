@@ -97,6 +97,10 @@ fn event(ran: &Ran, kind: &EventKind) -> String {
             Lengthening::Plus(h) => format!("tool length {} by G43 H{h}", at(offset)),
             Lengthening::Minus(h) => format!("tool length {} by G44 H{h}", at(offset)),
         },
+        EventKind::Unplaced { axes: unplaced } => {
+            let letters = axes.iter().filter(|(axis, _)| unplaced >> axis & 1 == 1);
+            format!("not placed on the part: {}", letters.map(|(_, letter)| letter).collect::<String>())
+        }
         EventKind::Spindle { turning, speed } => format!("spindle {turning:?} {}", speed.0).to_lowercase(),
         EventKind::Coolant { on, .. } => format!("coolant {}", if *on { "on" } else { "off" }),
         EventKind::Auxiliary { code } => format!("M{code:02} for the machine builder"),

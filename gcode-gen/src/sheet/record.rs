@@ -155,6 +155,7 @@ impl Sink for Listener {
                 self.stops.push((stop, event.place()));
             }
             EventKind::ToolLength { .. }
+            | EventKind::Unplaced { .. }
             | EventKind::Spindle { .. }
             | EventKind::Coolant { .. }
             | EventKind::Auxiliary { .. } => {}

@@ -103,6 +103,7 @@ impl Sink for Trace {
             EventKind::Tool { number } => self.tools.push(*number),
             EventKind::Stop { kind, text, .. } => self.stops.push((*kind, text.clone())),
             EventKind::ToolLength { .. }
+            | EventKind::Unplaced { .. }
             | EventKind::Spindle { .. }
             | EventKind::Coolant { .. }
             | EventKind::Auxiliary { .. } => {}

@@ -380,6 +380,7 @@ impl Recorder {
                 self.length = *offset;
                 self.push(Kind::Length(*offset), here, event.place());
             }
+            EventKind::Unplaced { .. } => {}
             EventKind::Spindle { turning, speed } => {
                 // At a standstill the speed is what it will turn at later: that is told then.
                 let speed = if *turning == Spindle::Off { 0.0 } else { speed.0 };

@@ -13,6 +13,12 @@ impl Core {
         // What was the state stays in the plan until its next block begins.
         std::mem::swap(&mut self.state, &mut plan.state);
         self.note_work(plan.state.modal.work, plan.moved);
+        let before = plan.state.unplaced;
+        // What a cycle does along its axis it tells itself.
+        let still = before & plan.drill.as_ref().map_or(self.state.unplaced, Drill::unplaced);
+        if still != before {
+            self.tell(&EventKind::Unplaced { axes: still }, 0.0, sink);
+        }
         if plan.reads_ahead {
             self.advance(&mut plan.ahead, sink);
         }

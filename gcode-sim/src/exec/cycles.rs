@@ -65,6 +65,7 @@ impl Core {
         // The block's own depth words are not a move.
         let mut goal = self.goal(given, &mut plan.state)?.programmed;
         goal[axis] = from.programmed[axis];
+        plan.state.set_unplaced(axis, from.unplaced >> axis & 1 == 1);
         self.drilling_words(plan, given, axis, incremental)?;
         let data = &plan.state.drilling;
         for (level, letter) in [(data.r, 'R'), (data.z, self.settings.axes.letter(axis))] {
@@ -122,11 +123,13 @@ impl Core {
             self.rapid(plan, to);
             return Ok(());
         }
-        let level = if plan.state.modal.return_to == ReturnTo::R && cycle.starts_at_r {
-            plan.state.drilling.r_level()
+        let data = &plan.state.drilling;
+        let (level, unplaced) = if plan.state.modal.return_to == ReturnTo::R && cycle.starts_at_r {
+            (data.r_level(), data.r_unplaced())
         } else {
-            plan.state.drilling.initial
+            (data.initial, data.initial_unplaced)
         };
+        plan.state.set_unplaced(axis, unplaced);
         plan.state.programmed[axis] = level;
         plan.state.machine = self.to_machine(&plan.state, plan.state.programmed);
         plan.drill = Some(drill);

@@ -40,8 +40,8 @@ pub(super) struct Circle {
 impl Core {
     /// Tells a drilling block move by move.
     pub(super) fn drill(&self, drill: &Drill, tell: &mut impl FnMut(EventKind, f64)) {
-        let mut way = Way { core: self, at: drill.from.machine, rate: drill.rate, tell };
         let state = &drill.from;
+        let mut way = Way { core: self, at: state.machine, unplaced: state.unplaced, rate: drill.rate, tell };
         let data = &state.drilling;
         let (r, z) = (data.r_level(), data.z_level());
         let mut hole = drill.hole;
@@ -56,6 +56,7 @@ impl Core {
             over[drill.axis] = way.at[drill.axis];
             way.rapid(over);
             if drill.cycle.starts_at_r {
+                way.stand(drill.axis, data.r_unplaced());
                 way.rapid(level(r));
             }
             for step in drill.cycle.steps {
@@ -76,6 +77,14 @@ impl Core {
         let initial = state.drilling.initial;
         let to_initial = state.modal.return_to == ReturnTo::Initial;
         let turning = |turning| EventKind::Spindle { turning, speed: Rpm(state.codes.s) };
+        let goes_back = match step {
+            Step::RapidBack | Step::RapidToInitial => to_initial,
+            Step::RapidToInitialAlways => true,
+            _ => false,
+        };
+        if goes_back {
+            way.stand(drill.axis, state.drilling.initial_unplaced);
+        }
         match step {
             Step::FeedToBottom => way.feed(level(z)),
             Step::PeckFull => {
@@ -157,6 +166,11 @@ impl Drill {
         }
     }
 
+    /// The axes whose place on the part isn't known when it begins.
+    pub(super) fn unplaced(&self) -> u8 {
+        self.from.unplaced
+    }
+
     /// The tool comes from here.
     pub(super) fn begins_at(&mut self, machine: Position) {
         self.from.machine = machine;
@@ -176,11 +190,21 @@ impl Drill {
 struct Way<'c, T> {
     core: &'c Core,
     at: Position,
+    unplaced: u8,
     rate: MmPerMin,
     tell: &'c mut T,
 }
 
 impl<T: FnMut(EventKind, f64)> Way<'_, T> {
+    /// From the next move's end on the axis stands where its place on the part is known, or isn't.
+    fn stand(&mut self, axis: Axis, unplaced: bool) {
+        let axes = self.unplaced & !(1 << axis) | u8::from(unplaced) << axis;
+        if axes != self.unplaced {
+            self.unplaced = axes;
+            (self.tell)(EventKind::Unplaced { axes }, 0.0);
+        }
+    }
+
     fn rapid(&mut self, to: Position) {
         if to != self.at {
             (self.tell)(EventKind::Rapid { to }, self.core.rapid_seconds(&self.at, &to));

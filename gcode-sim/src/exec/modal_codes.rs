@@ -80,6 +80,7 @@ impl Core {
             let axis = at(self.drilling_axis(given, state), span)?;
             state.drilling.axis = Some(axis);
             state.drilling.initial = state.programmed[axis];
+            state.drilling.initial_unplaced = state.unplaced >> axis & 1 == 1;
         }
         // G54 P is G54.1 P.
         let additional = given.has(b'P')

@@ -163,14 +163,17 @@ impl Core {
             plan.notes.push(Note::MachineMoveIgnored);
             return Ok(());
         }
+        let mut named = 0;
         for (axis, letter) in self.settings.axes.iter() {
             if let Some(value) = self.dimension(given, letter as u8, &plan.state)? {
+                named |= u8::from(!incremental) << axis;
                 to[axis] = match incremental {
                     true => self.clean(to[axis] + value),
                     false => self.turned_to(axis, to[axis], value),
                 };
             }
         }
+        self.leave_work(plan, named);
         self.rapid(plan, to);
         self.recompute(&mut plan.state);
         plan.moved = true;

@@ -32,13 +32,16 @@ impl Core {
         let goal = self.goal(given, &mut plan.state)?;
         self.rapid(plan, goal.machine);
         let mut home = plan.state.machine;
+        let mut named = 0;
         for (axis, letter) in self.settings.axes.iter() {
             if given.has(letter as u8) {
+                named |= 1 << axis;
                 plan.state.intermediate[axis] = goal.machine[axis] - self.zero(&plan.state, axis);
                 plan.state.has_intermediate |= 1 << axis;
                 home[axis] = self.turned_to(axis, home[axis], reference[axis]);
             }
         }
+        self.leave_work(plan, named);
         self.rapid(plan, home);
         // The length offset is cancelled where its axis reaches the reference position.
         let z = self.settings.axes.find(b'Z');
@@ -56,6 +59,7 @@ impl Core {
         for (axis, _) in self.settings.axes.iter() {
             home[axis] = self.turned_to(axis, home[axis], 0.0);
         }
+        self.leave_work(plan, self.settings.axes.iter().fold(0, |axes, (axis, _)| axes | 1 << axis));
         self.rapid(plan, home);
         end_length(plan);
         self.recompute(&mut plan.state);
@@ -73,6 +77,7 @@ impl Core {
                 return Err(Alarm::NoIntermediatePoint.at(span));
             }
             over[axis] = self.clean(plan.state.intermediate[axis] + self.zero(&plan.state, axis));
+            plan.state.unplaced &= !(1 << axis);
         }
         self.rapid(plan, over);
         self.recompute(&mut plan.state);

@@ -26,6 +26,8 @@ pub struct State {
     /// that have one.
     pub intermediate: Position,
     pub has_intermediate: u8,
+    /// The axes that stand where machine coordinates have sent them while nothing had set the work offset in effect.
+    pub unplaced: u8,
     /// #5061…: where the last G31 ended, in machine coordinates.
     pub skip: Position,
     /// The radius of cutter compensation, as D or G41, G42 have found it; negative where it swaps sides.
@@ -43,6 +45,11 @@ pub struct State {
 }
 
 impl State {
+    /// Notes whether the place of an axis on the part is known.
+    pub(super) fn set_unplaced(&mut self, axis: Axis, unplaced: bool) {
+        self.unplaced = self.unplaced & !(1 << axis) | u8::from(unplaced) << axis;
+    }
+
     /// What the tool length offset comes of.
     pub fn lengthening(&self) -> Lengthening {
         match self.modal.length {
@@ -95,6 +102,8 @@ pub struct Drilling {
     pub axis: Option<Axis>,
     /// Where that axis stood when the cycle began.
     pub initial: f64,
+    /// There it stood in machine coordinates, as in [`State::unplaced`].
+    pub initial_unplaced: bool,
     pub r: Level,
     pub z: Level,
     pub p: f64,
@@ -129,6 +138,10 @@ impl Drilling {
             least: pecks.least / stretch,
         });
         Self { q: self.q.map(|q| q / stretch), pecks, ..self }
+    }
+
+    pub(super) fn r_unplaced(&self) -> bool {
+        self.r.incremental && self.initial_unplaced
     }
 
     pub(super) fn r_level(&self) -> f64 {

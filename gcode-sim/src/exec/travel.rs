@@ -48,6 +48,9 @@ impl Core {
             let Some(value) = self.dimension(given, letter as u8, state)? else { continue };
             let from = programmed[axis];
             let incremental = state.modal.distance == Distance::Incremental;
+            if !incremental {
+                state.unplaced &= !(1 << axis);
+            }
             if self.settings.roll_over[axis] {
                 let way = if incremental { value } else { shorter_way(from, value) };
                 turned[axis] = way;
@@ -101,6 +104,9 @@ impl Core {
             return Ok(());
         }
         let incremental = state.modal.distance == Distance::Incremental;
+        if !incremental {
+            state.unplaced &= !(1 << first | 1 << second);
+        }
         // Radius and angle are each absolute or incremental, as the block that commands them has it.
         if let Some(radius) = radius {
             state.polar = PolarPoint { radius: Some(radius), from_here: incremental, ..state.polar };

@@ -1,8 +1,9 @@
 //! Which work coordinate systems a run has moved in before anything set them: they are zero then, whatever the machine has.
 use std::collections::BTreeSet;
 
+use super::plan::Plan;
 use super::{Control, Core};
-use crate::motion::Place;
+use crate::motion::{EventKind, Place};
 use crate::program::modes::WorkSystem;
 
 /// What a run has done with its work coordinate systems, which count as in [`super::offsets::Offsets`].
@@ -17,6 +18,16 @@ pub(super) struct WorkUse {
 }
 
 impl Core {
+    /// Axes are about to go where machine coordinates say. What the machine's zero is to the part, the work offset in effect
+    /// says, if anything has set it.
+    pub(super) fn leave_work(&self, plan: &mut Plan, axes: u8) {
+        if axes == 0 || self.work_use.set.contains(&number(plan.state.modal.work)) {
+            return;
+        }
+        plan.state.unplaced |= axes;
+        plan.tell(EventKind::Unplaced { axes: plan.state.unplaced });
+    }
+
     pub(super) fn note_set(&mut self, system: usize) {
         self.work_use.set.insert(system);
     }

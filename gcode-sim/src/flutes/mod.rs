@@ -15,6 +15,8 @@ use turning::Turning;
 pub use turning::{Begun, Idle};
 
 use crate::diag::{Diagnostic, Severity};
+use crate::holes::Unplaced;
+use crate::holes::unplaced::Placing;
 use crate::machine::path::Travel;
 use crate::machine::{LinkMotion, Machine, Wheel};
 use crate::motion::{Arc2, Axis, Event, EventKind, Place, Position, Sink};
@@ -74,6 +76,8 @@ pub struct Ground {
     pub plunges: Vec<Plunge>,
     /// Rapids before the wheel first stood off the blank: where they began nobody knows, and nothing is said of them.
     pub unseen: usize,
+    /// Rapids whose way isn't known because axes are sent to machine coordinates.
+    pub unplaced: Option<Unplaced>,
     /// From the C axis to the end of the burr's cylinder, x and y, as the machine file has it; `None` without a C that turns
     /// about z.
     pub offset: Option<[f64; 2]>,
@@ -96,6 +100,7 @@ pub struct Follower<'m> {
     ground: Ground,
     dives: Dives,
     turning: Turning,
+    placing: Placing,
     moves: usize,
     /// Points kept of passes, and computed at all.
     kept: usize,
@@ -126,6 +131,7 @@ impl<'m> Follower<'m> {
             ground: Ground { offset: offset(machine), signs: signs(machine), ..Ground::default() },
             dives: Dives::default(),
             turning: Turning::default(),
+            placing: Placing::default(),
             moves: 0,
             kept: 0,
             computed: 0,
@@ -138,6 +144,7 @@ impl<'m> Follower<'m> {
         self.ground.unseen = self.dives.unseen;
         self.ground.plunges = std::mem::take(&mut self.dives.plunges);
         self.ground.dives = self.dives.finish();
+        self.ground.unplaced = self.placing.finish(self.machine);
         self.ground
     }
 
@@ -161,11 +168,15 @@ impl<'m> Follower<'m> {
         if self.full || (from == *to && arc.is_none()) {
             return;
         }
+        let (was, is) = self.placing.go();
         let before = self.moved;
         self.note_moved(&from, to);
         self.moves += 1;
         if self.moves > MOVES {
             return self.stop(event, format!("more than {MOVES} moves"));
+        }
+        if rapid && was | is != 0 {
+            return self.jump(event, (was, is), to);
         }
         let travel = Travel { from: &from, to, arc };
         let grinds = !rapid && from[self.burr] != to[self.burr];
@@ -208,6 +219,16 @@ impl<'m> Follower<'m> {
             let (low, high) = if one < other { (one, other) } else { (other, one) };
             let (least, most) = pass.head.unwrap_or((low, high));
             pass.head = Some((if low < least { low } else { least }, if most < high { high } else { most }));
+        }
+    }
+
+    /// A rapid from or to where nobody knows: only an end that is known is looked at.
+    fn jump(&mut self, event: &Event<'_>, (was, is): (u8, u8), to: &Position) {
+        self.close();
+        self.placing.note_rapid(event, was | is);
+        if is == 0 {
+            let end = self.machine.contact(&self.wheel, to);
+            self.dives.look(&self.flutes, event.place(), By::Rapid { turns: None }, self.moved, &[end, end]);
         }
     }
 
@@ -271,6 +292,8 @@ impl Sink for Follower<'_> {
             EventKind::Rapid { to } => self.motion(event, true, to, None),
             EventKind::Feed { to, .. } | EventKind::Skip { to, .. } => self.motion(event, false, to, None),
             EventKind::Arc { to, arc, .. } => self.motion(event, false, to, Some(arc)),
+            // How far the burr is turned about itself, no depth depends on.
+            EventKind::Unplaced { axes } => self.placing.hear(self.machine, axes & !(1 << self.burr)),
             EventKind::Spindle { .. } | EventKind::Auxiliary { .. } => self.turning.hear(event.kind),
             EventKind::Dwell { .. }
             | EventKind::Tool { .. }

@@ -96,6 +96,7 @@ impl Extractor<'_> {
     fn judge_feed(&mut self, line: &Line, off: Option<Deg>) {
         let place = line.place();
         self.check_held(place, line.hold);
+        self.check_placed(place, line.unplaced);
         if let Some(feeds) = line.feeds() {
             self.cuttings.add(place, &line.force, feeds);
         }

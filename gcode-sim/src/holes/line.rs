@@ -34,6 +34,8 @@ pub(super) struct Line {
     /// What was in force when the feed began, and how the clamp stood.
     pub force: InForce,
     pub hold: Hold,
+    /// The axes whose place on the part isn't known, as bits, axis 1 the lowest.
+    pub unplaced: u8,
     /// The slowest and the fastest of the feeds that cut.
     feeds: Option<[MmPerMin; 2]>,
     /// The depth reached by finished strokes.
@@ -77,6 +79,7 @@ impl Line {
             tool_axis: None,
             force: InForce::default(),
             hold: Hold::default(),
+            unplaced: 0,
             feeds: None,
             deepest: 0.0,
             stroke: Some(Stroke { from: 0.0, reach: depth, place: place.clone(), at }),

@@ -16,6 +16,7 @@ pub(crate) mod script;
 pub(crate) mod spindle;
 #[cfg(test)]
 mod tests;
+pub(crate) mod unplaced;
 
 use nalgebra::Point3;
 
@@ -25,12 +26,14 @@ use group::Pass;
 use line::{After, Line};
 pub(crate) use machine_words::unclear_head;
 pub use passing::{CONTACT, Passing, ROUNDED, Way};
+pub use unplaced::Unplaced;
 
 use self::clamping::Hold;
 use self::cutting::{Cuttings, InForce};
 use self::findings::Findings;
 use self::passing::Passings;
 use self::rapids::{Curved, TOUCH};
+use self::unplaced::Placing;
 use crate::diag::{Diagnostic, Severity};
 use crate::machine::path::Travel;
 use crate::machine::{Frame, Machine, Pose, Setup};
@@ -55,6 +58,8 @@ pub struct Extracted {
     pub passings: Vec<Passing>,
     /// What was in force where the tool cut.
     pub cuttings: Vec<Cutting>,
+    /// Rapids whose way over the part isn't known.
+    pub unplaced: Option<Unplaced>,
     /// What the motion was looked at for.
     pub conduct: Conduct,
 }
@@ -83,6 +88,7 @@ pub struct Extractor<'m> {
     most: usize,
     /// The first of the passes that were too many.
     too_many: Option<Place>,
+    placing: Placing,
     findings: Findings,
     passings: Passings,
     cuttings: Cuttings,
@@ -121,6 +127,7 @@ impl<'m> Extractor<'m> {
             passes: Vec::new(),
             most: PASSES,
             too_many: None,
+            placing: Placing::default(),
             findings: Findings::default(),
             passings: Passings::default(),
             cuttings: Cuttings::default(),
@@ -160,6 +167,7 @@ impl<'m> Extractor<'m> {
             findings,
             passings: self.passings.finish(),
             cuttings: self.cuttings.finish(),
+            unplaced: self.placing.finish(self.machine),
             conduct: self.conduct,
         }
     }
@@ -184,6 +192,11 @@ impl<'m> Extractor<'m> {
         }
         self.at = *to;
         self.pose = self.machine.tool(to, &self.setup).on(&self.frame);
+        let (was, is) = self.placing.go();
+        if was | is != 0 && pace != Pace::Feed {
+            self.jump(event, &before.tip, (was, is));
+            return;
+        }
         let travel = Travel { from: &from, to, arc };
         if !self.machine.is_straight(&travel) {
             self.leave_curved(event, pace, &travel);
@@ -258,6 +271,7 @@ impl<'m> Extractor<'m> {
             line.tool_axis = self.pose.axis;
             line.force = InForce { tool: self.setup.tool, ..self.force };
             line.hold = self.hold;
+            line.unplaced = self.placing.now();
             self.note_feed(event, &mut line);
             line
         });
@@ -288,7 +302,7 @@ impl<'m> Extractor<'m> {
     }
 
     fn look_outside(&mut self) {
-        if let (false, Some(surface)) = (self.outside, &self.surface) {
+        if let (false, true, Some(surface)) = (self.outside, self.placing.now() == 0, &self.surface) {
             self.outside = surface.value(&self.pose.tip) > 0.0;
         }
     }
@@ -327,6 +341,7 @@ impl Sink for Extractor<'_> {
                 self.set_up(|setup| setup.offset = *offset);
                 self.force.by = *by;
             }
+            EventKind::Unplaced { axes } => self.placing.hear(self.machine, *axes),
             EventKind::Spindle { turning, speed } => {
                 // At S0 it stands.
                 self.force.turning = if *speed == Rpm(0.0) { Spindle::Off } else { *turning };

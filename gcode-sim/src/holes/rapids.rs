@@ -89,7 +89,7 @@ impl Extractor<'_> {
 
     /// Where a rapid begins before the tool has been outside the part, nobody knows; where it ends is known as far as the
     /// axes that haven't moved stand at machine zero. The height over the part is one that has moved.
-    fn check_first_rapid(
+    pub(super) fn check_first_rapid(
         &mut self,
         event: &Event<'_>,
         surface: &Surface,
@@ -178,7 +178,7 @@ impl Extractor<'_> {
 }
 
 /// Rounded; adding 0 to what is rounded turns −0 into 0.
-fn shown(p: &Point3<f64>) -> String {
+pub(super) fn shown(p: &Point3<f64>) -> String {
     let [x, y, z] = [p.x, p.y, p.z].map(|v| (v * 1000.0).round() / 1000.0 + 0.0);
     format!("x {x:.3} y {y:.3} z {z:.3} on the part")
 }

@@ -175,6 +175,7 @@ pub const PAGES: &[Page] = pages![
     "long-m-code"
     "lower-case"
     "m-code-lost"
+    "machine-position"
     "mirror-image"
     "no-angle"
     "no-axis"

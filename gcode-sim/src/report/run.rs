@@ -154,6 +154,7 @@ impl Sink for Moves {
             EventKind::Dwell { .. } => ("dwell", self.at, None),
             EventKind::Tool { .. }
             | EventKind::ToolLength { .. }
+            | EventKind::Unplaced { .. }
             | EventKind::Spindle { .. }
             | EventKind::Coolant { .. }
             | EventKind::Auxiliary { .. }

@@ -51,7 +51,8 @@ impl Ball {
                     HeadMessage::Other => Heard::Still,
                 }
             }
-            EventKind::Stop { .. }
+            EventKind::Unplaced { .. }
+            | EventKind::Stop { .. }
             | EventKind::Dwell { .. }
             | EventKind::Spindle { .. }
             | EventKind::Coolant { .. }

@@ -1,9 +1,10 @@
 //! Rapids on which a stylus' ball meets the part: no probe is asked there, and nothing gives.
 use crate::diag::Diagnostic;
 use crate::holes::per_block::PerBlock;
+use crate::holes::unplaced::Placing;
 use crate::machine::Machine;
 use crate::machine::path::Travel;
-use crate::motion::{Event, Sink};
+use crate::motion::{Event, EventKind, Position, Sink};
 use crate::part::surface::Surface;
 
 use super::ball::{Ball, By, Heard};
@@ -21,6 +22,7 @@ pub struct Rapids<'m> {
     ball: Ball,
     /// Whether the ball has been outside: a run begins at machine zero, where no ball is.
     outside: bool,
+    placing: Placing,
     findings: PerBlock<(), Diagnostic>,
 }
 
@@ -33,6 +35,7 @@ impl<'m> Rapids<'m> {
             radius,
             ball: Ball::default(),
             outside: false,
+            placing: Placing::default(),
             findings: PerBlock::default(),
         }
     }
@@ -56,9 +59,21 @@ impl<'m> Rapids<'m> {
         // A retract begins where a feed has pushed the ball in.
         let begins = pushed(0.0);
         self.outside |= begins <= 0.0;
-        if !self.outside || deepest <= begins.max(0.0) + STRAY {
-            return;
+        if self.outside && begins.max(0.0) + STRAY < deepest {
+            self.tell(event, deepest);
         }
+    }
+
+    /// A rapid from or to where nobody knows: only an end that is known is looked at.
+    fn jump(&mut self, event: &Event<'_>, to: &Position, is_known: bool) {
+        let tip = self.machine.forward(to, &self.ball.setup).tip;
+        let pushed = self.radius - self.surface.nearest(&tip).distance;
+        if is_known && self.outside && STRAY < pushed {
+            self.tell(event, pushed);
+        }
+    }
+
+    fn tell(&mut self, event: &Event<'_>, deepest: f64) {
         self.findings.count(event.block, (), || {
             let message =
                 format!("rapid with the stylus' ball {deepest:.3} mm into the part, which no probe hears");
@@ -71,8 +86,15 @@ impl<'m> Rapids<'m> {
 
 impl Sink for Rapids<'_> {
     fn event(&mut self, event: &Event<'_>) {
-        if let Heard::Gone { from, to, arc, by: By::Rapid } = self.ball.follow(self.machine, event) {
-            self.rapid(event, &Travel { from: &from, to, arc });
+        if let EventKind::Unplaced { axes } = event.kind {
+            self.placing.hear(self.machine, *axes);
+        }
+        let Heard::Gone { from, to, arc, by } = self.ball.follow(self.machine, event) else { return };
+        let (was, is) = self.placing.go();
+        match by {
+            By::Rapid if was | is != 0 => self.jump(event, to, is == 0),
+            By::Rapid => self.rapid(event, &Travel { from: &from, to, arc }),
+            By::Touch | By::Feed => {}
         }
     }
 }

@@ -78,6 +78,6 @@ pub fn verify(
     if let Some(pattern) = pattern {
         verdict.say_neighbours(neighbours::neighbours(&comparison, pattern));
     }
-    verdict.not_checked = not_checked::lines(&comparison, extracted, reference, machine);
+    verdict.not_checked = not_checked::lines(&comparison, extracted, reference, machine, locate);
     verdict
 }

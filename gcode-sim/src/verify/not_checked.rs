@@ -7,6 +7,7 @@ use crate::machine::{HeadKind, Machine};
 use crate::motion::Lengthening;
 use crate::part::conduct::Duty;
 use crate::part::reference::Reference;
+use crate::source::Span;
 use crate::units::Deg;
 
 /// What a pass says nothing about, in words: nobody should take it for checked.
@@ -15,6 +16,7 @@ pub(super) fn lines(
     extracted: &Extracted,
     reference: &Reference,
     machine: &Machine,
+    locate: &dyn Fn(Span) -> (String, u32),
 ) -> Vec<String> {
     let mut all = Vec::new();
     all.extend(diameters(comparison, machine));
@@ -24,6 +26,8 @@ pub(super) fn lines(
     if machine.head.kind == HeadKind::Free && along_feed {
         all.push("head angles: the head is not known, each axis is taken along its feed".to_owned());
     }
+    let unplaced = extracted.unplaced.as_ref().filter(|_| reference.surface.is_some());
+    all.extend(unplaced.map(|unplaced| unplaced.in_words(locate(unplaced.place.block))));
     if reference.surface.is_none() {
         all.push("rapid motion through the part: the reference has no surface, as a job file has".to_owned());
     }

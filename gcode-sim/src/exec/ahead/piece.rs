@@ -94,6 +94,7 @@ impl Ahead {
             | EventKind::Dwell { .. }
             | EventKind::Tool { .. }
             | EventKind::ToolLength { .. }
+            | EventKind::Unplaced { .. }
             | EventKind::Spindle { .. }
             | EventKind::Coolant { .. }
             | EventKind::Auxiliary { .. }

@@ -204,7 +204,7 @@ pub(super) fn verdict(
         holes: [],
         laws: laws(wanted, &along),
         findings: findings.iter().map(|finding| finding_of(finding, None, false, locate)).collect(),
-        not_checked: not_checked(wanted, ground),
+        not_checked: not_checked(wanted, ground, locate),
         along,
         along_pass: worst_pass + 1,
         nearest_allowed: 2.0 * wanted.chord_error,
@@ -213,7 +213,7 @@ pub(super) fn verdict(
 }
 
 /// What the verdict says nothing about.
-fn not_checked(wanted: &Flutes, ground: &Ground) -> Vec<String> {
+fn not_checked(wanted: &Flutes, ground: &Ground, locate: &dyn Fn(Span) -> (String, u32)) -> Vec<String> {
     let mut all = vec![
         "the wheel's width, form and body: it is one point, so whether it gouges a neighbouring tooth beside its contact \
          isn't known"
@@ -242,6 +242,7 @@ fn not_checked(wanted: &Flutes, ground: &Ground) -> Vec<String> {
              known"
         ));
     }
+    all.extend(ground.unplaced.as_ref().map(|unplaced| unplaced.in_words(locate(unplaced.place.block))));
     all
 }
 
