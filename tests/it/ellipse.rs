@@ -227,8 +227,8 @@ fn it_ends_clear_of_the_part_with_the_modes_it_found() {
         .program(8220)
         .unwrap()
         .text
-        .replace("N60 M30", "#500=#4001\n#501=#4003\n#502=#5001\n#503=#5002\nM30");
-    request.bytes = text.replace("G90 G94", "G91 G94").replace("B0.", "G90 B0.\nG91").into_bytes().into();
+        .replace("N70 M30", "#500=#4001\n#501=#4003\n#502=#5001\n#503=#5002\nM30");
+    request.bytes = text.replace("G90 G94", "G91 G94").replace("N50 B0.", "G90 B0.\nG91").into_bytes().into();
     let ran = run(&request, &mut Programs(&package), &mut ()).unwrap();
     assert!(matches!(ran.outcome, Outcome::End), "{:?}", ran.outcome);
     let value = |number: u32| ran.control.variable(number).unwrap().number();

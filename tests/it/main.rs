@@ -4,7 +4,9 @@
 mod accepted;
 mod alignment;
 mod alignment_slips;
+mod alignment_state;
 mod alignment_touched;
+mod alignment_zero;
 mod arithmetic;
 mod blocks;
 mod budget;

@@ -83,7 +83,7 @@ fn a_table_that_lies_flat_has_no_blocks() {
 fn what_no_table_can_be_set_to_is_refused() {
     let cases = [
         ("THEN #596=38.5", "THEN #597=1", Some(0.1), 3161),
-        ("THEN #596=38.5", "THEN #596=-1.", Some(0.1), 3161),
+        ("THEN #596=38.5", "THEN #596=-1.", Some(0.1), 3169),
         ("THEN #596=38.5", "THEN #596=45.1", Some(0.1), 3161),
         ("B200.", "", Some(0.1), 3162),
         ("C0.001", "C0.", Some(0.1), 3163),

@@ -4,6 +4,7 @@
 //! picture's data), and what must come out stands beside it as snapshots. One file per kind in this folder.
 #![expect(clippy::unwrap_used, clippy::disallowed_methods, reason = "tests read files and may panic")]
 
+pub mod alignment;
 pub mod browser;
 mod burr_picture;
 mod check;

@@ -2,7 +2,8 @@
 //! and B corrected by it.
 use gcode_sim::job::Alignment;
 
-use super::{Macro, Measurement, common_remarks};
+use super::writes::Writes;
+use super::{Macro, Measurement, common_remarks, start};
 use crate::families::control;
 use crate::nc::block::Block;
 use crate::nc::number::number;
@@ -25,9 +26,20 @@ pub(super) const MEASUREMENT: Measurement = Measurement {
     title: "CHORD E F OF A PART TO BE SET UP",
     write,
     macros: &[
-        Macro { number: MATCH, file: "O8201_chord.nc", text: include_str!("chord.nc") },
-        Macro { number: TOUCH, file: "O8202_candidates.nc", text: include_str!("candidates.nc") },
+        Macro {
+            number: MATCH,
+            file: "O8201_chord.nc",
+            text: include_str!("chord.nc"),
+            writes: Writes(&[(501, 560), (570, 578)]),
+        },
+        Macro {
+            number: TOUCH,
+            file: "O8202_candidates.nc",
+            text: include_str!("candidates.nc"),
+            writes: Writes(&[(501, 560), (578, 578)]),
+        },
     ],
+    writes: Writes(&[]),
 };
 
 fn write(job: &Alignment, text: &mut Text) {
@@ -50,14 +62,13 @@ fn write(job: &Alignment, text: &mut Text) {
         "POINTS ARE USED ONCE, #501-#560 AND #578 ARE VACANT AT THE STOP".to_owned(),
         format!("CALLS O{MATCH}, THE PAIR AND THE WORK OFFSET"),
         "AT THE STOP CYCLE START ADDS #573-#576, RESET KEEPS THEM OUT".to_owned(),
-        format!("ALARMS {k}061-{k}072 BY O{MATCH}, {k}121-{k}136 BY O{TOUCH}"),
+        format!("ALARMS {k}061-{k}076 BY O{MATCH}, {k}121-{k}137 BY O{TOUCH}"),
         "START WITH THE BALL CLEAR OF THE PART, ABOVE IT OR AT +X".to_owned(),
         format!("AFTERWARDS {rotary}0. TURNS THE CHORD INTO THE PLANE Z 0"),
     ] {
         text.remark(line);
     }
-    text.block(Block::of("G21"));
-    text.block(Block::of("G00 G17 G40 G49 G54 G80 G90 G94"));
+    start(job, text);
     for ((name, first, turn), x) in POINTS.into_iter().zip([&e, &f]) {
         text.block(touch(job, first, turn, x).comment(name));
     }
@@ -69,6 +80,7 @@ fn write(job: &Alignment, text: &mut Text) {
             .word('D', &e)
             .word('E', &f)
             .word('H', number(f64::from(chord.candidates)))
+            .word('T', number(chord.uneven))
             .word('U', number(f64::from(job.machine.rotary.sign)))
             .word('V', number(job.probe_search))
             .comment("CHORD"),

@@ -1,7 +1,8 @@
 //! The ellipse in the plane z = 0: an edge finder's ball is fed along it, and its reading tells what is left of all errors.
 use gcode_sim::job::Alignment;
 
-use super::{Macro, Measurement, common_remarks};
+use super::writes::Writes;
+use super::{Macro, Measurement, common_remarks, start};
 use crate::families::control;
 use crate::nc::block::Block;
 use crate::nc::number::number;
@@ -17,7 +18,13 @@ pub(super) const MEASUREMENT: Measurement = Measurement {
     main: MAIN,
     title: "ELLIPSE OF A PART THAT IS SET UP",
     write,
-    macros: &[Macro { number: PATH, file: "O8221_ellipse.nc", text: include_str!("ellipse.nc") }],
+    macros: &[Macro {
+        number: PATH,
+        file: "O8221_ellipse.nc",
+        text: include_str!("ellipse.nc"),
+        writes: Writes(&[]),
+    }],
+    writes: Writes(&[]),
 };
 
 fn write(job: &Alignment, text: &mut Text) {
@@ -28,15 +35,14 @@ fn write(job: &Alignment, text: &mut Text) {
     text.remark(format!("FROM X {from} TO X {to} OF THE SURFACE, Z 0., BALL R {}", number(job.probe_radius)));
     common_remarks(job, text);
     for line in [
-        format!("CALLS O{PATH}, ALARMS {k}101-{k}111"),
+        format!("CALLS O{PATH}, ALARMS {k}101-{k}112"),
         "READ THE DIAL ON THE WAY, ON A PART IN ITS TRUE PLACE IT SHOWS 0".to_owned(),
         "GCODE-SIM READINGS PREDICTS WHAT IT SHOWS ON A MISPLACED PART".to_owned(),
         "START WITH THE BALL CLEAR OF THE PART, ABOVE OR BESIDE IT".to_owned(),
     ] {
         text.remark(line);
     }
-    text.block(Block::of("G21"));
-    text.block(Block::of("G00 G17 G40 G49 G54 G80 G90 G94"));
+    start(job, text);
     text.block(Block::of("M05"));
     text.block(Block::of(format!("{rotary}0.")));
     text.block(

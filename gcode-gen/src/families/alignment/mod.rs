@@ -9,11 +9,14 @@ mod machine_file;
 mod resident;
 mod runout;
 mod sine;
+mod writes;
 
 use gcode_sim::job::Alignment;
 
 use self::resident::{Macro, Resident};
+use self::writes::Writes;
 use super::{Family, control};
+use crate::nc::block::Block;
 use crate::nc::program::Program as Text;
 use crate::package::{Package, Program};
 
@@ -34,6 +37,15 @@ struct Measurement {
     write: fn(&Alignment, &mut Text),
     /// What it calls.
     macros: &'static [Macro],
+    /// The common variables that the main program writes itself.
+    writes: Writes,
+}
+
+impl Measurement {
+    /// The common variables that the main program or a macro that it calls writes.
+    fn overwrites(&self) -> String {
+        Writes::all(self.macros.iter().map(|one| one.writes).chain([self.writes]))
+    }
 }
 
 /// Every measurement there is, in the order in which a part is set up: each needs what those before it have put right.
@@ -44,6 +56,7 @@ const ALL: &[Measurement] =
 pub fn emit(job: &Alignment) -> Package {
     let main = |measurement: &Measurement| {
         let mut text = Text::new(measurement.main, measurement.title, job.control.dialect);
+        text.remark(format!("OVERWRITES {}", measurement.overwrites()));
         (measurement.write)(job, &mut text);
         Program { number: measurement.main, text: text.finish() }
     };
@@ -56,6 +69,19 @@ pub fn emit(job: &Alignment) -> Package {
     }
 }
 
+/// The main programs in the order of the work, each with the common variables that it and its macros overwrite.
+pub fn overwritten() -> impl Iterator<Item = (u32, String)> {
+    ALL.iter().map(|measurement| (measurement.main, measurement.overwrites()))
+}
+
+/// The modes that all measurements begin in. A local shift of the rotary is cancelled, for its axis has another number on every
+/// machine, so that no macro can look for it; the macros refuse those in X, Y and Z.
+fn start(job: &Alignment, text: &mut Text) {
+    text.block(Block::of("G21"));
+    text.block(Block::of("G00 G17 G40 G49 G54 G80 G90 G94"));
+    text.block(Block::of(format!("G52 {}0.", job.machine.rotary.letter)));
+}
+
 /// What the heads of all main programs say.
 fn common_remarks(job: &Alignment, text: &mut Text) {
     let rotary = job.machine.rotary;
@@ -66,6 +92,7 @@ fn common_remarks(job: &Alignment, text: &mut Text) {
         format!("WORK ZERO G54 X Z ON THE AXIS OF {}, Y AT THE CENTRE OF THE", rotary.letter),
         "ELLIPSOID, FOR THE CENTRE OF THE STYLUS BALL. THE HEAD DOES NOT TURN".to_owned(),
         format!("ROTARY {} = {sign}AZIMUTH, FROM X TOWARDS Z", rotary.letter),
+        format!("G52 OF {} IS CANCELLED, A SHIFT OF X Y Z BY G52 OR G92 IS AN ALARM", rotary.letter),
     ] {
         text.remark(line);
     }

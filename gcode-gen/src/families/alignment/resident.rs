@@ -3,6 +3,7 @@ use gcode_sim::control::{Dialect, Increment};
 use gcode_sim::job::Alignment;
 
 use super::ALL;
+use super::writes::Writes;
 use crate::families::control::alarm_thousands;
 use crate::families::resident::fill;
 use crate::nc::number::number;
@@ -15,6 +16,7 @@ pub(super) struct Macro {
     /// Its file's name in `macros/`.
     pub(super) file: &'static str,
     pub(super) text: &'static str,
+    pub(super) writes: Writes,
 }
 
 /// What the macros depend on. Everything else is an argument, so that one copy in a control serves all jobs.
@@ -38,6 +40,14 @@ impl Resident {
         macros().map(|one| Program { number: one.number, text: self.fill(one) }).collect()
     }
 
+    /// The external offset of axis 1 + #12, taken off. On a Haas #5201 is the shift by G52 itself, which has to stay in.
+    fn external(&self) -> &'static str {
+        match self.dialect {
+            Dialect::HaasNgc => "",
+            Dialect::Fanuc31i | Dialect::Fanuc0iF => "-#[5201+#12]",
+        }
+    }
+
     fn fill(&self, one: &Macro) -> String {
         let marks = [
             ("{name}", name(one.number, self.dialect)),
@@ -47,6 +57,8 @@ impl Resident {
             // Half an increment in x and y each is 0.707 of one.
             ("{rounding}", number(0.75 * self.increment.size())),
             ("{per_unit}", number(self.increment.per_unit())),
+            ("{external}", self.external().to_owned()),
+            ("{writes}", one.writes.remark()),
         ];
         fill(one.text, &marks)
     }

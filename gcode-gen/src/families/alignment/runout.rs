@@ -2,7 +2,8 @@
 //! control. After the operator's correction a second pass shows what remains.
 use gcode_sim::job::Alignment;
 
-use super::{Macro, Measurement, common_remarks};
+use super::writes::Writes;
+use super::{Macro, Measurement, common_remarks, start};
 use crate::families::control;
 use crate::nc::block::Block;
 use crate::nc::number::number;
@@ -18,7 +19,13 @@ pub(super) const MEASUREMENT: Measurement = Measurement {
     main: MAIN,
     title: "RUN-OUT OF A PART TO BE SET UP",
     write,
-    macros: &[Macro { number: FIT, file: "O8211_run_out.nc", text: include_str!("runout.nc") }],
+    macros: &[Macro {
+        number: FIT,
+        file: "O8211_run_out.nc",
+        text: include_str!("runout.nc"),
+        writes: Writes(&[(580, 585), (600, 699), (800, 931), (936, 946)]),
+    }],
+    writes: Writes(&[(585, 585), (590, 595)]),
 };
 
 fn write(job: &Alignment, text: &mut Text) {
@@ -40,16 +47,15 @@ fn write(job: &Alignment, text: &mut Text) {
         "#590-#595 THE SAME OF THE FIRST PASS".to_owned(),
         "AT THE STOP THE PART IS MOVED BACK BY #580 #581 AND SHIMMED BACK BY".to_owned(),
         "#582, THE TILT #583 IS LEFT TO O8230. CYCLE START MEASURES AGAIN".to_owned(),
-        format!("ALARMS {k}141-{k}160 BY O{FIT}"),
+        format!("ALARMS {k}138, {k}141-{k}160 BY O{FIT}"),
         format!("START WITH THE BALL CLEAR OF THE PART, ABOVE IT OR AT +X, {rotary} FREE"),
         "TO TURN".to_owned(),
     ] {
         text.remark(line);
     }
-    text.block(Block::of("G21"));
-    text.block(Block::of("G00 G17 G40 G49 G54 G80 G90 G94"));
-    // What stands there is of the part before.
-    for number in 590..596 {
+    start(job, text);
+    // What stands there is of the part before; first what says of each pass that it is whole.
+    for number in [585].into_iter().chain((590..596).rev()) {
         text.block(Block::of(format!("#{number}=#0")));
     }
     text.block(pass(job).comment("FIRST PASS"));

@@ -6,6 +6,7 @@ use gcode_sim::gauge::{self, SineSetting};
 use gcode_sim::job::Alignment;
 use gcode_sim::units::{Deg, Mm};
 
+use super::writes::Writes;
 use super::{Macro, Measurement};
 use crate::families::control;
 use crate::nc::block::Block;
@@ -22,7 +23,13 @@ pub(super) const MEASUREMENT: Measurement = Measurement {
     main: MAIN,
     title: "SINE TABLE OF A PART TO BE SET UP",
     write,
-    macros: &[Macro { number: TABLE, file: "O8231_sine_table.nc", text: include_str!("sine.nc") }],
+    macros: &[Macro {
+        number: TABLE,
+        file: "O8231_sine_table.nc",
+        text: include_str!("sine.nc"),
+        writes: Writes(&[(586, 589)]),
+    }],
+    writes: Writes(&[(583, 583), (596, 596)]),
 };
 
 fn write(job: &Alignment, text: &mut Text) {
@@ -45,12 +52,15 @@ fn write(job: &Alignment, text: &mut Text) {
         "THE FIRST STOP ASKS WHETHER IT IS RIGHT, IF NOT RESET AND WRITE IT".to_owned(),
         "CYCLE START AT THE SECOND SAYS THAT THE TABLE IS SET, #596 IS CHANGED".to_owned(),
         "AND #583 IS USED UP. THEN O8210 AGAIN".to_owned(),
+        "BELOW 0 #596 SAYS THAT RESET CAME WHILE IT WAS CHANGED. WRITE THE".to_owned(),
+        "ANGLE OF THE BLOCKS TO IT".to_owned(),
         format!("CONTROL {}", control::remark(job.control)),
-        format!("CALLS O{TABLE}, ALARMS {k}161-{k}168. NOTHING MOVES"),
+        format!("CALLS O{TABLE}, ALARMS {k}161-{k}169. NOTHING MOVES"),
     ] {
         text.remark(line);
     }
     text.block(Block::of(format!("IF[#596 EQ #0]THEN #596={phi}")));
+    text.block(Block::of("IF[#596 LT 0]THEN #3000=169(SET #596, PHI OF THE TABLE)"));
     text.block(
         Block::call(TABLE)
             .word('A', "#596")
@@ -61,8 +71,10 @@ fn write(job: &Alignment, text: &mut Text) {
     );
     text.block(Block::of("#3006=1(TABLE STANDS AT PHI #596)"));
     text.block(Block::of("#3006=1(SET BLOCKS TO H #587)"));
-    text.block(Block::of(format!("#596=ASIN[#587/{length}]")));
+    // Whatever RESET leaves is the state before, the one behind, or one that the next start refuses.
+    text.block(Block::of("#596=-1."));
     text.block(Block::of("#583=#0"));
+    text.block(Block::of(format!("#596=ASIN[#587/{length}]")));
     text.block(Block::of("M30"));
 }
 

@@ -96,6 +96,10 @@ struct FileChord {
     /// How many there are round each.
     #[schemars(range(min = 1, max = 10))]
     candidates: Spanned<i64>,
+    /// How much higher over the model the part may stand at one of E and F than at the other, mm, where they were touched
+    /// [default: 0.05].
+    #[schemars(range(min = 0.001, max = 100.0))]
+    uneven: Option<Spanned<f64>>,
 }
 
 /// An indicator against the part while the table turns.
@@ -213,6 +217,12 @@ impl FileChord {
             candidates: u32::try_from(candidates).ok().filter(|n| (1..=10).contains(n)).ok_or_else(|| {
                 reader.error(&self.candidates, format!("key 'chord.candidates' is {candidates}: 1 to 10"))
             })?,
+            uneven: match &self.uneven {
+                Some(value) => {
+                    reader.number("chord.uneven", value, "0.001 to 100 mm", within(0.001, 100.0))?
+                }
+                None => 0.05,
+            },
         })
     }
 }
@@ -359,6 +369,7 @@ angles = [-25.0, 25.0, 11]
                  and L*sin(phi) is 353.553 mm",
             ),
             ("candidates = 10", "candidates = 11", "line 21: key 'chord.candidates' is 11: 1 to 10"),
+            ("[runout]", "uneven = 0\n[runout]", "line 22: key 'chord.uneven' is 0: 0.001 to 100 mm"),
             (
                 "e_radius = 812.4",
                 "e_radius = 318",

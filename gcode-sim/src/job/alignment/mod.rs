@@ -48,6 +48,8 @@ pub struct Chord {
     /// Radius of the circle on which the candidates lie round each.
     pub circle: f64,
     pub candidates: u32,
+    /// How much higher over the model the part may stand at one end than at the other, of points that were touched.
+    pub uneven: f64,
 }
 
 /// The ellipse in the plane z = 0 along which the ball of an edge finder is fed.
