@@ -64,7 +64,12 @@ impl Axes {
     }
 
     pub fn iter(&self) -> impl Iterator<Item = (Axis, char)> + '_ {
-        self.letters.iter().map(|l| char::from(*l)).enumerate()
+        self.letters().map(|(axis, letter)| (axis, char::from(letter)))
+    }
+
+    /// The axes with the letters of their addresses.
+    pub fn letters(&self) -> impl Iterator<Item = (Axis, u8)> + '_ {
+        self.letters.iter().copied().enumerate()
     }
 }
 
@@ -76,8 +81,16 @@ impl Default for Axes {
 }
 
 /// One number per axis: mm for those that slide, degrees for those that turn.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Position(pub [f64; MAX_AXES]);
+
+impl PartialEq for Position {
+    /// All places are looked at, whichever differs: several are compared at a time.
+    #[inline]
+    fn eq(&self, other: &Self) -> bool {
+        self.0.iter().zip(&other.0).fold(true, |same, (one, other)| same & (one == other))
+    }
+}
 
 impl std::ops::Index<Axis> for Position {
     type Output = f64;

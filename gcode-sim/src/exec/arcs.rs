@@ -91,7 +91,7 @@ impl Core {
         }
         let mut middle = state.programmed;
         (middle[plane.0], middle[plane.1]) = centre;
-        let middle = self.to_machine(state, middle);
+        let middle = self.to_machine(state, &middle);
         let centre = (middle[plane.0], middle[plane.1]);
         let (radius, sweep) = if round {
             let factor = state.transform.scaling.as_ref().map_or(1.0, |s| s.factor[plane.0].abs());

@@ -14,9 +14,9 @@ use super::eval::Checked;
 use super::notes::Note;
 use super::plan::Plan;
 use super::state::State;
-use super::words::Given;
+use super::words::{Given, letters};
 use crate::alarm::Alarm;
-use crate::program::modes::CutterSide;
+use crate::program::modes::{CutterSide, Polar};
 use crate::program::{Calling, Program, Words};
 use crate::source::Span;
 
@@ -66,6 +66,7 @@ impl Core {
             self.plan_calling_word(program, words, &calling, plan)?;
         }
         if plan.moved {
+            plan.plain = self.moves_plainly(given, &plan.state);
             plan.state.ended = None;
             self.check_modal_call(&plan.flow, span)?;
         }
@@ -88,10 +89,32 @@ impl Core {
             || state.modal.cutter != CutterSide::Off
     }
 
+    /// Whether a block that moves changes no more than where the program stands, group 01, F, S and N.
+    #[inline(always)]
+    fn moves_plainly(&self, given: &Given, state: &State) -> bool {
+        let before = &*self.state;
+        let alone = !given.has_of(!(self.settings.axes.mask() | letters(b"FS")))
+            && !given.has_more_than_moves()
+            && given.m_count == 0;
+        alone
+            && before.modal.cycle.is_none()
+            && before.ended.is_none()
+            && state.modal.cutter == CutterSide::Off
+            && state.modal.polar == Polar::Off
+    }
+
     /// What nothing has read may still mean something to a control: it isn't passed over in silence. In a block
     /// without axes such words go to the machine builder's logic with his M code.
+    #[inline(always)]
     fn check_unread(&self, given: &Given, plan: &mut Plan) -> Checked<()> {
-        let Some((letter, span)) = given.unread() else { return Ok(()) };
+        match given.unread() {
+            Some(unread) => self.pass_on(unread, given, plan),
+            None => Ok(()),
+        }
+    }
+
+    #[inline(never)]
+    fn pass_on(&self, (letter, span): (char, Span), given: &Given, plan: &mut Plan) -> Checked<()> {
         match plan.passed_on.last() {
             Some(code) if !self.names_axis(given) => {
                 plan.notes.push(Note::WordsPassedOn { code: *code, letter });

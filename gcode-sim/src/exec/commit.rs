@@ -4,7 +4,7 @@ use super::plan::{Plan, Write};
 use super::vars::Kind;
 use super::{Core, STOPS, Stop};
 use crate::alarm::Alarm;
-use crate::motion::{Event, EventKind, Sink};
+use crate::motion::{Event, EventKind, Sink, StopKind};
 use crate::units::Seconds;
 
 impl Core {
@@ -12,6 +12,7 @@ impl Core {
     pub(super) fn commit<S: Sink>(&mut self, plan: &mut Plan, sink: &mut S) {
         // What was the state stays in the plan until its next block begins.
         std::mem::swap(&mut self.state, &mut plan.state);
+        plan.follows = plan.plain;
         self.note_work(plan.state.modal.work, plan.moved);
         let before = plan.state.unplaced;
         // What a cycle does along its axis it tells itself.
@@ -82,13 +83,19 @@ impl Core {
     }
 
     /// Counts what is told.
+    #[inline]
     pub(super) fn count(&mut self, kind: &EventKind, seconds: f64) {
         self.seconds += seconds;
         self.moves += u64::from(kind.end().is_some());
-        if let EventKind::Stop { kind, text, named } = kind
-            && self.stops.len() < STOPS
-        {
-            self.stops.push(Stop { kind: *kind, text: text.clone(), named: named.clone() });
+        if let EventKind::Stop { kind, text, named } = kind {
+            self.count_stop(*kind, text, named);
+        }
+    }
+
+    #[inline(never)]
+    fn count_stop(&mut self, kind: StopKind, text: &str, named: &[(u32, f64)]) {
+        if self.stops.len() < STOPS {
+            self.stops.push(Stop { kind, text: text.to_owned(), named: named.to_vec() });
         }
     }
 

@@ -117,10 +117,10 @@ impl Core {
         plan.state.programmed = drill.last(self);
         if repeats == 0 {
             // Positions only.
-            let mut to = self.to_machine(&plan.state, plan.state.programmed);
+            let mut to = self.to_machine(&plan.state, &plan.state.programmed);
             to[axis] = from.machine[axis];
             plan.state.machine = from.machine;
-            self.rapid(plan, to);
+            self.rapid(plan, &to);
             return Ok(());
         }
         let data = &plan.state.drilling;
@@ -131,7 +131,7 @@ impl Core {
         };
         plan.state.set_unplaced(axis, unplaced);
         plan.state.programmed[axis] = level;
-        plan.state.machine = self.to_machine(&plan.state, plan.state.programmed);
+        plan.state.machine = self.to_machine(&plan.state, &plan.state.programmed);
         plan.drill = Some(drill);
         Ok(())
     }

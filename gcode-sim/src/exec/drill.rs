@@ -50,7 +50,7 @@ impl Core {
             let level = |value: f64| {
                 let mut point = hole;
                 point[drill.axis] = value;
-                self.to_machine(state, point)
+                self.to_machine(state, &point)
             };
             let mut over = level(r);
             over[drill.axis] = way.at[drill.axis];

@@ -33,8 +33,6 @@ impl Modal {
     /// Puts a modal code in force. One-shot codes and those with words of their own are the block's business.
     pub(super) fn apply(&mut self, row: &Row) {
         match row.effect {
-            // A code of group 01 ends a drilling cycle (operator's manual, canned cycle for drilling).
-            Effect::Motion(motion) => (self.motion, self.cycle) = (motion, None),
             Effect::Plane(plane) => self.plane = plane,
             Effect::Distance(distance) => self.distance = distance,
             Effect::StrokeCheck(check) => self.stroke_check = check,
@@ -52,7 +50,9 @@ impl Modal {
             Effect::Polar(polar) => self.polar = polar,
             Effect::Mirror(mirror) => self.mirror = mirror,
             Effect::NumberedWork(number) => self.work = WorkSystem::Additional(number),
-            Effect::AdditionalWork
+            // See [`State::move_by`](super::State).
+            Effect::Motion(_)
+            | Effect::AdditionalWork
             | Effect::OneShot(_)
             | Effect::NoEffect
             | Effect::LookAhead

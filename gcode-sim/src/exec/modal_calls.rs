@@ -27,8 +27,15 @@ impl Core {
     }
 
     /// After a block with motion: the last modal call that this program's moves can trigger.
+    #[inline]
     pub(super) fn call_after_move(&mut self, block: Span) {
-        let Some(index) = self.waiting_call() else { return };
+        if let Some(index) = self.waiting_call() {
+            self.make_modal_call(index, block);
+        }
+    }
+
+    #[inline(never)]
+    fn make_modal_call(&mut self, index: usize, block: Span) {
         let ModalCall { program, repeats, locals, by_code, .. } = self.modal_calls[index].clone();
         let frame = Frame {
             modal: index,
@@ -39,10 +46,11 @@ impl Core {
     }
 
     /// What comes first after a move is settled where its block does nothing else with the flow of the program.
+    #[inline(always)]
     pub(super) fn check_modal_call(&self, flow: &Flow, block: Span) -> Checked<()> {
         let what = match flow {
-            Flow::Next | Flow::Return { .. } => return Ok(()),
             _ if self.waiting_call().is_none() => return Ok(()),
+            Flow::Next | Flow::Return { .. } => return Ok(()),
             Flow::Call(_) => "a modal macro call after a block that moves and calls as well",
             Flow::CancelModal => "a modal macro call after a block that moves and has G67",
             Flow::End => "a modal macro call after a block that moves and ends the program",
@@ -52,12 +60,17 @@ impl Core {
     }
 
     /// The modal call that a block of this program can trigger.
+    #[inline]
     fn waiting_call(&self) -> Option<usize> {
+        if self.modal_calls.is_empty() {
+            return None;
+        }
         self.frame().modal.min(self.modal_calls.len()).checked_sub(1)
     }
 
     /// Under G66.1 a block of words is not executed: its words, G L N P among them, are the macro's arguments.
     /// M99 and G67 stay what they are.
+    #[inline]
     pub(super) fn call_by_block(
         &mut self,
         program: &Program,
@@ -65,9 +78,20 @@ impl Core {
         number: Option<u32>,
         block: Span,
     ) -> Checked<bool> {
-        if self.modal_calls.is_empty() || !self.waiting_call().is_some_and(|i| self.modal_calls[i].every) {
+        if !self.waiting_call().is_some_and(|i| self.modal_calls[i].every) {
             return Ok(false);
         }
+        self.call_by_words(program, words, number, block)
+    }
+
+    #[inline(never)]
+    fn call_by_words(
+        &mut self,
+        program: &Program,
+        words: &Words,
+        number: Option<u32>,
+        block: Span,
+    ) -> Checked<bool> {
         match &words.call {
             Some(call) if matches!(call.kind, Calling::Cancel | Calling::Return) => return Ok(false),
             Some(call) => {

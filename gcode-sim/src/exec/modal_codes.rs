@@ -24,12 +24,32 @@ pub(super) enum Act {
 
 impl Core {
     /// 1. Modal G codes in the order they stand in; the answer is what uses the axis words instead of a move.
+    #[inline]
     pub(super) fn modal_codes(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<Option<Act>> {
+        if given.has_more_than_moves() {
+            return self.codes_in_force(given, plan, span);
+        }
+        for row in given.g_codes() {
+            if let Effect::Motion(motion) = row.effect {
+                plan.state.move_by(motion);
+            }
+        }
+        Ok(None)
+    }
+
+    /// As [`Core::modal_codes`], of a block with other codes than those of group 01.
+    #[inline(never)]
+    fn codes_in_force(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<Option<Act>> {
         let state = &mut plan.state;
         let before = state.modal;
         let mut act = None;
         let mut latched = before.cycle.is_some();
         for row in given.g_codes() {
+            if let Effect::Motion(motion) = row.effect {
+                state.move_by(motion);
+                latched = false;
+                continue;
+            }
             let new = at(act_of(row, given, state.modal.cutter), span)?;
             if new.is_some() && act.is_some() && new != act {
                 let what = "several one-shot G codes in one block".into();
@@ -37,14 +57,10 @@ impl Core {
             }
             act = new.or(act);
             state.modal.apply(row);
-            if matches!(row.effect, Effect::Motion(_) | Effect::Cycle(None)) {
+            if row.effect == Effect::Cycle(None) {
                 state.drilling = Drilling::default();
                 latched = false;
             }
-        }
-        // Those of group 01 change nothing of what follows, and most blocks have no others.
-        if !given.has_more_than_moves() {
-            return Ok(act);
         }
         let modal = state.modal;
         if modal.plane != before.plane && self.ahead.is_beside() {

@@ -3,21 +3,28 @@ use super::Core;
 use super::eval::{Checked, at};
 use super::notes::Note;
 use super::plan::Plan;
+use super::travel::Goal;
 use super::words::{Given, letters};
 use crate::alarm::Alarm;
-use crate::motion::EventKind;
+use crate::motion::{EventKind, Position};
 use crate::program::codes::{Effect, Row};
 use crate::program::modes::{CutterSide, Length, Motion};
 use crate::source::Span;
 
 impl Core {
     /// 3. G43, G44, G49 and a new H; whether the offset changed.
+    #[inline]
     pub(super) fn length(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<bool> {
         let commanded =
             given.has(b'H') || given.has_code_beyond_moves(|effect| matches!(effect, Effect::Length(_)));
         if !commanded || (plan.state.modal.length == Length::Off && self.state.modal.length == Length::Off) {
             return Ok(false);
         }
+        self.lengthen(given, plan, span)
+    }
+
+    #[inline(never)]
+    fn lengthen(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<bool> {
         let on = |row: &&Row| matches!(row.effect, Effect::Length(Length::Plus | Length::Minus));
         if let Some(row) = given.g_codes().find(on)
             && plan.state.codes.h == 0
@@ -69,20 +76,23 @@ impl Core {
             let what = format!("{} beside a straight move", char::from(letter));
             return Err(Alarm::NotSimulated { what }.at(given.span(letter)));
         }
-        let goal = self.goal(given, &mut plan.state)?;
+        let (mut programmed, mut machine) = (plan.state.programmed, Position::default());
+        self.move_on(given, &mut plan.state, &mut programmed, &mut machine)?;
         if motion == Motion::Thread && given.has_corner() {
             return Err(Alarm::CornerInThread.at(span));
         }
-        if motion != Motion::Rapid {
+        if motion != Motion::Rapid && given.has_corner() {
             plan.corner = self.corner_word(given, &plan.state)?;
         }
         match motion {
-            Motion::Rapid => self.rapid(plan, goal.machine),
-            Motion::Thread => self.thread(plan, goal.machine, given, span)?,
-            Motion::Linear => at(self.feed(plan, goal.machine, given), span)?,
-            Motion::Clockwise | Motion::Counterclockwise => self.arc(plan, given, &goal, span)?,
+            Motion::Rapid => self.rapid(plan, &machine),
+            Motion::Thread => self.thread(plan, machine, given, span)?,
+            Motion::Linear => at(self.feed(plan, &machine, given), span)?,
+            Motion::Clockwise | Motion::Counterclockwise => {
+                self.arc(plan, given, &Goal { programmed, machine }, span)?;
+            }
         }
-        plan.state.programmed = goal.programmed;
+        plan.state.programmed = programmed;
         plan.moved = true;
         Ok(())
     }
@@ -96,11 +106,11 @@ impl Core {
             self.recompute(&mut plan.state);
             return Ok(());
         }
-        let to = self.to_machine(&plan.state, plan.state.programmed);
+        let to = self.to_machine(&plan.state, &plan.state.programmed);
         if plan.state.modal.motion == Motion::Rapid {
-            self.rapid(plan, to);
+            self.rapid(plan, &to);
             return Ok(());
         }
-        at(self.feed(plan, to, given), span)
+        at(self.feed(plan, &to, given), span)
     }
 }

@@ -102,10 +102,23 @@ impl Core {
     }
 
     /// A programmed point in machine coordinates, tool length included.
-    pub(super) fn to_machine(&self, state: &State, point: Position) -> Position {
-        let work = state.transform.forward(point);
-        let (system, grid) = (self.offsets.system(state.modal.work), self.grid());
+    pub(super) fn to_machine(&self, state: &State, point: &Position) -> Position {
         let mut machine = Position::default();
+        self.put_on_machine(state, point, &mut machine);
+        machine
+    }
+
+    /// As [`Core::to_machine`], into a place of the caller's.
+    #[inline(always)]
+    pub(super) fn put_on_machine(&self, state: &State, point: &Position, machine: &mut Position) {
+        let transformed;
+        let work = if state.transform.is_none() {
+            point
+        } else {
+            transformed = state.transform.forward(*point);
+            &transformed
+        };
+        let (system, grid) = (self.offsets.system(state.modal.work), self.grid());
         // All places alike, those without an axis too: they are computed several at a time.
         for axis in 0..MAX_AXES {
             let zero = self.offsets.zero(system, state, axis);
@@ -116,7 +129,6 @@ impl Core {
             let from = state.machine[axis] - self.zero(state, axis) - state.length[axis];
             machine[axis] = self.clean(state.machine[axis] + shorter_way(from, work[axis]));
         }
-        machine
     }
 
     /// The tool in the work coordinate system, without the length offset.

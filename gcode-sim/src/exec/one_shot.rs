@@ -147,8 +147,8 @@ impl Core {
                 before[axis] = self.clean(before[axis] - self.settings.overrun[axis]);
             }
         }
-        self.rapid(plan, before);
-        self.rapid(plan, goal.machine);
+        self.rapid(plan, &before);
+        self.rapid(plan, &goal.machine);
         plan.state.programmed = goal.programmed;
         plan.moved = self.names_axis(given);
         Ok(())
@@ -174,7 +174,7 @@ impl Core {
             }
         }
         self.leave_work(plan, named);
-        self.rapid(plan, to);
+        self.rapid(plan, &to);
         self.recompute(&mut plan.state);
         plan.moved = true;
         Ok(())

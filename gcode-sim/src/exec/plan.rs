@@ -17,6 +17,10 @@ use crate::units::MmPerMin;
 #[derive(Debug, Default)]
 pub(super) struct Plan {
     pub(super) state: Box<State>,
+    /// The block is a plain move: of the state it changes what [`State::follow`] takes over.
+    pub(super) plain: bool,
+    /// What this plan leaves behind differs from the control's state by a plain move.
+    pub(super) follows: bool,
     /// What the machine is told, with the seconds it takes.
     pub(super) events: Vec<(EventKind, f64)>,
     /// G31: its motion is planned to the end and may stop before.
@@ -136,6 +140,8 @@ impl Plan {
     pub(super) fn begin(&mut self, state: &State) {
         let Self {
             state: own,
+            plain,
+            follows,
             events,
             probing,
             after,
@@ -151,7 +157,12 @@ impl Plan {
             notes,
             flow,
         } = self;
-        **own = *state;
+        if std::mem::take(follows) {
+            own.follow(state);
+        } else {
+            **own = *state;
+        }
+        *plain = false;
         events.clear();
         (*probing, *drill, *corner) = (None, None, None);
         after.clear();

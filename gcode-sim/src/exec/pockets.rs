@@ -41,7 +41,7 @@ impl Core {
         }
         for _ in 0..passes {
             let goal = self.goal(given, &mut plan.state)?;
-            at(self.feed(plan, goal.machine, given), span)?;
+            at(self.feed(plan, &goal.machine, given), span)?;
             plan.state.programmed = goal.programmed;
             for radius in &radii {
                 let sense = if clockwise { -1.0 } else { 1.0 };

@@ -10,6 +10,14 @@ use crate::program::modes::{FeedMode, Unit};
 use crate::syntax::ast::Decimal;
 use crate::units::nearest;
 
+/// What [`Core::measure`] finds out once for all axes of a block.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Measure {
+    /// Of the least increment in mm and degrees; inches have one more.
+    decimals: usize,
+    inch: bool,
+}
+
 /// Powers of ten by their exponent.
 pub(super) const POWERS: [f64; 8] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7];
 
@@ -38,7 +46,8 @@ impl Core {
                     Some(places) => usize::from(places),
                 };
                 let magnitude = if places <= decimals {
-                    digits as f64 * POWERS[decimals - places]
+                    // Signed numbers become doubles in one step; no word has as many digits.
+                    digits.min(i64::MAX as u64) as i64 as f64 * POWERS[decimals - places]
                 } else {
                     let unit = 10_u64.saturating_pow((places - decimals) as u32);
                     let half = if self.settings.unsure.round_literals { unit / 2 } else { 0 };
@@ -52,13 +61,26 @@ impl Core {
     }
 
     /// A length in mm or an angle in degrees, a multiple of the increment of its address.
-    #[inline]
     pub(super) fn dimension(&self, given: &Given, letter: u8, state: &State) -> Checked<Option<f64>> {
         let Some((raw, span)) = given.get(letter) else { return Ok(None) };
-        let decimals = self.decimals(letter, state.modal.unit);
-        let value = at(self.increments(raw, decimals), span)? / POWERS[decimals];
-        let inch = state.modal.unit == Unit::Inch && !turns(letter);
-        Ok(Some(if inch { self.clean(value * 25.4) } else { value }))
+        at(self.dimension_of(raw, letter, self.measure(state.modal.unit)), span).map(Some)
+    }
+
+    /// How the numbers of axis words are read while a unit is in force.
+    #[inline]
+    pub(super) fn measure(&self, unit: Unit) -> Measure {
+        Measure { decimals: self.decimals(b'A', unit), inch: unit == Unit::Inch }
+    }
+
+    /// As [`Core::dimension`], of a word's value.
+    #[inline(always)]
+    pub(super) fn dimension_of(&self, raw: Raw, letter: u8, measure: Measure) -> Result<f64, Alarm> {
+        let Measure { decimals, inch } = measure;
+        if inch && !turns(letter) {
+            let inches = self.increments(raw, decimals + 1)? / POWERS[decimals + 1];
+            return Ok(self.clean(inches * 25.4));
+        }
+        Ok(self.increments(raw, decimals)? / POWERS[decimals])
     }
 
     /// An angle at an address that is a length elsewhere: R of G68.

@@ -12,7 +12,7 @@ use crate::source::Span;
 impl Core {
     pub(super) fn check_reference(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<()> {
         let goal = self.goal(given, &mut plan.state)?;
-        self.rapid(plan, goal.machine);
+        self.rapid(plan, &goal.machine);
         plan.state.programmed = goal.programmed;
         for (axis, letter) in self.settings.axes.iter() {
             if given.has(letter as u8) && self.rolled(axis, plan.state.machine[axis]) != 0.0 {
@@ -30,7 +30,7 @@ impl Core {
             plan.notes.push(Note::NoAxis { code });
         }
         let goal = self.goal(given, &mut plan.state)?;
-        self.rapid(plan, goal.machine);
+        self.rapid(plan, &goal.machine);
         let mut home = plan.state.machine;
         let mut named = 0;
         for (axis, letter) in self.settings.axes.iter() {
@@ -42,7 +42,7 @@ impl Core {
             }
         }
         self.leave_work(plan, named);
-        self.rapid(plan, home);
+        self.rapid(plan, &home);
         // The length offset is cancelled where its axis reaches the reference position.
         let z = self.settings.axes.find(b'Z');
         if z.is_some() && given.has(b'Z') && plan.state.modal.length != Length::Off {
@@ -60,7 +60,7 @@ impl Core {
             home[axis] = self.turned_to(axis, home[axis], 0.0);
         }
         self.leave_work(plan, self.settings.axes.iter().fold(0, |axes, (axis, _)| axes | 1 << axis));
-        self.rapid(plan, home);
+        self.rapid(plan, &home);
         end_length(plan);
         self.recompute(&mut plan.state);
         plan.moved = true;
@@ -79,10 +79,10 @@ impl Core {
             over[axis] = self.clean(plan.state.intermediate[axis] + self.zero(&plan.state, axis));
             plan.state.unplaced &= !(1 << axis);
         }
-        self.rapid(plan, over);
+        self.rapid(plan, &over);
         self.recompute(&mut plan.state);
         let goal = self.goal(given, &mut plan.state)?;
-        self.rapid(plan, goal.machine);
+        self.rapid(plan, &goal.machine);
         plan.state.programmed = goal.programmed;
         plan.moved = true;
         Ok(())

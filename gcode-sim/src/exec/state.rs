@@ -3,7 +3,7 @@
 use super::modal::Modal;
 use super::transform::Transform;
 use crate::motion::{Axis, Lengthening, Position, Spindle};
-use crate::program::modes::Length;
+use crate::program::modes::{Length, Motion};
 
 /// The control between two blocks. Lengths in mm, whatever G20 says.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -48,6 +48,27 @@ impl State {
     /// Notes whether the place of an axis on the part is known.
     pub(super) fn set_unplaced(&mut self, axis: Axis, unplaced: bool) {
         self.unplaced = self.unplaced & !(1 << axis) | u8::from(unplaced) << axis;
+    }
+
+    /// Becomes `other`, from which it differs in nothing but what a plain move changes and #5201… write.
+    #[inline]
+    pub(super) fn follow(&mut self, other: &Self) {
+        self.modal = other.modal;
+        self.programmed = other.programmed;
+        self.machine = other.machine;
+        self.local = other.local;
+        self.codes = other.codes;
+        self.unplaced = other.unplaced;
+        debug_assert_eq!(self, other, "a plain move changes nothing else");
+    }
+
+    /// Puts a code of group 01 in force, which ends a drilling cycle (operator's manual, canned cycle for drilling).
+    #[inline]
+    pub(super) fn move_by(&mut self, motion: Motion) {
+        self.modal.motion = motion;
+        if self.modal.cycle.take().is_some() {
+            self.drilling = Drilling::default();
+        }
     }
 
     /// What the tool length offset comes of.

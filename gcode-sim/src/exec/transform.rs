@@ -90,6 +90,7 @@ impl Turn {
 }
 
 impl Transform {
+    #[inline]
     pub fn is_none(&self) -> bool {
         self.mirrored == 0 && self.scaling.is_none() && self.rotation.is_none() && self.tilt.is_none()
     }

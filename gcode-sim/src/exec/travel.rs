@@ -1,6 +1,6 @@
 //! Straight moves: where a block's axis words lead, and how long the way takes.
 use super::Core;
-use super::eval::Checked;
+use super::eval::{Checked, at};
 use super::notes::Note;
 use super::plan::Plan;
 use super::state::{PolarPoint, State};
@@ -39,15 +39,31 @@ impl Core {
 
     /// The end point of the block's axis words, from where `state` stands.
     pub(super) fn goal(&self, given: &Given, state: &mut State) -> Checked<Goal> {
-        let mut programmed = state.programmed;
+        let (mut programmed, mut machine) = (state.programmed, Position::default());
+        self.move_on(given, state, &mut programmed, &mut machine)?;
+        Ok(Goal { programmed, machine })
+    }
+
+    /// Takes a programmed point to where the block's axis words lead, and finds out where that is on the machine.
+    #[inline(always)]
+    pub(super) fn move_on(
+        &self,
+        given: &Given,
+        state: &mut State,
+        programmed: &mut Position,
+        machine: &mut Position,
+    ) -> Checked<()> {
         let mut turned = [0.0; MAX_AXES];
-        for (axis, letter) in self.settings.axes.iter().filter(|(_, letter)| given.has(*letter as u8)) {
-            if state.modal.polar == Polar::On && self.in_plane(state, axis) {
+        let incremental = state.modal.distance == Distance::Incremental;
+        let polar = state.modal.polar == Polar::On;
+        let measure = self.measure(state.modal.unit);
+        for (axis, letter) in self.settings.axes.letters() {
+            if polar && self.in_plane(state, axis) {
                 continue;
             }
-            let Some(value) = self.dimension(given, letter as u8, state)? else { continue };
+            let Some((raw, span)) = given.get(letter) else { continue };
+            let value = at(self.dimension_of(raw, letter, measure), span)?;
             let from = programmed[axis];
-            let incremental = state.modal.distance == Distance::Incremental;
             if !incremental {
                 state.unplaced &= !(1 << axis);
             }
@@ -59,27 +75,42 @@ impl Core {
                 programmed[axis] = if incremental { self.clean(from + value) } else { value };
             }
         }
-        if state.modal.polar == Polar::On {
-            self.polar(given, state, &mut programmed)?;
+        if polar {
+            self.polar(given, state, programmed)?;
         }
-        let stays = |(axis, letter): (Axis, char)| {
-            !given.has(letter as u8) && self.move_end(state)[axis] != state.programmed[axis]
-        };
-        let absolute = state.modal.distance == Distance::Absolute;
-        if state.ended.is_some() && absolute && self.settings.axes.iter().any(stays) {
-            self.told.set(Some(Note::AxisLeftOut));
+        if state.ended.is_some() && !incremental {
+            self.note_left_out(given, state);
         }
-        let mut machine = self.to_machine(state, programmed);
+        self.put_on_machine(state, programmed, machine);
         for axis in self.settings.rolling().filter(|axis| given.has(self.settings.axes.letter(*axis) as u8)) {
             machine[axis] = self.clean(state.machine[axis] + turned[axis]);
         }
-        self.in_range(given, &machine)?;
-        Ok(Goal { programmed, machine })
+        let most = self.farthest();
+        if machine.0.iter().fold(false, |beyond, at| beyond | (at.abs() > most)) {
+            self.in_range(given, machine, most)?;
+        }
+        Ok(())
     }
 
-    /// A position has nine digits in increments, as a word has; an axis that rolls over begins anew with each turn.
-    fn in_range(&self, given: &Given, machine: &Position) -> Checked<()> {
-        let most = 999_999_999.0 / self.settings.increment.per_unit();
+    /// An axis that the block doesn't name keeps still, though its coordinate is another since a transform was switched.
+    #[cold]
+    fn note_left_out(&self, given: &Given, state: &State) {
+        let stays = |(axis, letter): (Axis, char)| {
+            !given.has(letter as u8) && self.move_end(state)[axis] != state.programmed[axis]
+        };
+        if self.settings.axes.iter().any(stays) {
+            self.told.set(Some(Note::AxisLeftOut));
+        }
+    }
+
+    /// The largest coordinate: nine digits in increments, as a word has.
+    fn farthest(&self) -> f64 {
+        999_999_999.0 / self.settings.increment.per_unit()
+    }
+
+    /// The alarm of an axis beyond [`Core::farthest`]; one that rolls over begins anew with each turn.
+    #[cold]
+    fn in_range(&self, given: &Given, machine: &Position, most: f64) -> Checked<()> {
         for (axis, letter) in self.settings.axes.iter() {
             if machine[axis].abs() > most && !self.settings.roll_over[axis] {
                 let alarm = Alarm::PositionOverflow { letter, value: machine[axis] };
@@ -131,21 +162,22 @@ impl Core {
     }
 
     /// Tells a rapid to a point in machine coordinates; nothing where the tool already is there.
-    pub(super) fn rapid(&self, plan: &mut Plan, to: Position) {
-        let from = plan.state.machine;
+    pub(super) fn rapid(&self, plan: &mut Plan, to: &Position) {
+        let from = &plan.state.machine;
         if to != from {
-            plan.events.push((EventKind::Rapid { to }, self.rapid_seconds(&from, &to)));
-            plan.state.machine = to;
+            plan.events.push((EventKind::Rapid { to: *to }, self.rapid_seconds(from, to)));
+            plan.state.machine = *to;
         }
     }
 
     /// Tells a straight cut; alarms where there is no feed, even if it leads nowhere.
-    pub(super) fn feed(&self, plan: &mut Plan, to: Position, given: &Given) -> Result<(), Alarm> {
-        let from = plan.state.machine;
-        let (rate, seconds) = self.feed_seconds(&plan.state, &from, &to, given.has(b'F'))?;
+    #[inline]
+    pub(super) fn feed(&self, plan: &mut Plan, to: &Position, given: &Given) -> Result<(), Alarm> {
+        let from = &plan.state.machine;
+        let (rate, seconds) = self.feed_seconds(&plan.state, from, to, given.has(b'F'))?;
         if to != from {
-            plan.events.push((EventKind::Feed { to, rate }, seconds));
-            plan.state.machine = to;
+            plan.events.push((EventKind::Feed { to: *to, rate }, seconds));
+            plan.state.machine = *to;
         }
         Ok(())
     }
@@ -163,6 +195,7 @@ impl Core {
 
     /// The rate along the path and the time of a straight cut: the composite of all axes, mm and degrees as equal
     /// numbers (operator's manual, feed rate in G94).
+    #[inline]
     pub(super) fn feed_seconds(
         &self,
         state: &State,
@@ -183,6 +216,7 @@ impl Core {
     }
 
     /// The rate and the time for a path of `length`, of which `sliding` mm are linear and the rest turns.
+    #[inline]
     pub(super) fn time_along(
         &self,
         state: &State,

@@ -189,6 +189,7 @@ impl Given {
     }
 
     /// Whether the block has a G code of an effect; those of group 01 are not asked.
+    #[inline(always)]
     pub(super) fn has_code_beyond_moves(&self, is_it: impl Fn(Effect) -> bool) -> bool {
         self.beyond_moves && self.g_codes().any(|row| is_it(row.effect))
     }

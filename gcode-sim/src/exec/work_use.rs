@@ -33,11 +33,16 @@ impl Core {
     }
 
     /// A block has been carried out. G54 is what counts where nothing is selected: its zero is the part's.
+    #[inline]
     pub(super) fn note_work(&mut self, before: WorkSystem, moved: bool) {
         let work = self.state.modal.work;
-        if work == WorkSystem::default() {
-            return;
+        if work != WorkSystem::default() {
+            self.note_other_work(work, before, moved);
         }
+    }
+
+    #[inline(never)]
+    fn note_other_work(&mut self, work: WorkSystem, before: WorkSystem, moved: bool) {
         if work != before {
             self.work_use.selected = Place { block: self.block, calls: self.frame().calls.clone() };
         }

@@ -44,7 +44,7 @@ pub(in crate::exec) struct Order {
 
 impl Core {
     /// Whether compensation, a corner word or a move that waits could concern a block.
-    #[inline]
+    #[inline(always)]
     pub(in crate::exec) fn reads_ahead(&self, given: &Given, state: &State) -> bool {
         let commanded = state.modal.cutter != CutterSide::Off || given.has_corner();
         commanded || given.has_any(b"IJK") || !self.ahead.is_idle()
