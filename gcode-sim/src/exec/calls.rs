@@ -36,7 +36,7 @@ impl Core {
                 return Ok(());
             }
             // Its moves trigger the calls before its own, and a new one would stand behind those it can't.
-            Calling::EveryBlock | Calling::AfterMoves if self.frame().modal < self.modal_calls.len() => {
+            Calling::EveryBlock | Calling::AfterMoves if self.frame.modal < self.modal_calls.len() => {
                 let what = "a modal call inside a macro that a modal call runs".into();
                 return Err(Alarm::NotSimulated { what }.at(call.span));
             }
@@ -68,7 +68,7 @@ impl Core {
         };
         let target = match &call.target {
             // M98 Q, M98 H and M97 P start in the same program.
-            CallTarget::None if start.is_some() => Target::Found(self.frame().program, 0),
+            CallTarget::None if start.is_some() => Target::Found(self.frame.program, 0),
             CallTarget::None => return Err(missing),
             CallTarget::Name(name) => Target::Name(name.clone()),
             CallTarget::Number(word) => {
@@ -109,7 +109,7 @@ impl Core {
 impl Control {
     /// Finds the program of a call and checks the nesting, before anything of the block has happened.
     pub(super) fn resolve(&mut self, call: &mut CallPlan, library: &mut impl Library) -> Result<(), Alarm> {
-        if call.external && self.core.frame().external {
+        if call.external && self.core.frame.external {
             return Err(Alarm::DeviceCallInDeviceCall);
         }
         let program = match &call.target {
@@ -169,11 +169,11 @@ impl Core {
         }
         let again = self.settings.unsure.repeats_reset_locals && call.repeats > 1;
         let arguments = again.then(|| Box::new(call.locals));
-        let modal = self.frame().modal;
+        let modal = self.frame.modal;
         self.push(Frame {
             arguments,
             modal,
-            external: call.external || self.frame().external,
+            external: call.external || self.frame.external,
             ..self.called(program, start, kind, call.repeats, call.by_code, block)
         });
     }

@@ -172,7 +172,7 @@ impl Core {
     }
 
     fn code_may_call(&self, letter: u8) -> bool {
-        self.frame().by_code.let_call(letter == b'G', self.settings.code_calls.inside_others)
+        self.frame.by_code.let_call(letter == b'G', self.settings.code_calls.inside_others)
     }
 
     fn is_axis(&self, letter: u8) -> bool {

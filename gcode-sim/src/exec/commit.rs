@@ -43,8 +43,8 @@ impl Core {
                 }
                 Write::Parameter { place, value, kept } => self.set_parameter(place, value, kept),
                 Write::Variable { number, value } => {
-                    if let Kind::Common(index) = self.vars.kind(number) {
-                        self.vars.set_common(index, value);
+                    if let Kind::Common(place) = self.vars.kind(number) {
+                        self.vars.set(place, value);
                     }
                 }
             }
@@ -65,7 +65,7 @@ impl Core {
     fn tell_drill<S: Sink>(&mut self, drill: &Drill, sink: &mut S) {
         let (mut seconds, mut moves) = (0.0, 0);
         let block = self.block;
-        let calls = self.frame().calls.clone();
+        let calls = self.frame.calls.clone();
         self.drill(drill, &mut |kind, time| {
             seconds += time;
             moves += u64::from(kind.end().is_some());
@@ -79,7 +79,7 @@ impl Core {
     pub(super) fn tell<S: Sink>(&mut self, kind: &EventKind, seconds: f64, sink: &mut S) {
         self.count(kind, seconds);
         let block = self.block;
-        sink.event(&Event { kind, seconds: Seconds(seconds), block, calls: &self.frame().calls });
+        sink.event(&Event { kind, seconds: Seconds(seconds), block, calls: &self.frame.calls });
     }
 
     /// Counts what is told.

@@ -1,7 +1,7 @@
 //! Finds out that a program will never end: the control is again where it was, and nothing has changed.
 //!
-//! Brent's method of finding cycles: at each jump back a fingerprint of the control is held against one from an
-//! earlier jump, which is kept for longer and longer. Where they agree the control itself is copied; when it equals
+//! Brent's method of finding cycles: at each jump back what differs soonest (place, variables, position) is held against
+//! that of an earlier jump, which is kept for longer and longer. Where they agree the control itself is copied; when it equals
 //! its copy one turn later, all that follows repeats. Between such finds a jump costs a few instructions.
 use super::Core;
 use super::ahead::Ahead;
@@ -11,16 +11,20 @@ use super::offsets::Offsets;
 use super::state::State;
 use super::vars::Vars;
 use crate::control::{ParameterPlace, Settings};
+use crate::motion::Position;
 use crate::program::{OpIndex, ProgramId};
 use crate::source::Span;
 
 /// What differs between almost any two moments of a run that ends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Fingerprint {
+#[derive(Debug)]
+struct Seen {
     program: ProgramId,
     next: OpIndex,
-    frames: usize,
-    values: u64,
+    callers: usize,
+    machine: Position,
+    vars: Vars,
+    /// The place of the variable that told the control from this moment the last time.
+    differed: usize,
 }
 
 /// Everything that can decide what the program does next; what it only leaves behind (time, counts, stops, lines
@@ -31,7 +35,8 @@ struct Copy {
     vars: Vars,
     offsets: Offsets,
     ahead: Ahead,
-    frames: Vec<Frame>,
+    frame: Frame,
+    callers: Vec<Frame>,
     modal_calls: Vec<ModalCall>,
     names: std::collections::BTreeMap<String, u32>,
     outputs: u32,
@@ -48,7 +53,7 @@ struct Copy {
 /// The jump that the loop is told by: the one to the earliest block of the outermost program.
 #[derive(Clone, Copy, Debug)]
 struct Jump {
-    frames: usize,
+    callers: usize,
     to: OpIndex,
     program: ProgramId,
     from: Span,
@@ -66,12 +71,12 @@ pub(super) struct Endless {
 
 #[derive(Debug, Default)]
 pub(super) struct Watch {
-    seen: Option<Fingerprint>,
+    seen: Option<Seen>,
     copy: Option<Box<Copy>>,
     widest: Option<Jump>,
-    /// Jumps until another fingerprint is kept.
+    /// Jumps until another moment is kept.
     left: u64,
-    /// A clock was read since the fingerprint was kept.
+    /// A clock was read since `seen` was kept.
     clock_read: bool,
     /// Nothing has happened since the program was found to wait for a clock.
     waiting: bool,
@@ -84,38 +89,49 @@ impl Watch {
     /// Told of every jump back; the answer is the loop that the program is now known never to leave.
     pub(super) fn jumped(&mut self, core: &mut Core) -> Option<Endless> {
         self.wait(core);
-        let frame = core.frame();
-        let (program, next, frames) = (frame.program, frame.next, core.frames.len());
         if self.copy.is_some() {
-            let wider = |w: Jump| (frames, next) < (w.frames, w.to);
-            if self.widest.is_none_or(wider) {
-                self.widest = Some(Jump { frames, to: next, program, from: core.block });
-            }
+            self.widen(core);
         }
-        let print = Fingerprint { program, next, frames, values: core.vars.digest() ^ core.place_digest() };
-        if self.seen == Some(print) {
-            match &self.copy {
-                None => self.copy = Some(Box::new(Copy::of(core))),
-                // It waits for the clock, which only motion has moved so far.
-                Some(copy) if copy.equals(core) && self.clock_read => {
-                    self.waiting = true;
-                    self.forget();
-                }
-                Some(copy) if copy.equals(core) => {
-                    let jump = self.widest?;
-                    return Some(Endless { program: jump.program, to: jump.to, from: jump.from });
-                }
-                Some(_) => self.forget(),
-            }
+        if self.seen.as_mut().is_some_and(|seen| seen.is_again(core))
+            && let Some(endless) = self.came_back(core)
+        {
+            return Some(endless);
         }
         if self.left == 0 {
             self.forget();
-            self.seen = Some(print);
+            self.seen = Some(Seen::of(core));
             self.turns = (self.turns * 2).max(4);
             self.left = self.turns;
         }
         self.left -= 1;
         None
+    }
+
+    /// The control has come to the moment that was kept.
+    fn came_back(&mut self, core: &Core) -> Option<Endless> {
+        match &self.copy {
+            None => self.copy = Some(Box::new(Copy::of(core))),
+            // It waits for the clock, which only motion has moved so far.
+            Some(copy) if copy.equals(core) && self.clock_read => {
+                self.waiting = true;
+                self.forget();
+            }
+            Some(copy) if copy.equals(core) => {
+                let jump = self.widest?;
+                return Some(Endless { program: jump.program, to: jump.to, from: jump.from });
+            }
+            Some(_) => self.forget(),
+        }
+        None
+    }
+
+    /// Takes note of a jump that leads further out, or further up, than those since the control was copied.
+    fn widen(&mut self, core: &Core) {
+        let Frame { program, next: to, .. } = core.frame;
+        let callers = core.callers.len();
+        if self.widest.is_none_or(|w| (callers, to) < (w.callers, w.to)) {
+            self.widest = Some(Jump { callers, to, program, from: core.block });
+        }
     }
 
     /// A program that does nothing but wait for a clock is given a millisecond a jump, so that the wait ends.
@@ -135,6 +151,33 @@ impl Watch {
     }
 }
 
+impl Seen {
+    fn of(core: &Core) -> Self {
+        Self {
+            program: core.frame.program,
+            next: core.frame.next,
+            callers: core.callers.len(),
+            machine: core.state.machine,
+            vars: core.vars.clone(),
+            differed: 0,
+        }
+    }
+
+    /// Whether the control has come to this moment again. What counts turns tells nearly all moments apart.
+    fn is_again(&mut self, core: &Core) -> bool {
+        if (self.next, self.program) != (core.frame.next, core.frame.program)
+            || self.vars.differ_at(self.differed, &core.vars)
+            || self.callers != core.callers.len()
+            || self.machine.0.iter().zip(core.state.machine.0).any(|(a, b)| a.to_bits() != b.to_bits())
+        {
+            return false;
+        }
+        let difference = self.vars.difference(&core.vars);
+        self.differed = difference.unwrap_or(self.differed);
+        difference.is_none()
+    }
+}
+
 impl Copy {
     fn of(core: &Core) -> Self {
         Self {
@@ -142,7 +185,8 @@ impl Copy {
             vars: core.vars.clone(),
             offsets: core.offsets.clone(),
             ahead: core.ahead.clone(),
-            frames: core.frames.clone(),
+            frame: core.frame.clone(),
+            callers: core.callers.clone(),
             modal_calls: core.modal_calls.clone(),
             names: core.names.clone(),
             outputs: core.outputs,
@@ -158,8 +202,9 @@ impl Copy {
     }
 
     fn equals(&self, core: &Core) -> bool {
-        let frames = self.frames.len() == core.frames.len()
-            && self.frames.iter().zip(&core.frames).all(|(a, b)| a.goes_on_like(b));
+        let frames = self.frame.goes_on_like(&core.frame)
+            && self.callers.len() == core.callers.len()
+            && self.callers.iter().zip(&core.callers).all(|(a, b)| a.goes_on_like(b));
         frames
             && self.state == *core.state
             && self.vars.same(&core.vars)
@@ -173,11 +218,5 @@ impl Copy {
             && (&self.settings, &self.parameters) == (&core.settings, &core.parameters)
             // M99 of the main program counts only where the count ends the run.
             && (core.settings.cycles.is_none() || self.cycles == core.cycles)
-    }
-}
-
-impl Core {
-    fn place_digest(&self) -> u64 {
-        self.state.machine.0.iter().fold(0, |digest: u64, axis| digest.rotate_left(7) ^ axis.to_bits())
     }
 }

@@ -85,16 +85,14 @@ impl Core {
             Source::Last => last,
             Source::Waiting => waiting.pop(),
             Source::Number(number) => Value::Number(number),
-            Source::Local(index) => self.vars.locals()[usize::from(index)],
-            Source::Common(index) => self.vars.common(usize::from(index)),
+            Source::Free(place) => self.vars.get(usize::from(place)),
         }
     }
 
     #[inline]
     fn load(&self, slot: Slot) -> Result<Value, Alarm> {
         match slot {
-            Slot::Local(index) => Ok(self.vars.locals()[usize::from(index)]),
-            Slot::Common(index) => Ok(self.vars.common(usize::from(index))),
+            Slot::Free(place) => Ok(self.vars.get(usize::from(place))),
             Slot::Other(number) => self.read(number),
         }
     }
@@ -102,8 +100,7 @@ impl Core {
     /// The value of a variable of any kind.
     pub(super) fn read(&self, number: u32) -> Result<Value, Alarm> {
         match self.vars.kind(number) {
-            Kind::Local(index) => Ok(self.vars.locals()[index]),
-            Kind::Common(index) => Ok(self.vars.common(index)),
+            Kind::Local(place) | Kind::Common(place) => Ok(self.vars.get(place)),
             Kind::Vacant => Ok(Value::Vacant),
             Kind::System => self.read_system(number),
         }
@@ -114,29 +111,23 @@ impl Core {
         let mut waiting = Waiting { places: &self.waiting.0, used: 0 };
         for Instruction { operation, span } in program.code(code) {
             let mut fetch = |source| self.fetch(source, last, &mut waiting);
-            let value = match *operation {
-                Operation::Load(source) => Ok(fetch(source)),
-                Operation::Wait => {
-                    waiting.push(last);
-                    continue;
-                }
+            last = Value::Number(match *operation {
                 Operation::Binary(op, [left, right]) => {
                     let (left, right) = (fetch(left).number(), fetch(right).number());
-                    binary(op, left, right, &self.settings.unsure).map(Value::Number)
+                    at(binary(op, left, right, &self.settings.unsure), *span)?
                 }
                 Operation::Compare(relation, [left, right]) => {
-                    let holds = compare(relation, fetch(left), fetch(right));
-                    Ok(Value::Number(f64::from(u8::from(holds))))
+                    truth(compare(relation, fetch(left), fetch(right)))
                 }
                 Operation::Function(name, argument) => {
-                    self.function(name, fetch(argument).number()).map(Value::Number)
+                    at(self.function(name, fetch(argument).number()), *span)?
                 }
-                Operation::Atan2([y, x]) => {
-                    self.atan(fetch(y).number(), fetch(x).number()).map(Value::Number)
+                Operation::Atan2([y, x]) => at(self.atan(fetch(y).number(), fetch(x).number()), *span)?,
+                _ => {
+                    last = at(self.other(program, operation, last, &mut waiting, rounds), *span)?;
+                    continue;
                 }
-                other => self.other(program, other, last, &mut waiting, rounds),
-            };
-            last = at(value, *span)?;
+            });
         }
         Ok(last)
     }
@@ -163,19 +154,23 @@ impl Core {
     fn other(
         &self,
         program: &Program,
-        operation: Operation,
+        operation: &Operation,
         last: Value,
         waiting: &mut Waiting<'_>,
         rounds: RoundsTo,
     ) -> Result<Value, Alarm> {
         let unsure = &self.settings.unsure;
-        Ok(match operation {
-            Operation::Load(_)
-            | Operation::Wait
-            | Operation::Binary(..)
+        Ok(match *operation {
+            Operation::Load(source) => self.fetch(source, last, waiting),
+            Operation::Wait => {
+                waiting.push(last);
+                last
+            }
+            Operation::Binary(..)
             | Operation::Compare(..)
             | Operation::Function(..)
-            | Operation::Atan2(_) => last,
+            | Operation::Atan2(_)
+            | Operation::Plus => last,
             Operation::Read(number) => self.read(number)?,
             Operation::LoadIndirect => self.read(index(last)?)?,
             Operation::Negate => match last {
@@ -186,7 +181,6 @@ impl Core {
                 Value::Vacant => Value::Vacant,
                 Value::Number(number) => Value::Number(-number),
             },
-            Operation::Plus => last,
             Operation::Bracket => match last {
                 Value::Vacant if !unsure.brackets_keep_vacancy => Value::Number(0.0),
                 value => value,
@@ -204,7 +198,7 @@ impl Core {
                     BinaryOp::Xor => left != right,
                     _ => left || right,
                 };
-                Value::Number(f64::from(u8::from(holds)))
+                Value::Number(truth(holds))
             }
             Operation::Parameter { bit, axis } => {
                 let mut part = last;
@@ -221,7 +215,7 @@ impl Core {
             Operation::AddPoint => {
                 let number = index(last)?;
                 match self.vars.kind(number) {
-                    Kind::Local(local) => Value::Number(self.vars.locals().with_point(local)),
+                    Kind::Local(local) => Value::Number(self.vars.with_point(local)),
                     _ => return Err(Alarm::ArgumentFormat { function: "ADP".into() }),
                 }
             }
@@ -242,6 +236,11 @@ impl Core {
             }
         })
     }
+}
+
+/// What a condition is to an instruction.
+fn truth(holds: bool) -> f64 {
+    f64::from(u8::from(holds))
 }
 
 /// A variable's number by an expression: rounded, never negative; vacant is #0.

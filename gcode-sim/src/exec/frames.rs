@@ -115,20 +115,11 @@ impl Frame {
 }
 
 impl Core {
-    pub(super) fn frame(&self) -> &Frame {
-        &self.frames[self.frames.len() - 1]
-    }
-
-    pub(super) fn frame_mut(&mut self) -> &mut Frame {
-        let last = self.frames.len() - 1;
-        &mut self.frames[last]
-    }
-
     pub(super) fn check_levels(&self, is_macro: bool) -> Result<(), Alarm> {
         if is_macro && self.vars.level() >= self.settings.macro_levels {
             return Err(Alarm::TooManyMacroCalls { limit: self.settings.macro_levels });
         }
-        if self.frames.len() > self.settings.call_levels {
+        if self.callers.len() >= self.settings.call_levels {
             return Err(Alarm::TooManyCalls { limit: self.settings.call_levels });
         }
         Ok(())
@@ -143,8 +134,8 @@ impl Core {
         by_code: ByCodes,
         block: Span,
     ) -> Frame {
-        let calls = Some(Arc::new(Call { from: block, outer: self.frame().calls.clone() }));
-        let by_code = self.frame().by_code.and(by_code);
+        let calls = Some(Arc::new(Call { from: block, outer: self.frame.calls.clone() }));
+        let by_code = self.frame.by_code.and(by_code);
         Frame {
             next: start,
             kind,
@@ -157,15 +148,15 @@ impl Core {
     }
 
     pub(super) fn push(&mut self, frame: Frame) {
-        self.frames.push(frame);
+        self.callers.push(std::mem::replace(&mut self.frame, frame));
     }
 
     /// Back from a subprogram or macro to the program that called it.
     pub(super) fn leave(&mut self) {
-        match self.frame().kind {
+        match self.frame.kind {
             FrameKind::Macro => self.vars.leave(),
             FrameKind::Modal(index) => {
-                let locals = *self.vars.locals();
+                let locals = self.vars.locals();
                 if let Some(call) = self.modal_calls.get_mut(index)
                     && self.settings.unsure.modal_keeps_locals
                 {
@@ -175,12 +166,14 @@ impl Core {
             }
             FrameKind::Main | FrameKind::Subprogram => {}
         }
-        self.frames.pop();
+        if let Some(caller) = self.callers.pop() {
+            self.frame = caller;
+        }
     }
 
     /// M99 without P in a called program: the next pass, or back.
     pub(super) fn repeat_or_leave(&mut self) {
-        let frame = self.frame_mut();
+        let frame = &mut self.frame;
         if frame.repeats == 0 {
             return self.leave();
         }
@@ -198,7 +191,7 @@ impl Control {
     /// Where M99 P leads, before anything of its block has happened; `None` where it leads nowhere.
     pub(super) fn find_return(&self, number: Option<u32>) -> Result<Option<OpIndex>, Alarm> {
         let Some(number) = number.filter(|_| !self.is_last_pass()) else { return Ok(None) };
-        let program = self.memory.get(self.core.frames[self.returns_to()].program);
+        let program = self.memory.get(self.returns_to().program);
         let found = program.find_number(number, 0);
         found.map(Some).ok_or(Alarm::SequenceNumberNotFound { number })
     }
@@ -206,18 +199,20 @@ impl Control {
     /// Whether M99 of the main program ends the run.
     fn is_last_pass(&self) -> bool {
         let last = self.core.settings.cycles.is_some_and(|cycles| self.core.cycles + 1 >= cycles);
-        last && self.core.frame().kind == FrameKind::Main
+        last && self.core.frame.kind == FrameKind::Main
     }
 
     /// The frame in which the run goes on after M99.
-    fn returns_to(&self) -> usize {
-        let called = usize::from(self.core.frame().kind != FrameKind::Main);
-        self.core.frames.len() - 1 - called
+    fn returns_to(&self) -> &Frame {
+        match self.core.frame.kind {
+            FrameKind::Main => &self.core.frame,
+            _ => self.core.callers.last().unwrap_or(&self.core.frame),
+        }
     }
 
     /// M99, and M99 P with its number and the place that [`Control::find_return`] has found.
     pub(super) fn go_back(&mut self, to: Option<(u32, OpIndex)>) -> Option<Over> {
-        let main = self.core.frame().kind == FrameKind::Main;
+        let main = self.core.frame.kind == FrameKind::Main;
         let ends = self.is_last_pass();
         if main {
             self.core.cycles += 1;
@@ -227,18 +222,18 @@ impl Control {
         }
         let Some((number, target)) = to else {
             if main {
-                self.core.frame_mut().jump(0);
+                self.core.frame.jump(0);
             } else {
                 self.core.repeat_or_leave();
             }
             return None;
         };
-        let program = self.memory.get(self.core.frames[self.returns_to()].program);
+        let program = self.memory.get(self.returns_to().program);
         if !main {
             self.core.leave();
         }
         self.core.tell_jump(program, number, target);
-        self.core.frame_mut().jump(target);
+        self.core.frame.jump(target);
         None
     }
 }

@@ -105,7 +105,10 @@ pub(crate) struct Core {
     offsets: Offsets,
     /// What has been read and waits for the next move.
     ahead: Ahead,
-    frames: Vec<Frame>,
+    /// The program at hand.
+    frame: Frame,
+    /// The programs that wait for it, the main program first.
+    callers: Vec<Frame>,
     modal_calls: Vec<ModalCall>,
     /// Names given by SETVN.
     names: BTreeMap<String, u32>,
@@ -151,7 +154,8 @@ impl Control {
             vars,
             offsets,
             ahead: Ahead::default(),
-            frames: Vec::new(),
+            frame: Frame::main(ProgramId::default()),
+            callers: Vec::new(),
             modal_calls: Vec::new(),
             names: BTreeMap::new(),
             outputs: 0,
@@ -193,8 +197,8 @@ impl Control {
     pub fn select(&mut self, program: ProgramId) {
         self.main = program;
         self.outcome = None;
-        self.core.frames.clear();
-        self.core.frames.push(Frame::main(program));
+        self.core.callers.clear();
+        self.core.frame = Frame::main(program);
         if let Some(program) = self.memory.programs().get(program.0 as usize) {
             self.core.state.codes.o = program.shown_number();
             self.core.block = program.span;

@@ -65,7 +65,7 @@ impl Core {
         if self.modal_calls.is_empty() {
             return None;
         }
-        self.frame().modal.min(self.modal_calls.len()).checked_sub(1)
+        self.frame.modal.min(self.modal_calls.len()).checked_sub(1)
     }
 
     /// Under G66.1 a block of words is not executed: its words, G L N P among them, are the macro's arguments.

@@ -105,7 +105,7 @@ impl Control {
             Ok(Some(Over::Never)) => Outcome::Limit,
             Err(alarm) => {
                 self.core.complete(&alarm, sink);
-                let calls = self.core.frames.last().map(|f| f.calls.clone()).unwrap_or_default();
+                let calls = self.core.frame.calls.clone();
                 let place = Place { block: self.core.block, calls };
                 Outcome::Alarm(Stopped { alarm: alarm.node, span: alarm.span, place })
             }
@@ -117,12 +117,11 @@ impl Control {
     /// Reads the next block and does what it says.
     fn block<S: Sink>(&mut self, library: &mut impl Library, sink: &mut S) -> Checked<Option<Over>> {
         let Self { memory, core, plan, given, watch, endless, .. } = self;
-        let frame = core.frame();
-        let (id, place) = (frame.program, frame.next);
+        let (id, place) = (core.frame.program, core.frame.next);
         let Some((program, op)) = memory.ready(id, place) else { return core.behind_last(memory) };
         core.block = op.span;
         core.blocks += 1;
-        core.frame_mut().next = place + 1;
+        core.frame.next = place + 1;
         if op.skip.is_some_and(|switch| core.skips(switch)) {
             return Ok(None);
         }
@@ -144,7 +143,7 @@ impl Control {
             OpKind::Alarm(alarm) => return Err(alarm.clone()),
             OpKind::Statement(statement) => {
                 core.statement(program, statement, op.span, sink)?;
-                if core.frame().next <= place {
+                if core.frame.next <= place {
                     *endless = watch.jumped(core);
                     return Ok(endless.map(|_| Over::Never));
                 }
@@ -157,7 +156,7 @@ impl Control {
             }
             OpKind::Words(words) => {
                 if core.call_by_block(program, words, op.number, op.span)? {
-                    core.state.codes.o = memory.get(core.frame().program).shown_number();
+                    core.state.codes.o = memory.get(core.frame.program).shown_number();
                     return Ok(None);
                 }
                 core.prepare(program, words, given, plan, op.span)?;
@@ -205,12 +204,12 @@ impl Control {
             Flow::Next => {}
             Flow::Call(call) => {
                 self.core.enter(&call, span);
-                let program = self.core.frame().program;
+                let program = self.core.frame.program;
                 self.core.state.codes.o = self.memory.get(program).shown_number();
             }
             Flow::Return { number, target } => {
                 let outcome = self.go_back(number.zip(target));
-                let program = self.core.frame().program;
+                let program = self.core.frame.program;
                 self.core.state.codes.o = self.memory.get(program).shown_number();
                 if outcome.is_none() {
                     self.endless = self.watch.jumped(&mut self.core);
@@ -232,7 +231,7 @@ impl Core {
     /// There is no block any more. A text may just stop; running into `%` or another program is running off the tape.
     #[cold]
     fn behind_last(&mut self, memory: &Memory) -> Checked<Option<Over>> {
-        let frame = self.frame();
+        let frame = &self.frame;
         let main = frame.kind == FrameKind::Main;
         let Some(program) = memory.programs().get(frame.program.0 as usize) else {
             return Err(Alarm::EndOfRecord.at(Span::default()));

@@ -24,7 +24,7 @@ impl Control {
     /// What [`Control::next_block`] says so; nothing for a block that is skipped.
     pub fn next_silent(&self) -> Silent {
         let mut silent = Silent::default();
-        let Some(frame) = self.core.frames.last() else { return silent };
+        let frame = &self.core.frame;
         let program = self.memory.get(frame.program);
         let Some(op) = program.op(frame.next) else { return silent };
         if op.skip.is_some_and(|switch| self.core.skips(switch)) {

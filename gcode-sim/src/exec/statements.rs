@@ -45,7 +45,7 @@ impl Core {
             }
             Statement::While { condition, number, end } => {
                 let holds = self.holds(program, *condition)?;
-                let frame = self.frame_mut();
+                let frame = &mut self.frame;
                 let open = &mut frame.loops[usize::from(*number) - 1];
                 if holds {
                     *open = Some((frame.next - 1, *end));
@@ -55,15 +55,15 @@ impl Core {
                 }
             }
             Statement::Do { number, end } => {
-                let start = self.frame().next - 1;
-                self.frame_mut().loops[usize::from(*number) - 1] = Some((start, *end));
+                let start = self.frame.next - 1;
+                self.frame.loops[usize::from(*number) - 1] = Some((start, *end));
             }
             Statement::End { number, start } => {
-                let open = self.frame().loops[usize::from(*number) - 1];
+                let open = self.frame.loops[usize::from(*number) - 1];
                 if open.is_none_or(|(first, _)| first != *start) {
                     return Err(Alarm::MissingDo { number: *number }.at(span));
                 }
-                self.frame_mut().next = *start;
+                self.frame.next = *start;
             }
             Statement::SetNames { first, names } => self.name_variables(program, *first, names, span)?,
             Statement::Print { kind, parts } => self.print(program, *kind, parts, span)?,
@@ -102,22 +102,22 @@ impl Core {
         let value = self.operand(program, to.node)?.number();
         let number = integer(value).map_err(|alarm| alarm.at(to.span))?;
         if self.settings.unsure.minus_searches_up && (-99_999_999..0).contains(&number) {
-            let target = program.find_number_above(number.unsigned_abs() as u32, self.frame().next);
+            let target = program.find_number_above(number.unsigned_abs() as u32, self.frame.next);
             let missing = || self.no_target(number.unsigned_abs() as u32).at(to.span);
             let target = target.ok_or_else(missing)?;
-            self.frame_mut().jump(target);
+            self.frame.jump(target);
             return Ok(());
         }
         if !(1..=99_999_999).contains(&number) {
             return Err(Alarm::SequenceNumberRange { number }.at(to.span));
         }
         let number = number as u32;
-        let from = if self.settings.unsure.first_stored_number { 0 } else { self.frame().next };
+        let from = if self.settings.unsure.first_stored_number { 0 } else { self.frame.next };
         let Some(target) = program.find_number(number, from) else {
             return Err(self.no_target(number).at(to.span));
         };
         self.tell_jump(program, number, target);
-        self.frame_mut().jump(target);
+        self.frame.jump(target);
         Ok(())
     }
 
@@ -126,7 +126,7 @@ impl Core {
         if program.has_twice(number) {
             self.notes.entry(Note::DoubledNumber { number }).or_insert(self.block);
         }
-        let open = self.frame().loops;
+        let open = self.frame.loops;
         if let Some(number) = program.loop_entered(target, &open) {
             self.notes.entry(Note::JumpIntoLoop { number }).or_insert(self.block);
         }
@@ -150,8 +150,7 @@ impl Core {
         sink: &mut S,
     ) -> Checked<()> {
         match slot {
-            Slot::Local(index) => self.vars.set_local(usize::from(index), value),
-            Slot::Common(index) => self.vars.set_common(usize::from(index), value),
+            Slot::Free(place) => self.vars.set(usize::from(place), value),
             Slot::Other(number) => self.write_other(number, value, text, span, sink)?,
         }
         Ok(())
@@ -168,8 +167,7 @@ impl Core {
         sink: &mut S,
     ) -> Checked<()> {
         match self.vars.kind(number) {
-            Kind::Local(index) => self.vars.set_local(index, value),
-            Kind::Common(index) => self.vars.set_common(index, value),
+            Kind::Local(place) | Kind::Common(place) => self.vars.set(place, value),
             Kind::Vacant => return Err(Alarm::WriteProtected { number }.at(span)),
             Kind::System if number == 3000 => {
                 return Err(self.raised(value.number(), shown(text)).at(span));
@@ -211,7 +209,7 @@ impl Core {
         let text = text.to_owned();
         let stop = EventKind::Stop { kind: StopKind::Message, text, named };
         if self.ahead.waits() {
-            let place = Place { block: self.block, calls: self.frame().calls.clone() };
+            let place = Place { block: self.block, calls: self.frame.calls.clone() };
             return self.ahead.wait_behind(stop, place);
         }
         self.tell(&stop, 0.0, sink);

@@ -31,27 +31,27 @@ impl Value {
     }
 }
 
+/// #0, which stays vacant, and #1 to #33.
+const LOCALS: usize = 34;
+/// The numbers up to the last common of every control.
+const ORDINARY: usize = 1000;
+
 /// #1 to #33 of one macro level, by number; #0 stays vacant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Locals {
-    values: [Value; 34],
+    values: [Value; LOCALS],
     /// The decimals of an argument that was written without a point and counts increments; 0 for all others.
-    decimals: [u8; 34],
+    decimals: [u8; LOCALS],
 }
 
 /// A level that nothing has been written to.
-pub(super) const VACANT: Locals = Locals { values: [Value::Vacant; 34], decimals: [0; 34] };
+pub(super) const VACANT: Locals = Locals { values: [Value::Vacant; LOCALS], decimals: [0; LOCALS] };
 
 impl Locals {
     /// Sets an argument; `decimals` where it was written without a point and counts increments.
     pub(super) fn set(&mut self, local: usize, value: Value, decimals: u8) {
         self.values[local] = value;
         self.decimals[local] = decimals;
-    }
-
-    /// ADP: the value as if it had been passed with a point.
-    pub(super) fn with_point(&self, local: usize) -> f64 {
-        self.values[local].number() * 10_f64.powi(i32::from(self.decimals[local]))
     }
 }
 
@@ -63,7 +63,7 @@ impl std::ops::Index<usize> for Locals {
     }
 }
 
-/// Where a number belongs.
+/// Where a number belongs; a local's and a common's place among the values of [`Vars`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     Vacant,
@@ -72,47 +72,41 @@ pub(super) enum Kind {
     System,
 }
 
-const COMMONS: usize = 1000;
-
 /// All variables that a program may use freely.
 #[derive(Clone, Debug)]
 pub struct Vars {
-    /// The locals of the current level.
-    locals: Locals,
-    /// Those of the levels that wait for it, the main program's first.
+    /// By number the locals of the current level and the commons, behind them the further commons. What has no number of
+    /// these is never written.
+    values: Vec<Value>,
+    /// The decimals of the current level's locals, see [`Locals`].
+    decimals: [u8; LOCALS],
+    /// The locals of the levels that wait for the current one, the main program's first.
     outer: Vec<Locals>,
-    commons: Vec<Value>,
-    /// The numbers of further commons, which follow the others in `commons`.
+    /// The numbers of further commons.
     more: (u32, u32),
     /// `#10100` is `#100`.
     aliased: bool,
-    /// A digest of all values in force, kept up with every write.
-    digest: u64,
 }
 
 impl Vars {
     /// `more` are the numbers of commons beyond #999; with `aliased` #10100 is #100, and so on.
     pub(super) fn new(more: Option<(u32, u32)>, aliased: bool) -> Self {
         let count = more.map_or(0, |(from, to)| (to - from + 1) as usize);
-        let more = more.unwrap_or((1, 0));
         Self {
-            locals: VACANT,
+            values: vec![Value::Vacant; ORDINARY + count],
+            decimals: [0; LOCALS],
             outer: Vec::new(),
-            commons: vec![Value::Vacant; COMMONS + count],
-            more,
+            more: more.unwrap_or((1, 0)),
             aliased,
-            digest: 0,
         }
     }
-}
 
-impl Vars {
     /// What kind of variable `number` is.
     #[inline]
     pub(super) fn kind(&self, number: u32) -> Kind {
         match Slot::of(number) {
-            Slot::Local(local) => Kind::Local(usize::from(local)),
-            Slot::Common(common) => Kind::Common(usize::from(common)),
+            Slot::Free(place) if usize::from(place) < LOCALS => Kind::Local(usize::from(place)),
+            Slot::Free(place) => Kind::Common(usize::from(place)),
             Slot::Other(number) => self.other_kind(number),
         }
     }
@@ -123,98 +117,96 @@ impl Vars {
             0 => Kind::Vacant,
             10_100..=10_199 | 10_500..=10_999 if self.aliased => Kind::Common(number as usize - 10_000),
             _ if (self.more.0..=self.more.1).contains(&number) => {
-                Kind::Common(COMMONS + (number - self.more.0) as usize)
+                Kind::Common(ORDINARY + (number - self.more.0) as usize)
             }
             _ => Kind::System,
         }
     }
 
+    /// The value at a place that [`Vars::kind`] or [`Slot::Free`] tells.
     #[inline]
-    pub fn locals(&self) -> &Locals {
-        &self.locals
+    pub(super) fn get(&self, place: usize) -> Value {
+        self.values[place]
     }
 
+    /// Writes a value at a place that [`Vars::kind`] or [`Slot::Free`] tells.
     #[inline]
-    pub(super) fn set_local(&mut self, index: usize, value: Value) {
-        self.note(self.level() + 1, index, self.locals[index], value);
-        self.locals.set(index, value, 0);
-    }
-
-    pub(super) fn set_locals(&mut self, locals: &Locals) {
-        self.note_all(self.level() + 1, &self.locals.clone(), locals);
-        self.locals = *locals;
-    }
-
-    /// Keeps the digest up with a variable.
-    #[inline]
-    fn note(&mut self, level: usize, index: usize, old: Value, new: Value) {
-        // Each variable counts by an odd factor of its own, so that none makes up for another.
-        let factor = ((level << 16 | index) as u64).wrapping_mul(0x3C6E_F372_FE94_F82A) | 1;
-        let change = mixed(new).wrapping_sub(mixed(old)).wrapping_mul(factor);
-        self.digest = self.digest.wrapping_add(change);
-    }
-
-    fn note_all(&mut self, level: usize, old: &Locals, new: &Locals) {
-        for (index, (old, new)) in old.values.iter().zip(new.values).enumerate() {
-            self.note(level, index, *old, new);
+    pub(super) fn set(&mut self, place: usize, value: Value) {
+        self.values[place] = value;
+        if let Some(decimals) = self.decimals.get_mut(place) {
+            *decimals = 0;
         }
     }
 
-    /// Differs almost surely where any value differs.
-    pub(super) fn digest(&self) -> u64 {
-        self.digest
+    /// ADP: a local's value as if it had been passed with a point.
+    pub(super) fn with_point(&self, local: usize) -> f64 {
+        self.values[local].number() * 10_f64.powi(i32::from(self.decimals[local]))
     }
 
-    /// Whether all values in force are the same.
-    pub(super) fn same(&self, other: &Self) -> bool {
-        self.locals == other.locals && self.outer == other.outer && self.commons == other.commons
+    /// The locals of the current level.
+    pub fn locals(&self) -> Locals {
+        let mut locals = Locals { decimals: self.decimals, ..VACANT };
+        locals.values.copy_from_slice(&self.values[..LOCALS]);
+        locals
+    }
+
+    pub(super) fn set_locals(&mut self, locals: &Locals) {
+        self.values[..LOCALS].copy_from_slice(&locals.values);
+        self.decimals = locals.decimals;
     }
 
     pub fn level(&self) -> usize {
         self.outer.len()
     }
 
-    pub fn common(&self, index: usize) -> Value {
-        self.commons[index]
-    }
-
-    #[inline]
-    pub(super) fn set_common(&mut self, index: usize, value: Value) {
-        self.note(0, index, self.commons[index], value);
-        self.commons[index] = value;
-    }
-
     /// A macro call: a new level with these locals.
     pub(super) fn enter(&mut self, locals: &Locals) {
-        self.outer.push(std::mem::replace(&mut self.locals, *locals));
-        self.note_all(self.level() + 1, &VACANT, locals);
+        self.outer.push(self.locals());
+        self.set_locals(locals);
     }
 
     /// Back to the caller's locals.
     pub(super) fn leave(&mut self) {
-        self.note_all(self.level() + 1, &self.locals.clone(), &VACANT);
         if let Some(callers) = self.outer.pop() {
-            self.locals = callers;
+            self.set_locals(&callers);
         }
+    }
+
+    /// Whether all values in force are the same.
+    pub(super) fn same(&self, other: &Self) -> bool {
+        self.values == other.values && self.decimals == other.decimals && self.outer == other.outer
+    }
+
+    /// Whether the values at a place differ, be it in one bit.
+    #[inline]
+    pub(super) fn differ_at(&self, place: usize, other: &Self) -> bool {
+        bits(self.values[place]) != bits(other.values[place])
+    }
+
+    /// A place where the values differ; that of #0 where only callers' locals do.
+    pub(super) fn difference(&self, other: &Self) -> Option<usize> {
+        let found = (0..self.values.len()).find(|place| self.differ_at(*place, other));
+        found.or_else(|| self.outer_bits().ne(other.outer_bits()).then_some(0))
+    }
+
+    fn outer_bits(&self) -> impl Iterator<Item = Option<u64>> + '_ {
+        self.outer.iter().flat_map(|level| level.values.map(bits))
     }
 
     /// The variables that aren't vacant, by number: the locals of the main program and the commons.
     pub fn known(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
-        let locals = self.outer.first().unwrap_or(&self.locals).values.iter().enumerate();
-        let (commons, more) = self.commons.split_at(COMMONS);
-        let more = (self.more.0 as usize..).zip(more);
-        let all = locals.chain(commons.iter().enumerate()).chain(more);
-        all.filter_map(|(number, value)| Some((number as u32, value.given()?)))
+        let (locals, commons) = self.values.split_at(LOCALS);
+        let locals = self.outer.first().map_or(locals, |level| &level.values);
+        let (commons, more) = commons.split_at(ORDINARY - LOCALS);
+        let more = (self.more.0..).zip(more);
+        let all = (0..).zip(locals).chain((LOCALS as u32..).zip(commons)).chain(more);
+        all.filter_map(|(number, value)| Some((number, value.given()?)))
     }
 }
 
-/// A value's part of the digest. What tells numbers apart is in their highest bits, and a product only carries upwards.
-#[inline]
-fn mixed(value: Value) -> u64 {
-    match value {
-        Value::Vacant => 0,
-        Value::Number(number) => !number.to_bits().rotate_left(24),
-    }
+/// What tells 0 from −0, too.
+fn bits(value: Value) -> Option<u64> {
+    value.given().map(f64::to_bits)
 }
 
 #[cfg(test)]
@@ -224,31 +216,45 @@ mod tests {
     #[test]
     fn a_call_hides_the_callers_locals_and_a_return_brings_them_back() {
         let mut vars = Vars::new(None, false);
-        vars.set_local(1, Value::Number(7.0));
+        vars.set(1, Value::Number(7.0));
         vars.enter(&VACANT);
-        assert!(vars.locals()[1].is_vacant());
-        vars.set_local(1, Value::Number(9.0));
+        assert!(vars.get(1).is_vacant());
+        vars.set(1, Value::Number(9.0));
+        assert_eq!(vars.known().collect::<Vec<_>>(), [(1, 7.0)], "the main program's");
         vars.leave();
-        assert_eq!(vars.locals()[1], Value::Number(7.0));
+        assert_eq!(vars.get(1), Value::Number(7.0));
         vars.enter(&VACANT);
-        assert!(vars.locals()[1].is_vacant(), "a level used before starts vacant");
+        assert!(vars.get(1).is_vacant(), "a level used before starts vacant");
     }
 
     #[test]
-    fn the_digest_comes_back_with_the_values() {
-        let mut vars = Vars::new(None, false);
-        vars.set_common(500, Value::Number(1.0));
-        vars.set_local(3, Value::Number(0.0));
-        let before = vars.digest();
-        let mut locals = VACANT;
-        locals.set(7, Value::Number(5.0), 0);
-        vars.enter(&locals);
-        vars.set_local(7, Value::Number(6.0));
-        assert_ne!(vars.digest(), before);
+    fn values_differ_in_any_bit_and_on_any_level() {
+        let mut vars = Vars::new(Some((98_000, 98_499)), false);
+        vars.set(3, Value::Number(0.0));
+        let before = vars.clone();
+        assert_eq!(before.difference(&vars), None);
+        for value in [Value::Vacant, Value::Number(-0.0), Value::Number(1.0)] {
+            vars.set(3, value);
+            assert_eq!(before.difference(&vars), Some(3), "{value:?} is not 0");
+        }
+        vars.set(3, Value::Number(0.0));
+        vars.set(ORDINARY + 499, Value::Number(5.0));
+        assert_eq!(before.difference(&vars), Some(ORDINARY + 499));
+        vars.set(ORDINARY + 499, Value::Vacant);
+        assert_eq!(before.difference(&vars), None);
+        vars.enter(&before.locals());
+        assert_eq!(before.difference(&vars), Some(0), "there is another level");
         vars.leave();
-        vars.set_local(3, Value::Vacant);
-        assert_ne!(vars.digest(), before, "0 is not vacant");
-        vars.set_local(3, Value::Number(0.0));
-        assert_eq!(vars.digest(), before);
+        assert_eq!(before.difference(&vars), None);
+    }
+
+    #[test]
+    fn what_is_known_has_its_number() {
+        let mut vars = Vars::new(Some((98_000, 98_499)), false);
+        for place in [33, 100, 999, ORDINARY, ORDINARY + 499] {
+            vars.set(place, Value::Number(1.0));
+        }
+        let numbers: Vec<_> = vars.known().map(|(number, _)| number).collect();
+        assert_eq!(numbers, [33, 100, 999, 98_000, 98_499]);
     }
 }

@@ -61,7 +61,7 @@ impl Control {
 
     /// The block last begun, and the calls that led to it.
     pub fn place(&self) -> Place {
-        let calls = self.core.frames.last().map(|f| f.calls.clone()).unwrap_or_default();
+        let calls = self.core.frame.calls.clone();
         Place { block: self.core.block, calls }
     }
 

@@ -1,4 +1,5 @@
 //! Looking on while a control runs: at what stands in it before and after every block.
+use super::frames::Frame;
 use super::{Control, Core};
 use crate::program::{OpKind, Program, Slot, Statement};
 use crate::source::Span;
@@ -43,15 +44,14 @@ impl<W: Watcher> Watcher for Option<W> {
 impl Control {
     /// The block that a step would do now; `None` where the program has no more.
     pub fn next_block(&mut self) -> Option<Span> {
-        let frame = self.core.frames.last()?;
-        let (program, place) = (frame.program, frame.next);
-        self.memory.ready(program, place).map(|(_, op)| op.span)
+        let Frame { program, next, .. } = self.core.frame;
+        self.memory.ready(program, next).map(|(_, op)| op.span)
     }
 
     /// The variables that [`Control::next_block`] will assign as things stand; those whose numbers are computed as well.
     pub fn will_assign(&self) -> Vec<u32> {
         let mut numbers = Vec::new();
-        let Some(frame) = self.core.frames.last() else { return numbers };
+        let frame = &self.core.frame;
         let program = self.memory.get(frame.program);
         let Some(op) = program.op(frame.next) else { return numbers };
         // To look is no part of the run: what a function has to tell is told when the block is done.

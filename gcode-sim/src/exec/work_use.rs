@@ -44,7 +44,7 @@ impl Core {
     #[inline(never)]
     fn note_other_work(&mut self, work: WorkSystem, before: WorkSystem, moved: bool) {
         if work != before {
-            self.work_use.selected = Place { block: self.block, calls: self.frame().calls.clone() };
+            self.work_use.selected = Place { block: self.block, calls: self.frame.calls.clone() };
         }
         let known = self.work_use.unset.iter().any(|(other, _)| *other == work);
         if moved && !known && !self.work_use.set.contains(&number(work)) {

@@ -18,10 +18,8 @@ pub enum Operand {
 /// A variable whose number is written out, found as far as no setting of the control decides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Slot {
-    /// #1 to #33.
-    Local(u8),
-    /// #100 to #199 and #500 to #999.
-    Common(u16),
+    /// #1 to #33, #100 to #199 and #500 to #999: what every control lets a program use freely.
+    Free(u16),
     /// #0, system variables, and commons that not every control has.
     Other(u32),
 }
@@ -29,16 +27,14 @@ pub enum Slot {
 impl Slot {
     pub fn of(number: u32) -> Self {
         match number {
-            1..=33 => Self::Local(number as u8),
-            100..=199 | 500..=999 => Self::Common(number as u16),
+            1..=33 | 100..=199 | 500..=999 => Self::Free(number as u16),
             _ => Self::Other(number),
         }
     }
 
     pub fn number(self) -> u32 {
         match self {
-            Self::Local(number) => u32::from(number),
-            Self::Common(number) => u32::from(number),
+            Self::Free(number) => u32::from(number),
             Self::Other(number) => number,
         }
     }
@@ -81,8 +77,8 @@ pub enum Source {
     /// The last of the values that wait, which it takes away.
     Waiting,
     Number(f64),
-    Local(u8),
-    Common(u16),
+    /// A variable of [`Slot::Free`].
+    Free(u16),
 }
 
 /// Gives a value, mostly of the one that the instruction before has given; where that is needed later it waits on a stack.

@@ -84,8 +84,7 @@ impl Lowering {
             ExprKind::Variable(index) => {
                 if let Some(number) = self.literal_index(index) {
                     let source = match Slot::of(number) {
-                        Slot::Local(local) => Source::Local(local),
-                        Slot::Common(common) => Source::Common(common),
+                        Slot::Free(number) => Source::Free(number),
                         Slot::Other(number) => {
                             self.emit(Operation::Read(number), expr.span);
                             Source::Last

@@ -106,7 +106,7 @@ impl Core {
             dwells: act == Some(Act::OneShot(OneShot::Dwell)),
             blend: plan.corner,
             corner_arc,
-            place: Place { block: span, calls: self.frame().calls.clone() },
+            place: Place { block: span, calls: self.frame.calls.clone() },
         };
         plan.ahead.clone_from(&self.ahead);
         plan.ahead.begin(self.state.machine);
