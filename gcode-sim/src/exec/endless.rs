@@ -8,6 +8,7 @@ use super::ahead::Ahead;
 use super::frames::Frame;
 use super::modal_calls::ModalCall;
 use super::offsets::Offsets;
+use super::run::Over;
 use super::state::State;
 use super::vars::Vars;
 use crate::control::{ParameterPlace, Settings};
@@ -83,32 +84,55 @@ pub(super) struct Watch {
     seconds: f64,
     /// How many they were the last time.
     turns: u64,
+    found: Option<Endless>,
 }
 
 impl Watch {
-    /// Told of every jump back; the answer is the loop that the program is now known never to leave.
-    pub(super) fn jumped(&mut self, core: &mut Core) -> Option<Endless> {
+    /// The loop that was found to run for ever.
+    pub(super) fn endless(&self) -> Option<Endless> {
+        self.found
+    }
+
+    /// Told of every statement, with its place.
+    #[inline]
+    pub(super) fn look(&mut self, place: OpIndex, core: &mut Core) {
+        if core.frame.next <= place {
+            self.jumped(core);
+        }
+    }
+
+    /// Told of every jump back; ends the run where the program is now known never to leave the loop.
+    pub(super) fn jumped(&mut self, core: &mut Core) {
         self.wait(core);
         if self.copy.is_some() {
             self.widen(core);
         }
-        if self.seen.as_mut().is_some_and(|seen| seen.is_again(core))
-            && let Some(endless) = self.came_back(core)
-        {
-            return Some(endless);
+        self.found = None;
+        if self.seen.as_mut().is_some_and(|seen| seen.is_again(core)) {
+            self.come_back(core);
+            if self.found.is_some() {
+                core.over = Some(Over::Never);
+                return;
+            }
         }
         if self.left == 0 {
-            self.forget();
-            self.seen = Some(Seen::of(core));
-            self.turns = (self.turns * 2).max(4);
-            self.left = self.turns;
+            self.keep(core);
         }
         self.left -= 1;
-        None
+    }
+
+    /// Keeps this moment instead of an earlier one, for longer.
+    #[cold]
+    fn keep(&mut self, core: &Core) {
+        self.forget();
+        self.seen = Some(Seen::of(core));
+        self.turns = (self.turns * 2).max(4);
+        self.left = self.turns;
     }
 
     /// The control has come to the moment that was kept.
-    fn came_back(&mut self, core: &Core) -> Option<Endless> {
+    #[cold]
+    fn come_back(&mut self, core: &Core) {
         match &self.copy {
             None => self.copy = Some(Box::new(Copy::of(core))),
             // It waits for the clock, which only motion has moved so far.
@@ -117,12 +141,11 @@ impl Watch {
                 self.forget();
             }
             Some(copy) if copy.equals(core) => {
-                let jump = self.widest?;
-                return Some(Endless { program: jump.program, to: jump.to, from: jump.from });
+                let found = |jump: Jump| Endless { program: jump.program, to: jump.to, from: jump.from };
+                self.found = self.widest.map(found);
             }
             Some(_) => self.forget(),
         }
-        None
     }
 
     /// Takes note of a jump that leads further out, or further up, than those since the control was copied.

@@ -6,50 +6,46 @@ use super::functions::{atan2, binary, compare, function, power};
 use super::notes::Note;
 use super::vars::{Kind, Value};
 use crate::alarm::{Alarm, Placed};
-use crate::program::{Code, Instruction, Operand, Operation, Program, STACK, Slot, Source};
+use crate::program::{Code, Computed, Instruction, Operand, Operation, Program, STACK, Slot, Source};
 use crate::source::Span;
 use crate::syntax::ast::{BinaryOp, Function};
 use crate::units::round;
 
 pub(super) type Checked<T> = Result<T, Placed>;
 
-/// Places for the values that wait for their operators: as many as [`crate::program`] lets an expression need. They
-/// are part of the control, so that an evaluation has none to clear.
+/// The values that wait for their operators, in as many places as [`crate::program`] lets an expression need. They
+/// are part of the control, so that an evaluation has none to clear. Going round in them saves the question at every
+/// step whether there is a place, and what an alarm has left behind.
 #[derive(Clone, Debug)]
-pub(super) struct Places([Cell<Value>; STACK]);
+pub(super) struct Waiting {
+    places: [Cell<Value>; STACK],
+    used: Cell<usize>,
+}
 
-impl Default for Places {
+impl Default for Waiting {
     fn default() -> Self {
-        Self([const { Cell::new(Value::Vacant) }; STACK])
+        Self { places: [const { Cell::new(Value::Vacant) }; STACK], used: Cell::new(0) }
     }
 }
 
-/// The values that wait for their operators. Lowering refuses what would need more places than there are; going round in
-/// them saves the question at every step.
-struct Waiting<'a> {
-    places: &'a [Cell<Value>; STACK],
-    used: usize,
-}
-
-impl Waiting<'_> {
-    #[inline]
-    fn push(&mut self, value: Value) {
-        debug_assert!(self.used < STACK, "lowering counts the places");
-        self.places[self.used % STACK].set(value);
-        self.used += 1;
+impl Waiting {
+    fn push(&self, value: Value) {
+        let used = self.used.get();
+        self.places[used % STACK].set(value);
+        self.used.set(used.wrapping_add(1));
     }
 
     #[inline]
-    fn pop(&mut self) -> Value {
-        debug_assert!(self.used > 0, "what an operator takes has waited");
-        self.used = self.used.wrapping_sub(1);
-        self.places[self.used % STACK].get()
+    fn pop(&self) -> Value {
+        let used = self.used.get().wrapping_sub(1);
+        self.used.set(used);
+        self.places[used % STACK].get()
     }
 }
 
 /// What ROUND in a word rounds to.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum RoundsTo {
+pub(super) enum RoundsTo {
     Increment,
     Whole,
 }
@@ -76,16 +72,28 @@ impl Core {
 
     /// Whether a condition holds.
     pub(super) fn holds(&self, program: &Program, condition: Code) -> Checked<bool> {
-        self.run_code(program, condition, RoundsTo::Whole).map(|value| value.number() != 0.0)
+        self.run_code(program, condition, RoundsTo::Whole).map(is_true)
     }
 
-    #[inline]
-    fn fetch(&self, source: Source, last: Value, waiting: &mut Waiting<'_>) -> Value {
+    /// A value that an operator needs; `last` is what the instruction before has given.
+    #[inline(always)]
+    fn fetch(&self, source: &Source, last: Value) -> Value {
         match source {
-            Source::Last => last,
-            Source::Waiting => waiting.pop(),
-            Source::Number(number) => Value::Number(number),
-            Source::Free(place) => self.vars.get(usize::from(place)),
+            Source::Number(number) => Value::Number(*number),
+            Source::Free(place) => self.vars.get(usize::from(*place)),
+            Source::Computed(Computed::Last) => last,
+            Source::Computed(Computed::Waiting) => self.waiting.pop(),
+        }
+    }
+
+    /// As [`Core::fetch`], where only the number is asked for.
+    #[inline(always)]
+    fn number(&self, source: &Source, last: Value) -> f64 {
+        match source {
+            Source::Number(number) => *number,
+            Source::Free(place) => self.vars.number(usize::from(*place)),
+            Source::Computed(Computed::Last) => last.number(),
+            Source::Computed(Computed::Waiting) => self.waiting.pop().number(),
         }
     }
 
@@ -106,25 +114,34 @@ impl Core {
         }
     }
 
+    #[inline(never)]
     fn run_code(&self, program: &Program, code: Code, rounds: RoundsTo) -> Checked<Value> {
+        self.evaluate(program, code, rounds)
+    }
+
+    /// As [`Core::run_code`], in the loop over the blocks itself: most expressions are those of assignments.
+    #[inline(always)]
+    pub(super) fn evaluate(&self, program: &Program, code: Code, rounds: RoundsTo) -> Checked<Value> {
         let mut last = Value::Vacant;
-        let mut waiting = Waiting { places: &self.waiting.0, used: 0 };
         for Instruction { operation, span } in program.code(code) {
-            let mut fetch = |source| self.fetch(source, last, &mut waiting);
-            last = Value::Number(match *operation {
+            last = Value::Number(match operation {
                 Operation::Binary(op, [left, right]) => {
-                    let (left, right) = (fetch(left).number(), fetch(right).number());
-                    at(binary(op, left, right, &self.settings.unsure), *span)?
+                    let (left, right) = (self.number(left, last), self.number(right, last));
+                    at(binary(*op, left, right, &self.settings.unsure), *span)?
                 }
                 Operation::Compare(relation, [left, right]) => {
-                    truth(compare(relation, fetch(left), fetch(right)))
+                    let left = self.fetch(left, last);
+                    truth(compare(*relation, left, self.fetch(right, last)))
                 }
                 Operation::Function(name, argument) => {
-                    at(self.function(name, fetch(argument).number()), *span)?
+                    at(self.function(*name, self.number(argument, last)), *span)?
                 }
-                Operation::Atan2([y, x]) => at(self.atan(fetch(y).number(), fetch(x).number()), *span)?,
+                Operation::Atan2([y, x]) => {
+                    let y = self.number(y, last);
+                    at(self.atan(y, self.number(x, last)), *span)?
+                }
                 _ => {
-                    last = at(self.other(program, operation, last, &mut waiting, rounds), *span)?;
+                    last = at(self.other(program, operation, last, rounds), *span)?;
                     continue;
                 }
             });
@@ -156,14 +173,13 @@ impl Core {
         program: &Program,
         operation: &Operation,
         last: Value,
-        waiting: &mut Waiting<'_>,
         rounds: RoundsTo,
     ) -> Result<Value, Alarm> {
         let unsure = &self.settings.unsure;
         Ok(match *operation {
-            Operation::Load(source) => self.fetch(source, last, waiting),
+            Operation::Load(ref source) => self.fetch(source, last),
             Operation::Wait => {
-                waiting.push(last);
+                self.waiting.push(last);
                 last
             }
             Operation::Binary(..)
@@ -185,14 +201,14 @@ impl Core {
                 Value::Vacant if !unsure.brackets_keep_vacancy => Value::Number(0.0),
                 value => value,
             },
-            Operation::Power([base, exponent]) => {
-                let base = self.fetch(base, last, waiting).number();
-                Value::Number(power(base, self.fetch(exponent, last, waiting).number())?)
+            Operation::Power([ref base, ref exponent]) => {
+                let base = self.number(base, last);
+                Value::Number(power(base, self.number(exponent, last))?)
             }
             Operation::RoundTo(_) if rounds == RoundsTo::Whole => Value::Number(round(last.number())),
             Operation::RoundTo(letter) => Value::Number(self.round_to(letter, last.number())),
             Operation::Logic(op) => {
-                let (left, right) = (waiting.pop().number() != 0.0, last.number() != 0.0);
+                let (left, right) = (is_true(self.waiting.pop()), is_true(last));
                 let holds = match op {
                     BinaryOp::And => left && right,
                     BinaryOp::Xor => left != right,
@@ -202,8 +218,9 @@ impl Core {
             }
             Operation::Parameter { bit, axis } => {
                 let mut part = last;
-                let mut before =
-                    |is_there: bool| is_there.then(|| std::mem::replace(&mut part, waiting.pop()).number());
+                let mut before = |is_there: bool| {
+                    is_there.then(|| std::mem::replace(&mut part, self.waiting.pop()).number())
+                };
                 let (axis, bit) = (before(axis), before(bit));
                 Value::Number(self.parameter(part.number(), bit, axis)?)
             }
@@ -241,6 +258,12 @@ impl Core {
 /// What a condition is to an instruction.
 fn truth(holds: bool) -> f64 {
     f64::from(u8::from(holds))
+}
+
+/// Whether a condition holds that was evaluated.
+#[inline]
+pub(super) fn is_true(condition: Value) -> bool {
+    condition.number() != 0.0
 }
 
 /// A variable's number by an expression: rounded, never negative; vacant is #0.

@@ -8,10 +8,10 @@ use crate::units::{Deg, round};
 /// Results beyond what a double holds are PS0111.
 #[inline]
 fn finite(value: f64) -> Result<f64, Alarm> {
-    if value.is_finite() { Ok(value) } else { Err(Alarm::FloatOverflow) }
+    if (f64::MIN..=f64::MAX).contains(&value) { Ok(value) } else { Err(Alarm::FloatOverflow) }
 }
 
-#[inline]
+#[inline(always)]
 pub(crate) fn binary(op: BinaryOp, left: f64, right: f64, unsure: &Unsure) -> Result<f64, Alarm> {
     finite(match op {
         BinaryOp::Add => left + right,

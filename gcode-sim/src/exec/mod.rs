@@ -66,12 +66,13 @@ pub use vars::{Value, Vars};
 pub use watch::Watcher;
 
 use self::ahead::Ahead;
-use self::endless::{Endless, Watch};
-use self::eval::Places;
+use self::endless::Watch;
+use self::eval::Waiting;
 use self::frames::Frame;
 use self::modal_calls::ModalCall;
 use self::offsets::Offsets;
 use self::plan::Plan;
+use self::run::Over;
 use self::words::Given;
 use self::work_use::WorkUse;
 use crate::alarm::Alarm;
@@ -92,7 +93,6 @@ pub struct Control {
     main: ProgramId,
     outcome: Option<Outcome>,
     watch: Watch,
-    endless: Option<Endless>,
     progress: Option<Arc<Progress>>,
 }
 
@@ -127,9 +127,11 @@ pub(crate) struct Core {
     /// A clock was read since the last jump back.
     clock_read: Cell<bool>,
     /// For values that wait for their operators.
-    waiting: Places,
+    waiting: Waiting,
     /// What a function of the block at hand has to tell.
     told: Cell<Option<Note>>,
+    /// How the block at hand has ended the run.
+    over: Option<Over>,
     blocks: u64,
     moves: u64,
     stops: Vec<Stop>,
@@ -166,8 +168,9 @@ impl Control {
             seconds: 0.0,
             idle: 0.0,
             clock_read: Cell::new(false),
-            waiting: Places::default(),
+            waiting: Waiting::default(),
             told: Cell::new(None),
+            over: None,
             blocks: 0,
             moves: 0,
             stops: Vec::new(),
@@ -186,7 +189,6 @@ impl Control {
             main: ProgramId::default(),
             outcome: None,
             watch: Watch::default(),
-            endless: None,
             progress: None,
         };
         control.select(ProgramId::default());

@@ -48,11 +48,17 @@ impl Control {
             if self.core.blocks.is_multiple_of(TOLD) && self.is_told_to_stop() {
                 break;
             }
-            watcher.before(self);
-            let outcome = self.advance(library, sink);
-            watcher.after(self);
-            if let Some(outcome) = outcome {
-                return *outcome;
+            let until = limits.blocks.min((self.core.blocks / TOLD + 1) * TOLD);
+            while self.core.blocks < until && self.core.moves <= moves {
+                watcher.before(self);
+                let done = self.block(library, sink);
+                if !self.is_uneventful(&done)
+                    && let Some(outcome) = self.conclude(done, sink)
+                {
+                    watcher.after(self);
+                    return *outcome;
+                }
+                watcher.after(self);
             }
         }
         self.outcome = Some(Outcome::Limit);
@@ -69,7 +75,11 @@ impl Control {
 
     /// Does one block; `Some` when the run is over. A block that alarms has changed nothing.
     pub fn step<S: Sink>(&mut self, library: &mut impl Library, sink: &mut S) -> Option<Outcome> {
-        self.over().or_else(|| self.advance(library, sink).map(|outcome| *outcome))
+        if let Some(outcome) = self.over() {
+            return Some(outcome);
+        }
+        let done = self.block(library, sink);
+        self.conclude(done, sink).map(|outcome| *outcome)
     }
 
     /// How the run ended, if it can't go on; a limit is no end.
@@ -77,21 +87,17 @@ impl Control {
         self.outcome.clone().filter(|outcome| !matches!(outcome, Outcome::Limit))
     }
 
-    /// As [`Control::step`], of a run that isn't over.
-    #[inline]
-    fn advance<S: Sink>(&mut self, library: &mut impl Library, sink: &mut S) -> Option<Box<Outcome>> {
-        let done = self.block(library, sink);
-        // Most blocks end nothing and have nothing to tell.
-        if matches!(done, Ok(None)) && self.core.told.get().is_none() {
-            return None;
-        }
-        self.conclude(done, sink)
+    /// Whether a block has ended nothing and has nothing to tell, as most.
+    #[inline(always)]
+    fn is_uneventful(&self, done: &Checked<()>) -> bool {
+        done.is_ok() && self.core.over.is_none() && self.core.told.get().is_none()
     }
 
     /// Takes note of what a block has to tell, and of the end of the run.
     #[inline(never)]
-    fn conclude<S: Sink>(&mut self, mut done: Checked<Option<Over>>, sink: &mut S) -> Option<Box<Outcome>> {
-        if matches!(done, Ok(Some(Over::End)))
+    fn conclude<S: Sink>(&mut self, mut done: Checked<()>, sink: &mut S) -> Option<Box<Outcome>> {
+        let over = self.core.over.take();
+        if over == Some(Over::End)
             && let Err(alarm) = self.core.end_ahead(sink)
         {
             done = Err(alarm);
@@ -100,9 +106,10 @@ impl Control {
             self.core.notes.entry(note).or_insert(self.core.block);
         }
         let outcome = match done {
-            Ok(None) => return None,
-            Ok(Some(Over::End)) => Outcome::End,
-            Ok(Some(Over::Never)) => Outcome::Limit,
+            Ok(()) => match over? {
+                Over::End => Outcome::End,
+                Over::Never => Outcome::Limit,
+            },
             Err(alarm) => {
                 self.core.complete(&alarm, sink);
                 let calls = self.core.frame.calls.clone();
@@ -115,18 +122,27 @@ impl Control {
     }
 
     /// Reads the next block and does what it says.
-    fn block<S: Sink>(&mut self, library: &mut impl Library, sink: &mut S) -> Checked<Option<Over>> {
-        let Self { memory, core, plan, given, watch, endless, .. } = self;
-        let (id, place) = (core.frame.program, core.frame.next);
-        let Some((program, op)) = memory.ready(id, place) else { return core.behind_last(memory) };
+    #[inline(always)]
+    fn block<S: Sink>(&mut self, library: &mut impl Library, sink: &mut S) -> Checked<()> {
+        let Self { memory, core, plan, given, watch, .. } = self;
+        let place = core.frame.next;
+        let Some((program, op)) = memory.ready(core.frame.program, place) else {
+            return core.behind_last(memory);
+        };
         core.block = op.span;
         core.blocks += 1;
         core.frame.next = place + 1;
         if op.skip.is_some_and(|switch| core.skips(switch)) {
-            return Ok(None);
+            return Ok(());
         }
         if !op.forms.is_empty() {
             core.take_forms(op)?;
+        }
+        // In a loop most blocks are statements.
+        if let OpKind::Statement(statement) = &op.kind {
+            core.statement(program, statement, sink)?;
+            watch.look(place, core);
+            return Ok(());
         }
         let mut kind = &op.kind;
         if let OpKind::If { condition, then } = kind
@@ -135,51 +151,42 @@ impl Control {
             kind = then;
         }
         match kind {
-            OpKind::Empty if core.state.parameter_input && op.number.is_some() => {
-                return Err(Alarm::ParameterFormat { what: "R is missing".into() }.at(op.span));
+            OpKind::Statement(statement) => {
+                core.any_statement(program, statement, sink)?;
+                watch.look(place, core);
+                return Ok(());
             }
-            OpKind::Empty if op.number.is_some() => core.pass_number(op.span, sink)?,
+            OpKind::Empty if core.state.parameter_input && op.number.is_some() => {
+                return Err(Alarm::ParameterFormat { what: "R is missing".into() }.at(core.block));
+            }
+            OpKind::Empty if op.number.is_some() => core.pass_number(core.block, sink)?,
             OpKind::Empty | OpKind::If { .. } => {}
             OpKind::Alarm(alarm) => return Err(alarm.clone()),
-            OpKind::Statement(statement) => {
-                core.statement(program, statement, op.span, sink)?;
-                if core.frame.next <= place {
-                    *endless = watch.jumped(core);
-                    return Ok(endless.map(|_| Over::Never));
-                }
-                return Ok(None);
-            }
             OpKind::Words(words) if core.state.parameter_input => {
-                let span = op.span;
-                core.prepare_parameter(program, (words, op.number), given, plan, span)?;
-                return self.finish(span, library, sink);
+                core.prepare_parameter(program, (words, op.number), given, plan, core.block)?;
+                return self.finish(library, sink);
             }
             OpKind::Words(words) => {
-                if core.call_by_block(program, words, op.number, op.span)? {
+                if core.call_by_block(program, words, op.number, core.block)? {
                     core.state.codes.o = memory.get(core.frame.program).shown_number();
-                    return Ok(None);
+                    return Ok(());
                 }
-                core.prepare(program, words, given, plan, op.span)?;
-                let span = op.span;
+                core.prepare(program, words, given, plan, core.block)?;
                 if let Some(number) = op.number {
                     plan.state.codes.n = number;
                 }
-                return self.finish(span, library, sink);
+                return self.finish(library, sink);
             }
         }
         if let Some(number) = op.number {
             core.state.codes.n = number;
         }
-        Ok(None)
+        Ok(())
     }
 
     /// Carries out the plan of a block of words. What can still alarm comes first.
-    fn finish<S: Sink>(
-        &mut self,
-        span: Span,
-        library: &mut impl Library,
-        sink: &mut S,
-    ) -> Checked<Option<Over>> {
+    fn finish<S: Sink>(&mut self, library: &mut impl Library, sink: &mut S) -> Checked<()> {
+        let span = self.core.block;
         let mut flow = std::mem::take(&mut self.plan.flow);
         match &mut flow {
             Flow::Call(call) => {
@@ -208,29 +215,27 @@ impl Control {
                 self.core.state.codes.o = self.memory.get(program).shown_number();
             }
             Flow::Return { number, target } => {
-                let outcome = self.go_back(number.zip(target));
+                self.core.over = self.go_back(number.zip(target));
                 let program = self.core.frame.program;
                 self.core.state.codes.o = self.memory.get(program).shown_number();
-                if outcome.is_none() {
-                    self.endless = self.watch.jumped(&mut self.core);
-                    return Ok(self.endless.map(|_| Over::Never));
+                if self.core.over.is_none() {
+                    self.watch.jumped(&mut self.core);
                 }
-                return Ok(outcome);
             }
             Flow::CancelModal => self.core.cancel_modal(),
             Flow::End => {
                 self.core.parts[0] += 1.0;
-                return Ok(Some(Over::End));
+                self.core.over = Some(Over::End);
             }
         }
-        Ok(None)
+        Ok(())
     }
 }
 
 impl Core {
     /// There is no block any more. A text may just stop; running into `%` or another program is running off the tape.
     #[cold]
-    fn behind_last(&mut self, memory: &Memory) -> Checked<Option<Over>> {
+    fn behind_last(&mut self, memory: &Memory) -> Checked<()> {
         let frame = &self.frame;
         let main = frame.kind == FrameKind::Main;
         let Some(program) = memory.programs().get(frame.program.0 as usize) else {
@@ -238,7 +243,8 @@ impl Core {
         };
         self.block = Span { start: program.span.end, ..program.span };
         if main && !program.closed {
-            return Ok(Some(Over::End));
+            self.over = Some(Over::End);
+            return Ok(());
         }
         Err(Alarm::EndOfRecord.at(self.block))
     }

@@ -1,6 +1,6 @@
 //! Macro statements: assignments, branches and loops. They never tell the machine anything, but for #3000 and #3006.
 use super::Core;
-use super::eval::{Checked, index, integer};
+use super::eval::{Checked, RoundsTo, at, index, integer, is_true};
 use super::notes::Note;
 use super::vars::{Kind, Value};
 use crate::alarm::Alarm;
@@ -12,23 +12,48 @@ use crate::source::{Span, Spanned};
 const MOST_RAISED: u16 = 4095;
 
 impl Core {
-    /// Does one statement. The frame already stands at the next block; jumps change that.
+    /// Does one statement. The frame already stands at the next block; jumps change that. What the turns of most loops
+    /// consist of is done in the loop over the blocks itself.
+    #[inline(always)]
     pub(super) fn statement<S: Sink>(
         &mut self,
         program: &Program,
         statement: &Statement,
-        span: Span,
+        sink: &mut S,
+    ) -> Checked<()> {
+        match statement {
+            Statement::Assign { target: Target::Slot(Slot::Free(place)), value, .. } => {
+                let value = self.assigned(program, value)?;
+                self.vars.set(usize::from(*place), value);
+                Ok(())
+            }
+            Statement::While { condition, number, end } => {
+                let holds = is_true(self.evaluate(program, *condition, RoundsTo::Whole)?);
+                self.begin_turn(*number, *end, holds);
+                Ok(())
+            }
+            Statement::End { number, start } => self.end_turn(*number, *start),
+            _ => self.any_statement(program, statement, sink),
+        }
+    }
+
+    /// As [`Core::statement`], away from the loop over the blocks.
+    #[inline(never)]
+    pub(super) fn any_statement<S: Sink>(
+        &mut self,
+        program: &Program,
+        statement: &Statement,
         sink: &mut S,
     ) -> Checked<()> {
         match statement {
             Statement::Assign { target, target_span, value, text } => {
-                let slot = self.target(program, *target).map_err(|a| a.at(*target_span))?;
+                let slot = at(self.target(program, *target), *target_span)?;
                 let value = self.operand(program, *value)?;
                 self.write(slot, value, text.as_deref(), *target_span, sink)?;
             }
             Statement::Several(assignments) => {
                 for one in assignments {
-                    self.statement(program, one, span, sink)?;
+                    self.any_statement(program, one, sink)?;
                 }
             }
             Statement::Goto(to) => self.goto(program, to)?,
@@ -40,33 +65,17 @@ impl Core {
             Statement::IfThen { condition, then } => {
                 if self.holds(program, *condition)? {
                     // An assignment or a GOTO: lowering lets nothing else stand here.
-                    return self.statement(program, then, span, sink);
+                    return self.any_statement(program, then, sink);
                 }
             }
             Statement::While { condition, number, end } => {
                 let holds = self.holds(program, *condition)?;
-                let frame = &mut self.frame;
-                let open = &mut frame.loops[usize::from(*number) - 1];
-                if holds {
-                    *open = Some((frame.next - 1, *end));
-                } else {
-                    *open = None;
-                    frame.jump(end + 1);
-                }
+                self.begin_turn(*number, *end, holds);
             }
-            Statement::Do { number, end } => {
-                let start = self.frame.next - 1;
-                self.frame.loops[usize::from(*number) - 1] = Some((start, *end));
-            }
-            Statement::End { number, start } => {
-                let open = self.frame.loops[usize::from(*number) - 1];
-                if open.is_none_or(|(first, _)| first != *start) {
-                    return Err(Alarm::MissingDo { number: *number }.at(span));
-                }
-                self.frame.next = *start;
-            }
-            Statement::SetNames { first, names } => self.name_variables(program, *first, names, span)?,
-            Statement::Print { kind, parts } => self.print(program, *kind, parts, span)?,
+            Statement::Do { number, end } => self.begin_turn(*number, *end, true),
+            Statement::End { number, start } => self.end_turn(*number, *start)?,
+            Statement::SetNames { first, names } => self.name_variables(program, *first, names)?,
+            Statement::Print { kind, parts } => self.print(program, *kind, parts, self.block)?,
             Statement::OpenOutput => self.open_output(true),
             Statement::CloseOutput => self.open_output(false),
             Statement::Alarm(alarm) => return Err(alarm.clone()),
@@ -74,19 +83,45 @@ impl Core {
         Ok(())
     }
 
-    #[inline(never)]
-    fn name_variables(
-        &mut self,
-        program: &Program,
-        first: Operand,
-        names: &[String],
-        span: Span,
-    ) -> Checked<()> {
-        let first = index(self.operand(program, first)?).map_err(|alarm| alarm.at(span))?;
-        self.set_names(first, names).map_err(|alarm| alarm.at(span))
+    /// The value of an assignment.
+    #[inline(always)]
+    fn assigned(&self, program: &Program, value: &Operand) -> Checked<Value> {
+        match value {
+            Operand::Code(code) => self.evaluate(program, *code, RoundsTo::Increment),
+            value => self.operand(program, *value),
+        }
     }
 
+    /// The DO or WHILE of a loop, `end` the operation of its END.
     #[inline]
+    fn begin_turn(&mut self, number: u8, end: OpIndex, goes_on: bool) {
+        let frame = &mut self.frame;
+        let open = &mut frame.loops[usize::from(number) - 1];
+        if goes_on {
+            *open = Some((frame.next - 1, end));
+        } else {
+            *open = None;
+            frame.jump(end + 1);
+        }
+    }
+
+    /// The END of a loop, `start` the operation of its DO or WHILE.
+    #[inline]
+    fn end_turn(&mut self, number: u8, start: OpIndex) -> Checked<()> {
+        let open = self.frame.loops[usize::from(number) - 1];
+        if open.is_none_or(|(first, _)| first != start) {
+            return Err(Alarm::MissingDo { number }.at(self.block));
+        }
+        self.frame.next = start;
+        Ok(())
+    }
+
+    #[inline(never)]
+    fn name_variables(&mut self, program: &Program, first: Operand, names: &[String]) -> Checked<()> {
+        let first = at(index(self.operand(program, first)?), self.block)?;
+        at(self.set_names(first, names), self.block)
+    }
+
     pub(super) fn target(&self, program: &Program, target: Target) -> Result<Slot, Alarm> {
         match target {
             Target::Slot(slot) => Ok(slot),
@@ -140,7 +175,6 @@ impl Core {
     }
 
     /// Writes a variable of any kind.
-    #[inline]
     pub(super) fn write<S: Sink>(
         &mut self,
         slot: Slot,

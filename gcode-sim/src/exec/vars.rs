@@ -31,6 +31,27 @@ impl Value {
     }
 }
 
+/// A value as it is kept: the number is 0 where it is vacant, so that arithmetic needn't ask.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Held {
+    number: f64,
+    vacant: bool,
+}
+
+impl From<Value> for Held {
+    #[inline]
+    fn from(value: Value) -> Self {
+        Self { number: value.number(), vacant: value.is_vacant() }
+    }
+}
+
+impl From<Held> for Value {
+    #[inline]
+    fn from(held: Held) -> Self {
+        if held.vacant { Self::Vacant } else { Self::Number(held.number) }
+    }
+}
+
 /// #0, which stays vacant, and #1 to #33.
 const LOCALS: usize = 34;
 /// The numbers up to the last common of every control.
@@ -77,7 +98,7 @@ pub(super) enum Kind {
 pub struct Vars {
     /// By number the locals of the current level and the commons, behind them the further commons. What has no number of
     /// these is never written.
-    values: Vec<Value>,
+    values: Vec<Held>,
     /// The decimals of the current level's locals, see [`Locals`].
     decimals: [u8; LOCALS],
     /// The locals of the levels that wait for the current one, the main program's first.
@@ -93,7 +114,7 @@ impl Vars {
     pub(super) fn new(more: Option<(u32, u32)>, aliased: bool) -> Self {
         let count = more.map_or(0, |(from, to)| (to - from + 1) as usize);
         Self {
-            values: vec![Value::Vacant; ORDINARY + count],
+            values: vec![Value::Vacant.into(); ORDINARY + count],
             decimals: [0; LOCALS],
             outer: Vec::new(),
             more: more.unwrap_or((1, 0)),
@@ -124,15 +145,21 @@ impl Vars {
     }
 
     /// The value at a place that [`Vars::kind`] or [`Slot::Free`] tells.
-    #[inline]
+    #[inline(always)]
     pub(super) fn get(&self, place: usize) -> Value {
-        self.values[place]
+        self.values[place].into()
+    }
+
+    /// The number at such a place; 0 where it is vacant.
+    #[inline(always)]
+    pub(super) fn number(&self, place: usize) -> f64 {
+        self.values[place].number
     }
 
     /// Writes a value at a place that [`Vars::kind`] or [`Slot::Free`] tells.
-    #[inline]
+    #[inline(always)]
     pub(super) fn set(&mut self, place: usize, value: Value) {
-        self.values[place] = value;
+        self.values[place] = value.into();
         if let Some(decimals) = self.decimals.get_mut(place) {
             *decimals = 0;
         }
@@ -140,18 +167,18 @@ impl Vars {
 
     /// ADP: a local's value as if it had been passed with a point.
     pub(super) fn with_point(&self, local: usize) -> f64 {
-        self.values[local].number() * 10_f64.powi(i32::from(self.decimals[local]))
+        self.values[local].number * 10_f64.powi(i32::from(self.decimals[local]))
     }
 
     /// The locals of the current level.
     pub fn locals(&self) -> Locals {
-        let mut locals = Locals { decimals: self.decimals, ..VACANT };
-        locals.values.copy_from_slice(&self.values[..LOCALS]);
-        locals
+        Locals { values: std::array::from_fn(|local| self.get(local)), decimals: self.decimals }
     }
 
     pub(super) fn set_locals(&mut self, locals: &Locals) {
-        self.values[..LOCALS].copy_from_slice(&locals.values);
+        for (held, value) in self.values.iter_mut().zip(locals.values) {
+            *held = value.into();
+        }
         self.decimals = locals.decimals;
     }
 
@@ -180,7 +207,7 @@ impl Vars {
     /// Whether the values at a place differ, be it in one bit.
     #[inline]
     pub(super) fn differ_at(&self, place: usize, other: &Self) -> bool {
-        bits(self.values[place]) != bits(other.values[place])
+        bits(self.get(place)) != bits(other.get(place))
     }
 
     /// A place where the values differ; that of #0 where only callers' locals do.
@@ -195,12 +222,13 @@ impl Vars {
 
     /// The variables that aren't vacant, by number: the locals of the main program and the commons.
     pub fn known(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
-        let (locals, commons) = self.values.split_at(LOCALS);
-        let locals = self.outer.first().map_or(locals, |level| &level.values);
-        let (commons, more) = commons.split_at(ORDINARY - LOCALS);
-        let more = (self.more.0..).zip(more);
-        let all = (0..).zip(locals).chain((LOCALS as u32..).zip(commons)).chain(more);
-        all.filter_map(|(number, value)| Some((number, value.given()?)))
+        let local = |local| self.outer.first().map_or_else(|| self.get(local), |level| level[local]);
+        let locals = (0..LOCALS).map(move |place| (place, local(place)));
+        let commons = (LOCALS..self.values.len()).map(|place| (place, self.get(place)));
+        locals.chain(commons).filter_map(|(place, value)| {
+            let number = place.checked_sub(ORDINARY).map_or(place as u32, |more| self.more.0 + more as u32);
+            Some((number, value.given()?))
+        })
     }
 }
 

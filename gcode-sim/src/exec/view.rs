@@ -93,7 +93,7 @@ impl Control {
 
     /// The first and the last block of the loop that was found never to end, where that ended the run.
     pub fn endless_loop(&self) -> Option<(Span, Span)> {
-        let found = self.endless.as_ref()?;
+        let found = self.watch.endless()?;
         let first = self.memory.place_of(found.program, found.to)?;
         Some((first, found.from))
     }

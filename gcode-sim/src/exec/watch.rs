@@ -70,19 +70,19 @@ impl Core {
             OpKind::If { condition, then } if self.holds(program, *condition).unwrap_or(false) => {
                 self.targets(program, then, numbers);
             }
-            OpKind::Statement(statement) => self.assigned(program, statement, numbers),
+            OpKind::Statement(statement) => self.targets_of(program, statement, numbers),
             OpKind::Empty | OpKind::Words(_) | OpKind::If { .. } | OpKind::Alarm(_) => {}
         }
     }
 
-    fn assigned(&self, program: &Program, statement: &Statement, numbers: &mut Vec<u32>) {
+    fn targets_of(&self, program: &Program, statement: &Statement, numbers: &mut Vec<u32>) {
         match statement {
             Statement::Assign { target, .. } => {
                 numbers.extend(self.target(program, *target).map(Slot::number));
             }
-            Statement::Several(all) => all.iter().for_each(|one| self.assigned(program, one, numbers)),
+            Statement::Several(all) => all.iter().for_each(|one| self.targets_of(program, one, numbers)),
             Statement::IfThen { condition, then } if self.holds(program, *condition).unwrap_or(false) => {
-                self.assigned(program, then, numbers);
+                self.targets_of(program, then, numbers);
             }
             _ => {}
         }

@@ -104,9 +104,9 @@ impl Blocks {
         if self.ops.len() == self.entries.len() { &self.ops } else { &[] }
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn code(&self, code: Code) -> &[Instruction] {
-        &self.lowering.instructions[code.start as usize..code.end as usize]
+        &self.lowering.instructions[..code.end as usize][code.start as usize..]
     }
 
     pub(super) fn variable_name(&self, index: u32) -> &str {
@@ -118,10 +118,7 @@ impl Blocks {
     #[inline]
     pub(super) fn ready(&mut self, place: OpIndex, loops: &Loops) -> Option<u32> {
         let op = self.entries.get(place)?.op;
-        if op != Entry::UNREAD {
-            return Some(op);
-        }
-        self.make_ready(place, loops)
+        if (op as usize) < self.ops.len() { Some(op) } else { self.make_ready(place, loops) }
     }
 
     #[inline(never)]

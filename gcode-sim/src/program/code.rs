@@ -72,19 +72,29 @@ pub struct Instruction {
 /// Where an operator finds a value that it needs. Most are numbers and variables, which then needn't wait on the stack.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Source {
+    Number(f64),
+    /// A variable of [`Slot::Free`].
+    Free(u16),
+    Computed(Computed),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Computed {
     /// What the instruction before has given.
     Last,
     /// The last of the values that wait, which it takes away.
     Waiting,
-    Number(f64),
-    /// A variable of [`Slot::Free`].
-    Free(u16),
 }
 
 /// Gives a value, mostly of the one that the instruction before has given; where that is needed later it waits on a stack.
 /// Conditions are numbers here, 0 or 1; the tree keeps them apart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Operation {
+    Binary(BinaryOp, [Source; 2]),
+    Compare(Relation, [Source; 2]),
+    Function(Function, Source),
+    /// ATAN of two values.
+    Atan2([Source; 2]),
     Load(Source),
     /// Lets the last value wait for its operator.
     Wait,
@@ -97,14 +107,9 @@ pub enum Operation {
     Reverse,
     Plus,
     Bracket,
-    Binary(BinaryOp, [Source; 2]),
-    Function(Function, Source),
-    /// ATAN of two values.
-    Atan2([Source; 2]),
     Power([Source; 2]),
     /// ROUND in a word: to the increment of that address.
     RoundTo(u8),
-    Compare(Relation, [Source; 2]),
     /// Of the value that waits and the last one.
     Logic(BinaryOp),
     /// PRM: the number, the bit and the axis, of which the last is the last value and those before it wait.

@@ -1,6 +1,6 @@
 //! Expressions lowered to postfix code.
 use super::Form;
-use super::code::{Code, Instruction, Operand, Operation, STACK, Slot, Source, Target};
+use super::code::{Code, Computed, Instruction, Operand, Operation, STACK, Slot, Source, Target};
 use super::lower::Lowering;
 use super::names::{self, OTHER_MEMORIES};
 use crate::alarm::{Alarm, Placed};
@@ -9,6 +9,9 @@ use crate::syntax::ast::{BinaryOp, CallForm, Condition, Expr, ExprKind, Function
 
 /// How deep brackets may stand in one another (operator's manual, custom macro: five levels).
 pub(super) const BRACKETS: usize = 5;
+
+const LAST: Source = Source::Computed(Computed::Last);
+const WAITING: Source = Source::Computed(Computed::Waiting);
 
 /// Beyond it no number is a variable's.
 const MOST_WRITTEN: f64 = 999_999_999.0;
@@ -67,7 +70,7 @@ impl Lowering {
     /// Writes the code of `expr`; the answer is how many values it needs on the stack at once.
     fn expr(&mut self, expr: &Expr, context: Context, brackets: usize) -> Lowered<usize> {
         let (source, depth) = self.source(expr, context, brackets)?;
-        if source != Source::Last {
+        if source != LAST {
             self.emit(Operation::Load(source), expr.span);
         }
         Ok(depth)
@@ -87,18 +90,18 @@ impl Lowering {
                         Slot::Free(number) => Source::Free(number),
                         Slot::Other(number) => {
                             self.emit(Operation::Read(number), expr.span);
-                            Source::Last
+                            LAST
                         }
                     };
                     return Ok((source, 1));
                 }
                 let depth = self.expr(index, Context::Macro, brackets)?;
                 self.emit(Operation::LoadIndirect, expr.span);
-                return Ok((Source::Last, depth));
+                return Ok((LAST, depth));
             }
             _ => {}
         }
-        self.computed(expr, context, brackets).map(|depth| (Source::Last, depth))
+        self.computed(expr, context, brackets).map(|depth| (LAST, depth))
     }
 
     /// The sources of an operator's two values. The second may have to wait for the first.
@@ -111,8 +114,8 @@ impl Lowering {
         let (mut left_source, left_depth) = self.source(left, context, brackets)?;
         let behind_left = self.instructions.len();
         let (right_source, right_depth) = self.source(right, context, brackets)?;
-        if (left_source, right_source) == (Source::Last, Source::Last) {
-            left_source = Source::Waiting;
+        if (left_source, right_source) == (LAST, LAST) {
+            left_source = WAITING;
             let wait = Instruction { operation: Operation::Wait, span: left.span };
             self.instructions.insert(behind_left, wait);
         }

@@ -21,7 +21,7 @@ mod outline;
 mod words;
 
 pub use arguments::{ArgumentLocals, argument_letter};
-pub use code::{Code, Instruction, Operand, Operation, STACK, Slot, Source, Target};
+pub use code::{Code, Computed, Instruction, Operand, Operation, STACK, Slot, Source, Target};
 pub use forms::Form;
 pub use memory::{Library, Memory, NoLibrary, ProgramId};
 pub use words::{CallOp, CallTarget, Calling, Coded, Input, Words};
@@ -66,7 +66,9 @@ pub struct Op {
     pub kind: OpKind,
 }
 
+/// What a block does. Which of these it is stands in a byte of its own, for it is asked at every block.
 #[derive(Debug)]
+#[repr(u8)]
 pub enum OpKind {
     /// A block without words: an empty line, a comment, a sequence number alone.
     Empty,
@@ -81,7 +83,9 @@ pub enum OpKind {
     Alarm(Placed),
 }
 
+/// A macro statement. Which one it is stands in a byte of its own, as in [`OpKind`].
 #[derive(Debug)]
+#[repr(u8)]
 pub enum Statement {
     Assign {
         target: Target,
@@ -171,6 +175,7 @@ impl Program {
         self.blocks.op(place)
     }
 
+    #[inline(always)]
     pub fn code(&self, code: Code) -> &[Instruction] {
         self.blocks.code(code)
     }
