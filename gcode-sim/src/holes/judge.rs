@@ -13,6 +13,7 @@ const ALONG: Deg = Deg(0.05);
 impl Extractor<'_> {
     /// The tool has left a line, or the run is over: is it a hole?
     pub(super) fn judge_line(&mut self, line: Line, after: After, feeding: bool) {
+        self.note_reach(&line);
         let place = line.place().clone();
         let off = line.tool_axis.map(|axis| Deg::acos(axis.dot(&line.out).clamp(-1.0, 1.0)));
         let came_back = match after {

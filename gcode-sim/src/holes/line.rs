@@ -36,6 +36,8 @@ pub(super) struct Line {
     pub hold: Hold,
     /// The axes whose place on the part isn't known, as bits, axis 1 the lowest.
     pub unplaced: u8,
+    /// How far the tip is beyond the programmed point.
+    pub beyond: Option<f64>,
     /// The slowest and the fastest of the feeds that cut.
     feeds: Option<[MmPerMin; 2]>,
     /// The depth reached by finished strokes.
@@ -80,6 +82,7 @@ impl Line {
             force: InForce::default(),
             hold: Hold::default(),
             unplaced: 0,
+            beyond: None,
             feeds: None,
             deepest: 0.0,
             stroke: Some(Stroke { from: 0.0, reach: depth, place: place.clone(), at }),

@@ -11,6 +11,7 @@ mod passing;
 pub(crate) mod per_block;
 mod probing;
 mod rapids;
+mod reaches;
 #[cfg(test)]
 pub(crate) mod script;
 pub(crate) mod spindle;
@@ -26,6 +27,7 @@ use group::Pass;
 use line::{After, Line};
 pub(crate) use machine_words::unclear_head;
 pub use passing::{CONTACT, Passing, ROUNDED, Way};
+pub use reaches::Reach;
 pub use unplaced::Unplaced;
 
 use self::clamping::Hold;
@@ -33,6 +35,7 @@ use self::cutting::{Cuttings, InForce};
 use self::findings::Findings;
 use self::passing::Passings;
 use self::rapids::{Curved, TOUCH};
+use self::reaches::Reaches;
 use self::unplaced::Placing;
 use crate::diag::{Diagnostic, Severity};
 use crate::machine::path::Travel;
@@ -58,6 +61,8 @@ pub struct Extracted {
     pub passings: Vec<Passing>,
     /// What was in force where the tool cut.
     pub cuttings: Vec<Cutting>,
+    /// Feeds of tools whose lengths aren't those that the control reckons with.
+    pub reaches: Vec<Reach>,
     /// Rapids whose way over the part isn't known.
     pub unplaced: Option<Unplaced>,
     /// What the motion was looked at for.
@@ -92,6 +97,7 @@ pub struct Extractor<'m> {
     findings: Findings,
     passings: Passings,
     cuttings: Cuttings,
+    reaches: Reaches,
     /// How many times a probe was sent to the part.
     touches: u64,
 }
@@ -131,6 +137,7 @@ impl<'m> Extractor<'m> {
             findings: Findings::default(),
             passings: Passings::default(),
             cuttings: Cuttings::default(),
+            reaches: Reaches::default(),
             touches: 0,
         }
     }
@@ -167,6 +174,7 @@ impl<'m> Extractor<'m> {
             findings,
             passings: self.passings.finish(),
             cuttings: self.cuttings.finish(),
+            reaches: self.reaches.finish(),
             unplaced: self.placing.finish(self.machine),
             conduct: self.conduct,
         }
@@ -272,6 +280,7 @@ impl<'m> Extractor<'m> {
             line.force = InForce { tool: self.setup.tool, ..self.force };
             line.hold = self.hold;
             line.unplaced = self.placing.now();
+            line.beyond = self.beyond();
             self.note_feed(event, &mut line);
             line
         });

@@ -70,6 +70,8 @@ pub fn verify(
     let stopped = extracted.findings.iter().any(|finding| finding.severity == Severity::Alarm);
     checks::stopped::check(&comparison, stopped, &mut objections);
     checks::alike::check(&comparison, machine, &mut objections);
+    let (reaches, conduct) = (&extracted.reaches, &reference.conduct);
+    checks::reach::check(&comparison, reaches, conduct, machine, &mut objections);
     let mut motion = extracted.findings.clone();
     motion.extend(checks::signs::finding(reference, machine));
     motion.extend(checks::clearance::findings(&extracted.passings, &reference.conduct));

@@ -11,6 +11,7 @@ mod missing;
 mod of_rows;
 mod overlap;
 mod position;
+pub(super) mod reach;
 mod row_angle;
 mod row_group;
 mod row_missing;
