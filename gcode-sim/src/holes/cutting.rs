@@ -1,5 +1,6 @@
 //! What is in force while a tool cuts: its direction of rotation, S, F and length offset, which the verdict holds against
 //! what the reference says of the tool.
+use super::line::Pecks;
 use super::per_block::PerBlock;
 use crate::motion::{Lengthening, Place, Spindle};
 use crate::units::{MmPerMin, Rpm};
@@ -14,6 +15,10 @@ pub struct Cutting {
     pub speed: Rpm,
     /// The slowest and the fastest of the feeds.
     pub feeds: [MmPerMin; 2],
+    /// The most that was cut without a way back, mm.
+    pub cut: f64,
+    /// Of cuts in several strokes the least by which one went on, each taken by its longest, mm.
+    pub peck: Option<f64>,
     /// How many cuts were made so at that block.
     pub times: u64,
 }
@@ -32,7 +37,7 @@ pub(super) struct InForce {
 pub(super) struct Cuttings(PerBlock<[u64; 6], Cutting>);
 
 impl Cuttings {
-    pub(super) fn add(&mut self, place: &Place, force: &InForce, feeds: [MmPerMin; 2]) {
+    pub(super) fn add(&mut self, place: &Place, force: &InForce, feeds: [MmPerMin; 2], pecks: Pecks) {
         let InForce { tool, by, turning, speed } = *force;
         let length = match by {
             Lengthening::Off => 0,
@@ -42,15 +47,22 @@ impl Cuttings {
         let tool_key = tool.map_or(u64::MAX, u64::from);
         let [least, most] = feeds.map(|feed| feed.0.to_bits());
         let kind = [tool_key, length, turning as u64, speed.0.to_bits(), least, most];
-        self.0.count(place.block, kind, || Cutting {
+        let (_, entry) = self.0.count(place.block, kind, || Cutting {
             place: place.clone(),
             tool,
             by,
             turning,
             speed,
             feeds,
+            cut: 0.0,
+            peck: None,
             times: 0,
         });
+        let cutting = &mut entry.value;
+        cutting.cut = cutting.cut.max(pecks.cut);
+        if 1 < pecks.strokes {
+            cutting.peck = Some(cutting.peck.map_or(pecks.fed, |least| least.min(pecks.fed)));
+        }
     }
 
     pub(super) fn finish(self) -> Vec<Cutting> {

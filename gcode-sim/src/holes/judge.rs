@@ -99,8 +99,9 @@ impl Extractor<'_> {
         self.check_held(place, line.hold);
         self.check_placed(place, line.unplaced);
         if let Some(feeds) = line.feeds() {
-            self.cuttings.add(place, &line.force, feeds);
+            self.cuttings.add(place, &line.force, feeds, line.pecks());
         }
+        self.check_spindle(place, line);
         if line.force.turning == Spindle::Off {
             let builder = self.builder;
             self.findings.add("spindle-stopped", place, 0, || {

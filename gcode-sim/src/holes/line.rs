@@ -40,6 +40,12 @@ pub(super) struct Line {
     pub beyond: Option<f64>,
     /// The slowest and the fastest of the feeds that cut.
     feeds: Option<[MmPerMin; 2]>,
+    /// How deep below the start the part begins, where its surface is known.
+    pub top: Option<f64>,
+    /// The most that one finished stroke has cut, air included, and of the part alone.
+    pecks: Pecks,
+    /// The spindle was reversed, or stopped, while the tool was in the hole.
+    pub spindle: InHole,
     /// The depth reached by finished strokes.
     deepest: f64,
     /// The stroke being fed.
@@ -53,6 +59,26 @@ pub(super) struct Line {
     at: Position,
     /// Half the rounding of a programmed point, mm.
     rounding: f64,
+}
+
+/// What the spindle does while the tool is in the hole.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum InHole {
+    #[default]
+    Turns,
+    Stops,
+    Reverses,
+}
+
+/// How much strokes cut beyond the ones before them, mm.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Pecks {
+    /// So many strokes cut.
+    pub strokes: u32,
+    /// The most that one of them was fed beyond the others, air included.
+    pub fed: f64,
+    /// The most that one of them cut of the part.
+    pub cut: f64,
 }
 
 /// Feeds inwards without a way back between them.
@@ -84,6 +110,9 @@ impl Line {
             unplaced: 0,
             beyond: None,
             feeds: None,
+            top: None,
+            pecks: Pecks::default(),
+            spindle: InHole::default(),
             deepest: 0.0,
             stroke: Some(Stroke { from: 0.0, reach: depth, place: place.clone(), at }),
             depth,
@@ -102,6 +131,25 @@ impl Line {
 
     pub(super) fn feeds(&self) -> Option<[MmPerMin; 2]> {
         self.feeds
+    }
+
+    /// What its strokes have cut, the one that is being fed included.
+    pub(super) fn pecks(&self) -> Pecks {
+        match &self.stroke {
+            Some(stroke) if stroke.reach > self.deepest + DEEPER => self.pecked(stroke.reach),
+            _ => self.pecks,
+        }
+    }
+
+    fn pecked(&self, reach: f64) -> Pecks {
+        let Pecks { strokes, fed, cut } = self.pecks;
+        let solid = self.deepest.max(self.top.unwrap_or(self.deepest));
+        Pecks { strokes: strokes + 1, fed: fed.max(reach - self.deepest), cut: cut.max(reach - solid) }
+    }
+
+    /// The tool is below where the feed began.
+    pub(super) fn is_below(&self) -> bool {
+        self.depth > 2.0 * self.rounding
     }
 
     /// How deep the line is cut.
@@ -143,8 +191,7 @@ impl Line {
         let depth = self.depth_of(to);
         let aside = to - self.start + self.out.into_inner() * depth;
         let is_square = (depth - self.depth).abs() <= 2.0 * self.rounding;
-        let is_below = self.depth > 2.0 * self.rounding;
-        let is_shift = is_square && is_below && self.is_beside(to) && aside.norm() <= SHIFT;
+        let is_shift = is_square && self.is_below() && self.is_beside(to) && aside.norm() <= SHIFT;
         if is_shift {
             self.aside = aside;
         }
@@ -235,6 +282,7 @@ impl Line {
     fn end_stroke(&mut self) -> Option<Pass> {
         let stroke = self.stroke.take()?;
         if stroke.reach > self.deepest + DEEPER {
+            self.pecks = self.pecked(stroke.reach);
             self.deepest = stroke.reach;
             self.place = stroke.place;
             self.at = stroke.at;

@@ -281,6 +281,8 @@ impl<'m> Extractor<'m> {
             line.hold = self.hold;
             line.unplaced = self.placing.now();
             line.beyond = self.beyond();
+            line.top =
+                self.surface.and_then(|s| s.exit(&line.bottom(), &line.out)).map(|p| line.depth_of(&p));
             self.note_feed(event, &mut line);
             line
         });
@@ -353,8 +355,10 @@ impl Sink for Extractor<'_> {
             EventKind::Unplaced { axes } => self.placing.hear(self.machine, *axes),
             EventKind::Spindle { turning, speed } => {
                 // At S0 it stands.
+                let before = self.force.turning;
                 self.force.turning = if *speed == Rpm(0.0) { Spindle::Off } else { *turning };
                 self.force.speed = *speed;
+                self.spindle_in_hole(before);
                 self.builder = None;
             }
             EventKind::Stop { kind: StopKind::Message, text, named } => {

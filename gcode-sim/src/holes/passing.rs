@@ -84,7 +84,8 @@ impl Extractor<'_> {
         from: &Point3<f64>,
         to: &Point3<f64>,
     ) {
-        if CONTACT <= surface.clearance(from, to) {
+        let limit = self.conduct.approach.map_or(CONTACT, |approach| approach.max(CONTACT));
+        if limit <= surface.clearance(from, to) {
             return;
         }
         let along = to - from;
@@ -92,12 +93,18 @@ impl Extractor<'_> {
         let nearest = surface.nearest(&(from + along * part));
         let steepness = nearest.normal.dot(&along) / along.norm();
         let way = match () {
-            () if CONTACT <= nearest.distance => return,
             () if STEEP < steepness => return,
             () if steepness < -STEEP => Way::Towards,
             () => Way::Past,
         };
-        self.passings.add(event, way, nearest.distance, None);
+        if nearest.distance < CONTACT {
+            self.passings.add(event, way, nearest.distance, None);
+        } else if let (Way::Towards, Some(approach)) = (way, self.conduct.approach) {
+            let above = above(surface, &self.pose).unwrap_or(nearest.distance);
+            if above < approach - ROUNDED {
+                self.passings.add(event, way, above, None);
+            }
+        }
     }
 
     /// A motion during which the table or the head turns, and which stays out of the part.
@@ -122,10 +129,7 @@ impl Extractor<'_> {
             return;
         }
         // Beside the part the tool may be as low as it likes.
-        let above = pose.axis.and_then(|axis| {
-            let top = surface.exit(&pose.tip, &axis)?;
-            Some((pose.tip - top).dot(&axis))
-        });
+        let above = above(surface, &pose);
         if let Some((above, retract)) = above.zip(retract)
             && 0.0 <= above
             && above < retract - ROUNDED
@@ -190,6 +194,13 @@ impl Extractor<'_> {
         let towards = across.try_normalize(1e-9)? * (diameter / -2.0);
         Some(surface.nearest(&(pose.tip + towards)).distance)
     }
+}
+
+/// How high over the part the tip is along the tool; `None` where the tool's direction isn't known, or beside the part.
+fn above(surface: &Surface, pose: &Pose) -> Option<f64> {
+    let axis = pose.axis?;
+    let top = surface.exit(&pose.tip, &axis)?;
+    Some((pose.tip - top).dot(&axis))
 }
 
 /// A place of a curved way.

@@ -6,6 +6,8 @@ use crate::job::{Clamp, Rotary};
 pub struct Conduct {
     /// From so far above the surface the tool feeds, mm.
     pub clearance: Option<f64>,
+    /// The same where the job says it in so many words: no rapid ends nearer to the part.
+    pub approach: Option<f64>,
     /// So far above the surface the tool is at least while the rotary table turns, mm.
     pub retract: Option<f64>,
     pub rotary: Option<Rotary>,
@@ -24,6 +26,8 @@ pub struct Duty {
     pub speed: Option<f64>,
     /// Into the part, mm/min.
     pub feed: Option<f64>,
+    /// It cuts no more than this before it comes back, mm.
+    pub peck: Option<f64>,
 }
 
 impl Conduct {

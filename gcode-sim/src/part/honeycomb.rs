@@ -136,9 +136,10 @@ pub(super) fn reference(job: &Honeycomb) -> Result<Reference, ReferenceError> {
 }
 
 fn conduct(job: &Honeycomb) -> Conduct {
-    let Drill { number, speed, feed, said, .. } = job.drill;
+    let Drill { number, speed, feed, peck, depth, diameter, said } = job.drill;
     Conduct {
         clearance: Some(job.machine.clearance),
+        approach: job.machine.clearance_said.then_some(job.machine.clearance),
         retract: job.machine.retract_said.then_some(job.machine.retract),
         rotary: Some(job.machine.rotary),
         clamp: job.machine.clamp,
@@ -147,6 +148,8 @@ fn conduct(job: &Honeycomb) -> Conduct {
             offset: said.number.then_some(number),
             speed: said.speed.then_some(speed),
             feed: said.feed.then_some(feed),
+            // Shallower holes are drilled in one go.
+            peck: (said.peck && 3.0 * diameter < depth).then_some(peck),
         }],
     }
 }

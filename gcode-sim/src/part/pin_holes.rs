@@ -30,9 +30,11 @@ fn conduct(job: &PinHoles) -> Conduct {
         offset: Some(tool.number),
         speed: Some(tool.speed),
         feed: Some(tool.feed),
+        peck: None,
     };
     Conduct {
         clearance: Some(job.machine.clearance),
+        approach: job.machine.clearance_said.then_some(job.machine.clearance),
         retract: job.machine.retract_said.then_some(job.machine.retract),
         rotary: Some(job.machine.rotary),
         clamp: None,

@@ -148,7 +148,8 @@ impl FileMachine {
         let (clearance, retract) = heights(reader, self.clearance.as_ref(), self.retract.as_ref())?;
         let clamp = self.clamp.as_ref().map(|clamp| clamp.check(reader)).transpose()?;
         let retract_said = self.retract.is_some();
-        Ok(CombMachine { rotary: self.rotary.check(reader)?, clearance, retract, retract_said, clamp })
+        let (clearance_said, rotary) = (self.clearance.is_some(), self.rotary.check(reader)?);
+        Ok(CombMachine { rotary, clearance, clearance_said, retract, retract_said, clamp })
     }
 }
 
@@ -240,6 +241,7 @@ impl FileDrill {
                 number: self.number.is_some(),
                 speed: self.speed.is_some(),
                 feed: self.feed.is_some(),
+                peck: self.peck.is_some(),
             },
         })
     }

@@ -26,6 +26,8 @@ pub struct CombMachine {
     pub rotary: Rotary,
     /// How far above the surface rapid becomes feed.
     pub clearance: f64,
+    /// Whether the job says that.
+    pub clearance_said: bool,
     /// How far above the surface the tool is while the rotary turns.
     pub retract: f64,
     /// Whether the job says that: where it doesn't, the default is no demand on other programs.
@@ -102,6 +104,7 @@ pub struct Said {
     pub number: bool,
     pub speed: bool,
     pub feed: bool,
+    pub peck: bool,
 }
 
 #[cfg(test)]

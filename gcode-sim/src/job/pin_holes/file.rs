@@ -211,7 +211,14 @@ impl FileMachine {
             None => Head { kind: HeadKind::Manual, pivot: 0.0 },
         };
         let (clearance, retract) = heights(reader, self.clearance.as_ref(), self.retract.as_ref())?;
-        Ok(PinMachine { rotary, head, clearance, retract, retract_said: self.retract.is_some() })
+        Ok(PinMachine {
+            rotary,
+            head,
+            clearance,
+            retract,
+            retract_said: self.retract.is_some(),
+            clearance_said: self.clearance.is_some(),
+        })
     }
 }
 

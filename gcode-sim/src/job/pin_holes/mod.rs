@@ -43,6 +43,7 @@ pub struct PinMachine {
     pub retract: f64,
     /// Whether the job says that: where it doesn't, the default is no demand on other programs.
     pub retract_said: bool,
+    pub clearance_said: bool,
 }
 
 /// The head that tilts the tool in the xy plane.

@@ -48,6 +48,13 @@ fn finding(passing: &Passing, conduct: &Conduct) -> Diagnostic {
                 .note(format!("a tool length or a part that is {CONTACT} mm off makes it touch"));
             finding.help("go from hole to hole at a safe height")
         }
+        Way::Towards if CONTACT <= passing.tip => {
+            let approach = conduct.approach.unwrap_or_default();
+            let message =
+                format!("the rapid ends {above:.3} mm above the part, and the job feeds from {approach} mm");
+            Diagnostic::warning("rapid-near-part", message)
+                .help("raise R, or the end of the approach, to machine.clearance, or correct it in the job")
+        }
         Way::Towards => {
             let message = format!("the rapid ends {above:.3} mm above the part");
             let finding = Diagnostic::warning("rapid-near-part", message);

@@ -18,7 +18,7 @@ pub(in crate::verify) fn findings(
     conduct: &Conduct,
     machine: &Machine,
 ) -> Vec<Diagnostic> {
-    let checks = [reversed, speed, feed, length];
+    let checks = [reversed, speed, feed, peck, length, tool];
     let found = checks.iter().flat_map(|check| cuttings.iter().map(move |cutting| (check, cutting)));
     let mut told: Vec<(Diagnostic, u64)> = Vec::new();
     let mut known: BTreeMap<String, usize> = BTreeMap::new();
@@ -70,6 +70,50 @@ fn feed(cutting: &Cutting, conduct: &Conduct, _: &Machine) -> Option<Diagnostic>
         Diagnostic::new(severity, "drill-feed", message)
             .help("correct F, or the tool's feed in the job; is G94 in force, and G21?"),
     )
+}
+
+fn peck(cutting: &Cutting, conduct: &Conduct, _: &Machine) -> Option<Diagnostic> {
+    let wanted = conduct.duty(cutting.tool)?.peck?;
+    let shown = |mm: f64| (mm * 1e3).round() / 1e3;
+    if let Some(severity) = severity(cutting.cut, wanted).filter(|_| wanted < cutting.cut) {
+        let message = format!(
+            "{} cuts {} mm in one go where pecks of {wanted} mm are asked for",
+            name(cutting),
+            shown(cutting.cut)
+        );
+        let finding = Diagnostic::new(severity, "drill-peck", message);
+        return Some(finding.help("G83 with the job's peck for Q, or correct drill.peck in the job"));
+    }
+    let peck = cutting.peck.filter(|peck| *peck < wanted && severity(*peck, wanted).is_some())?;
+    let message =
+        format!("{} goes in by pecks of {} mm where {wanted} mm are asked for", name(cutting), shown(peck));
+    Some(
+        Diagnostic::warning("drill-peck", message)
+            .note("it costs time, and chips are ground twice")
+            .help("correct Q, or drill.peck in the job; does the number have its point?"),
+    )
+}
+
+/// Another tool than the job's, or none.
+fn tool(cutting: &Cutting, conduct: &Conduct, _: &Machine) -> Option<Diagnostic> {
+    let said: Vec<_> = conduct.tools.iter().filter(|duty| duty.offset.is_some()).collect();
+    let [first, ..] = said.as_slice() else { return None };
+    if said.iter().any(|duty| Some(duty.number) == cutting.tool) {
+        return None;
+    }
+    let names: Vec<_> = said.iter().map(|duty| format!("T{}", duty.number)).collect();
+    let names = names.join(", ");
+    Some(match cutting.tool {
+        None => Diagnostic::warning(
+            "job-tool",
+            format!("the part is cut before any tool is put in: the job has {names}"),
+        )
+        .note("what is in the spindle when the program begins isn't known")
+        .help(format!("T{} M06 before the first hole", first.number)),
+        Some(number) => Diagnostic::warning("job-tool", format!("T{number} cuts, and the job has {names}"))
+            .note("nothing is known of what it is to be run at")
+            .help("put in the job's tool, or correct the number in the job"),
+    })
 }
 
 /// How bad it is that S or F is another one than is said; `None` where it will do.
