@@ -125,10 +125,10 @@ impl Core {
         let mut last = Value::Vacant;
         for Instruction { operation, span } in program.code(code) {
             last = Value::Number(match operation {
-                Operation::Binary(op, [left, right]) => {
-                    let (left, right) = (self.number(left, last), self.number(right, last));
-                    at(binary(*op, left, right, &self.settings.unsure), *span)?
-                }
+                Operation::Add(values) => at(self.binary(BinaryOp::Add, values, last), *span)?,
+                Operation::Subtract(values) => at(self.binary(BinaryOp::Sub, values, last), *span)?,
+                Operation::Multiply(values) => at(self.binary(BinaryOp::Mul, values, last), *span)?,
+                Operation::Divide(values) => at(self.binary(BinaryOp::Div, values, last), *span)?,
                 Operation::Compare(relation, [left, right]) => {
                     let left = self.fetch(left, last);
                     truth(compare(*relation, left, self.fetch(right, last)))
@@ -147,6 +147,11 @@ impl Core {
             });
         }
         Ok(last)
+    }
+
+    #[inline(always)]
+    fn binary(&self, op: BinaryOp, [left, right]: &[Source; 2], last: Value) -> Result<f64, Alarm> {
+        binary(op, self.number(left, last), self.number(right, last), &self.settings.unsure)
     }
 
     fn function(&self, name: Function, argument: f64) -> Result<f64, Alarm> {
@@ -182,7 +187,10 @@ impl Core {
                 self.waiting.push(last);
                 last
             }
-            Operation::Binary(..)
+            Operation::Add(_)
+            | Operation::Subtract(_)
+            | Operation::Multiply(_)
+            | Operation::Divide(_)
             | Operation::Compare(..)
             | Operation::Function(..)
             | Operation::Atan2(_)
@@ -201,6 +209,7 @@ impl Core {
                 Value::Vacant if !unsure.brackets_keep_vacancy => Value::Number(0.0),
                 value => value,
             },
+            Operation::Whole(op, ref values) => Value::Number(self.binary(op, values, last)?),
             Operation::Power([ref base, ref exponent]) => {
                 let base = self.number(base, last);
                 Value::Number(power(base, self.number(exponent, last))?)

@@ -36,12 +36,23 @@ impl Value {
 struct Held {
     number: f64,
     vacant: bool,
+    /// The decimals of an argument that was written without a point and counts increments; 0 for all others.
+    decimals: u8,
+}
+
+impl Held {
+    const VACANT: Self = Self { number: 0.0, vacant: true, decimals: 0 };
+
+    /// What tells 0 from −0, too.
+    fn bits(self) -> (u64, bool) {
+        (self.number.to_bits(), self.vacant)
+    }
 }
 
 impl From<Value> for Held {
     #[inline]
     fn from(value: Value) -> Self {
-        Self { number: value.number(), vacant: value.is_vacant() }
+        Self { number: value.number(), vacant: value.is_vacant(), decimals: 0 }
     }
 }
 
@@ -59,28 +70,19 @@ const ORDINARY: usize = 1000;
 
 /// #1 to #33 of one macro level, by number; #0 stays vacant.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Locals {
-    values: [Value; LOCALS],
-    /// The decimals of an argument that was written without a point and counts increments; 0 for all others.
-    decimals: [u8; LOCALS],
-}
+pub struct Locals([Held; LOCALS]);
 
 /// A level that nothing has been written to.
-pub(super) const VACANT: Locals = Locals { values: [Value::Vacant; LOCALS], decimals: [0; LOCALS] };
+pub(super) const VACANT: Locals = Locals([Held::VACANT; LOCALS]);
 
 impl Locals {
+    pub fn get(&self, local: usize) -> Value {
+        self.0[local].into()
+    }
+
     /// Sets an argument; `decimals` where it was written without a point and counts increments.
     pub(super) fn set(&mut self, local: usize, value: Value, decimals: u8) {
-        self.values[local] = value;
-        self.decimals[local] = decimals;
-    }
-}
-
-impl std::ops::Index<usize> for Locals {
-    type Output = Value;
-
-    fn index(&self, local: usize) -> &Value {
-        &self.values[local]
+        self.0[local] = Held { decimals, ..value.into() };
     }
 }
 
@@ -99,8 +101,6 @@ pub struct Vars {
     /// By number the locals of the current level and the commons, behind them the further commons. What has no number of
     /// these is never written.
     values: Vec<Held>,
-    /// The decimals of the current level's locals, see [`Locals`].
-    decimals: [u8; LOCALS],
     /// The locals of the levels that wait for the current one, the main program's first.
     outer: Vec<Locals>,
     /// The numbers of further commons.
@@ -114,8 +114,7 @@ impl Vars {
     pub(super) fn new(more: Option<(u32, u32)>, aliased: bool) -> Self {
         let count = more.map_or(0, |(from, to)| (to - from + 1) as usize);
         Self {
-            values: vec![Value::Vacant.into(); ORDINARY + count],
-            decimals: [0; LOCALS],
+            values: vec![Held::VACANT; ORDINARY + count],
             outer: Vec::new(),
             more: more.unwrap_or((1, 0)),
             aliased,
@@ -160,26 +159,21 @@ impl Vars {
     #[inline(always)]
     pub(super) fn set(&mut self, place: usize, value: Value) {
         self.values[place] = value.into();
-        if let Some(decimals) = self.decimals.get_mut(place) {
-            *decimals = 0;
-        }
     }
 
     /// ADP: a local's value as if it had been passed with a point.
     pub(super) fn with_point(&self, local: usize) -> f64 {
-        self.values[local].number * 10_f64.powi(i32::from(self.decimals[local]))
+        let Held { number, decimals, .. } = self.values[local];
+        number * 10_f64.powi(i32::from(decimals))
     }
 
     /// The locals of the current level.
     pub fn locals(&self) -> Locals {
-        Locals { values: std::array::from_fn(|local| self.get(local)), decimals: self.decimals }
+        Locals(std::array::from_fn(|local| self.values[local]))
     }
 
     pub(super) fn set_locals(&mut self, locals: &Locals) {
-        for (held, value) in self.values.iter_mut().zip(locals.values) {
-            *held = value.into();
-        }
-        self.decimals = locals.decimals;
+        self.values[..LOCALS].copy_from_slice(&locals.0);
     }
 
     pub fn level(&self) -> usize {
@@ -201,13 +195,13 @@ impl Vars {
 
     /// Whether all values in force are the same.
     pub(super) fn same(&self, other: &Self) -> bool {
-        self.values == other.values && self.decimals == other.decimals && self.outer == other.outer
+        self.values == other.values && self.outer == other.outer
     }
 
     /// Whether the values at a place differ, be it in one bit.
     #[inline]
     pub(super) fn differ_at(&self, place: usize, other: &Self) -> bool {
-        bits(self.get(place)) != bits(other.get(place))
+        self.values[place].bits() != other.values[place].bits()
     }
 
     /// A place where the values differ; that of #0 where only callers' locals do.
@@ -216,13 +210,13 @@ impl Vars {
         found.or_else(|| self.outer_bits().ne(other.outer_bits()).then_some(0))
     }
 
-    fn outer_bits(&self) -> impl Iterator<Item = Option<u64>> + '_ {
-        self.outer.iter().flat_map(|level| level.values.map(bits))
+    fn outer_bits(&self) -> impl Iterator<Item = (u64, bool)> + '_ {
+        self.outer.iter().flat_map(|level| level.0.map(Held::bits))
     }
 
     /// The variables that aren't vacant, by number: the locals of the main program and the commons.
     pub fn known(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
-        let local = |local| self.outer.first().map_or_else(|| self.get(local), |level| level[local]);
+        let local = |local| self.outer.first().map_or_else(|| self.get(local), |level| level.get(local));
         let locals = (0..LOCALS).map(move |place| (place, local(place)));
         let commons = (LOCALS..self.values.len()).map(|place| (place, self.get(place)));
         locals.chain(commons).filter_map(|(place, value)| {
@@ -230,11 +224,6 @@ impl Vars {
             Some((number, value.given()?))
         })
     }
-}
-
-/// What tells 0 from −0, too.
-fn bits(value: Value) -> Option<u64> {
-    value.given().map(f64::to_bits)
 }
 
 #[cfg(test)]

@@ -90,7 +90,12 @@ pub enum Computed {
 /// Conditions are numbers here, 0 or 1; the tree keeps them apart.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Operation {
-    Binary(BinaryOp, [Source; 2]),
+    Add([Source; 2]),
+    Subtract([Source; 2]),
+    Multiply([Source; 2]),
+    Divide([Source; 2]),
+    /// An operator on whole numbers.
+    Whole(BinaryOp, [Source; 2]),
     Compare(Relation, [Source; 2]),
     Function(Function, Source),
     /// ATAN of two values.
@@ -125,6 +130,18 @@ pub enum Operation {
     NameNumber(u32),
     /// Takes a suffix, gives the number of the system variable; of `[#_NAME]` without a suffix it takes nothing.
     SystemNumber(NameRow),
+}
+
+impl Operation {
+    pub(super) fn binary(op: BinaryOp, values: [Source; 2]) -> Self {
+        match op {
+            BinaryOp::Add => Self::Add(values),
+            BinaryOp::Sub => Self::Subtract(values),
+            BinaryOp::Mul => Self::Multiply(values),
+            BinaryOp::Div => Self::Divide(values),
+            BinaryOp::Mod | BinaryOp::And | BinaryOp::Or | BinaryOp::Xor => Self::Whole(op, values),
+        }
+    }
 }
 
 /// What an expression can need on the stack: five brackets, each with a sum, a product and an index pending.

@@ -140,7 +140,7 @@ impl Lowering {
                     self.note(Form::NewFunction("MOD"), span);
                 }
                 let (values, depth) = self.sources([left, right], context, brackets)?;
-                self.emit(Operation::Binary(*op, values), span);
+                self.emit(Operation::binary(*op, values), span);
                 depth
             }
             ExprKind::Call(function, form) => self.call(*function, form, span, context, brackets + 1)?,

@@ -123,8 +123,8 @@ impl Watcher for Trace {
         }
         if control.vars().level() > now.level {
             let locals = control.vars().locals();
-            for number in (1..=33).filter(|number| !locals[*number].is_vacant()) {
-                executed.note(number as u32, Role::Passed, locals[number]);
+            for number in (1..=33).filter(|number| !locals.get(*number).is_vacant()) {
+                executed.note(number as u32, Role::Passed, locals.get(number));
             }
         }
     }
