@@ -2,8 +2,10 @@
 use std::path::Path;
 
 use gcode_sim::report::encode::sha256;
-use gcode_tests::programs;
+use gcode_tests::browser::Browser;
 use gcode_tests::sheet::html;
+use gcode_tests::{programs, workspace};
+use serde_json::json;
 
 const JOB: &str = "family = \"pin-holes\"\n[control]\ndialect = \"fanuc-31i\"\nincrement = \"IS-B\"\n[machine]\n\
                    rotary = { letter = \"B\", sign = 1 }\n[surface]\nkind = \"ellipsoid\"\na = 500.0\nb = 300.0\n\
@@ -63,7 +65,9 @@ fn its_hashes_are_those_of_the_files_that_emit_writes() {
 fn results_are_left_to_the_inspector() {
     let html = html(JOB, None);
     // Position, depth and diameter of one hole: two columns each, both empty.
-    assert_eq!(html.matches("<td class=\"result\"></td>").count(), 6);
+    for name in ["results", "gauge, non-conformance"] {
+        assert_eq!(html.matches(&format!("<td class=\"result\" data-name=\"{name}\"></td>")).count(), 3);
+    }
     assert_eq!(html.matches("class=\"result\"").count(), 6);
 }
 
@@ -76,4 +80,31 @@ fn what_does_not_hold_has_no_sheet() {
     let done = programs::run_line("gcode-gen sheet job.toml -o sheet.html", place.path());
     assert_eq!(done.status.code(), Some(1));
     assert!(!Path::new(&place.path().join("sheet.html")).exists());
+}
+
+/// At 375 px, with the dark mode that a browser forces: nothing is wider than the screen, and the paper stays white.
+#[test]
+fn a_telephone_shows_every_table_whole() {
+    let Some(browser) = Browser::start(800, 900) else { return };
+    let metrics = json!({"width": 375, "height": 800, "deviceScaleFactor": 1, "mobile": true});
+    browser.command("Emulation.setDeviceMetricsOverride", &metrics);
+    browser.command("Emulation.setAutoDarkModeOverride", &json!({"enabled": true}));
+    let place = tempfile::tempdir().unwrap();
+    let setting_up = std::fs::read_to_string(workspace().join("examples/alignment/job.toml")).unwrap();
+    for (name, job) in [("alignment", setting_up.as_str()), ("pin-holes", JOB)] {
+        let page = place.path().join(format!("{name}.html"));
+        std::fs::write(&page, html(job, None)).unwrap();
+        browser.open(&page);
+        let wide = browser.run(
+            "return [document.documentElement, ...document.querySelectorAll('.wide, .wide *')] \
+             .filter((one) => one.scrollWidth > 375 || one.getBoundingClientRect().right > 376) \
+             .map((one) => one.outerHTML.slice(0, 200))",
+        );
+        assert_eq!(wide, json!([]), "{name}");
+        let scheme = browser.run("return getComputedStyle(document.documentElement).colorScheme");
+        assert!(scheme.as_str().unwrap().contains("only"), "{scheme}");
+        let paper =
+            browser.run("return getComputedStyle(document.querySelector('figure svg')).backgroundColor");
+        assert_eq!(paper, json!("rgb(255, 255, 255)"));
+    }
 }

@@ -8,7 +8,7 @@ pub(super) fn remark(control: JobControl) -> String {
 }
 
 /// What the control adds to n of `#3000=n`, in thousands: a Fanuc shows 3000 + n, a Haas 1000 + n.
-pub(super) fn alarm_thousands(dialect: Dialect) -> &'static str {
+pub(crate) fn alarm_thousands(dialect: Dialect) -> &'static str {
     match dialect {
         Dialect::HaasNgc => "1",
         Dialect::Fanuc31i | Dialect::Fanuc0iF => "3",

@@ -1,7 +1,7 @@
 //! The part families: each turns its job into programs.
 pub mod alignment;
 pub mod burr;
-mod control;
+pub(crate) mod control;
 pub mod honeycomb;
 pub mod pin_holes;
 mod resident;

@@ -3,6 +3,7 @@
 //! The method is that of *Improved Processing Technology of Positioning Pin Hole on Melon Mold*; see
 //! `docs/methods/alignment.md`. Each measurement is a file here and a row in `ALL`; what its program has to find on a
 //! simulated part before it is written is a file and a row in `check/alignment`.
+mod alarms;
 mod chord;
 mod ellipse;
 mod machine_file;
@@ -20,6 +21,7 @@ use crate::nc::block::Block;
 use crate::nc::program::Program as Text;
 use crate::package::{Package, Program};
 
+pub use alarms::{ALARMS, MacroAlarm};
 pub use chord::{MAIN as CHORD, MATCH as CHORD_MATCH};
 pub use ellipse::MAIN as ELLIPSE;
 pub use runout::MAIN as RUNOUT;

@@ -35,7 +35,7 @@ pub(super) fn sign() -> Markup {
     html! {
         div.together {
             h2 { "Signatures" }
-            div.sign { (table(&["", "name", "signature", "date"], rows)) }
+            div.sign.fill { (table(&["", "name", "signature", "date"], rows)) }
         }
     }
 }

@@ -8,6 +8,17 @@ use maud::{Markup, html};
 use super::{cell, table};
 use crate::sheet::Sheet;
 
+/// Which way the part turns when the blocks get higher.
+fn sense(sign: i8) -> &'static str {
+    if sign < 0 {
+        "Sense: higher blocks turn the part back, from Y towards X (sine_table.sign -1). A tilt #583 above 0 is taken away by higher blocks. If \
+         the run-out afterwards shows twice the tilt, the sense is the other one."
+    } else {
+        "Sense: higher blocks turn the part from X towards Y (sine_table.sign 1). A tilt #583 above 0 is taken away by lower blocks. If the \
+         run-out afterwards shows twice the tilt, the sense is the other one."
+    }
+}
+
 pub(super) fn blocks(sheet: &Sheet<'_>) -> Markup {
     let Job::Alignment(job) = sheet.job else { return html! {} };
     let sine = &job.sine_table;
@@ -32,6 +43,23 @@ pub(super) fn blocks(sheet: &Sheet<'_>) -> Markup {
                 (table(&["#block", "#mm", "wrung"], rows.chain([sum])))
             }
             p.note { "To turn the part by one minute of arc more the stack gets " (near(minute, 4)) " mm higher." }
+            p { (sense(sine.sign)) }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// U·#583 is taken off φ: with the sign −1 a tilt above 0 makes it larger, and the blocks higher.
+    #[test]
+    fn the_sense_of_the_table_is_that_of_its_sign() {
+        assert!(sense(1).contains(
+            "from X towards Y (sine_table.sign 1). A tilt #583 above 0 is taken away by lower blocks"
+        ));
+        assert!(sense(-1).contains(
+            "from Y towards X (sine_table.sign -1). A tilt #583 above 0 is taken away by higher blocks"
+        ));
     }
 }

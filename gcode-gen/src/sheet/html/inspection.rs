@@ -27,8 +27,13 @@ pub(super) fn form(sheet: &Sheet<'_>) -> Markup {
             tbody {
                 @for (index, one) in all.iter().enumerate() {
                     tr {
-                        td.n { (index + 1) } td.wrap { (one.reference) } td { (one.name) } td { (one.requirement) }
-                        td.result {} td.result {} td.wrap { (one.predicted) }
+                        td.n data-name="char. no." { (index + 1) }
+                        td.wrap data-name="reference" { (one.reference) }
+                        td data-name="characteristic" { (one.name) }
+                        td data-name="requirement" { (one.requirement) }
+                        td.result data-name="results" {}
+                        td.result data-name="gauge, non-conformance" {}
+                        td.wrap data-name="predicted (simulation)" { (one.predicted) }
                     }
                 }
             }
@@ -66,10 +71,14 @@ pub(super) fn holes(sheet: &Sheet<'_>) -> Markup {
                 code { "gcode-sim verify --full" } " and " code { "--format json" } " list all."
             }
         }
-        h3 { "Nominal, in the part's frame: entry, axis out of the part, depth, diameter" }
-        (table(&["hole", "#x", "#y", "#z", "#i", "#j", "#k", "#depth", "#diameter"], nominal))
-        h3 { (BASIS) ": deviations (actual less nominal) where the axis enters, tilt, depth, position as ISO 1101 has it" }
-        (table(&["hole", "#dx", "#dy", "#dz", "#tilt", "#depth", "#position", "#tolerance", "#out of it"], predicted))
+        div.together {
+            h3 { "Nominal, in the part's frame: entry, axis out of the part, depth, diameter" }
+            (table(&["hole", "#x", "#y", "#z", "#i", "#j", "#k", "#depth", "#diameter"], nominal))
+        }
+        div.together {
+            h3 { (BASIS) ": deviations (actual less nominal) where the axis enters, tilt, depth, position as ISO 1101 has it" }
+            (table(&["hole", "#dx", "#dy", "#dz", "#tilt", "#depth", "#position", "#tolerance", "#out of it"], predicted))
+        }
     }
 }
 

@@ -5,6 +5,7 @@ use gcode_sim::units::Deg;
 use gcode_sim::verify::Verdict;
 use maud::{Markup, html};
 
+use super::alignment::overwritten_variables;
 use super::{blank, cell, table};
 use crate::check::Judgement;
 use crate::order::passes;
@@ -44,16 +45,24 @@ pub(super) fn tools(sheet: &Sheet<'_>) -> Markup {
             )]
         }
         Job::Alignment(job) => {
-            let length = html! { "measured" };
-            vec![vec![
-                cell("probe"),
-                cell("STYLUS BALL"),
-                cell(short(2.0 * job.probe_radius)),
-                length,
-                blank(),
-                blank(),
-                blank(),
-            ]]
+            let ball = short(2.0 * job.probe_radius);
+            let row = |tool: &str, name: &str, speed: Markup, feed: String| {
+                vec![cell(tool), cell(name), cell(&ball), cell("measured"), speed, cell(feed), blank()]
+            };
+            let touch = format!(
+                "{} a touch, within {} of the surface",
+                short(job.probe_feed),
+                short(job.probe_search)
+            );
+            let along = format!(
+                "{} from {} before the surface on and along it",
+                short(job.ellipse.feed),
+                short(job.machine.clearance)
+            );
+            vec![
+                row("O8210, O8200", "TOUCH PROBE, stylus ball", html! { "stands" }, touch),
+                row("O8220", "3D EDGE FINDER, ball", html! { "stands (M05)" }, along),
+            ]
         }
         Job::Burr(job) => {
             let program = job.program;
@@ -74,6 +83,12 @@ pub(super) fn tools(sheet: &Sheet<'_>) -> Markup {
         div.together {
             h2 { "Tools" }
             (table(&["tool", "name", "#diameter", "#length", "#r/min", "feed", "holder, remark"], rows))
+            @if let Job::Alignment(job) = sheet.job {
+                p.note {
+                    "Both balls have the job's diameter, " (short(2.0 * job.probe_radius)) " mm: a smaller or larger one is found as a shift and a tilt that aren't there. "
+                    "What counts is the ball's centre: the probe is calibrated so that #5061 to #5063 are its centre when it touches. No length offset: G49."
+                }
+            }
             @if let Job::PinHoles(job) = sheet.job {
                 @if tip_is_programmed(job) {
                     p.note { "No tool lengths in this job: X and Y are the tip, whose place is set again after each turn of the head." }
@@ -153,6 +168,7 @@ pub(super) fn settings(sheet: &Sheet<'_>) -> Markup {
                 li { "The family of controls and the least increment stand at the head of this sheet." }
                 li { "Rapid rates (1420) are taken as " (short(slide)) " mm/min and " (short(turn)) " degrees/min; only the run time depends on them." }
                 (needed(sheet))
+                @if let Job::Alignment(job) = sheet.job { (overwritten_variables(job)) }
                 @if !codes.is_empty() {
                     li { (codes.join(", ")) ": M codes of the machine builder. What they do here isn't simulated; try them by MDI before the run." }
                 }

@@ -1,4 +1,5 @@
 //! The sheet as HTML: self-contained, for paper (A4) and for screens. Every text from outside is escaped by the macro.
+mod alignment;
 mod drawing;
 mod end;
 mod gauge;
@@ -61,21 +62,23 @@ fn sections(sheet: &Sheet<'_>) -> Markup {
         (machine::head_angles(sheet))
         (gauge::blocks(sheet))
         (stops::stops(sheet))
+        (alignment::readings(sheet))
+        (alignment::alarms(sheet))
         (machine::settings(sheet))
         (inspection::form(sheet))
         (inspection::holes(sheet))
         (inspection::pictures(sheet))
-        (time::time(sheet))
+        // On paper whoever signs has the page's other half to read.
         div.together {
+            (time::time(sheet))
             (end::unknown(sheet))
             (end::sign())
         }
     }
 }
 
-/// A table that a narrow screen scrolls sideways; columns named with a leading `#` hold figures.
+/// A table that a narrow screen shows row by row, each cell with its column's name; columns named with a leading `#` hold figures.
 fn table(columns: &[&str], rows: impl IntoIterator<Item = Vec<Markup>>) -> Markup {
-    let figures: Vec<bool> = columns.iter().map(|name| name.starts_with('#')).collect();
     html! {
         div.wide {
             table {
@@ -90,8 +93,11 @@ fn table(columns: &[&str], rows: impl IntoIterator<Item = Vec<Markup>>) -> Marku
                 tbody {
                     @for row in rows {
                         tr {
-                            @for (cell, figure) in row.iter().zip(&figures) {
-                                @if *figure { td.n { (cell) } } @else { td { (cell) } }
+                            @for (cell, name) in row.iter().zip(columns) {
+                                @match name.strip_prefix('#') {
+                                    Some(name) => td.n data-name=(name) { (cell) },
+                                    None => td data-name=(name) { (cell) },
+                                }
                             }
                         }
                     }

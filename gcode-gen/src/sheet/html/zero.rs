@@ -71,7 +71,7 @@ fn of_pin_holes(job: &PinHoles, verdict: &Verdict) -> Markup {
 }
 
 /// Of a point of the surface in the plane z = 0: itself, and the direction out of the part.
-fn on_surface(surface: Surface, x: f64) -> [f64; 4] {
+pub(super) fn on_surface(surface: Surface, x: f64) -> [f64; 4] {
     let (a, b) = (surface.a, surface.b);
     let y = b * (1.0 - (x / a) * (x / a)).sqrt();
     let (across, up) = (x / (a * a), y / (b * b));
@@ -97,9 +97,20 @@ fn alignment(job: &Alignment) -> Vec<String> {
             if minus.is_empty() { "−" } else { "+" }
         ),
         format!(
+            "Set X and Z of G54 on something that turns with {letter}, the bore of the table or a ground ring, not on the part: turn it by 180 and \
+             halve what the indicator shows. A zero that is off in X is found as a shift and a tilt of the part, one in Z by nothing; one in Y \
+             is corrected by O8200."
+        ),
+        "No shift by G52 or G92 in X, Y or Z is left from before: the programs refuse it.".to_owned(),
+        format!(
             "E and F are points of the surface in the plane Z0, at X{} and X{}.",
             short(job.chord.e_radius),
             short(job.chord.f_radius)
+        ),
+        format!(
+            "Start every program with the ball clear of the part, above it or at X+, and {letter} free to turn. O8210 goes out to X{} first, \
+             O8200 up; O8220 turns {letter} to 0 where the ball stands.",
+            short(job.surface.a + job.probe_radius + job.probe_search)
         ),
     ]
 }

@@ -1,0 +1,167 @@
+//! What to do at the machine when a measurement ends in an alarm: the set-up sheet's table. Alarms that refuse an argument of a call
+//! aren't here: `gcode-gen` writes the calls, and tries them.
+
+/// An alarm that a macro or a main program raises where the machine, the part or its operator is not as it should be.
+pub struct MacroAlarm {
+    /// n of `#3000=n`.
+    pub number: u32,
+    /// As the control shows it.
+    pub text: &'static str,
+    pub remedy: &'static str,
+}
+
+const fn alarm(number: u32, text: &'static str, remedy: &'static str) -> MacroAlarm {
+    MacroAlarm { number, text, remedy }
+}
+
+const SHIFT: &str = "Cancel what was left in force: G52 X0 Y0 Z0 or G92.1. See that G54 is the work zero of this sheet; start again.";
+const NEEDS: &str = "Somebody has changed the program's second block or the call: load the programs anew.";
+
+/// In the order of the work.
+pub const ALARMS: &[MacroAlarm] = &[
+    alarm(138, "G52 OR G92 SHIFT IN X Y Z", SHIFT),
+    alarm(153, "NEEDS G21 G40 G49 G54 G94", NEEDS),
+    alarm(
+        154,
+        "TOUCHES V BEFORE SURFACE",
+        "The part stands out too far, or the probe signals all the time. Take the ball away towards X+; try the probe by hand; set the part \
+         up nearer.",
+    ),
+    alarm(
+        155,
+        "NO CONTACT",
+        "The ball went as far behind the surface as it begins before it. Is the probe on, is the part there, is G54 right? Take the ball away towards \
+         X+, then start again.",
+    ),
+    alarm(
+        156,
+        "TILT NOT TOLD FROM SHIFT",
+        "The readings are too near to each other: wider angles or heights farther apart in the job, and programs emitted anew.",
+    ),
+    alarm(
+        157,
+        "READINGS DO NOT FIT",
+        "#585 is what the fit leaves. Look for a touch on dirt or a loose probe and repeat; if it stays, the ball's radius, a or b of the job or G54 are not \
+         those of the part. No result is left; don't move the part.",
+    ),
+    alarm(
+        158,
+        "Y SHIFT #584 TOO LARGE",
+        "The part seems to stand so much too high: is Y of G54 right, and are the ball's radius and b? No result is left; don't move the part.",
+    ),
+    alarm(165, "NO TILT IN #583, RUN O8210", "The tilt was used up already: O8210 first."),
+    alarm(
+        167,
+        "RUN-OUT NOT ENDED, #585",
+        "O8210 was broken off or ended in an alarm: run it to its end first.",
+    ),
+    alarm(168, "TILT #583 BEYOND 1 DEGREE", "Set the part up nearer by hand, then O8210 again."),
+    alarm(
+        166,
+        "PHI BEYOND 0. TO 45.",
+        "The corrected angle is none that a sine table is set to: does #596 say how it stands, and is the sense of the table right?",
+    ),
+    alarm(
+        169,
+        "SET #596, PHI OF THE TABLE",
+        "RESET came while #596 was changed. Write the angle to it that the blocks under the table make, asin(height/L); start again.",
+    ),
+    alarm(137, "G52 OR G92 SHIFT IN X Y Z", SHIFT),
+    alarm(131, "NEEDS G21 G40 G49 G54 G94", NEEDS),
+    alarm(
+        133,
+        "TOUCHES V ABOVE SURFACE",
+        "As TOUCHES V BEFORE SURFACE, with the ball taken up, towards Y+. The points are gone.",
+    ),
+    alarm(134, "NO CONTACT", "As in O8210, with the ball taken up, towards Y+. The points are gone."),
+    alarm(
+        135,
+        "TOUCH BROKEN OFF, SET #578",
+        "RESET came while it touched. Write 0. to #578 to touch all points anew; or make it vacant and enter all candidates by hand.",
+    ),
+    alarm(
+        136,
+        "#578 NOT VACANT, 0. OR 1.",
+        "Write 0. to it to touch all points anew; make it vacant where marks were entered.",
+    ),
+    alarm(132, "TOO STEEP TO TOUCH ALONG Y", "Measure the candidates by hand and enter them."),
+    alarm(
+        68,
+        "A CANDIDATE IS MISSING",
+        "Enter x, y and z of all candidates: E's from #501 on, F's from #531 on; or make all of them vacant, and they are touched.",
+    ),
+    alarm(
+        73,
+        "POINT #570 IS FAR FROM E",
+        "Mistyped: #570 is its number. Correct it from #501 + 3·(#570 − 1) on, start again; the others are kept.",
+    ),
+    alarm(
+        74,
+        "POINT #571 IS FAR FROM F",
+        "Mistyped: #571 is its number. Correct it from #531 + 3·(#571 − 1) on, start again; the others are kept.",
+    ),
+    alarm(
+        75,
+        "E F UNEVEN, O8210 FIRST",
+        "The part stands higher over one of E and F than a part that the run-out has set right: O8210 and O8230 first. The points are gone.",
+    ),
+    alarm(
+        72,
+        "E AND F TOO NEAR FOR Y",
+        "Touched points so near to each other don't tell y: take E and F farther apart in the job, or enter marks by hand.",
+    ),
+    alarm(
+        71,
+        "POINTS ARE FAR FROM E F",
+        "No correction of a part that the run-out has set right: O8210 first; are the marks those of E and F, not exchanged?",
+    ),
+    alarm(69, "NEEDS G21 AND G54 TO G59", NEEDS),
+    alarm(112, "G52 OR G92 SHIFT IN X Y Z", SHIFT),
+    alarm(111, "NEEDS G21 G40 G49 G54 G94", NEEDS),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::super::emit;
+    use super::*;
+    use gcode_sim::job::{Alignment, Job};
+
+    fn job() -> Alignment {
+        match Job::parse(super::super::FAMILY.new_job) {
+            Ok(Job::Alignment(job)) => job,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    /// Number and text of every `#3000=` in a text.
+    fn raised(text: &str) -> impl Iterator<Item = (u32, &str)> {
+        text.split("#3000=").skip(1).map(|rest| {
+            let (number, rest) = rest.split_once('(').unwrap();
+            (number.parse().unwrap(), rest.split_once(')').unwrap().0)
+        })
+    }
+
+    #[test]
+    fn every_alarm_but_those_of_arguments_is_here_with_its_text() {
+        let package = emit(&job());
+        let mut unknown = Vec::new();
+        for program in &package.programs {
+            // Macros refuse their arguments last.
+            let own = program.text.split("(REFUSED,").next().unwrap();
+            let known = |(number, text): &(u32, &str)| {
+                ALARMS.iter().any(|alarm| alarm.number == *number && alarm.text == *text)
+            };
+            unknown.extend(
+                raised(own).filter(|raised| !known(raised)).map(|(number, text)| format!("{number} {text}")),
+            );
+        }
+        assert!(unknown.is_empty(), "{unknown:?}");
+        for alarm in ALARMS {
+            let there = package
+                .programs
+                .iter()
+                .any(|program| raised(&program.text).any(|raised| raised == (alarm.number, alarm.text)));
+            assert!(there, "nothing raises {} {}", alarm.number, alarm.text);
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! What only a part that is set up has: lines to write its readings into, and what to do when a measurement ends in an alarm.
+use gcode_sim::job::{Alignment, Job};
+use gcode_sim::report::figures::{near, short};
+use maud::{Markup, html};
+
+use super::zero::on_surface;
+use super::{cell, table};
+use crate::families::alignment::{ALARMS, MacroAlarm, overwritten};
+use crate::families::control::alarm_thousands;
+use crate::package::stem;
+use crate::sheet::Sheet;
+
+/// The common variables that are read at the stops, with room for three passes.
+const VARIABLES: &[(&str, &str)] = &[
+    ("#580", "shift in X, mm"),
+    ("#581", "shift in Z, mm"),
+    ("#582", "tilt about X, °"),
+    ("#583", "tilt about Z, °"),
+    ("#584", "shift in Y, mm, less sure"),
+    ("#585", "what the fit leaves, mm"),
+    ("#587", "height of the gauge blocks, mm"),
+    ("#572", "chord less the model's, mm"),
+    ("#573", "added to X, mm"),
+    ("#574", "added to Y, mm"),
+    ("#575", "added to Z, mm"),
+    ("#576", "added to the rotary, °"),
+    ("#577", "tilt of the chord, °"),
+];
+
+/// So many places of the ellipse have a line.
+const PLACES: u32 = 7;
+
+pub(super) fn readings(sheet: &Sheet<'_>) -> Markup {
+    let Job::Alignment(job) = sheet.job else { return html! {} };
+    let blank = || html! {};
+    let variables = VARIABLES
+        .iter()
+        .map(|(number, what)| vec![html! { b { (number) } }, cell(what), blank(), blank(), blank()]);
+    let places = (0..PLACES).map(|n| {
+        let path = &job.ellipse;
+        let [x, y, across, up] =
+            on_surface(job.surface, path.from + (path.to - path.from) * f64::from(n) / f64::from(PLACES - 1));
+        let ball = [x + job.probe_radius * across, y + job.probe_radius * up];
+        let [x, y] = ball.map(|value| cell(near(value, 2)));
+        vec![x, y, cell("0"), blank(), blank()]
+    });
+    html! {
+        div.together {
+            h2 { "Readings" }
+            p { "As the control shows them at the stops. A simulation is no measurement: nothing is filled in." }
+            div.fill { (table(&["variable", "what it is", "first pass", "second pass", "third pass"], variables)) }
+        }
+        div.together {
+            h3 { "Dial along the ellipse, O8220" }
+            p {
+                "Where the centre of the ball is; above 0 a gap. On a part in its true place the dial shows 0 all the way; "
+                code { "gcode-sim readings" } " predicts it for a misplaced one."
+            }
+            div.fill { (table(&["#X", "#Y", "#true place", "reading", "after correction"], places)) }
+        }
+    }
+}
+
+pub(super) fn alarms(sheet: &Sheet<'_>) -> Markup {
+    let Job::Alignment(job) = sheet.job else { return html! {} };
+    let k = alarm_thousands(job.control.dialect);
+    let row = |alarm: &MacroAlarm| {
+        vec![cell(shown(alarm, k)), html! { span.mono { (alarm.text) } }, cell(alarm.remedy)]
+    };
+    let before = |index: usize| ALARMS.iter().take(index);
+    let rows = ALARMS
+        .iter()
+        .enumerate()
+        .filter(|(index, alarm)| !before(*index).any(|other| alike(alarm, other)))
+        .map(|(_, alarm)| row(alarm));
+    html! {
+        h2 { "Alarms, and what to do" }
+        ul {
+            li {
+                b { "RESET and any alarm " } "leave results that are whole or none. Take the ball clear of the part by hand before the next start: away "
+                "towards X+ in O8210, up towards Y+ in O8200 and O8220."
+            }
+            li {
+                b { "The ball touches in rapid, " } "or the machine stops with its own alarm of the probe: the part stands out by more than the search of "
+                (short(job.probe_search)) " mm, or G54 is wrong. RESET, take the ball clear, look at ball and stylus and calibrate them anew, set the "
+                "part up nearer; then O8210 from its beginning. Watch the first touch of each height at reduced rapid."
+            }
+            li {
+                b { "A touch is broken off " } "(RESET, emergency stop, power): O8210 starts from its beginning. O8200 refuses to go on until #578 is set: 0. touches "
+                "all points anew."
+            }
+            li {
+                "Any other alarm of " (k) "061 to " (k) "076, " (k) "101 to " (k) "169: an argument of a call is not what was emitted. Load the programs anew."
+            }
+        }
+        (table(&["alarm", "the control shows", "what to do"], rows))
+    }
+}
+
+/// The same in several macros.
+fn alike(one: &MacroAlarm, other: &MacroAlarm) -> bool {
+    one.text == other.text && one.remedy == other.remedy
+}
+
+/// The numbers that a control shows of an alarm: `3112, 3137, 3138`.
+fn shown(alarm: &MacroAlarm, k: &str) -> String {
+    let mut numbers: Vec<_> =
+        ALARMS.iter().filter(|other| alike(alarm, other)).map(|one| one.number).collect();
+    numbers.sort_unstable();
+    numbers.iter().map(|number| format!("{k}{number:03}")).collect::<Vec<_>>().join(", ")
+}
+
+/// For the section on the control: what other cycles of the shop must not keep there.
+pub(super) fn overwritten_variables(job: &Alignment) -> Markup {
+    let all: Vec<_> =
+        overwritten().map(|(main, named)| format!("{}: {}", stem(main), named.to_lowercase())).collect();
+    html! {
+        li {
+            b { "Common variables " } "that are overwritten, and kept when the control is switched off: " (all.join("; ")) ". What other cycles of the "
+            "shop keep there is saved first. A local shift of " (job.machine.rotary.letter) " by G52 is cancelled."
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_alarm_of_several_macros_has_all_its_numbers_as_the_control_shows_them() {
+        let of = |text: &str| ALARMS.iter().find(|alarm| alarm.text == text).unwrap();
+        assert_eq!(shown(of("G52 OR G92 SHIFT IN X Y Z"), "3"), "3112, 3137, 3138");
+        assert_eq!(shown(of("G52 OR G92 SHIFT IN X Y Z"), "1"), "1112, 1137, 1138");
+        // What is to be done at each is another thing.
+        assert_eq!(shown(of("NO CONTACT"), "3"), "3155");
+        assert_eq!(shown(of("A CANDIDATE IS MISSING"), "3"), "3068");
+    }
+}
