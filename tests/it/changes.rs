@@ -322,3 +322,58 @@ fn a_longer_way_in_inverse_time_has_no_other_feed() {
         ["feed: feed F8 instead of F10 (3 moves, all by the same factor)"]
     );
 }
+
+/// What the machine's own codes may take up: the run makes nothing of it.
+#[test]
+fn a_tool_called_and_a_speed_that_nothing_takes_up_are_one_entry() {
+    // T3 waits in the magazine when the program ends; S800 is for M41, a builder's code.
+    let old = "O1\nT1 M6\nT2\nS500 M3\nG0 X1.\nM6\nM5\nT3\nS800\nM41\nG0 X2.\nM30\n";
+    for (from, to, entry) in [
+        ("T3", "T4", "tool: T4 without M06 instead of T3 without M06"),
+        ("T3\n", "", "tool: T3 without M06 is no longer there"),
+        ("S800", "S900", "spindle: S900 without M03 or M04 instead of S800 without M03 or M04"),
+        // Fetched early or late, the same tool is put in.
+        ("T2\n", "", "tool: tool T1 instead of tool T2"),
+    ] {
+        assert_eq!(told(old, &old.replace(from, to)), [entry], "{from} -> {to}");
+    }
+    assert_eq!(told(old, &old.replace("T2\nS500 M3\n", "S500 M3\nT2\n")), Vec::<String>::new());
+    assert_eq!(told(old, &old.replace("S500 M3", "S500\nM3")), Vec::<String>::new());
+}
+
+#[test]
+fn a_switch_of_the_control_is_one_entry() {
+    let old = "O1\n#3003=1\n#3004=7\nG0 X1.\n#3004=0\n#3003=0\nM30\n";
+    assert_eq!(told(old, &old.replace("#3003=1", "#3003=3")), ["switch: #3003=3 instead of #3003=1"]);
+    for lost in ["#3003=0", "#3004=7"] {
+        assert_eq!(
+            told(old, &old.replace(&format!("{lost}\n"), "")),
+            [format!("switch: {lost} is no longer there")]
+        );
+    }
+}
+
+/// The block that ends a run, and for one without an end the block that goes back.
+#[test]
+fn another_end_is_one_entry_that_names_its_block() {
+    let old = "O1\nG0 X1.\nM30\n";
+    let shown = |new: &str| -> Vec<String> {
+        let found = changes(&revision(old).record, &revision(new).record, 0.0001);
+        let line = |place: &Option<gcode_sim::changes::Where>| place.as_ref().map(|place| place.line);
+        let each = found.iter();
+        each.map(|c| format!("{} {:?} {:?}: {}", c.code, line(&c.old), line(&c.new), c.message)).collect()
+    };
+    let ends = "the program ends";
+    assert_eq!(
+        shown("O1\nG0 X1.\nM02\n"),
+        [format!("outcome Some(3) Some(3): {ends} by M02; before: {ends}")]
+    );
+    assert_eq!(
+        shown("O1\nG0 X1.\n"),
+        [format!("outcome Some(3) Some(2): {ends} where its text does, without M30; before: {ends}")]
+    );
+    let endless = "the program doesn't end within the limits";
+    assert_eq!(shown("O1\nG0 X1.\n\nM99\n"), [format!("outcome Some(3) Some(4): {endless}; before: {ends}")]);
+    let found = shown("O1\nG0 X2.\nM02\n");
+    assert_eq!(found.len(), 2, "another end hides no move: {found:?}");
+}

@@ -18,12 +18,20 @@ fn copy(from: &Path, to: &Path) {
     }
 }
 
+/// The folders that programs are looked for in, without gcode-sim.
+fn others() -> Vec<PathBuf> {
+    let all = std::env::var_os("PATH").unwrap_or_default();
+    std::env::split_paths(&all).filter(|folder| !folder.join("gcode-sim").exists()).collect()
+}
+
 /// `git` in a repository of its own, whatever the surroundings say, with gcode-sim on its path.
 fn git(place: &Path, arguments: &[&str]) -> Output {
     let bin = PathBuf::from(program("gcode-sim").get_program()).parent().unwrap().to_owned();
-    let path = std::env::join_paths(
-        std::iter::once(bin).chain(std::env::split_paths(&std::env::var_os("PATH").unwrap_or_default())),
-    );
+    git_with(std::iter::once(bin).chain(others()), place, arguments)
+}
+
+fn git_with(path: impl IntoIterator<Item = PathBuf>, place: &Path, arguments: &[&str]) -> Output {
+    let path = std::env::join_paths(path);
     let mut command = Command::new("git");
     for name in ["GIT_DIR", "GIT_INDEX_FILE", "GIT_WORK_TREE"] {
         command.env_remove(name);
@@ -45,16 +53,55 @@ fn move_the_row(place: &Path) {
     std::fs::write(&file, text.replace("Y5. ", "Y5.01 ")).unwrap();
 }
 
+/// The example, committed.
 #[cfg(unix)]
-#[test]
-fn the_hook_refuses_a_changed_macro_with_the_message_of_the_page() {
-    let place = tempfile::tempdir().unwrap();
-    let place = place.path();
+fn repository() -> tempfile::TempDir {
+    let repository = tempfile::tempdir().unwrap();
+    let place = repository.path();
     copy(&example(), place);
     assert!(git(place, &["init", "--quiet"]).status.success());
     git(place, &["add", "--all"]);
     let first = git(place, &["commit", "--quiet", "-m", "Programs"]);
     assert!(first.status.success(), "{first:?}");
+    repository
+}
+
+/// A commit is refused with exit code 1; what was said of it.
+#[cfg(unix)]
+fn refused(commit: Output, place: &Path) -> String {
+    assert_eq!(commit.status.code(), Some(1), "{commit:?}");
+    let commits = git(place, &["rev-list", "--count", "HEAD"]).stdout;
+    assert_eq!(String::from_utf8(commits).unwrap(), "1\n");
+    String::from_utf8([commit.stdout, commit.stderr].concat()).unwrap()
+}
+
+const COMMIT: [&str; 5] = ["commit", "--quiet", "-a", "-m", "Row moved"];
+
+#[cfg(unix)]
+#[test]
+fn the_hook_refuses_what_it_cannot_test() {
+    let repository = repository();
+    let place = repository.path();
+    move_the_row(place);
+    let said = refused(git_with(others(), place, &COMMIT), place);
+    assert_eq!(said, "commit refused: gcode-sim is not on the PATH, so nothing was tested\n");
+
+    std::fs::write(place.join("parts/plate/control.toml"), "nonsense = 1\n").unwrap();
+    git(place, &["add", "--all"]);
+    let said = refused(git(place, &COMMIT), place);
+    assert!(said.starts_with("refused  plate: ") && said.contains("nonsense"), "{said}");
+    let last = said.lines().last().unwrap();
+    assert_eq!(
+        last,
+        "commit refused: not every case could be tested (exit code 2); mend what is named above"
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn the_hook_refuses_a_changed_macro_with_the_message_of_the_page() {
+    let repository = repository();
+    let place = repository.path();
 
     move_the_row(place);
     // The change is in the folder and not staged: a commit of something else isn't about it.
@@ -62,14 +109,14 @@ fn the_hook_refuses_a_changed_macro_with_the_message_of_the_page() {
     git(place, &["add", "notes.txt"]);
     assert!(git(place, &["commit", "--quiet", "-m", "Notes"]).status.success());
 
-    let refused = git(place, &["commit", "--quiet", "-a", "-m", "Row moved"]);
+    let refused = git(place, &COMMIT);
     assert_eq!(refused.status.code(), Some(1));
     let said = [refused.stdout, refused.stderr].concat();
     let said = String::from_utf8(said).unwrap();
     assert!(page().contains(&format!("```text\n{said}```")), "docs/ci.md shows something else than\n{said}");
 
     run_line("gcode-sim test parts --lib macros --accept", place);
-    let taken = git(place, &["commit", "--quiet", "-a", "-m", "Row moved"]);
+    let taken = git(place, &COMMIT);
     assert!(taken.status.success(), "{taken:?}");
     let moved = String::from_utf8(git(place, &["show", "HEAD", "--", "parts"]).stdout).unwrap();
     assert!(moved.contains("+{\"entry\":[10.0,5.01,"), "{moved}");

@@ -1,4 +1,5 @@
-//! `test` on folders with links: nothing is run twice, nothing without end, and a link to nothing is no case that holds.
+//! `test` on folders: with links nothing is run twice, nothing without end, and a link to nothing is no case that holds; of several
+//! folders the merged shards are the whole run.
 #![cfg(unix)]
 use std::os::unix::fs::symlink;
 use std::path::Path;
@@ -72,4 +73,31 @@ fn accepted_results_behind_a_broken_link_are_told() {
     std::fs::remove_file(&accepted).unwrap();
     symlink("gone.json", &accepted).unwrap();
     assert_eq!(run("", place.path()).0, 2);
+}
+
+/// Of two folders, the one that was named first comes second by its name.
+#[test]
+fn two_folders_in_shards_are_the_whole_run_in_every_format() {
+    let place = collection();
+    for (case, program) in [("more/a", PROGRAM), ("more/b", "O1\nG0 X1.\n#3000=1(NO PART)\nM30\n")] {
+        let folder = place.path().join(case);
+        std::fs::create_dir_all(&folder).unwrap();
+        std::fs::write(folder.join("main.nc"), program).unwrap();
+    }
+    std::fs::write(place.path().join("parts/plate/O0300.nc"), PROGRAM.replace("X1.", "X2.")).unwrap();
+    let of = |arguments: &str| {
+        let done = run_line(&format!("gcode-sim test {arguments}"), place.path());
+        (done.status.code().unwrap(), String::from_utf8(done.stdout).unwrap())
+    };
+    for shard in [1, 2] {
+        let (code, result) = of(&format!("parts more --shard {shard}/2 --format json"));
+        assert_eq!(code, 1, "{result}");
+        std::fs::write(place.path().join(format!("{shard}.json")), result).unwrap();
+    }
+    for format in ["text", "json", "junit", "sarif"] {
+        let whole = of(&format!("parts more --format {format}"));
+        assert_eq!(of(&format!("--merge 2.json 1.json --format {format}")), whole, "{format}");
+        let places = ["more/a", "more/b", "parts/plate"].map(|name| whole.1.find(name).unwrap());
+        assert!(places.is_sorted(), "{format}: {}", whole.1);
+    }
 }

@@ -1,121 +1,13 @@
-//! What moves are made under: offsets, compensation, cycles and modes as a program calls them, whatever the tables hold
-//! of them. H2 where H1 was is a change, though both are 0 in a run without a table.
+//! Moves that are made under something else than before. H2 where H1 was is a change, though both are 0 in a run without
+//! a table.
 use std::collections::BTreeSet;
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
-use super::Change;
 use super::align::Link;
+use super::change::Change;
+use super::in_force::{Aspect, Word};
 use super::record::Record;
 use super::steps::{Kind, Step, difference};
-use crate::exec::State;
 use crate::motion::MAX_AXES;
-use crate::program::modes::WorkSystem;
-
-/// One of the things that are in force.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub(super) enum Aspect {
-    /// G54 to G59, G54.1 with its P.
-    System,
-    /// G43 or G44 with H, G49.
-    Length,
-    /// G41 or G42 with D, G40.
-    Cutter,
-    /// G61 to G64.
-    Path,
-    /// G98, G99; only where a cycle is in force.
-    Level,
-    /// With its Q.
-    Cycle,
-}
-
-impl Aspect {
-    pub(super) const ALL: [Self; 6] =
-        [Self::System, Self::Length, Self::Cutter, Self::Path, Self::Level, Self::Cycle];
-
-    /// What a change of it is called.
-    fn code(self) -> &'static str {
-        match self {
-            Self::System => "work-system",
-            Self::Length => "tool-length",
-            Self::Cutter => "cutter-side",
-            Self::Path => "path-mode",
-            Self::Level => "return-level",
-            Self::Cycle => "cycle",
-        }
-    }
-
-    fn read(self, state: &State) -> String {
-        let modal = &state.modal;
-        let group = |number| {
-            let code = modal.code(number).unwrap_or_default();
-            if code.is_multiple_of(10) {
-                format!("G{:02}", code / 10)
-            } else {
-                format!("G{}.{}", code / 10, code % 10)
-            }
-        };
-        let with = |number, off: u32, letter: char, value: u32| match modal.code(number) == Some(off) {
-            true => group(number),
-            false => format!("{} {letter}{value}", group(number)),
-        };
-        match (self, modal.cycle, state.drilling.q) {
-            (Self::System, ..) => match modal.work {
-                WorkSystem::Standard(_) => group(14),
-                WorkSystem::Additional(number) => format!("G54.1 P{number}"),
-            },
-            (Self::Length, ..) => with(8, 490, 'H', state.codes.h),
-            (Self::Cutter, ..) => with(7, 400, 'D', state.codes.d),
-            (Self::Path, ..) => group(15),
-            (Self::Level | Self::Cycle, None, _) => String::new(),
-            (Self::Level, Some(_), _) => group(10),
-            (Self::Cycle, Some(_), Some(q)) => format!("{} Q{q}", group(9)),
-            (Self::Cycle, Some(_), None) => group(9),
-        }
-    }
-}
-
-/// What is in force while a step is made.
-#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Condition(pub [Word; 6]);
-
-/// One of them as a program writes it, and the block that has put it in force, by its number in the record.
-#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Word {
-    /// Empty for none.
-    pub text: String,
-    pub place: Option<usize>,
-}
-
-impl Condition {
-    /// Before the first block: no block has put it in force.
-    pub(super) fn at_power_on() -> Self {
-        let state = State::default();
-        Self(Aspect::ALL.map(|aspect| Word { text: aspect.read(&state), place: None }))
-    }
-
-    pub(super) fn word(&self, aspect: Aspect) -> &Word {
-        &self.0[aspect as usize]
-    }
-
-    pub(super) fn set(&mut self, aspect: Aspect, word: Word) {
-        self.0[aspect as usize] = word;
-    }
-
-    /// As a block leaves it: what is as before keeps the block that put it in force.
-    pub(super) fn follow(&self, state: &State, place: usize) -> Self {
-        let mut next = self.clone();
-        for aspect in Aspect::ALL {
-            let text = aspect.read(state);
-            if next.word(aspect).text != text {
-                next.set(aspect, Word { text, place: Some(place) });
-            }
-        }
-        next
-    }
-}
 
 /// What is in force at the steps of both records.
 pub(super) struct Conditions<'a> {

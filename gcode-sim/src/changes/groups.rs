@@ -1,5 +1,5 @@
 //! Differences that say the same, told once with how often.
-use super::Change;
+use super::change::Change;
 use super::record::Record;
 use super::steps::Step;
 

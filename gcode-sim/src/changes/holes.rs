@@ -4,9 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::{Point3, Vector3};
 
 use super::align::Link;
+use super::change::{Change, listed};
 use super::passes::{Passes, in_words, more_or_fewer};
 use super::record::{Record, Where};
-use super::{Change, listed};
 use crate::holes::Found;
 use crate::part::hole::Hole;
 use crate::source::Span;

@@ -1,8 +1,11 @@
 //! How the runs ended and what they leave behind: outcome, printed lines, variables, offsets and modes.
 use std::collections::BTreeSet;
 
-use super::Change;
+use super::change::Change;
 use super::record::{Left, Record};
+
+/// Counted up by M02 and M30.
+const PARTS: &str = "#3901";
 
 /// Whether the runs ended in the same way.
 pub(super) fn outcome(old: &Record, new: &Record) -> Option<Change> {
@@ -14,10 +17,12 @@ pub(super) fn outcome(old: &Record, new: &Record) -> Option<Change> {
     })
 }
 
-pub(super) fn compare(old: &Record, new: &Record, tolerance: f64) -> Vec<Change> {
+/// `by_other` where both end, but not by the same code: that the parts counter isn't counted up says no more.
+pub(super) fn compare(old: &Record, new: &Record, by_other: bool, tolerance: f64) -> Vec<Change> {
     let mut changes: Vec<Change> = printed(&old.ending.output, &new.ending.output).into_iter().collect();
     let (was, is) = (&old.ending.left, &new.ending.left);
-    let names: BTreeSet<&String> = was.keys().chain(is.keys()).collect();
+    let names: BTreeSet<&String> =
+        was.keys().chain(is.keys()).filter(|name| !(by_other && *name == PARTS)).collect();
     changes.extend(names.into_iter().filter_map(|name| value(name, was.get(name), is.get(name), tolerance)));
     changes
 }

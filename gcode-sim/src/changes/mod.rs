@@ -3,99 +3,30 @@
 //! Nothing of the text is compared: sequence numbers, spaces, comments, names of locals and the way a number is written
 //! make no difference unless the control does something else because of them.
 mod align;
+mod change;
 mod conditions;
 mod groups;
 mod holes;
+mod in_force;
 mod left;
 mod motion;
 mod passes;
 mod path;
 mod record;
+mod recorder;
 mod steps;
 mod store;
+mod words;
 
-use std::borrow::Cow;
-
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
-
+pub use change::{CODES, Change};
 pub use holes::Paired;
 pub use path::Leg;
-pub use record::{MOST_STEPS, Record, Revision, Totals, Where};
+pub use record::{Record, Revision, Totals, Where};
+pub use recorder::MOST_STEPS;
 pub(crate) use store::File as AcceptedFile;
 pub use store::StoreError;
 
 use self::align::{Link, align};
-
-/// What a change can be called, in the order of their sections in docs/changes.md.
-pub const CODES: [&str; 37] = [
-    "outcome",
-    "hole-moved",
-    "hole-tilted",
-    "hole-depth",
-    "hole-diameter",
-    "hole-tool",
-    "hole-order",
-    "hole-lost",
-    "hole-added",
-    "move-shifted",
-    "move-added",
-    "move-lost",
-    "move-kind",
-    "move-arc",
-    "feed",
-    "dwell",
-    "tool",
-    "tool-length",
-    "cutter-side",
-    "work-system",
-    "cycle",
-    "return-level",
-    "path-mode",
-    "spindle",
-    "coolant",
-    "m-code",
-    "g-code",
-    "block-skip",
-    "stop",
-    "output",
-    "variable",
-    "mode",
-    "work-offset",
-    "tool-offset",
-    "parameter",
-    "signal",
-    "counter",
-];
-
-/// One difference that matters.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Change {
-    /// What it is called: docs/changes.md has a section for each.
-    pub code: Cow<'static, str>,
-    /// What is different, with numbers and units; makes sense alone.
-    pub message: String,
-    /// The first block of the old revision that does it, where there is one.
-    pub old: Option<Where>,
-    /// … and of the new one.
-    pub new: Option<Where>,
-}
-
-impl Change {
-    fn new(code: &'static str, message: impl Into<String>) -> Self {
-        debug_assert!(CODES.contains(&code), "{code}");
-        Self { code: code.into(), message: message.into(), old: None, new: None }
-    }
-
-    fn once_at(self, place: Option<&Where>) -> Self {
-        Self { old: place.cloned(), ..self }
-    }
-
-    fn now_at(self, place: Option<&Where>) -> Self {
-        Self { new: place.cloned(), ..self }
-    }
-}
 
 /// Everything that is different: how the runs ended and the holes first, then the motion that no changed hole explains, then the rest.
 ///
@@ -123,7 +54,8 @@ impl Compared {
         let [old_steps, new_steps] = up_to_the_stop(old, new, &mut links);
         let (old, new) = (&*old.up_to(old_steps), &*new.up_to(new_steps));
         let holes = holes::compare(old, new, &links, tolerance);
-        let is_to_the_end = outcome.is_none();
+        let by_other = outcome.is_some();
+        let is_to_the_end = !by_other || [old, new].iter().all(|record| record.outcome() == "end");
         let mut changes: Vec<Change> = outcome.into_iter().collect();
         changes.extend(holes.changes);
         changes.extend(motion::compare(old, new, &links, &holes.moved, tolerance));
@@ -132,7 +64,7 @@ impl Compared {
             changes.truncate(1);
         }
         if is_to_the_end {
-            changes.extend(left::compare(old, new, tolerance));
+            changes.extend(left::compare(old, new, by_other, tolerance));
         }
         let different = links.iter().filter(|link| !matches!(link, Link::Same(..)));
         let (was, is): (Vec<_>, Vec<_>) = different.map(|link| link.sides()).unzip();
@@ -163,13 +95,4 @@ fn up_to_the_stop(old: &Record, new: &Record, links: &mut Vec<Link>) -> [usize; 
 /// too much for that, what is common at their beginnings and ends.
 pub fn common_lines(old: &[String], new: &[String]) -> Vec<(usize, usize)> {
     align::common(old.len(), new.len(), |i, j| old[i] == new[j])
-}
-
-/// `1, 2, 5`; long lists are cut.
-fn listed(names: &[String]) -> String {
-    const SHOWN: usize = 6;
-    if names.len() <= SHOWN {
-        return names.join(", ");
-    }
-    format!("{} and {} more", names[..SHOWN].join(", "), names.len() - SHOWN)
 }

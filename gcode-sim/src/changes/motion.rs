@@ -1,14 +1,15 @@
 //! Moves, feeds, tools, spindle and stops that are different and that no changed hole explains.
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::Change;
 use super::align::Link;
+use super::change::Change;
 use super::conditions::{Conditions, Strokes};
-use super::groups::{Groups, Sides, short};
+use super::groups::{Groups, Sides};
 use super::holes::Explained;
 use super::record::Record;
 use super::steps::{Category, Kind, Quiet, Step, difference, is_same_arc, near};
-use crate::motion::{Axes, MAX_AXES, Position, Spindle, StopKind};
+use super::words::{code, coordinates, described, point};
+use crate::motion::{Axes, MAX_AXES, Position};
 
 pub(super) fn compare(
     old: &Record,
@@ -33,7 +34,8 @@ pub(super) fn compare(
         motion.region(&region, explained);
     }
     let shifted = shifted(links, &old.steps, &new.steps, tolerance);
-    let set_up = set_up(links, explained, (&old.steps, &new.steps));
+    let mut set_up = set_up(links, explained, (&old.steps, &new.steps));
+    set_up.extend(with_code(links, &old.steps, &new.steps));
     for (k, link) in links.iter().enumerate() {
         match shifted.get(&k) {
             None if set_up.contains(&k) => {}
@@ -118,6 +120,30 @@ fn set_up(links: &[Link], explained: &Explained, (old, new): (&[Step], &[Step]))
         known.extend(run.iter().filter(is_set_up));
     }
     known
+}
+
+/// T and S that come or go with an M code of their block.
+fn with_code<'a>(
+    links: &'a [Link],
+    old: &'a [Step],
+    new: &'a [Step],
+) -> impl Iterator<Item = usize> + use<'a> {
+    let step = |link: &Link| match *link {
+        Link::Lost(i) => Some((false, &old[i])),
+        Link::Added(j) => Some((true, &new[j])),
+        Link::Same(..) | Link::Changed(..) => None,
+    };
+    let is_with = move |k: &usize| {
+        let Some((is_new, called)) = step(&links[*k]) else { return false };
+        let of_block = links[..*k].iter().rev().map_while(step);
+        let mut of_block = of_block.take_while(|(side, step)| *side == is_new && step.place == called.place);
+        let is_code = |step: &Step| {
+            matches!(step.kind.category(), Category::Auxiliary | Category::Silent(Quiet::MCode))
+        };
+        matches!(called.kind, Kind::Silent(Quiet::Tool | Quiet::Speed, _))
+            && of_block.any(|(_, step)| is_code(step))
+    };
+    (0..links.len()).filter(is_with)
 }
 
 /// A feed of a changed hole.
@@ -209,12 +235,13 @@ impl<'a> Motion<'a> {
                 Link::Changed(i, j) if !is_part => self.changed(&self.old[i], &self.new[j]),
                 Link::Lost(i) if !(is_part && gone) => {
                     let step = &self.old[i];
-                    let text = format!("{} to {} is no longer there", step.kind.one(), self.point(step));
+                    let text =
+                        format!("{} to {} is no longer there", step.kind.one(), point(step, self.axes));
                     self.alone(&shifts, "move-lost", text, (Some(step), None));
                 }
                 Link::Added(j) if !(is_part && gone) => {
                     let step = &self.new[j];
-                    let text = format!("{} to {} is new", step.kind.one(), self.point(step));
+                    let text = format!("{} to {} is new", step.kind.one(), point(step, self.axes));
                     self.alone(&shifts, "move-added", text, (None, Some(step)));
                 }
                 _ => {}
@@ -231,7 +258,7 @@ impl<'a> Motion<'a> {
         let back = shifts.iter().any(|(shift, _)| self.near(&opposite(&way), shift));
         match with {
             Some((shift, false)) => {
-                let text = self.coordinates(shift, self.tolerance, true);
+                let text = coordinates(shift, self.axes, self.tolerance, true);
                 self.groups.tell("move-shifted", step.kind.name(), text, sides);
             }
             None if !back => self.groups.tell(code, "move", text, sides),
@@ -287,7 +314,7 @@ impl<'a> Motion<'a> {
             self.groups.tell("move-kind", "move", format!("{is} where {was} was"), sides);
         }
         let way = difference(&new.to, &old.to);
-        let shift = self.coordinates(&way, self.tolerance, true);
+        let shift = coordinates(&way, self.axes, self.tolerance, true);
         if !shift.is_empty() {
             self.groups.tell("move-shifted", new.kind.name(), shift, sides);
         } else if let (Kind::Arc(a, _), Kind::Arc(b, _)) = (&old.kind, &new.kind)
@@ -329,15 +356,22 @@ impl<'a> Motion<'a> {
                     self.swapped(old, new, explained);
                 }
             }
-            Link::Lost(i) if !self.old[i].is_move() && !is_stroke => {
+            Link::Lost(_) | Link::Added(_) if is_stroke => {}
+            Link::Lost(i) if !self.old[i].is_move() => {
                 let step = &self.old[i];
-                let text = format!("{} is no longer there", self.described(&step.kind));
-                self.groups.tell(lost_code(&step.kind), step.kind.name(), text, (Some(step), None));
+                if is_told_of_holes((Some(&step.kind), None), explained) {
+                    return;
+                }
+                let text = format!("{} is no longer there", described(&step.kind, self.axes));
+                self.groups.tell(code(&step.kind), step.kind.name(), text, (Some(step), None));
             }
-            Link::Added(j) if !self.new[j].is_move() && !is_stroke => {
+            Link::Added(j) if !self.new[j].is_move() => {
                 let step = &self.new[j];
-                let text = format!("{} is new", self.described(&step.kind));
-                self.groups.tell(lost_code(&step.kind), step.kind.name(), text, (None, Some(step)));
+                if is_told_of_holes((None, Some(&step.kind)), explained) {
+                    return;
+                }
+                let text = format!("{} is new", described(&step.kind, self.axes));
+                self.groups.tell(code(&step.kind), step.kind.name(), text, (None, Some(step)));
             }
             Link::Lost(_) | Link::Added(_) => {}
         }
@@ -345,69 +379,17 @@ impl<'a> Motion<'a> {
 
     /// A step that comes at another time.
     fn shifted(&mut self, old: &'a Step, new: &'a Step, word: &str) {
-        let text = format!("{} comes {word} than before", self.described(&old.kind));
-        self.groups.tell(lost_code(&old.kind), old.kind.name(), text, (Some(old), Some(new)));
+        let text = format!("{} comes {word} than before", described(&old.kind, self.axes));
+        self.groups.tell(code(&old.kind), old.kind.name(), text, (Some(old), Some(new)));
     }
 
     /// The same kind of step with other values.
     fn swapped(&mut self, old: &'a Step, new: &'a Step, explained: &Explained) {
-        if let (Kind::Tool(was), Kind::Tool(is)) = (&old.kind, &new.kind)
-            && explained.tools.contains(&(*was, *is))
-        {
-            return;
+        if !old.is_move() && !is_told_of_holes((Some(&old.kind), Some(&new.kind)), explained) {
+            let text =
+                format!("{} instead of {}", described(&new.kind, self.axes), described(&old.kind, self.axes));
+            self.groups.tell(code(&old.kind), old.kind.name(), text, (Some(old), Some(new)));
         }
-        if !old.is_move() {
-            let text = format!("{} instead of {}", self.described(&new.kind), self.described(&old.kind));
-            self.groups.tell(lost_code(&old.kind), old.kind.name(), text, (Some(old), Some(new)));
-        }
-    }
-
-    fn described(&self, kind: &Kind) -> String {
-        match kind {
-            Kind::Dwell(seconds) => format!("a dwell of {seconds} s"),
-            Kind::Tool(number) => format!("tool T{number}"),
-            Kind::Length(offset) => match self.coordinates(offset, 0.0, false).as_str() {
-                "" => "a tool length offset of 0".to_owned(),
-                values => format!("tool length offset {values}"),
-            },
-            Kind::Spindle(Spindle::Off, _) => "spindle stop".to_owned(),
-            Kind::Spindle(Spindle::Clockwise, speed) => format!("M03 S{speed}"),
-            Kind::Spindle(Spindle::Counterclockwise, speed) => format!("M04 S{speed}"),
-            Kind::Coolant(true, None) => "coolant on".to_owned(),
-            Kind::Coolant(false, None) => "coolant off".to_owned(),
-            Kind::Coolant(_, Some(code)) | Kind::Auxiliary(code) => format!("M{code:02}"),
-            Kind::Stop(StopKind::M00, ..) => "the stop M00".to_owned(),
-            Kind::Stop(StopKind::M01, ..) => "the stop M01".to_owned(),
-            Kind::Stop(StopKind::Message, text, named) => {
-                let values = named.iter().map(|(number, value)| format!(", #{number} = {}", short(*value)));
-                format!("the stop #3006 ({text}){}", values.collect::<String>())
-            }
-            Kind::Silent(Quiet::Skip, text) => format!("the block skip {text}"),
-            Kind::Silent(_, text) => text.clone(),
-            Kind::Rapid | Kind::Feed(_) | Kind::Arc(..) | Kind::Probe(_) => kind.one(),
-        }
-    }
-
-    /// Where a move ends, in machine coordinates without the tool's length.
-    fn point(&self, step: &Step) -> String {
-        let way = difference(&step.to, &step.from);
-        let moving: Vec<String> = self
-            .axes
-            .iter()
-            .filter(|(axis, _)| way[*axis] != 0.0)
-            .map(|(axis, letter)| format!("{letter}{:.4}", step.at[axis]))
-            .collect();
-        if moving.is_empty() { "where it begins".to_owned() } else { moving.join(" ") }
-    }
-
-    /// The axes whose values are beyond `least`.
-    fn coordinates(&self, values: &Position, least: f64, signed: bool) -> String {
-        let far = self.axes.iter().filter(|(axis, _)| values[*axis].abs() > least);
-        let told = far.map(|(axis, letter)| match signed {
-            true => format!("{letter} {:+.4}", values[axis]),
-            false => format!("{letter} {:.4}", values[axis]),
-        });
-        told.collect::<Vec<_>>().join(" ")
     }
 }
 
@@ -415,18 +397,15 @@ fn opposite(way: &Position) -> Position {
     difference(&Position::default(), way)
 }
 
-fn lost_code(kind: &Kind) -> &'static str {
-    match kind.category() {
-        Category::Move => "move",
-        Category::Dwell => "dwell",
-        Category::Tool => "tool",
-        Category::Length => "tool-length",
-        Category::Spindle => "spindle",
-        Category::Coolant => "coolant",
-        Category::Auxiliary | Category::Silent(Quiet::MCode) => "m-code",
-        Category::Stop => "stop",
-        Category::Silent(Quiet::Skip) => "block-skip",
-        Category::Silent(Quiet::Path) => "path-mode",
-        Category::Silent(Quiet::GCode) => "g-code",
+/// Entries about holes that are made by another tool name what is put in now and before. A change that is lost leaves
+/// another tool in the spindle, and its T may stay.
+fn is_told_of_holes((old, new): (Option<&Kind>, Option<&Kind>), explained: &Explained) -> bool {
+    let is_call = |kind: Option<&Kind>| matches!(kind, Some(Kind::Silent(Quiet::Tool, _)));
+    let told = |is: &dyn Fn(&(u32, u32)) -> bool| explained.tools.iter().any(is);
+    match (old, new) {
+        (Some(Kind::Tool(was)), Some(Kind::Tool(is))) => explained.tools.contains(&(*was, *is)),
+        (Some(Kind::Tool(was)), _) => told(&|(before, _)| before == was),
+        (_, Some(Kind::Tool(is))) => told(&|(_, now)| now == is),
+        _ => (is_call(old) || is_call(new)) && !explained.tools.is_empty(),
     }
 }

@@ -2,24 +2,21 @@
 use std::borrow::Cow;
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Arc;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::conditions::Condition;
-use super::steps::{Kind, Recorder, Shared, Step};
+use super::in_force::Condition;
+use super::recorder::{End, MOST_STEPS, Recorder, Shared};
+use super::steps::{Kind, Step};
 use crate::diag::{Diagnostic, Severity};
 use crate::exec::{Control, Outcome, Remainder, RemainderKind, Watcher};
 use crate::holes::Found;
-use crate::motion::{Axes, MAX_AXES, Place, Position};
+use crate::motion::{Axes, Calls, MAX_AXES, Place, Position};
 use crate::part::surface::Surface;
 use crate::program::Library;
 use crate::session::{self, Request, Run, SessionError, Simulation};
 use crate::source::Span;
-
-/// More steps than this aren't written down: a loop that never ends must not fill the memory.
-pub const MOST_STEPS: usize = 1_000_000;
 
 /// What one revision does.
 #[derive(Clone, Debug)]
@@ -69,7 +66,7 @@ pub(super) struct Ending {
     pub outcome: String,
     /// In words that two revisions are compared by.
     pub words: String,
-    /// Where it stopped, if it did.
+    /// The block that ended or stopped it; of one without an end the block that goes back.
     pub stopped: Option<Where>,
     /// The lines of DPRNT and BPRNT; bytes that are no text as `\xNN`.
     pub output: Vec<String>,
@@ -166,10 +163,11 @@ impl<A: Watcher, B: Watcher> Watcher for Beside<A, B> {
     }
 }
 
-fn record(simulation: &Simulation, recorder: Recorder) -> Record {
+fn record(simulation: &Simulation, mut recorder: Recorder) -> Record {
+    recorder.forget_taken_up();
     let (run, holes) = (&simulation.run, simulation.extracted.holes.clone());
     let feeds = feeds(&recorder, &holes);
-    let Recorder { mut steps, places, mut conditions, mut set, assigned, written, .. } = recorder;
+    let Recorder { mut steps, places, mut conditions, mut set, assigned, written, last, end, .. } = recorder;
     if conditions.is_empty() {
         conditions.push(Condition::default());
     }
@@ -190,7 +188,7 @@ fn record(simulation: &Simulation, recorder: Recorder) -> Record {
             blocks: run.control.blocks(),
             seconds: run.control.seconds().0,
         },
-        ending: ending(run, &by),
+        ending: ending(run, &by, (last.as_ref(), end)),
         conditions,
         steps,
         holes,
@@ -290,15 +288,27 @@ impl Where {
 }
 
 /// `by` has the blocks that what is left behind comes from, by its name.
-fn ending(run: &Run, by: &BTreeMap<String, Where>) -> Ending {
+fn ending(run: &Run, by: &BTreeMap<String, Where>, (last, end): (Option<&Place>, End)) -> Ending {
     let (outcome, words, stopped) = match &run.outcome {
-        Outcome::End => ("end", "the program ends".to_owned(), None),
+        Outcome::End => {
+            let by = match end {
+                End::Code(2) => " by M02",
+                End::Code(_) => "",
+                End::Return => " by M99",
+                End::OfText => " where its text does, without M30",
+            };
+            ("end", format!("the program ends{by}"), last.map(|place| Where::of(run, place)))
+        }
         Outcome::Alarm(stopped) => {
             let row = stopped.alarm.row();
             let place = Where::of(run, &stopped.place);
             ("alarm", format!("alarm {} {}", row.code, row.message), Some(place))
         }
-        Outcome::Limit => ("limit", "the program doesn't end within the limits".to_owned(), None),
+        Outcome::Limit => {
+            let block = run.control.endless_loop().map_or(run.control.place().block, |(_, back)| back);
+            let place = Place { block, calls: Calls::default() };
+            ("limit", "the program doesn't end within the limits".to_owned(), Some(Where::of(run, &place)))
+        }
     };
     Ending {
         outcome: outcome.to_owned(),
@@ -329,14 +339,4 @@ fn code(kind: RemainderKind) -> &'static str {
         RemainderKind::Output => "signal",
         RemainderKind::Counter => "counter",
     }
-}
-
-/// Blocks that were told already: most steps come from the block and the call of the one before.
-pub(super) fn is_same_place(a: &Place, b: &Place) -> bool {
-    a.block == b.block
-        && match (&a.calls, &b.calls) {
-            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
-            (None, None) => true,
-            _ => false,
-        }
 }

@@ -1,18 +1,8 @@
 //! What a machine was told, step by step, in a form that two runs can be compared by.
-use std::cell::RefCell;
-use std::collections::BTreeMap;
-use std::ops::RangeInclusive;
-
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::conditions::Condition;
-use super::record::{MOST_STEPS, is_same_place};
-use crate::exec::{Control, Modal, Remainder, RemainderKind, Silent, Watcher};
-use crate::motion::{Arc2, Event, EventKind, MAX_AXES, Place, Position, Sink, Spindle, StopKind};
-
-/// Variables that outlive a program.
-const COMMON: RangeInclusive<u32> = 100..=999;
+use crate::motion::{Arc2, MAX_AXES, Position, Spindle, StopKind};
 
 /// One thing the machine was told.
 #[derive(Clone, Debug)]
@@ -65,6 +55,12 @@ pub(super) enum Quiet {
     GCode,
     /// An M code without effect here.
     MCode,
+    /// A T whose tool isn't put in before another is called: the magazine turns, or the machine's own codes change tools.
+    Tool,
+    /// An S with the spindle off that no M03 or M04 takes up: the machine's own codes may.
+    Speed,
+    /// #3003 or #3004: single block, waiting for M codes, feed hold, override, exact stop.
+    Switch,
 }
 
 /// What can be paired with what.
@@ -92,6 +88,8 @@ impl Kind {
             Self::Coolant(..) => Category::Coolant,
             Self::Auxiliary(_) => Category::Auxiliary,
             Self::Stop(..) => Category::Stop,
+            Self::Silent(Quiet::Tool, _) => Category::Tool,
+            Self::Silent(Quiet::Speed, _) => Category::Spindle,
             Self::Silent(what, _) => Category::Silent(*what),
         }
     }
@@ -127,6 +125,9 @@ impl Kind {
             Self::Silent(Quiet::Skip, _) => "block skip",
             Self::Silent(Quiet::Path | Quiet::GCode, _) => "G code",
             Self::Silent(Quiet::MCode, _) => "M code",
+            Self::Silent(Quiet::Tool, _) => "tool call",
+            Self::Silent(Quiet::Speed, _) => "spindle speed",
+            Self::Silent(Quiet::Switch, _) => "switch",
         }
     }
 }
@@ -213,186 +214,4 @@ fn norm(way: &Position) -> f64 {
 
 pub(super) fn near(a: &Position, b: &Position, tolerance: f64) -> bool {
     (0..MAX_AXES).all(|axis| (a[axis] - b[axis]).abs() <= tolerance)
-}
-
-/// Writes the steps down as the control tells them.
-#[derive(Debug, Default)]
-pub(super) struct Recorder {
-    pub steps: Vec<Step>,
-    pub places: Vec<Place>,
-    /// There were more than [`MOST_STEPS`].
-    pub too_many: bool,
-    pub conditions: Vec<Condition>,
-    /// The block that has put a mode in force, by its group.
-    pub set: BTreeMap<u32, usize>,
-    /// The block that has written a common variable last.
-    pub assigned: BTreeMap<u32, Place>,
-    /// The block that has changed an offset, a parameter, an output or a counter last, by its name.
-    pub written: BTreeMap<String, Place>,
-    block: Option<Block>,
-    at: Position,
-    length: Position,
-    /// What the conditions were read from.
-    seen: Option<Seen>,
-    /// Steps whose conditions are known.
-    settled: usize,
-}
-
-/// A block that is about to be done.
-#[derive(Debug)]
-struct Block {
-    place: Place,
-    silent: Silent,
-    /// Common variables that it assigns.
-    assigned: Vec<u32>,
-    /// What stands in the tables before it, where it may write there.
-    tables: Vec<Remainder>,
-}
-
-/// What of a control's state conditions depend on.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Seen {
-    modal: Modal,
-    h: u32,
-    d: u32,
-    q: Option<f64>,
-}
-
-impl Recorder {
-    /// The number of a place.
-    fn place(&mut self, place: Place) -> usize {
-        if !self.places.last().is_some_and(|last| is_same_place(last, &place)) {
-            self.places.push(place);
-        }
-        self.places.len() - 1
-    }
-
-    /// A block is about to be done.
-    fn look(&mut self, control: &mut Control) {
-        self.block = control.next_block().map(|block| {
-            let silent = control.next_silent();
-            let tables = if silent.writes { control.left_behind() } else { Vec::new() };
-            let mut assigned = control.will_assign();
-            assigned.retain(|number| COMMON.contains(number));
-            Block { place: Place { block, ..control.place() }, silent, assigned, tables }
-        });
-    }
-
-    /// A block is done: what it said that moves nothing, and what it has written.
-    fn note(&mut self, control: &Control) {
-        let Some(Block { place, silent, assigned, tables }) = self.block.take() else { return };
-        let Silent { skips, path, g_codes, m_codes, writes } = silent;
-        let all =
-            [(Quiet::Skip, skips), (Quiet::Path, path), (Quiet::GCode, g_codes), (Quiet::MCode, m_codes)];
-        for (what, texts) in all {
-            for text in texts {
-                self.push(Kind::Silent(what, text), self.at, place.clone());
-            }
-        }
-        self.assigned.extend(assigned.into_iter().map(|number| (number, place.clone())));
-        if !writes {
-            return;
-        }
-        let value = |all: &[Remainder], name: &str| all.iter().find(|r| r.name == name).map(|r| r.value);
-        let now = control.left_behind();
-        let names = tables.iter().chain(&now).filter(|r| r.kind != RemainderKind::Variable);
-        for name in names.map(|r| &r.name) {
-            if value(&tables, name) != value(&now, name) {
-                self.written.insert(name.clone(), place.clone());
-            }
-        }
-    }
-
-    /// A block is done: what is in force now was so for its steps.
-    fn settle(&mut self, control: &Control) {
-        let state = control.state();
-        let now = Seen { modal: state.modal, h: state.codes.h, d: state.codes.d, q: state.drilling.q };
-        if self.seen != Some(now) {
-            let place = self.place(control.place());
-            let before = self.seen.map_or_else(Modal::default, |seen| seen.modal);
-            for group in (1..=22).filter(|group| before.code(*group) != now.modal.code(*group)) {
-                self.set.insert(group, place);
-            }
-            let before = self.conditions.last().cloned().unwrap_or_else(Condition::at_power_on);
-            let next = before.follow(state, place);
-            if self.conditions.last() != Some(&next) {
-                self.conditions.push(next);
-            }
-            self.seen = Some(now);
-        }
-        let under = self.conditions.len() - 1;
-        self.steps[self.settled..].iter_mut().for_each(|step| step.under = under);
-        self.settled = self.steps.len();
-    }
-
-    fn push(&mut self, kind: Kind, from: Position, place: Place) {
-        self.too_many |= self.steps.len() >= MOST_STEPS;
-        if !self.too_many {
-            let place = self.place(place);
-            let (from, to) = (difference(&from, &self.length), difference(&self.at, &self.length));
-            self.steps.push(Step { kind, from, to, at: self.at, place, under: 0 });
-        }
-    }
-
-    fn go(&mut self, kind: Kind, to: Position, event: &Event<'_>) {
-        let from = std::mem::replace(&mut self.at, to);
-        // A move to where the axes stand does nothing; a full circle ends where it begins.
-        if from != to || matches!(kind, Kind::Arc(..)) {
-            self.push(kind, from, event.place());
-        }
-    }
-}
-
-/// A recorder that is told what the machine does, and looks on at the control.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Shared<'a>(pub &'a RefCell<Recorder>);
-
-impl Watcher for Shared<'_> {
-    fn before(&mut self, control: &mut Control) {
-        self.0.borrow_mut().look(control);
-    }
-
-    fn after(&mut self, control: &Control) {
-        let mut recorder = self.0.borrow_mut();
-        recorder.note(control);
-        recorder.settle(control);
-    }
-}
-
-impl Sink for Shared<'_> {
-    fn event(&mut self, event: &Event<'_>) {
-        self.0.borrow_mut().event(event);
-    }
-}
-
-impl Recorder {
-    fn event(&mut self, event: &Event<'_>) {
-        let here = self.at;
-        match event.kind {
-            EventKind::Rapid { to } => self.go(Kind::Rapid, *to, event),
-            EventKind::Feed { to, rate } => self.go(Kind::Feed(rate.0), *to, event),
-            EventKind::Arc { to, arc, rate } => self.go(Kind::Arc(*arc, rate.0), *to, event),
-            EventKind::Skip { to, rate, .. } => self.go(Kind::Probe(rate.0), *to, event),
-            EventKind::Dwell { time } => self.push(Kind::Dwell(time.0), here, event.place()),
-            EventKind::Tool { number } => self.push(Kind::Tool(*number), here, event.place()),
-            EventKind::ToolLength { offset, .. } if *offset == self.length => {}
-            EventKind::ToolLength { offset, .. } => {
-                self.length = *offset;
-                self.push(Kind::Length(*offset), here, event.place());
-            }
-            EventKind::Unplaced { .. } => {}
-            EventKind::Spindle { turning, speed } => {
-                // At a standstill the speed is what it will turn at later: that is told then.
-                let speed = if *turning == Spindle::Off { 0.0 } else { speed.0 };
-                self.push(Kind::Spindle(*turning, speed), here, event.place());
-            }
-            EventKind::Coolant { on, code } => {
-                self.push(Kind::Coolant(*on, Some(*code)), here, event.place())
-            }
-            EventKind::Auxiliary { code } => self.push(Kind::Auxiliary(*code), here, event.place()),
-            EventKind::Stop { kind, text, named } => {
-                self.push(Kind::Stop(*kind, text.clone(), named.clone()), here, event.place());
-            }
-        }
-    }
 }

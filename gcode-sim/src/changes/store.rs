@@ -6,7 +6,7 @@ use nalgebra::{Point3, Unit, Vector3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::conditions::{Aspect, Condition, Word};
+use super::in_force::{Aspect, Condition, Word};
 use super::record::{Ending, Record, Totals, Where};
 use super::steps::{Kind, Quiet, Step, difference};
 use crate::holes::Found;

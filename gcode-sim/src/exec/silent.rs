@@ -18,6 +18,8 @@ pub struct Silent {
     pub m_codes: Vec<String>,
     /// It may change offsets, parameters, outputs or counters.
     pub writes: bool,
+    /// M02 or M30, by its number.
+    pub ends: Option<u32>,
 }
 
 impl Control {
@@ -69,8 +71,10 @@ impl Core {
             let Ok(Some(raw)) = self.raw(program, word) else { continue };
             if word.letter == b'M' {
                 let Ok(code) = count(raw, b'M') else { continue };
-                if m_codes::find(code, self.settings.codes) == Some(MEffect::NoEffect) {
-                    silent.m_codes.push(format!("M{code:02}"));
+                match m_codes::find(code, self.settings.codes) {
+                    Some(MEffect::NoEffect) => silent.m_codes.push(format!("M{code:02}")),
+                    Some(MEffect::End) => silent.ends = Some(code),
+                    _ => {}
                 }
                 continue;
             }

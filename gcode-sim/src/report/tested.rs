@@ -77,7 +77,10 @@ pub struct Against {
 }
 
 impl TestReport {
-    pub fn new(shard: Option<Shard>, cases: Vec<CaseReport>, accepted: Vec<String>) -> Self {
+    /// With the cases in the order of their names: a whole run and its merged shards are the same document.
+    pub fn new(shard: Option<Shard>, mut cases: Vec<CaseReport>, mut accepted: Vec<String>) -> Self {
+        cases.sort_by(|a, b| a.name.cmp(&b.name));
+        accepted.sort();
         Self { basis: "predicted by simulation, not measured".to_owned(), shard, cases, accepted }
     }
 

@@ -20,12 +20,12 @@ pub(super) fn merged(files: &[PathBuf]) -> Result<TestReport, Refusal> {
     }
     complete(&reports)?;
     let accepted = reports.iter_mut().flat_map(|report| std::mem::take(&mut report.accepted)).collect();
-    let mut cases: Vec<_> = reports.into_iter().flat_map(|report| report.cases).collect();
-    cases.sort_by(|a, b| a.name.cmp(&b.name));
-    if let Some([first, _]) = cases.array_windows().find(|[a, b]| a.name == b.name) {
+    let cases = reports.into_iter().flat_map(|report| report.cases).collect();
+    let report = TestReport::new(None, cases, accepted);
+    if let Some([first, _]) = report.cases.array_windows().find(|[a, b]| a.name == b.name) {
         return Err(Refusal::new(format!("case {} is in two of the results", first.name)));
     }
-    Ok(TestReport::new(None, cases, accepted))
+    Ok(report)
 }
 
 /// All shards are there, of one collection.

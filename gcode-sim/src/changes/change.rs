@@ -1,0 +1,87 @@
+//! What a difference is called, what it says, and where it comes from.
+use std::borrow::Cow;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::record::Where;
+
+/// What a change can be called, in the order of their sections in docs/changes.md.
+pub const CODES: [&str; 38] = [
+    "outcome",
+    "hole-moved",
+    "hole-tilted",
+    "hole-depth",
+    "hole-diameter",
+    "hole-tool",
+    "hole-order",
+    "hole-lost",
+    "hole-added",
+    "move-shifted",
+    "move-added",
+    "move-lost",
+    "move-kind",
+    "move-arc",
+    "feed",
+    "dwell",
+    "tool",
+    "tool-length",
+    "cutter-side",
+    "work-system",
+    "cycle",
+    "return-level",
+    "path-mode",
+    "spindle",
+    "coolant",
+    "m-code",
+    "g-code",
+    "block-skip",
+    "switch",
+    "stop",
+    "output",
+    "variable",
+    "mode",
+    "work-offset",
+    "tool-offset",
+    "parameter",
+    "signal",
+    "counter",
+];
+
+/// One difference that matters.
+#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Change {
+    /// What it is called: docs/changes.md has a section for each.
+    pub code: Cow<'static, str>,
+    /// What is different, with numbers and units; makes sense alone.
+    pub message: String,
+    /// The first block of the old revision that does it, where there is one.
+    pub old: Option<Where>,
+    /// … and of the new one.
+    pub new: Option<Where>,
+}
+
+impl Change {
+    pub(super) fn new(code: &'static str, message: impl Into<String>) -> Self {
+        debug_assert!(CODES.contains(&code), "{code}");
+        Self { code: code.into(), message: message.into(), old: None, new: None }
+    }
+
+    pub(super) fn once_at(self, place: Option<&Where>) -> Self {
+        Self { old: place.cloned(), ..self }
+    }
+
+    pub(super) fn now_at(self, place: Option<&Where>) -> Self {
+        Self { new: place.cloned(), ..self }
+    }
+}
+
+/// `1, 2, 5`; long lists are cut.
+pub(super) fn listed(names: &[String]) -> String {
+    const SHOWN: usize = 6;
+    if names.len() <= SHOWN {
+        return names.join(", ");
+    }
+    format!("{} and {} more", names[..SHOWN].join(", "), names.len() - SHOWN)
+}

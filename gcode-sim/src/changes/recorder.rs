@@ -1,0 +1,272 @@
+//! Looks on at a run and writes down its steps, what they are made under, and which block wrote what it leaves behind.
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
+use std::sync::Arc;
+
+use super::in_force::Condition;
+use super::steps::{Kind, Quiet, Step, difference};
+use crate::exec::{Control, Modal, Remainder, RemainderKind, Silent, Value, Watcher};
+use crate::motion::{Event, EventKind, Place, Position, Sink, Spindle};
+
+/// More steps than this aren't written down: a loop that never ends must not fill the memory.
+pub const MOST_STEPS: usize = 1_000_000;
+
+/// Variables that outlive a program.
+const COMMON: RangeInclusive<u32> = 100..=999;
+
+/// Single block and waiting for M codes; feed hold, override and exact stop.
+const SWITCHES: RangeInclusive<u32> = 3003..=3004;
+
+/// Writes the steps down as the control tells them.
+#[derive(Debug, Default)]
+pub(super) struct Recorder {
+    pub steps: Vec<Step>,
+    pub places: Vec<Place>,
+    /// There were more than [`MOST_STEPS`].
+    pub too_many: bool,
+    pub conditions: Vec<Condition>,
+    /// The block that has put a mode in force, by its group.
+    pub set: BTreeMap<u32, usize>,
+    /// The block that has written a common variable last.
+    pub assigned: BTreeMap<u32, Place>,
+    /// The block that has changed an offset, a parameter, an output or a counter last, by its name.
+    pub written: BTreeMap<String, Place>,
+    block: Option<Block>,
+    at: Position,
+    length: Position,
+    /// The block done last, and how the run ends if it ends there.
+    pub last: Option<Place>,
+    pub end: End,
+    /// The last T and S.
+    called: (u32, f64),
+    /// What the conditions were read from.
+    seen: Option<Seen>,
+    /// Steps whose conditions are known.
+    settled: usize,
+}
+
+/// How a run comes to its end.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) enum End {
+    /// There is no block any more.
+    #[default]
+    OfText,
+    /// By M02 or M30.
+    Code(u32),
+    /// By the main program's M99.
+    Return,
+}
+
+/// A block that is about to be done.
+#[derive(Debug)]
+struct Block {
+    place: Place,
+    silent: Silent,
+    /// Common variables and switches that it assigns.
+    assigned: Vec<u32>,
+    /// What stands in the tables before it, where it may write there.
+    tables: Vec<Remainder>,
+}
+
+/// What of a control's state conditions depend on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Seen {
+    modal: Modal,
+    h: u32,
+    d: u32,
+    q: Option<f64>,
+}
+
+impl Recorder {
+    /// The number of a place.
+    fn place(&mut self, place: Place) -> usize {
+        if !self.places.last().is_some_and(|last| is_same_place(last, &place)) {
+            self.places.push(place);
+        }
+        self.places.len() - 1
+    }
+
+    /// A block is about to be done.
+    fn look(&mut self, control: &mut Control) {
+        let next = control.next_block();
+        if next.is_none() {
+            self.end = End::OfText;
+        }
+        self.block = next.map(|block| {
+            let silent = control.next_silent();
+            let tables = if silent.writes { control.left_behind() } else { Vec::new() };
+            let mut assigned = control.will_assign();
+            assigned.retain(|number| COMMON.contains(number) || SWITCHES.contains(number));
+            Block { place: Place { block, ..control.place() }, silent, assigned, tables }
+        });
+    }
+
+    /// A block is done: what it said that moves nothing, and what it has written.
+    fn note(&mut self, control: &Control) {
+        let Some(Block { place, silent, assigned, tables }) = self.block.take() else { return };
+        let Silent { skips, path, g_codes, m_codes, writes, ends } = silent;
+        self.last = Some(place.clone());
+        self.end = ends.map_or(End::Return, End::Code);
+        let all =
+            [(Quiet::Skip, skips), (Quiet::Path, path), (Quiet::GCode, g_codes), (Quiet::MCode, m_codes)];
+        for (what, texts) in all {
+            for text in texts {
+                self.push(Kind::Silent(what, text), self.at, place.clone());
+            }
+        }
+        self.note_called(control, &place);
+        for number in assigned {
+            if SWITCHES.contains(&number) {
+                let value = control.variable(number).map_or(0.0, Value::number);
+                self.push(Kind::Silent(Quiet::Switch, format!("#{number}={value}")), self.at, place.clone());
+            } else {
+                self.assigned.insert(number, place.clone());
+            }
+        }
+        if !writes {
+            return;
+        }
+        let value = |all: &[Remainder], name: &str| all.iter().find(|r| r.name == name).map(|r| r.value);
+        let now = control.left_behind();
+        let names = tables.iter().chain(&now).filter(|r| r.kind != RemainderKind::Variable);
+        for name in names.map(|r| &r.name) {
+            if value(&tables, name) != value(&now, name) {
+                self.written.insert(name.clone(), place.clone());
+            }
+        }
+    }
+
+    /// T and S that no M06, M03 or M04 has taken up yet.
+    fn note_called(&mut self, control: &Control, place: &Place) {
+        let state = control.state();
+        let (tool, speed) = (state.codes.t, state.codes.s);
+        let before = std::mem::replace(&mut self.called, (tool, speed));
+        if before.0 != tool && tool != state.tool {
+            self.push(Kind::Silent(Quiet::Tool, format!("T{tool}")), self.at, place.clone());
+        }
+        if before.1 != speed && state.spindle == Spindle::Off {
+            self.push(Kind::Silent(Quiet::Speed, format!("S{speed}")), self.at, place.clone());
+        }
+    }
+
+    /// The run is over: a T that M06 has put in, and an S that the spindle has turned with, are told by that.
+    pub(super) fn forget_taken_up(&mut self) {
+        let (mut tool, mut speed) = (String::new(), String::new());
+        let mut stays = vec![true; self.steps.len()];
+        for (step, stays) in self.steps.iter().zip(&mut stays).rev() {
+            match &step.kind {
+                Kind::Tool(number) => tool = format!("T{number}"),
+                Kind::Spindle(turning, rate) if *turning != Spindle::Off => speed = format!("S{rate}"),
+                Kind::Silent(Quiet::Tool, text) => *stays = std::mem::take(&mut tool) != *text,
+                Kind::Silent(Quiet::Speed, text) => *stays = std::mem::take(&mut speed) != *text,
+                _ => {}
+            }
+        }
+        let mut stays = stays.into_iter();
+        self.steps.retain(|_| stays.next() == Some(true));
+    }
+
+    /// A block is done: what is in force now was so for its steps.
+    fn settle(&mut self, control: &Control) {
+        let state = control.state();
+        let now = Seen { modal: state.modal, h: state.codes.h, d: state.codes.d, q: state.drilling.q };
+        if self.seen != Some(now) {
+            let place = self.place(control.place());
+            let before = self.seen.map_or_else(Modal::default, |seen| seen.modal);
+            for group in (1..=22).filter(|group| before.code(*group) != now.modal.code(*group)) {
+                self.set.insert(group, place);
+            }
+            let before = self.conditions.last().cloned().unwrap_or_else(Condition::at_power_on);
+            let next = before.follow(state, place);
+            if self.conditions.last() != Some(&next) {
+                self.conditions.push(next);
+            }
+            self.seen = Some(now);
+        }
+        let under = self.conditions.len() - 1;
+        self.steps[self.settled..].iter_mut().for_each(|step| step.under = under);
+        self.settled = self.steps.len();
+    }
+
+    fn push(&mut self, kind: Kind, from: Position, place: Place) {
+        self.too_many |= self.steps.len() >= MOST_STEPS;
+        if !self.too_many {
+            let place = self.place(place);
+            let (from, to) = (difference(&from, &self.length), difference(&self.at, &self.length));
+            self.steps.push(Step { kind, from, to, at: self.at, place, under: 0 });
+        }
+    }
+
+    fn go(&mut self, kind: Kind, to: Position, event: &Event<'_>) {
+        let from = std::mem::replace(&mut self.at, to);
+        // A move to where the axes stand does nothing; a full circle ends where it begins.
+        if from != to || matches!(kind, Kind::Arc(..)) {
+            self.push(kind, from, event.place());
+        }
+    }
+}
+
+/// A recorder that is told what the machine does, and looks on at the control.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shared<'a>(pub &'a RefCell<Recorder>);
+
+impl Watcher for Shared<'_> {
+    fn before(&mut self, control: &mut Control) {
+        self.0.borrow_mut().look(control);
+    }
+
+    fn after(&mut self, control: &Control) {
+        let mut recorder = self.0.borrow_mut();
+        recorder.note(control);
+        recorder.settle(control);
+    }
+}
+
+impl Sink for Shared<'_> {
+    fn event(&mut self, event: &Event<'_>) {
+        self.0.borrow_mut().event(event);
+    }
+}
+
+impl Recorder {
+    fn event(&mut self, event: &Event<'_>) {
+        let here = self.at;
+        match event.kind {
+            EventKind::Rapid { to } => self.go(Kind::Rapid, *to, event),
+            EventKind::Feed { to, rate } => self.go(Kind::Feed(rate.0), *to, event),
+            EventKind::Arc { to, arc, rate } => self.go(Kind::Arc(*arc, rate.0), *to, event),
+            EventKind::Skip { to, rate, .. } => self.go(Kind::Probe(rate.0), *to, event),
+            EventKind::Dwell { time } => self.push(Kind::Dwell(time.0), here, event.place()),
+            EventKind::Tool { number } => self.push(Kind::Tool(*number), here, event.place()),
+            EventKind::ToolLength { offset, .. } if *offset == self.length => {}
+            EventKind::ToolLength { offset, .. } => {
+                self.length = *offset;
+                self.push(Kind::Length(*offset), here, event.place());
+            }
+            EventKind::Unplaced { .. } => {}
+            EventKind::Spindle { turning, speed } => {
+                // At a standstill the speed is what it will turn at later: that is told then.
+                let speed = if *turning == Spindle::Off { 0.0 } else { speed.0 };
+                self.push(Kind::Spindle(*turning, speed), here, event.place());
+            }
+            EventKind::Coolant { on, code } => {
+                self.push(Kind::Coolant(*on, Some(*code)), here, event.place())
+            }
+            EventKind::Auxiliary { code } => self.push(Kind::Auxiliary(*code), here, event.place()),
+            EventKind::Stop { kind, text, named } => {
+                self.push(Kind::Stop(*kind, text.clone(), named.clone()), here, event.place());
+            }
+        }
+    }
+}
+
+/// Blocks that were told already: most steps come from the block and the call of the one before.
+pub(super) fn is_same_place(a: &Place, b: &Place) -> bool {
+    a.block == b.block
+        && match (&a.calls, &b.calls) {
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+            (None, None) => true,
+            _ => false,
+        }
+}
