@@ -161,9 +161,10 @@ fn what_is_called_by_number_counts_where_the_tables_hold_the_same() {
         ("G41 D1 G1", "G61 G41 D1 G1", "path-mode: G61 instead of G64 ("),
     ] {
         let found = changed(from, to);
+        assert_eq!(found.len(), 1, "{from} -> {to}: {found:?}");
         assert!(found[0].starts_with(what), "{from} -> {to}: {found:?}");
-        // A mode that stays is left to the next program as well.
-        assert!(found[1..].iter().all(|entry| entry.starts_with("mode: the program leaves G")), "{found:?}");
+        let stays = matches!(to, "G55 G0 X0 Y30." | "G61 G41 D1 G1");
+        assert_eq!(found[0].ends_with(", and stays so for the next program"), stays, "{found:?}");
     }
 }
 
@@ -287,10 +288,10 @@ fn the_return_level_alone_is_one_entry() {
     assert!(found[0].starts_with("return-level: G99 instead of G98: "), "{found:#?}");
 
     let found = changed("G98 G81 X10. Y0 Z-9.", "G99 G81 X10. Y0 Z-9.");
-    assert_eq!(found.len(), 3, "{found:#?}");
+    assert_eq!(found.len(), 2, "{found:#?}");
     assert!(found[0].starts_with("return-level: G99 instead of G98: "), "{found:#?}");
+    assert!(found[0].ends_with(", and stays so for the next program"), "{found:#?}");
     assert_eq!(found[1], "move-shifted: moves end elsewhere, by Z -48.0000 (a rapid, 3 feeds)");
-    assert_eq!(found[2], "mode: the program leaves G99 instead of G98");
 }
 
 /// A move elsewhere by the same in rapids, feeds and arcs is one entry at the first of them.

@@ -4,7 +4,9 @@ use std::collections::BTreeSet;
 
 use super::align::Link;
 use super::change::Change;
+use super::groups::STAYS;
 use super::in_force::{Aspect, Word};
+use super::left::mode;
 use super::record::Record;
 use super::steps::{Kind, Step, difference};
 use crate::motion::MAX_AXES;
@@ -30,9 +32,20 @@ impl<'a> Conditions<'a> {
         Self { old, new }
     }
 
-    /// One entry for each thing that moves of both are made under differently.
-    pub(super) fn changes(&self, links: &[Link]) -> Vec<Change> {
-        self.groups(links).into_iter().map(|group| self.change(&group)).collect()
+    /// One entry for each thing that moves of both are made under differently, and the groups of G codes of which these
+    /// entries say what the next program finds.
+    pub(super) fn changes(&self, links: &[Link]) -> (Vec<Change>, BTreeSet<u32>) {
+        let groups = self.groups(links);
+        let stay = groups.iter().filter(|group| self.stays(group)).map(|group| group.aspect.group());
+        (groups.iter().map(|group| self.change(group)).collect(), stay.collect())
+    }
+
+    /// The codes of a group are in force at the ends as well.
+    fn stays(&self, group: &Group<'_>) -> bool {
+        let code = |word: &Word| word.text.split(' ').next().map(str::to_owned);
+        let (was, is) = (code(group.was), code(group.is));
+        let left = |record| mode(record, group.aspect.group());
+        was != is && (left(self.old), left(self.new)) == (was, is)
     }
 
     fn groups(&self, links: &[Link]) -> Vec<Group<'a>> {
@@ -102,7 +115,8 @@ impl<'a> Conditions<'a> {
             Aspect::Cycle => "cycle ",
             _ => "",
         };
-        let message = format!("{what}{} instead of {}{more}", is.text, was.text);
+        let stays = if self.stays(group) { STAYS } else { "" };
+        let message = format!("{what}{} instead of {}{more}{stays}", is.text, was.text);
         let at = |record: &'a Record, word: &Word| word.place.and_then(|place| record.places.get(place));
         Change::new(aspect.code(), message).once_at(at(self.old, was)).now_at(at(self.new, is))
     }

@@ -1,7 +1,13 @@
-//! Differences that say the same, told once with how often.
+//! Differences that say the same or have one cause, told once with how often.
+use super::cause::{Cause, cause};
 use super::change::Change;
 use super::record::Record;
 use super::steps::Step;
+use super::words::{coordinates, short};
+use crate::motion::{MAX_AXES, Position};
+
+/// Of a mode that is another one at the end as well.
+pub(super) const STAYS: &str = ", and stays so for the next program";
 
 /// Differences of one kind that say the same.
 struct Group {
@@ -12,26 +18,64 @@ struct Group {
     counts: Vec<(&'static str, usize)>,
     /// How many times as fast a move is; of moves that end elsewhere nothing.
     factor: Option<f64>,
-    /// The first of them say other numbers, but the same factor.
+    /// The first of them say other numbers, but the same factor; of moves that end elsewhere but have one cause.
     varies: bool,
+    /// The next program finds it so.
+    stays: bool,
+    /// By how much each axis ends elsewhere at most, without signs.
+    most: Position,
+    cause: Option<Cause>,
     old: Option<usize>,
     new: Option<usize>,
 }
 
 /// All of them, in the order in which they first came up.
-#[derive(Default)]
-pub(super) struct Groups(Vec<Group>);
+pub(super) struct Groups<'a> {
+    all: Vec<Group>,
+    old: &'a Record,
+    new: &'a Record,
+    tolerance: f64,
+}
 
 /// The steps that something is told of, before and now.
 pub(super) type Sides<'a> = (Option<&'a Step>, Option<&'a Step>);
 
-impl Groups {
+impl<'a> Groups<'a> {
+    pub(super) fn new(old: &'a Record, new: &'a Record, tolerance: f64) -> Self {
+        Self { all: Vec::new(), old, new, tolerance }
+    }
+
     /// One difference more: `what` it is that is different, and how.
     pub(super) fn tell(&mut self, code: &'static str, what: &'static str, text: String, sides: Sides<'_>) {
-        let known = self.0.iter_mut().find(|group| group.code == code && group.text == text);
+        let known = self.all.iter_mut().find(|group| group.code == code && group.text == text);
         match known {
             Some(group) => group.count(what),
             None => self.begin(code, what, text, sides, None),
+        }
+    }
+
+    /// A move that ends elsewhere by `shift`. One that is there once only has no cause of its own.
+    pub(super) fn tell_shift(&mut self, what: &'static str, shift: &Position, sides: Sides<'_>) {
+        let text = coordinates(shift, &self.old.axes, self.tolerance, true);
+        let places = sides.0.zip(sides.1).map(|(old, new)| (old.place, new.place));
+        let cause = places.map(|(old, new)| cause(&self.old.places[old], &self.new.places[new]));
+        let shifts = || self.all.iter().enumerate().filter(|(_, group)| group.code == "move-shifted");
+        let same = shifts().find(|(_, group)| group.text == text);
+        let found =
+            same.or_else(|| shifts().find(|(_, group)| group.cause.is_some() && group.cause == cause));
+        let found = found.map(|(place, _)| place);
+        let place = found.unwrap_or(self.all.len());
+        match found {
+            Some(place) => self.all[place].count(what),
+            None => self.begin("move-shifted", what, text.clone(), sides, None),
+        }
+        let group = &mut self.all[place];
+        if group.cause.is_none() {
+            group.cause = cause;
+        }
+        group.varies |= group.text != text;
+        for axis in 0..MAX_AXES {
+            group.most[axis] = group.most[axis].max(shift[axis].abs());
         }
     }
 
@@ -44,7 +88,7 @@ impl Groups {
             let is_factor = group.factor.is_some_and(|known| (known - factor).abs() <= 1e-6 * known.abs());
             group.code == "feed" && (group.text == text || is_place && is_factor)
         };
-        match self.0.iter_mut().find(is_alike) {
+        match self.all.iter_mut().find(is_alike) {
             Some(group) => {
                 group.varies |= group.text != text;
                 group.count("move");
@@ -64,11 +108,29 @@ impl Groups {
         let place = |step: Option<&Step>| step.map(|step| step.place);
         let counts = vec![(what, 1)];
         let (old, new) = (place(old), place(new));
-        self.0.push(Group { code, text, counts, factor, varies: false, old, new });
+        self.all.push(Group {
+            code,
+            text,
+            counts,
+            factor,
+            varies: false,
+            stays: false,
+            most: Position::default(),
+            cause: None,
+            old,
+            new,
+        });
     }
 
-    pub(super) fn changes(self, old: &Record, new: &Record) -> Vec<Change> {
-        self.0.into_iter().map(|group| group.change(old, new)).collect()
+    /// Where a difference says this, it says it of the next program as well.
+    pub(super) fn stays(&mut self, code: &str, text: &str) -> bool {
+        let found = self.all.iter_mut().find(|group| group.code == code && group.text == text);
+        found.map(|group| group.stays = true).is_some()
+    }
+
+    pub(super) fn changes(self) -> Vec<Change> {
+        let (old, new, tolerance) = (self.old, self.new, self.tolerance);
+        self.all.into_iter().map(|group| group.change(old, new, tolerance)).collect()
     }
 }
 
@@ -80,8 +142,14 @@ impl Group {
         }
     }
 
-    fn change(self, old: &Record, new: &Record) -> Change {
-        let message = if self.code == "move-shifted" { self.shifted() } else { self.counted() };
+    fn change(self, old: &Record, new: &Record, tolerance: f64) -> Change {
+        let message = match self.code {
+            "move-shifted" if self.varies => {
+                self.shifted(&format!("up to {}", coordinates(&self.most, &old.axes, tolerance, false)))
+            }
+            "move-shifted" => self.shifted(&self.text),
+            _ => self.counted() + if self.stays { STAYS } else { "" },
+        };
         Change::new(self.code, message)
             .once_at(self.old.and_then(|place| old.places.get(place)))
             .now_at(self.new.and_then(|place| new.places.get(place)))
@@ -97,8 +165,7 @@ impl Group {
     }
 
     /// Moves that end elsewhere, by `text`.
-    fn shifted(&self) -> String {
-        let text = &self.text;
+    fn shifted(&self, text: &str) -> String {
         let first = match (self.old, self.new) {
             (None, Some(_)) => ", the first of them new",
             (Some(_), None) => ", the first of them gone",
@@ -122,9 +189,4 @@ impl Group {
 /// With its article.
 fn one(what: &str) -> String {
     format!("{} {what}", if what.starts_with('a') { "an" } else { "a" })
-}
-
-/// A feed without digits nobody can set.
-pub(super) fn short(rate: f64) -> f64 {
-    (rate * 1e4).round() / 1e4
 }

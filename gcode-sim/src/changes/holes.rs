@@ -4,9 +4,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use nalgebra::{Point3, Vector3};
 
 use super::align::Link;
-use super::change::{Change, listed};
+use super::cause::cause;
+use super::change::Change;
+use super::hole_groups::{Aspects, Changed, Group, groups, named, plain, runs};
 use super::passes::{Passes, in_words, more_or_fewer};
 use super::record::{Record, Where};
+use super::steps::{Step, difference};
 use crate::holes::Found;
 use crate::part::hole::Hole;
 use crate::source::Span;
@@ -108,36 +111,35 @@ struct Told<'a> {
 }
 
 impl Told<'_> {
-    /// Holes that are there before and now, those that changed alike in one entry.
+    /// Holes that are there before and now, those that changed alike or for one reason in one entry.
     fn pairs(&mut self, partner: &[Option<usize>]) -> Vec<Change> {
-        let mut groups: Vec<(&'static str, String, Vec<usize>)> = Vec::new();
+        let mut changed = Vec::new();
         for (hole, other) in partner.iter().enumerate() {
-            let Some(other) = other else { continue };
-            let (before, now) = (&self.old.holes[hole], &self.new.holes[*other]);
-            let apart = Apart::new(before, now);
-            let aspects = self.aspects(hole, *other, &apart);
-            let Some((code, _)) = aspects.first() else { continue };
-            if aspects.iter().any(|(code, _)| ["hole-moved", "hole-tilted", "hole-depth"].contains(code)) {
+            let Some(other) = *other else { continue };
+            let apart = Apart::new(&self.old.holes[hole], &self.new.holes[other]);
+            let aspects = self.aspects(hole, other, &apart);
+            if aspects.code().is_none() {
+                continue;
+            }
+            if aspects.is_elsewhere() {
                 let with = |step: &usize| (*step, apart.deeper);
                 self.moved.shifted.0.extend(self.passes.0.steps[hole].iter().map(with));
-                self.moved.shifted.1.extend(self.passes.1.steps[*other].iter().map(with));
+                self.moved.shifted.1.extend(self.passes.1.steps[other].iter().map(with));
             }
-            let text = aspects.iter().map(|(_, text)| text.as_str()).collect::<Vec<_>>().join(", ");
-            match groups.iter_mut().find(|(_, known, _)| *known == text) {
-                Some((_, _, holes)) => holes.push(hole),
-                None => groups.push((code, text, vec![hole])),
-            }
+            let Some((was, is)) = last_step(self.old, hole).zip(last_step(self.new, other)) else { continue };
+            let cause = cause(&self.old.places[was.place], &self.new.places[is.place]);
+            changed.push(Changed { hole, aspects, shift: difference(&is.to, &was.to), cause });
         }
-        let change = |(code, text, holes): (&'static str, String, Vec<usize>)| {
-            let first = holes[0];
-            let message = format!("{}: {text}", named(&holes));
-            let change = Change::new(code, message).once_at(place(self.old, first));
+        let change = |group: Group| {
+            let first = group.all[0].hole;
+            let message = group.message(&self.old.axes, self.tolerance);
+            let change = Change::new(group.code(), message).once_at(place(self.old, first));
             match partner[first] {
                 Some(other) => change.now_at(place(self.new, other)),
                 None => change,
             }
         };
-        groups.into_iter().map(change).collect()
+        groups(changed, self.tolerance).into_iter().map(change).collect()
     }
 
     /// Every hole with its partner; those that are there before first.
@@ -163,7 +165,7 @@ impl Told<'_> {
             pairs.push(Paired {
                 old: Some(hole),
                 new: Some(other),
-                changed: !self.aspects(hole, other, &apart).is_empty(),
+                changed: self.aspects(hole, other, &apart).code().is_some(),
                 moved: apart.entry.norm(),
                 tilted: tilt(was, is),
                 deeper: apart.deeper,
@@ -175,50 +177,45 @@ impl Told<'_> {
     }
 
     /// All that is different about one hole.
-    fn aspects(&mut self, hole: usize, other: usize, apart: &Apart) -> Vec<(&'static str, String)> {
+    fn aspects(&mut self, hole: usize, other: usize, apart: &Apart) -> Aspects {
         let (old, new) = (&self.old.holes[hole], &self.new.holes[other]);
-        let mut aspects = Vec::new();
         if self.old.unfinished.contains(&hole) || self.new.unfinished.contains(&other) {
-            return aspects;
+            return Aspects::default();
         }
-        if apart.entry.norm() > self.tolerance {
-            let [x, y, z] = [apart.entry.x, apart.entry.y, apart.entry.z].map(plain);
-            aspects.push(("hole-moved", format!("moved by {x:+.4} {y:+.4} {z:+.4} mm")));
-        }
-        if (apart.bottom - apart.entry).norm() > self.tolerance {
-            aspects.push(("hole-tilted", format!("tilted by {:.4}°", tilt(old, new).0)));
-        }
-        if apart.deeper.abs() > self.tolerance {
-            let word = if apart.deeper > 0.0 { "deeper" } else { "less deep" };
-            aspects.push(("hole-depth", format!("{:.4} mm {word}", apart.deeper.abs())));
-        }
+        let far = |mm: f64| mm.abs() > self.tolerance;
+        let mut others = Vec::new();
         if let (Some(before), Some(now)) = (old.diameter, new.diameter)
             && (before - now).abs() > self.tolerance
         {
-            aspects.push(("hole-diameter", format!("Φ{now} instead of Φ{before}")));
+            others.push(("hole-diameter", format!("Φ{now} instead of Φ{before}")));
         }
         let (was, is) = (&self.passes.0.tools[hole], &self.passes.1.tools[other]);
         match more_or_fewer(was, is) {
             None if was.is_empty() || is.is_empty() => {}
             None => {
-                let others = was.iter().zip(is).filter(|(before, now)| before != now);
-                let others: BTreeSet<(u32, u32)> = others.map(|(before, now)| (*before, *now)).collect();
-                let text = match others.iter().collect::<Vec<_>>()[..] {
+                let swapped = was.iter().zip(is).filter(|(before, now)| before != now);
+                let swapped: BTreeSet<(u32, u32)> = swapped.map(|(before, now)| (*before, *now)).collect();
+                let text = match swapped.iter().collect::<Vec<_>>()[..] {
                     [] => None,
                     // The same for holes that other tools make as well.
                     [(before, now)] => Some(format!("made by T{now} instead of T{before}")),
                     _ => Some(format!("made by {} instead of {}", in_words(is), in_words(was))),
                 };
-                aspects.extend(text.map(|text| ("hole-tool", text)));
-                self.moved.tools.extend(others);
+                others.extend(text.map(|text| ("hole-tool", text)));
+                self.moved.tools.extend(swapped);
             }
             Some(text) => {
                 self.moved.elsewhen.0.extend(&self.passes.0.steps[hole]);
                 self.moved.elsewhen.1.extend(&self.passes.1.steps[other]);
-                aspects.push(("hole-tool", text));
+                others.push(("hole-tool", text));
             }
         }
-        aspects
+        Aspects {
+            moved: far(apart.entry.norm()).then_some(apart.entry),
+            tilted: far((apart.bottom - apart.entry).norm()).then(|| tilt(old, new).0),
+            deeper: far(apart.deeper).then_some(apart.deeper),
+            others,
+        }
     }
 
     /// Holes made in another order: the fewest that can be called moved.
@@ -253,28 +250,37 @@ impl Told<'_> {
 
     fn lost_and_added(&mut self, partner: &[Option<usize>]) -> Vec<Change> {
         let mut changes = Vec::new();
-        let gone = self.passes.0.firsts().into_iter().filter(|hole| partner[*hole].is_none());
-        for hole in gone {
-            let found = &self.old.holes[hole];
-            self.moved.elsewhen.0.extend(&self.passes.0.steps[hole]);
-            let message = format!("hole {}: lost, {}", hole + 1, described(found));
-            changes.push(Change::new("hole-lost", message).once_at(place(self.old, hole)));
+        let (firsts, of_new) = (self.passes.0.firsts(), self.passes.1.firsts());
+        let gone: Vec<usize> = firsts.iter().copied().filter(|hole| partner[*hole].is_none()).collect();
+        self.moved.elsewhen.0.extend(gone.iter().flat_map(|hole| &self.passes.0.steps[*hole]));
+        for run in runs(&gone, &firsts, |hole| Some(last_step(self.old, hole)?.place)) {
+            let first = if run.len() == 1 { "" } else { "the first " };
+            let message = format!("{}: lost, {first}{}", named(&run), described(&self.old.holes[run[0]]));
+            changes.push(Change::new("hole-lost", message).once_at(place(self.old, run[0])));
         }
         let known: BTreeSet<usize> = partner.iter().flatten().copied().collect();
-        for hole in self.passes.1.firsts().into_iter().filter(|hole| !known.contains(hole)) {
-            let found = &self.new.holes[hole];
-            self.moved.elsewhen.1.extend(&self.passes.1.steps[hole]);
-            let message = format!("a hole added: {}", described(found));
-            changes.push(Change::new("hole-added", message).now_at(place(self.new, hole)));
+        let more: Vec<usize> = of_new.iter().copied().filter(|hole| !known.contains(hole)).collect();
+        self.moved.elsewhen.1.extend(more.iter().flat_map(|hole| &self.passes.1.steps[*hole]));
+        for run in runs(&more, &of_new, |hole| Some(last_step(self.new, hole)?.place)) {
+            let first = described(&self.new.holes[run[0]]);
+            let message = match run.len() {
+                1 => format!("a hole added: {first}"),
+                n => format!("{n} holes added: the first {first}"),
+            };
+            changes.push(Change::new("hole-added", message).now_at(place(self.new, run[0])));
         }
         changes
     }
 }
 
+/// The step that finishes a hole.
+fn last_step(record: &Record, hole: usize) -> Option<&Step> {
+    record.steps.get(*record.feeds[hole].last()?)
+}
+
 /// The block that finishes a hole.
 fn place(record: &Record, hole: usize) -> Option<&Where> {
-    let step = record.feeds[hole].last()?;
-    record.places.get(record.steps[*step].place)
+    record.places.get(last_step(record, hole)?.place)
 }
 
 /// How far the new hole is from the old one where the old one begins and ends.
@@ -320,21 +326,10 @@ fn rising(values: &[usize]) -> BTreeSet<usize> {
     std::iter::successors(ends.last().copied(), |place| follows[*place]).collect()
 }
 
-/// `hole 5`, `holes 1, 2, 5`.
-fn named(holes: &[usize]) -> String {
-    let names: Vec<String> = holes.iter().map(|hole| (hole + 1).to_string()).collect();
-    format!("{} {}", if holes.len() == 1 { "hole" } else { "holes" }, listed(&names))
-}
-
 fn described(found: &Found) -> String {
     let [x, y, z] = [found.entry.x, found.entry.y, found.entry.z].map(plain);
     let diameter = found.diameter.map(|d| format!("Φ{d} ")).unwrap_or_default();
     format!("{diameter}at {x:.3} {y:.3} {z:.3}, fed {:.3} mm", found.depth)
-}
-
-/// Nobody wants to read −0.
-fn plain(value: f64) -> f64 {
-    if value.abs() < 5e-5 { 0.0 } else { value }
 }
 
 #[cfg(test)]

@@ -39,6 +39,18 @@ impl Aspect {
         }
     }
 
+    /// The group of its G codes.
+    pub(super) fn group(self) -> u32 {
+        match self {
+            Self::System => 14,
+            Self::Length => 8,
+            Self::Cutter => 7,
+            Self::Path => 15,
+            Self::Level => 10,
+            Self::Cycle => 9,
+        }
+    }
+
     fn read(self, state: &State) -> String {
         let modal = &state.modal;
         let group = |number| {
@@ -55,16 +67,16 @@ impl Aspect {
         };
         match (self, modal.cycle, state.drilling.q) {
             (Self::System, ..) => match modal.work {
-                WorkSystem::Standard(_) => group(14),
+                WorkSystem::Standard(_) => group(self.group()),
                 WorkSystem::Additional(number) => format!("G54.1 P{number}"),
             },
-            (Self::Length, ..) => with(8, 490, 'H', state.codes.h),
-            (Self::Cutter, ..) => with(7, 400, 'D', state.codes.d),
-            (Self::Path, ..) => group(15),
+            (Self::Length, ..) => with(self.group(), 490, 'H', state.codes.h),
+            (Self::Cutter, ..) => with(self.group(), 400, 'D', state.codes.d),
+            (Self::Path, ..) => group(self.group()),
             (Self::Level | Self::Cycle, None, _) => String::new(),
-            (Self::Level, Some(_), _) => group(10),
-            (Self::Cycle, Some(_), Some(q)) => format!("{} Q{q}", group(9)),
-            (Self::Cycle, Some(_), None) => group(9),
+            (Self::Level, Some(_), _) => group(self.group()),
+            (Self::Cycle, Some(_), Some(q)) => format!("{} Q{q}", group(self.group())),
+            (Self::Cycle, Some(_), None) => group(self.group()),
         }
     }
 }

@@ -3,9 +3,10 @@ use std::collections::BTreeSet;
 
 use super::change::Change;
 use super::record::{Left, Record};
+use crate::exec::mode_name;
 
-/// Counted up by M02 and M30.
-const PARTS: &str = "#3901";
+/// The parts counter: M02 and M30 count it up.
+pub(super) const PARTS: &str = "#3901";
 
 /// Whether the runs ended in the same way.
 pub(super) fn outcome(old: &Record, new: &Record) -> Option<Change> {
@@ -17,12 +18,17 @@ pub(super) fn outcome(old: &Record, new: &Record) -> Option<Change> {
     })
 }
 
-/// `by_other` where both end, but not by the same code: that the parts counter isn't counted up says no more.
-pub(super) fn compare(old: &Record, new: &Record, by_other: bool, tolerance: f64) -> Vec<Change> {
+/// The code of a group that the next program finds in force, of a run to the end.
+pub(super) fn mode(record: &Record, group: u32) -> Option<String> {
+    let left = record.ending.left.get(&mode_name(group));
+    left.filter(|_| record.outcome() == "end").map(|left| g_code(left.value))
+}
+
+/// All but the names in `told`.
+pub(super) fn compare(old: &Record, new: &Record, told: &BTreeSet<String>, tolerance: f64) -> Vec<Change> {
     let mut changes: Vec<Change> = printed(&old.ending.output, &new.ending.output).into_iter().collect();
     let (was, is) = (&old.ending.left, &new.ending.left);
-    let names: BTreeSet<&String> =
-        was.keys().chain(is.keys()).filter(|name| !(by_other && *name == PARTS)).collect();
+    let names: BTreeSet<&String> = was.keys().chain(is.keys()).filter(|name| !told.contains(*name)).collect();
     changes.extend(names.into_iter().filter_map(|name| value(name, was.get(name), is.get(name), tolerance)));
     changes
 }

@@ -3,9 +3,11 @@
 //! Nothing of the text is compared: sequence numbers, spaces, comments, names of locals and the way a number is written
 //! make no difference unless the control does something else because of them.
 mod align;
+mod cause;
 mod change;
 mod conditions;
 mod groups;
+mod hole_groups;
 mod holes;
 mod in_force;
 mod left;
@@ -26,7 +28,10 @@ pub use recorder::MOST_STEPS;
 pub(crate) use store::File as AcceptedFile;
 pub use store::StoreError;
 
+use std::collections::BTreeSet;
+
 use self::align::{Link, align};
+use crate::exec::mode_name;
 
 /// Everything that is different: how the runs ended and the holes first, then the motion that no changed hole explains, then the rest.
 ///
@@ -54,17 +59,20 @@ impl Compared {
         let [old_steps, new_steps] = up_to_the_stop(old, new, &mut links);
         let (old, new) = (&*old.up_to(old_steps), &*new.up_to(new_steps));
         let holes = holes::compare(old, new, &links, tolerance);
-        let by_other = outcome.is_some();
-        let is_to_the_end = !by_other || [old, new].iter().all(|record| record.outcome() == "end");
+        let is_by_other = outcome.is_some();
+        let is_to_the_end = !is_by_other || [old, new].iter().all(|record| record.outcome() == "end");
         let mut changes: Vec<Change> = outcome.into_iter().collect();
         changes.extend(holes.changes);
-        changes.extend(motion::compare(old, new, &links, &holes.moved, tolerance));
+        let (motion, modes) = motion::compare(old, new, &links, &holes.moved, tolerance);
+        changes.extend(motion);
         if !is_to_the_end && [old, new].iter().any(|record| record.outcome() == "limit") {
             // Which round of a program without an end the other one is held against, nobody knows.
             changes.truncate(1);
         }
         if is_to_the_end {
-            changes.extend(left::compare(old, new, by_other, tolerance));
+            let mut told: BTreeSet<String> = modes.into_iter().map(mode_name).collect();
+            told.extend(is_by_other.then(|| left::PARTS.to_owned()));
+            changes.extend(left::compare(old, new, &told, tolerance));
         }
         let different = links.iter().filter(|link| !matches!(link, Link::Same(..)));
         let (was, is): (Vec<_>, Vec<_>) = different.map(|link| link.sides()).unzip();

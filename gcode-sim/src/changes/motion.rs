@@ -6,9 +6,10 @@ use super::change::Change;
 use super::conditions::{Conditions, Strokes};
 use super::groups::{Groups, Sides};
 use super::holes::Explained;
+use super::left::mode;
 use super::record::Record;
 use super::steps::{Category, Kind, Quiet, Step, difference, is_same_arc, near};
-use super::words::{code, coordinates, described, point};
+use super::words::{code, described, point};
 use crate::motion::{Axes, MAX_AXES, Position};
 
 pub(super) fn compare(
@@ -17,7 +18,7 @@ pub(super) fn compare(
     links: &[Link],
     explained: &Explained,
     tolerance: f64,
-) -> Vec<Change> {
+) -> (Vec<Change>, BTreeSet<u32>) {
     let conditions = Conditions::new(old, new);
     let strokes = conditions.strokes(links);
     let (records, axes) = ((old, new), &old.axes);
@@ -26,7 +27,7 @@ pub(super) fn compare(
         new: &new.steps,
         axes,
         tolerance,
-        groups: Groups::default(),
+        groups: Groups::new(old, new, tolerance),
         strokes,
         records,
     };
@@ -44,10 +45,21 @@ pub(super) fn compare(
             Some(None) => {}
         }
     }
-    let mut changes = conditions.changes(links);
-    changes.extend(motion.groups.changes(old, new));
-    changes
+    let (mut changes, mut modes) = conditions.changes(links);
+    let kinds = [("G00", "G01", KINDS[0]), ("G01", "G00", KINDS[1])];
+    let left = (mode(old, 1), mode(new, 1));
+    let kind = kinds
+        .into_iter()
+        .find(|(was, is, _)| (left.0.as_deref(), left.1.as_deref()) == (Some(was), Some(is)));
+    if kind.is_some_and(|(_, _, text)| motion.groups.stays("move-kind", text)) {
+        modes.insert(1);
+    }
+    changes.extend(motion.groups.changes());
+    (changes, modes)
 }
+
+/// What is said of G01 where G00 was, and of G00 where G01 was.
+const KINDS: [&str; 2] = ["a feed where a rapid was", "a rapid where a feed was"];
 
 /// Moves next to one another that are all different; other steps between them don't part them.
 fn regions(links: &[Link], old: &[Step], new: &[Step]) -> Vec<Vec<Link>> {
@@ -135,8 +147,10 @@ fn with_code<'a>(
     };
     let is_with = move |k: &usize| {
         let Some((is_new, called)) = step(&links[*k]) else { return false };
-        let of_block = links[..*k].iter().rev().map_while(step);
-        let mut of_block = of_block.take_while(|(side, step)| *side == is_new && step.place == called.place);
+        let mut of_block = links[k + 1..]
+            .iter()
+            .map_while(step)
+            .take_while(|(side, step)| *side == is_new && step.place == called.place);
         let is_code = |step: &Step| {
             matches!(step.kind.category(), Category::Auxiliary | Category::Silent(Quiet::MCode))
         };
@@ -208,7 +222,7 @@ struct Motion<'a> {
     new: &'a [Step],
     axes: &'a Axes,
     tolerance: f64,
-    groups: Groups,
+    groups: Groups<'a>,
     strokes: Strokes,
     records: (&'a Record, &'a Record),
 }
@@ -258,8 +272,7 @@ impl<'a> Motion<'a> {
         let back = shifts.iter().any(|(shift, _)| self.near(&opposite(&way), shift));
         match with {
             Some((shift, false)) => {
-                let text = coordinates(shift, self.axes, self.tolerance, true);
-                self.groups.tell("move-shifted", step.kind.name(), text, sides);
+                self.groups.tell_shift(step.kind.name(), shift, sides);
             }
             None if !back => self.groups.tell(code, "move", text, sides),
             _ => {}
@@ -314,9 +327,8 @@ impl<'a> Motion<'a> {
             self.groups.tell("move-kind", "move", format!("{is} where {was} was"), sides);
         }
         let way = difference(&new.to, &old.to);
-        let shift = coordinates(&way, self.axes, self.tolerance, true);
-        if !shift.is_empty() {
-            self.groups.tell("move-shifted", new.kind.name(), shift, sides);
+        if !self.near(&way, &Position::default()) {
+            self.groups.tell_shift(new.kind.name(), &way, sides);
         } else if let (Kind::Arc(a, _), Kind::Arc(b, _)) = (&old.kind, &new.kind)
             && !is_same_arc(a, b, self.tolerance)
         {

@@ -10,7 +10,7 @@ use super::in_force::Condition;
 use super::recorder::{End, MOST_STEPS, Recorder, Shared};
 use super::steps::{Kind, Step};
 use crate::diag::{Diagnostic, Severity};
-use crate::exec::{Control, Outcome, Remainder, RemainderKind, Watcher};
+use crate::exec::{Control, Outcome, Remainder, RemainderKind, Watcher, mode_name};
 use crate::holes::Found;
 use crate::motion::{Axes, Calls, MAX_AXES, Place, Position};
 use crate::part::surface::Surface;
@@ -174,8 +174,7 @@ fn record(simulation: &Simulation, mut recorder: Recorder) -> Record {
     let words = conditions.iter_mut().flat_map(|condition| &mut condition.0);
     let named = words.filter_map(|word| word.place.as_mut()).chain(set.values_mut());
     let places = resolve(run, &places, steps.iter_mut().map(|step| &mut step.place).chain(named));
-    let modes =
-        set.iter().map(|(group, place)| (format!("the mode of group {group:02}"), places[*place].clone()));
+    let modes = set.iter().map(|(group, place)| (mode_name(*group), places[*place].clone()));
     let at = |place: &Place| Where::of(run, place);
     let variables = assigned.iter().map(|(number, place)| (format!("#{number}"), at(place)));
     let tables = written.iter().map(|(name, place)| (name.clone(), at(place)));

@@ -62,6 +62,8 @@ pub(super) enum End {
 #[derive(Debug)]
 struct Block {
     place: Place,
+    /// Where the axes stand before it, and the tool length offset.
+    before: (Position, Position),
     silent: Silent,
     /// Common variables and switches that it assigns.
     assigned: Vec<u32>,
@@ -98,14 +100,16 @@ impl Recorder {
             let tables = if silent.writes { control.left_behind() } else { Vec::new() };
             let mut assigned = control.will_assign();
             assigned.retain(|number| COMMON.contains(number) || SWITCHES.contains(number));
-            Block { place: Place { block, ..control.place() }, silent, assigned, tables }
+            let place = Place { block, ..control.place() };
+            Block { place, before: (self.at, self.length), silent, assigned, tables }
         });
     }
 
     /// A block is done: what it said that moves nothing, and what it has written.
     fn note(&mut self, control: &Control) {
-        let Some(Block { place, silent, assigned, tables }) = self.block.take() else { return };
+        let Some(Block { place, before, silent, assigned, tables }) = self.block.take() else { return };
         let Silent { skips, path, g_codes, m_codes, writes, ends } = silent;
+        self.note_called(control, &place, before);
         self.last = Some(place.clone());
         self.end = ends.map_or(End::Return, End::Code);
         let all =
@@ -115,7 +119,6 @@ impl Recorder {
                 self.push(Kind::Silent(what, text), self.at, place.clone());
             }
         }
-        self.note_called(control, &place);
         for number in assigned {
             if SWITCHES.contains(&number) {
                 let value = control.variable(number).map_or(0.0, Value::number);
@@ -137,16 +140,20 @@ impl Recorder {
         }
     }
 
-    /// T and S that no M06, M03 or M04 has taken up yet.
-    fn note_called(&mut self, control: &Control, place: &Place) {
+    /// T and S that no M06, M03 or M04 has taken up yet: said before the block does anything.
+    fn note_called(&mut self, control: &Control, place: &Place, (at, length): (Position, Position)) {
         let state = control.state();
         let (tool, speed) = (state.codes.t, state.codes.s);
         let before = std::mem::replace(&mut self.called, (tool, speed));
-        if before.0 != tool && tool != state.tool {
-            self.push(Kind::Silent(Quiet::Tool, format!("T{tool}")), self.at, place.clone());
-        }
-        if before.1 != speed && state.spindle == Spindle::Off {
-            self.push(Kind::Silent(Quiet::Speed, format!("S{speed}")), self.at, place.clone());
+        let is_called = before.0 != tool && tool != state.tool;
+        let is_speed = before.1 != speed && state.spindle == Spindle::Off;
+        let called = is_called.then(|| (Quiet::Tool, format!("T{tool}")));
+        let set = is_speed.then(|| (Quiet::Speed, format!("S{speed}")));
+        let to = difference(&at, &length);
+        for (what, text) in called.into_iter().chain(set) {
+            let place = self.place(place.clone());
+            let kind = Kind::Silent(what, text);
+            self.steps.insert(self.settled, Step { kind, from: to, to, at, place, under: 0 });
         }
     }
 

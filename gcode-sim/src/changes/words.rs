@@ -1,5 +1,4 @@
 //! What steps, places and distances are called in an entry.
-use super::groups::short;
 use super::steps::{Category, Kind, Quiet, Step, difference};
 use crate::motion::{Axes, Position, Spindle, StopKind};
 
@@ -68,4 +67,9 @@ pub(super) fn coordinates(values: &Position, axes: &Axes, least: f64, signed: bo
         false => format!("{letter} {:.4}", values[axis]),
     });
     told.collect::<Vec<_>>().join(" ")
+}
+
+/// A feed without digits nobody can set.
+pub(super) fn short(rate: f64) -> f64 {
+    (rate * 1e4).round() / 1e4
 }

@@ -29,6 +29,11 @@ pub enum RemainderKind {
     Counter,
 }
 
+/// What a [`Remainder`] of the kind [`RemainderKind::Mode`] is called.
+pub fn mode_name(group: u32) -> String {
+    format!("the mode of group {group:02}")
+}
+
 impl Control {
     /// All that isn't vacant or 0; modes always.
     pub fn left_behind(&self) -> Vec<Remainder> {
@@ -40,7 +45,7 @@ impl Control {
         }
         for group in 1..=22 {
             if let Ok(value) = core.read(4000 + group) {
-                leave(RemainderKind::Mode, format!("the mode of group {group:02}"), value.number());
+                leave(RemainderKind::Mode, mode_name(group), value.number());
             }
         }
         let shifts = [("G52".to_owned(), &core.state.local), ("G92".to_owned(), &core.state.shift)];

@@ -55,7 +55,7 @@ use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-pub use left::{Remainder, RemainderKind};
+pub use left::{Remainder, RemainderKind, mode_name};
 pub use modal::Modal;
 pub use notes::Note;
 pub use outcome::{Limits, Outcome, Progress, Stop, Stopped};

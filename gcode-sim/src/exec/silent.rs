@@ -72,7 +72,7 @@ impl Core {
             if word.letter == b'M' {
                 let Ok(code) = count(raw, b'M') else { continue };
                 match m_codes::find(code, self.settings.codes) {
-                    Some(MEffect::NoEffect) => silent.m_codes.push(format!("M{code:02}")),
+                    Some(MEffect::NoEffect | MEffect::Orient) => silent.m_codes.push(format!("M{code:02}")),
                     Some(MEffect::End) => silent.ends = Some(code),
                     _ => {}
                 }
@@ -154,6 +154,8 @@ mod tests {
         assert_eq!(said("G8 P1").path, ["G08 P1"]);
         assert_eq!(said("G25").g_codes, ["G25"]);
         assert_eq!(said("M29 S500").m_codes, ["M29"]);
+        // The spindle stops, and stands at an angle.
+        assert_eq!(said("M19").m_codes, ["M19"]);
     }
 
     #[test]
