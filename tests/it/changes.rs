@@ -378,3 +378,64 @@ fn another_end_is_one_entry_that_names_its_block() {
     let found = shown("O1\nG0 X2.\nM02\n");
     assert_eq!(found.len(), 2, "another end hides no move: {found:?}");
 }
+
+/// One hole of G83 with pecks of 3 mm; contours with compensation and with an arc by its radius.
+const PECKS: &str = "O1\nG90 G54 G0 X10. Y10. Z50.\nG83 Z-10. R2. Q3. F75.\nG80\nG0 Z50.\nM30\n";
+
+#[test]
+fn a_peck_more_is_told_by_the_depth() {
+    assert_eq!(told(PECKS, &PECKS.replace("Z-10.", "Z-10.01")), ["hole-depth: hole 1: 0.0100 mm deeper"]);
+}
+
+#[test]
+fn a_rapid_where_a_feed_made_a_hole_is_told_as_that() {
+    let found = told(PECKS, &PECKS.replace("G83 Z-10. R2. Q3.", "G81 Z-10. R-10."));
+    assert!(
+        found[0]
+            .starts_with("hole-lost: hole 1: a rapid goes to the bottom where a feed did, at 10.000 10.000 "),
+        "{found:?}"
+    );
+}
+
+/// Compensation holds each move back until it knows the next one; D is in force in the block that has it.
+#[test]
+fn moves_are_made_under_what_is_in_force_in_their_own_block() {
+    let old = "O1\nG90 G54 G0 X0 Y0\nG1 G41 D1 X20. F100\nY20.\nG40 X0\nM30\n";
+    let found = told(old, &old.replace("D1", "D2"));
+    assert_eq!(found, ["cutter-side: G41 D2 instead of G41 D1 (2 moves)"]);
+    assert_eq!(told(old, &old.replace(" D1", "")), ["cutter-side: G41 D0 instead of G41 D1 (2 moves)"]);
+}
+
+/// R of an arc says how far the centre is from both its ends.
+#[test]
+fn the_arc_behind_a_shifted_end_is_no_other_arc() {
+    let old = "O1\nG90 G54 G0 X0 Y0\nG1 X20. F100\nG3 X30. Y20. R20.\nG1 Y30.\nM30\n";
+    assert_eq!(
+        told(old, &old.replace("X20.", "X20.01")),
+        ["move-shifted: a feed ends elsewhere, by X +0.0100"]
+    );
+    let other = told(old, &old.replace("R20.", "R21."));
+    assert!(other.len() == 1 && other[0].starts_with("move-arc: "), "{other:?}");
+}
+
+/// The new revision stops at the fourth of five holes, that are all alike but for their places.
+#[test]
+fn what_stands_behind_a_stop_midway_is_paired_with_nothing() {
+    let holes = |blocks: &str| format!("O1\nG90 G54 G0 Z50.\nG81 Z-5. R2. X10. Y0 F100\n{blocks}G80\nM30\n");
+    let (old, new) = ("X20.\nX30.\nX40.\nX50.\n", "X20.\nX30.\n#3000=1(STOP)\nX40.\nX50.\n");
+    let found = told(&holes(old), &holes(new));
+    assert_eq!(found.len(), 1, "{found:?}");
+    // Back at the first hole: a run that goes on looks alike.
+    let again = told(&holes("X20.\nX10.\nX20.\nX10.\n"), &holes("X20.\n#3000=1(STOP)\nX10.\n"));
+    assert_eq!(again.len(), 1, "{again:?}");
+}
+
+/// G82 has no Q; G83 has.
+#[test]
+fn q_counts_where_the_cycle_has_it() {
+    let old = "O1\nG90 G54 G0 Z50.\nG82 X10. Y0 Z-5. R2. Q3. P500 F100\nG80\nM30\n";
+    assert_eq!(told(old, &old.replace("Q3.", "Q4.")), Vec::<String>::new());
+    // The same ways in one peck: what the control does between them is another matter.
+    let found = told(PECKS, &PECKS.replace("Q3.", "Q2."));
+    assert_eq!(found, ["cycle: cycle G83 Q2 instead of G83 Q3 (1 hole)"]);
+}

@@ -33,6 +33,29 @@ const MOST_EDITS: usize = 1_000;
 /// Gaps up to this many possible pairs are searched for the nearest ends; in larger ones the steps are paired in order.
 const MOST_PAIRS: usize = 10_000;
 
+/// As [`align`]; where one of them alone stops (old, new), the other one's steps behind that are lost or added.
+pub(super) fn up_to_the_end(old: &[Step], new: &[Step], stops: (bool, bool), tolerance: f64) -> Vec<Link> {
+    let same = |i: usize, j: usize| old[i].is_same(&new[j], tolerance);
+    let (rows, columns) = match stops {
+        (false, true) => (reach(old.len(), new.len(), same), new.len()),
+        (true, false) => (old.len(), reach(new.len(), old.len(), |j, i| same(i, j))),
+        _ => (old.len(), new.len()),
+    };
+    let mut links = align(&old[..rows], &new[..columns], tolerance);
+    links.extend((rows..old.len()).map(Link::Lost));
+    links.extend((columns..new.len()).map(Link::Added));
+    links
+}
+
+/// How far a longer run is compared with one of `short` steps that stops: to the first place that loses and adds the fewest, and
+/// so many steps more as the short one has that are none of its.
+fn reach(long: usize, short: usize, same: impl Fn(usize, usize) -> bool) -> usize {
+    let ends = |x: usize, y: usize| y == short || x == long;
+    let Some(pairs) = search_to(long, short, &same, ends) else { return long };
+    let (behind, last) = pairs.last().map_or((0, 0), |(x, y)| (x + 1, y + 1));
+    (behind + short - last).min(long)
+}
+
 /// All steps of both runs, in an order that keeps both: with the fewest lost and added, or tool by tool where that loses
 /// and adds no more.
 pub(super) fn align(old: &[Step], new: &[Step], tolerance: f64) -> Vec<Link> {
@@ -229,6 +252,16 @@ pub(super) fn common(old: usize, new: usize, same: impl Fn(usize, usize) -> bool
 
 /// Myers' greedy search: for every number of edits the farthest point on each diagonal.
 fn search(rows: usize, columns: usize, same: impl Fn(usize, usize) -> bool) -> Option<Vec<(usize, usize)>> {
+    search_to(rows, columns, same, |x, y| x == rows && y == columns)
+}
+
+/// To the first place that is an end.
+fn search_to(
+    rows: usize,
+    columns: usize,
+    same: impl Fn(usize, usize) -> bool,
+    is_end: impl Fn(usize, usize) -> bool,
+) -> Option<Vec<(usize, usize)>> {
     let (n, m) = (rows as isize, columns as isize);
     let most = (rows + columns).min(MOST_EDITS) as isize;
     let place = |k: isize| (k + most + 1) as usize;
@@ -243,8 +276,12 @@ fn search(rows: usize, columns: usize, same: impl Fn(usize, usize) -> bool) -> O
                 x += 1;
             }
             farthest[place(k)] = x;
-            if x >= n && x - k >= m {
-                return Some(trace(&history, n, m));
+            if let (Ok(row), Ok(column)) = (usize::try_from(x), usize::try_from(x - k))
+                && row <= rows
+                && column <= columns
+                && is_end(row, column)
+            {
+                return Some(trace(&history, x, x - k));
             }
         }
     }
@@ -314,6 +351,20 @@ mod tests {
             }
         }
         table[a.len()][b.len()]
+    }
+
+    /// What a run does behind the place where the other one stops isn't held against anything.
+    #[test]
+    fn a_run_that_stops_is_compared_up_to_there() {
+        let reach = |long: &str, short: &str| {
+            let (long, short) = (long.as_bytes(), short.as_bytes());
+            reach(long.len(), short.len(), |i, j| long[i] == short[j])
+        };
+        assert_eq!(reach("ABCABC", "ABC"), 3);
+        assert_eq!(reach("ABCDEABX", "ABX"), 3, "X stands for C");
+        assert_eq!(reach("ABCD", "ACD"), 4);
+        assert_eq!(reach("AB", "ABCD"), 2);
+        assert_eq!(reach("", "AB"), 0);
     }
 
     proptest! {

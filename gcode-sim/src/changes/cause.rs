@@ -14,6 +14,11 @@ pub(super) fn cause(old: &Where, new: &Where) -> Cause {
     }
 }
 
+/// Blocks that say the same, whatever they call.
+pub(super) fn is_same_block(old: &Where, new: &Where) -> bool {
+    words(&old.block) == words(&new.block)
+}
+
 /// A block without sequence number, remarks and spaces.
 fn words(block: &str) -> String {
     let mut depth = 0;

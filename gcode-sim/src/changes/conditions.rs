@@ -140,6 +140,10 @@ pub(super) struct Strokes {
 }
 
 impl Strokes {
+    pub(super) fn is_any(&self) -> bool {
+        !(self.old.is_empty() && self.new.is_empty())
+    }
+
     /// A step is different because its cycle is, or the length that it puts in force or ends.
     pub(super) fn explain(&self, link: &Link, old: &Record, new: &Record) -> bool {
         let is_in = |known: &BTreeSet<(Aspect, String)>, record: &Record, step: usize| {
@@ -152,7 +156,7 @@ impl Strokes {
             is_known(Aspect::Cycle) || is_known(Aspect::Level) && record.steps[step].is_rapid()
         };
         let (i, j) = link.sides();
-        !(self.old.is_empty() && self.new.is_empty())
+        self.is_any()
             && i.is_none_or(|i| is_in(&self.old, old, i))
             && j.is_none_or(|j| is_in(&self.new, new, j))
     }

@@ -18,7 +18,7 @@ struct Group {
     counts: Vec<(&'static str, usize)>,
     /// How many times as fast a move is; of moves that end elsewhere nothing.
     factor: Option<f64>,
-    /// The first of them say other numbers, but the same factor; of moves that end elsewhere but have one cause.
+    /// Those behind the first say other numbers: of a feed with the same factor, of moves with one cause or from one block.
     varies: bool,
     /// The next program finds it so.
     stays: bool,
@@ -47,9 +47,17 @@ impl<'a> Groups<'a> {
 
     /// One difference more: `what` it is that is different, and how.
     pub(super) fn tell(&mut self, code: &'static str, what: &'static str, text: String, sides: Sides<'_>) {
-        let known = self.all.iter_mut().find(|group| group.code == code && group.text == text);
-        match known {
-            Some(group) => group.count(what),
+        let place = |step: Option<&Step>| step.map(|step| step.place);
+        let places = (place(sides.0), place(sides.1));
+        let is_alone = matches!(code, "move-added" | "move-lost");
+        let is_same = |group: &&mut Group| {
+            group.code == code && (group.text == text || is_alone && (group.old, group.new) == places)
+        };
+        match self.all.iter_mut().find(is_same) {
+            Some(group) => {
+                group.varies |= group.text != text;
+                group.count(what);
+            }
             None => self.begin(code, what, text, sides, None),
         }
     }
@@ -158,7 +166,10 @@ impl Group {
     fn counted(&self) -> String {
         let counted: Vec<String> = self.counts.iter().map(|(what, n)| format!("{n} {what}s")).collect();
         match (self.varies, &self.counts[..]) {
-            (true, _) => format!("{} ({}, all by the same factor)", self.text, counted.join(", ")),
+            (true, _) if self.code == "feed" => {
+                format!("{} ({}, all by the same factor)", self.text, counted.join(", "))
+            }
+            (true, _) => format!("{} ({} of its block)", self.text, counted.join(", ")),
             (false, [(_, 1)]) => self.text.clone(),
             (false, _) => format!("{} ({})", self.text, counted.join(", ")),
         }

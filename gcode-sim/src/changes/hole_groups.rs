@@ -154,12 +154,13 @@ pub(super) fn runs(
     let order = |hole: usize| firsts.binary_search(&hole).unwrap_or(hole);
     let mut runs: Vec<Vec<usize>> = Vec::new();
     let mut of_block: BTreeMap<Option<usize>, usize> = BTreeMap::new();
+    // The hole before, and its run.
+    let mut before: Option<(usize, usize)> = None;
     for hole in holes.iter().copied() {
-        let behind = runs.last().and_then(|run| run.last());
-        let is_next = behind.is_some_and(|last| order(*last) + 1 == order(hole));
-        let next = is_next.then(|| runs.len() - 1);
+        let next = before.filter(|(last, _)| order(*last) + 1 == order(hole)).map(|(_, run)| run);
         let run = of_block.get(&place(hole)).copied().or(next).unwrap_or(runs.len());
         of_block.insert(place(hole), run);
+        before = Some((hole, run));
         match runs.get_mut(run) {
             Some(run) => run.push(hole),
             None => runs.push(vec![hole]),

@@ -9,7 +9,7 @@ use super::change::Change;
 use super::hole_groups::{Aspects, Changed, Group, groups, named, plain, runs};
 use super::passes::{Passes, in_words, more_or_fewer};
 use super::record::{Record, Where};
-use super::steps::{Step, difference};
+use super::steps::{Step, difference, near};
 use crate::holes::Found;
 use crate::part::hole::Hole;
 use crate::source::Span;
@@ -87,7 +87,7 @@ fn pair_by_motion(
 ) {
     let (of_old, of_new) = (hole_of_step(old), hole_of_step(new));
     for link in links {
-        let Link::Changed(i, j) = link else { continue };
+        let (Link::Changed(i, j) | Link::Same(i, j)) = link else { continue };
         if let (Some(hole), Some(other)) = (of_old.get(i), of_new.get(j))
             && partner[*hole].is_none()
             && extra.remove(other)
@@ -255,8 +255,11 @@ impl Told<'_> {
         self.moved.elsewhen.0.extend(gone.iter().flat_map(|hole| &self.passes.0.steps[*hole]));
         for run in runs(&gone, &firsts, |hole| Some(last_step(self.old, hole)?.place)) {
             let first = if run.len() == 1 { "" } else { "the first " };
-            let message = format!("{}: lost, {first}{}", named(&run), described(&self.old.holes[run[0]]));
-            changes.push(Change::new("hole-lost", message).once_at(place(self.old, run[0])));
+            let rapid = self.rapid_to_bottom(run[0]);
+            let lost = if rapid.is_some() { "a rapid goes to the bottom where a feed did" } else { "lost" };
+            let message = format!("{}: {lost}, {first}{}", named(&run), described(&self.old.holes[run[0]]));
+            let change = Change::new("hole-lost", message).once_at(place(self.old, run[0]));
+            changes.push(change.now_at(rapid.and_then(|step| self.new.places.get(step.place))));
         }
         let known: BTreeSet<usize> = partner.iter().flatten().copied().collect();
         let more: Vec<usize> = of_new.iter().copied().filter(|hole| !known.contains(hole)).collect();
@@ -270,6 +273,13 @@ impl Told<'_> {
             changes.push(Change::new("hole-added", message).now_at(place(self.new, run[0])));
         }
         changes
+    }
+
+    /// The rapid of the new revision that ends where a hole's feed has ended.
+    fn rapid_to_bottom(&self, hole: usize) -> Option<&Step> {
+        let feed = last_step(self.old, hole)?;
+        let is_there = |step: &&Step| step.is_rapid() && near(&step.to, &feed.to, self.tolerance);
+        self.new.steps.iter().find(is_there)
     }
 }
 

@@ -3,6 +3,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::exec::State;
+use crate::program::cycles::{Cycle, Step as CycleStep};
 use crate::program::modes::WorkSystem;
 
 /// One of the things that are in force.
@@ -75,10 +76,18 @@ impl Aspect {
             (Self::Path, ..) => group(self.group()),
             (Self::Level | Self::Cycle, None, _) => String::new(),
             (Self::Level, Some(_), _) => group(self.group()),
-            (Self::Cycle, Some(_), Some(q)) => format!("{} Q{q}", group(self.group())),
-            (Self::Cycle, Some(_), None) => group(self.group()),
+            (Self::Cycle, Some(cycle), Some(q)) if has_q(cycle) => format!("{} Q{q}", group(self.group())),
+            (Self::Cycle, Some(_), _) => group(self.group()),
         }
     }
+}
+
+/// It pecks by Q, or moves aside by it.
+fn has_q(cycle: &Cycle) -> bool {
+    cycle
+        .steps
+        .iter()
+        .any(|step| matches!(step, CycleStep::PeckFull | CycleStep::PeckShort | CycleStep::Shift))
 }
 
 /// What is in force while a step is made.

@@ -30,7 +30,7 @@ pub use store::StoreError;
 
 use std::collections::BTreeSet;
 
-use self::align::{Link, align};
+use self::align::Link;
 use crate::exec::mode_name;
 
 /// Everything that is different: how the runs ended and the holes first, then the motion that no changed hole explains, then the rest.
@@ -54,8 +54,8 @@ pub struct Compared {
 impl Compared {
     /// `tolerance` as for [`changes`].
     pub fn new(old: &Record, new: &Record, tolerance: f64) -> Self {
-        let mut links = align(&old.steps, &new.steps, tolerance);
         let outcome = left::outcome(old, new);
+        let mut links = align::up_to_the_end(&old.steps, &new.steps, (stops(old), stops(new)), tolerance);
         let [old_steps, new_steps] = up_to_the_stop(old, new, &mut links);
         let (old, new) = (&*old.up_to(old_steps), &*new.up_to(new_steps));
         let holes = holes::compare(old, new, &links, tolerance);
@@ -81,9 +81,12 @@ impl Compared {
     }
 }
 
+fn stops(record: &Record) -> bool {
+    record.outcome() != "end"
+}
+
 /// How many steps of each count where one of them stops: what the other does behind that isn't compared.
 fn up_to_the_stop(old: &Record, new: &Record, links: &mut Vec<Link>) -> [usize; 2] {
-    let stops = |record: &Record| record.outcome() != "end";
     let is_endless = |record: &Record| record.outcome() == "limit";
     let is_lost_behind = stops(new) || is_endless(old);
     let is_added_behind = stops(old) || is_endless(new);

@@ -2,6 +2,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::align::Link;
+use super::cause::is_same_block;
 use super::change::Change;
 use super::conditions::{Conditions, Strokes};
 use super::groups::{Groups, Sides};
@@ -41,8 +42,10 @@ pub(super) fn compare(
         match shifted.get(&k) {
             None if set_up.contains(&k) => {}
             None => motion.step(*link, explained),
-            Some(Some((i, j, word))) => motion.shifted(&old.steps[*i], &new.steps[*j], word),
             Some(None) => {}
+            // Beside the rapids of another level the same block stands at another time.
+            Some(Some((i, j, _))) if motion.strokes.is_any() && motion.is_same_block(*i, *j) => {}
+            Some(Some((i, j, word))) => motion.shifted(&old.steps[*i], &new.steps[*j], word),
         }
     }
     let (mut changes, mut modes) = conditions.changes(links);
@@ -235,14 +238,20 @@ impl<'a> Motion<'a> {
         let mut behind = nearest(region.iter().rev(), |link| feed_of(link, explained));
         behind.reverse();
         let gone = before.iter().flatten().any(|feed| feed.deeper.is_none());
+        // One peck more or fewer.
+        let is_peck = |k: usize| {
+            let feeds = [before[k], behind[k]];
+            feeds.iter().flatten().any(|feed| self.is_peck_of(&region[k], feed))
+        };
+        let pecks: Vec<bool> = (0..region.len()).map(is_peck).collect();
         let is_part = |k: usize| {
             let feeds = [before[k], behind[k]];
             feeds.iter().flatten().any(|feed| self.is_part_of_hole(&region[k], feed))
         };
         let parts: Vec<bool> = (0..region.len()).map(is_part).collect();
         let shifts = self.shifts(region, &parts);
-        for (link, is_part) in region.iter().zip(parts) {
-            if self.strokes.explain(link, self.records.0, self.records.1) {
+        for ((link, is_part), is_peck) in region.iter().zip(parts).zip(pecks) {
+            if is_peck || self.strokes.explain(link, self.records.0, self.records.1) {
                 continue;
             }
             match *link {
@@ -313,6 +322,26 @@ impl<'a> Motion<'a> {
         })
     }
 
+    fn is_same_block(&self, old: usize, new: usize) -> bool {
+        let (old, new) = (self.old[old].place, self.new[new].place);
+        is_same_block(&self.records.0.places[old], &self.records.1.places[new])
+    }
+
+    /// Whether a move that is there once only is on the line of a hole that is deeper now or less deep, made by its block.
+    fn is_peck_of(&self, link: &Link, feed: &Feed) -> bool {
+        let alone = match link {
+            Link::Lost(_) | Link::Added(_) => self.sides(link),
+            Link::Same(..) | Link::Changed(..) => return false,
+        };
+        let is_deeper = feed.deeper.is_some_and(|mm| mm.abs() > self.tolerance);
+        let mut both = alone.into_iter().zip(self.sides(&feed.link));
+        is_deeper
+            && both.any(|(step, feed)| {
+                step.zip(feed)
+                    .is_some_and(|(step, feed)| step.place == feed.place && step.is_on_line_of(feed))
+            })
+    }
+
     /// The steps of a link, old and new.
     fn sides(&self, link: &Link) -> [Option<&'a Step>; 2] {
         let (i, j) = link.sides();
@@ -336,8 +365,13 @@ impl<'a> Motion<'a> {
             let is_with = |axis: usize, was: f64, is: f64| {
                 begins[axis].abs() > 0.0 && (is - was - begins[axis]).abs() <= self.tolerance
             };
-            // I, J and K count from where the arc begins: its centre goes with that.
-            if is_with(a.plane.0, a.centre.0, b.centre.0) || is_with(a.plane.1, a.centre.1, b.centre.1) {
+            let (was, is) = (&self.records.0.places[old.place], &self.records.1.places[new.place]);
+            let by_radius = !self.near(&begins, &Position::default()) && is_same_block(was, is);
+            // I, J and K count from where the arc begins: its centre goes with that; R puts it at the same distance.
+            if by_radius
+                || is_with(a.plane.0, a.centre.0, b.centre.0)
+                || is_with(a.plane.1, a.centre.1, b.centre.1)
+            {
                 return;
             }
             let text = format!(

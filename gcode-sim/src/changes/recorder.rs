@@ -1,6 +1,6 @@
 //! Looks on at a run and writes down its steps, what they are made under, and which block wrote what it leaves behind.
 use std::cell::RefCell;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
@@ -8,12 +8,16 @@ use super::in_force::Condition;
 use super::steps::{Kind, Quiet, Step, difference};
 use crate::exec::{Control, Modal, Remainder, RemainderKind, Silent, Value, Watcher};
 use crate::motion::{Event, EventKind, Place, Position, Sink, Spindle};
+use crate::source::Span;
 
 /// More steps than this aren't written down: a loop that never ends must not fill the memory.
 pub const MOST_STEPS: usize = 1_000_000;
 
 /// Variables that outlive a program.
 const COMMON: RangeInclusive<u32> = 100..=999;
+
+/// Compensation reads no more blocks ahead than this.
+const HELD_BACK: usize = 16;
 
 /// Single block and waiting for M codes; feed hold, override and exact stop.
 const SWITCHES: RangeInclusive<u32> = 3003..=3004;
@@ -42,6 +46,8 @@ pub(super) struct Recorder {
     called: (u32, f64),
     /// What the conditions were read from.
     seen: Option<Seen>,
+    /// The last blocks and what was in force in them: a move may be held back until the blocks behind it are read.
+    recent: VecDeque<(Span, usize)>,
     /// Steps whose conditions are known.
     settled: usize,
 }
@@ -192,7 +198,16 @@ impl Recorder {
             self.seen = Some(now);
         }
         let under = self.conditions.len() - 1;
-        self.steps[self.settled..].iter_mut().for_each(|step| step.under = under);
+        if self.recent.len() == HELD_BACK {
+            self.recent.pop_front();
+        }
+        let this = self.last.as_ref().map(|place| place.block);
+        self.recent.extend(this.map(|block| (block, under)));
+        for step in &mut self.steps[self.settled..] {
+            let block = self.places[step.place].block;
+            let known = self.recent.iter().rev().find(|(known, _)| *known == block);
+            step.under = known.map_or(under, |(_, under)| *under);
+        }
         self.settled = self.steps.len();
     }
 
