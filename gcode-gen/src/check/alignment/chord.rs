@@ -6,7 +6,7 @@ use gcode_sim::motion::Position;
 use gcode_sim::session::Run;
 use gcode_sim::units::Deg;
 
-use super::{Bench, CheckError, Tried, common};
+use super::{Bench, CheckError, Tried, common, search};
 use crate::families::alignment::CHORD_MATCH;
 
 type Point = [f64; 3];
@@ -21,10 +21,19 @@ pub(super) fn tried(bench: &Bench<'_>) -> Result<Tried, CheckError> {
     let job = bench.job;
     let mut tried = Tried::default();
     let (mut off, allowed) = (0.0_f64, allowed(job));
+    let mut farthest = 0.0_f64;
+    // O8201 believes a shift in x of two circles.
+    let scale = (job.chord.circle / 0.25).min(1.0);
     for (shift, turned) in STANDS {
+        let shift = shift.map(|along| along * scale);
         let tilt = [Deg::ZERO, Deg(turned), Deg::ZERO];
         let part = Placement { shift: shift.into(), tilt, ..Placement::default() };
         let measured = candidates(job).map(|points| points.map(|p| moved(&part, p)));
+        for (points, end) in measured.iter().zip(ends(job)) {
+            let distances =
+                points.iter().flat_map(|p| p.iter().zip(end).map(|(value, end)| (value - end).abs()));
+            farthest = distances.fold(farthest, f64::max);
+        }
         let variables = [501, 531].into_iter().zip(&measured).flat_map(|(first, points)| {
             (first..).zip(points.iter().take(job.chord.candidates as usize).flatten().copied())
         });
@@ -49,6 +58,9 @@ pub(super) fn tried(bench: &Bench<'_>) -> Result<Tried, CheckError> {
                 tried.refusals.push(format!("{}: {message}\n", bench.name()));
             }
         }
+    }
+    if !tried.refusals.is_empty() {
+        tried.refusals.extend(search::too_short(bench, "the candidates of these parts are", farthest));
     }
     touched(bench, &mut tried)?;
     tried.report = format!(

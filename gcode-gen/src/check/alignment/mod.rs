@@ -3,6 +3,7 @@
 mod chord;
 mod ellipse;
 mod runout;
+mod search;
 mod sine;
 
 use gcode_sim::diag::Severity;

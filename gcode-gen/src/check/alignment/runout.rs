@@ -1,15 +1,22 @@
 //! The run-out program on parts whose shift and tilt are known: it has to find them by probing alone.
+use gcode_sim::exec::Outcome;
 use gcode_sim::job::Alignment;
 use gcode_sim::machine::Placement;
 use gcode_sim::part::surface::Surface;
 use gcode_sim::part::touched::{PassedOn, Touches, Untold};
 use gcode_sim::report::figures::short;
+use gcode_sim::session::Run;
 use gcode_sim::units::Deg;
 
-use super::{Bench, CheckError, Tried, common};
+use crate::families::alignment::ALARMS;
+
+use super::{Bench, CheckError, Tried, common, search};
 
 /// What has to be found to within this: mm, degrees.
 const ALLOWED: [f64; 2] = [0.01, 0.004];
+
+/// TOUCHES V BEFORE SURFACE and NO CONTACT of O8211.
+const MISSED: [u32; 2] = [154, 155];
 
 /// Shift in mm and tilt in degrees about x, y and z. Neither a shift in y nor a turn about y is asked for; the others
 /// have to be found in spite of them.
@@ -30,8 +37,14 @@ pub(super) fn tried(bench: &Bench<'_>) -> Result<Tried, CheckError> {
         }
     };
     let mut worst = [0.0_f64; 2];
+    let placed = |[shift, tilt]: [[f64; 3]; 2]| Placement {
+        shift: shift.into(),
+        tilt: tilt.map(Deg),
+        ..Placement::default()
+    };
+    let mut missed = false;
     for [shift, tilt] in STANDS {
-        let part = Placement { shift: shift.into(), tilt: tilt.map(Deg), ..Placement::default() };
+        let part = placed([shift, tilt]);
         let run = bench.run(part, Vec::new())?;
         let stopped = bench.stopped(&run);
         tried.seconds = run.control.seconds().0;
@@ -40,6 +53,7 @@ pub(super) fn tried(bench: &Bench<'_>) -> Result<Tried, CheckError> {
                 format!("{}: with the part shifted by {shift:?} and tilted by {tilt:?}\n", bench.name());
             tried.refusals.push(stands);
             tried.refusals.extend(stopped);
+            missed |= not_met(&run);
             continue;
         }
         for (number, real, kind) in
@@ -53,6 +67,9 @@ pub(super) fn tried(bench: &Bench<'_>) -> Result<Tried, CheckError> {
             }
         }
     }
+    if missed {
+        tried.refusals.extend(search::advice(bench, &STANDS.map(placed)));
+    }
     let [shift, tilt] = worst;
     tried.warnings.extend(noise.warning().map(|warning| format!("warning: {}: {warning}\n", bench.name())));
     tried.report = format!(
@@ -61,6 +78,12 @@ pub(super) fn tried(bench: &Bench<'_>) -> Result<Tried, CheckError> {
         noise.sentence()
     );
     Ok(tried)
+}
+
+/// Whether the run ended because a touch met the part too early or not at all.
+fn not_met(run: &Run) -> bool {
+    let text = |text: &str| ALARMS.iter().any(|alarm| MISSED.contains(&alarm.number) && alarm.text == text);
+    matches!(&run.outcome, Outcome::Alarm(stopped) if text(&stopped.alarm.row().message))
 }
 
 /// What the noise of one touch becomes in the results, by the job's own angles and heights.

@@ -1,0 +1,84 @@
+//! How far before the surface a touch has to begin, where the job's search is too short for a part that stands as wrong as the run-out
+//! has to find.
+use gcode_sim::exec::Outcome;
+use gcode_sim::job::Alignment;
+use gcode_sim::machine::Placement;
+use gcode_sim::report::figures::short;
+
+use super::{Bench, common};
+use crate::families::alignment::emit;
+
+/// O8211's own margin at both ends of a touch, and what rounding takes.
+const MARGIN: f64 = 0.05;
+
+/// A sentence with the search that would do for parts that stand so; `None` where no search helps.
+pub(super) fn advice(bench: &Bench<'_>, parts: &[Placement]) -> Option<String> {
+    let job = Alignment { probe_search: bench.job.surface.a.min(1000.0), ..bench.job.clone() };
+    let package = emit(&job);
+    let wide = Bench { job: &job, package: &package, main: bench.main };
+    let mut farthest = 0.0_f64;
+    for part in parts {
+        let run = wide.run(*part, Vec::new()).ok()?;
+        if !matches!(run.outcome, Outcome::End) {
+            return None;
+        }
+        for (first, height) in [600, 800].into_iter().zip(job.runout.heights) {
+            let expected = expected(&job, height);
+            let readings =
+                (first..first + job.runout.readings).map(|number| (common(&run, number) - expected).abs());
+            farthest = readings.fold(farthest, f64::max);
+        }
+    }
+    too_short(bench, "the surfaces of these parts are", farthest)
+}
+
+/// A sentence with the search that would do for what is met so far from its place; `None` where the job's own does.
+pub(super) fn too_short(bench: &Bench<'_>, what: &str, farthest: f64) -> Option<String> {
+    let enough = ((farthest + MARGIN) * 10.0).ceil() / 10.0;
+    (enough > bench.job.probe_search && enough <= 1000.0).then(|| {
+        format!(
+            "{}: {what} up to {} mm from where they should be, and key 'probe.search' is {}: {} would do\n",
+            bench.name(),
+            short((farthest * 100.0).ceil() / 100.0),
+            short(bench.job.probe_search),
+            short(enough)
+        )
+    })
+}
+
+/// x in the middle of a touch's way: where O8211 expects the centre of the ball.
+fn expected(job: &Alignment, height: f64) -> f64 {
+    let (across, up) = (job.surface.a + job.probe_radius, job.surface.b + job.probe_radius);
+    across * (1.0 - (height / up) * (height / up)).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::check::check;
+    use crate::families;
+    use gcode_sim::job::Job;
+
+    fn refusals(search: &str) -> String {
+        let text = families::alignment::FAMILY
+            .new_job
+            .replace("search = 10.0", &format!("search = {search}"))
+            .replace("circle = 1.0", "circle = 0.1");
+        let job = Job::parse(&text).unwrap();
+        check(&job, &families::emit(&job)).unwrap().refusals.concat()
+    }
+
+    /// By hand: at y = 420 a tilt of 0.3° moves the surface by 420·(a²/b² − 1)·0.3° in rad = 3.43 along r, the two tilts at B's ends
+    /// and shifts of 0.3 add some tenths. E, turned by 0.25° about y, is 812.4·0.25° in rad = 3.54 aside, and 0.15 by the shift.
+    #[test]
+    fn a_search_that_is_too_short_is_told_with_one_that_does() {
+        let told = refusals("2.0");
+        let advised: Vec<f64> = told
+            .split("'probe.search' is 2: ")
+            .skip(1)
+            .map(|rest| rest.split(" would do").next().unwrap().parse().unwrap())
+            .collect();
+        assert!(advised.len() == 2 && advised.iter().all(|value| (3.4..6.0).contains(value)), "{told}");
+        let most = advised.into_iter().fold(0.0, f64::max);
+        assert_eq!(refusals(&format!("{most:?}")), "", "{most} does");
+    }
+}
