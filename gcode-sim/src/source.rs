@@ -87,24 +87,25 @@ fn line_starts(bytes: &[u8]) -> Vec<u32> {
 }
 
 /// The length of the line that a text begins with, its end not counted. Eight bytes are looked at together.
+#[inline]
 pub fn line_length(text: &[u8]) -> usize {
     const ONES: u64 = u64::from_ne_bytes([1; 8]);
     const TOPS: u64 = ONES << 7;
-    // The lowest bit set marks the first byte that is `byte`.
-    let marks = |word: u64, byte: u8| {
-        let differs = word ^ (ONES * u64::from(byte));
-        differs.wrapping_sub(ONES) & !differs & TOPS
-    };
+    let ends = |byte: &u8| matches!(byte, b'\n' | b'\r');
+    // A bit for each byte up to CR, LF among them; a byte behind such a one may get a bit as well.
+    let small = |word: u64| word.wrapping_sub(ONES * u64::from(b'\r' + 1)) & !word & TOPS;
     let (words, rest) = text.as_chunks::<8>();
     for (place, word) in words.iter().enumerate() {
-        let word = u64::from_le_bytes(*word);
-        let found = marks(word, b'\n') | marks(word, b'\r');
-        if found != 0 {
-            return 8 * place + found.trailing_zeros() as usize / 8;
+        let mut found = small(u64::from_le_bytes(*word));
+        while found != 0 {
+            let end = found.trailing_zeros() as usize / 8;
+            if ends(&word[end]) {
+                return 8 * place + end;
+            }
+            found &= found - 1;
         }
     }
-    let last = rest.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
-    8 * words.len() + last.unwrap_or(rest.len())
+    8 * words.len() + rest.iter().position(ends).unwrap_or(rest.len())
 }
 
 /// No sender puts more CRs than this around a LF; the limit keeps reading linear in a file of nothing but CRs.

@@ -30,33 +30,52 @@ pub(super) fn programs(source: SourceId, bytes: &Arc<[u8]>) -> Vec<Program> {
 
 impl Growing {
     /// Notes a block.
+    #[inline]
     fn block(&mut self, block: Outlined, text: &Text) -> Entry {
         let place = self.blocks;
-        self.blocks += 1;
         let span = block.span();
+        match block {
+            Outlined::Words(_) if self.first_number.is_some() => {}
+            Outlined::Words(span) => {
+                self.number(sequence_number_at(text.source, text.written(), span.start));
+            }
+            Outlined::Read(block) => self.read(place, &block),
+            Outlined::Apart(block) => {
+                self.read(place, &block);
+                self.apart.insert(place, *block);
+            }
+        }
+        self.blocks += 1;
         self.end = span.end;
-        if self.first_number.is_none() {
-            let number = match &block {
-                Outlined::Words(span) => sequence_number_at(text.source, text.written(), span.start),
-                Outlined::Read(block) | Outlined::Apart(block) => block.number.map(|number| number.node),
-            };
-            self.first_number = number.filter(|number| *number > 0);
-        }
-        if let Outlined::Read(block) | Outlined::Apart(block) = &block {
-            let part = match Lowering::default().block(block, None).kind {
-                OpKind::Statement(Statement::While { number, .. } | Statement::Do { number, .. }) => {
-                    Some((Part::Begin, number))
-                }
-                OpKind::Statement(Statement::End { number, .. }) => Some((Part::End, number)),
-                _ => None,
-            };
-            self.loops.extend(part.map(|(part, number)| (place as OpIndex, part, number)));
-        }
-        if let Outlined::Apart(block) = block {
-            self.apart.insert(place, *block);
-        }
         Entry::new(span.start)
     }
+
+    /// Notes the sequence number of a block.
+    fn number(&mut self, number: Option<u32>) {
+        self.first_number = self.first_number.or(number.filter(|number| *number > 0));
+    }
+
+    /// Notes a block that had to be read.
+    fn read(&mut self, place: u32, block: &ast::Block) {
+        self.number(block.number.map(|number| number.node));
+        if !block.items.iter().any(is_of_loop) {
+            return;
+        }
+        let part = match Lowering::default().block(block, None).kind {
+            OpKind::Statement(Statement::While { number, .. } | Statement::Do { number, .. }) => {
+                Some((Part::Begin, number))
+            }
+            OpKind::Statement(Statement::End { number, .. }) => Some((Part::End, number)),
+            _ => None,
+        };
+        self.loops.extend(part.map(|(part, number)| (place as OpIndex, part, number)));
+    }
+}
+
+/// WHILE, DO or END.
+fn is_of_loop(item: &ast::Item) -> bool {
+    use ast::Statement::{Do, End, While};
+    matches!(item, ast::Item::Statement(found) if matches!(found.node, While { .. } | Do(_) | End(_)))
 }
 
 fn finish(Parts { name, span, context, blocks, closed }: Parts<Growing, Entry>, text: Text) -> Program {

@@ -32,29 +32,38 @@ pub(super) fn programs<C: Default, P, B>(
     let mut programs: Vec<(Parts<C, B>, bool)> = Vec::new();
     let mut open = false;
     for piece in pieces {
-        let (name, span, block) = match piece {
+        let block = match piece {
             Piece::Section => {
                 close(&mut programs);
                 open = false;
                 continue;
             }
-            Piece::Program { name, span } => (Some(name), span, None),
-            Piece::Block(block) => ((!open).then_some(ProgramName::Unnamed), span_of(&block), Some(block)),
+            Piece::Program { name, span } => {
+                begin(&mut programs, name, span);
+                open = true;
+                continue;
+            }
+            Piece::Block(block) => block,
         };
-        if let Some(name) = name {
-            let silent = name == ProgramName::Unnamed;
-            close(&mut programs);
-            let (context, blocks) = (C::default(), Vec::new());
-            programs.push((Parts { name, span, context, blocks, closed: false }, silent));
+        if !open {
+            begin(&mut programs, ProgramName::Unnamed, span_of(&block));
             open = true;
         }
-        if let (Some(block), Some((program, silent))) = (block, programs.last_mut()) {
+        if let Some((program, silent)) = programs.last_mut() {
             *silent &= is_silent(&block);
             program.blocks.push(each(&mut program.context, block));
         }
     }
     let alone = programs.len() == 1;
     programs.into_iter().filter(|(_, silent)| alone || !silent).map(|(program, _)| program).collect()
+}
+
+/// Another program follows.
+fn begin<C: Default, B>(programs: &mut Vec<(Parts<C, B>, bool)>, name: ProgramName, span: Span) {
+    close(programs);
+    let silent = name == ProgramName::Unnamed;
+    let (context, blocks) = (C::default(), Vec::new());
+    programs.push((Parts { name, span, context, blocks, closed: false }, silent));
 }
 
 /// Something follows the last program.

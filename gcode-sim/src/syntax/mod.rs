@@ -6,6 +6,7 @@
 pub mod ast;
 mod block;
 mod comment;
+mod dividers;
 mod expr;
 mod file;
 mod function;

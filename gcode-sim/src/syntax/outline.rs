@@ -53,7 +53,7 @@ pub fn sequence_number_at(source: SourceId, bytes: &[u8], start: u32) -> Option<
             if let Some(numbers) = Numbers::new(source, bytes, start)
                 && (numbers.is_at_end() || numbers.is_at_letter())
             {
-                return numbers.sequence_number.map(|number| number.node);
+                return numbers.sequence_number;
             }
         }
         b'#' | b'A'..=b'Z' => return None,
@@ -72,8 +72,13 @@ struct Outlines<'a> {
 impl Iterator for Outlines<'_> {
     type Item = Piece<Outlined>;
 
+    #[inline]
     fn next(&mut self) -> Option<Piece<Outlined>> {
         loop {
+            let begins = self.pieces.begins_line();
+            if let Some(piece) = self.pieces.piece() {
+                return Some(self.read(piece, begins));
+            }
             if self.told
                 && let Some(span) = self.pieces.plain_line()
             {
@@ -82,23 +87,27 @@ impl Iterator for Outlines<'_> {
                 }
                 return Some(Piece::Block(Outlined::Words(span)));
             }
-            let begins = self.pieces.begins_line();
-            match self.pieces.piece() {
-                None => self.pieces.next_line()?,
-                Some(Piece::Section) => {
-                    self.told = false;
-                    return Some(Piece::Section);
-                }
-                Some(Piece::Program { name, span }) => {
-                    self.told = true;
-                    return Some(Piece::Program { name, span });
-                }
-                Some(Piece::Block(block)) => {
-                    self.told |= !says_nothing(&block);
-                    let block = Box::new(block);
-                    let read = if begins { Outlined::Read(block) } else { Outlined::Apart(block) };
-                    return Some(Piece::Block(read));
-                }
+            self.pieces.next_line()?;
+        }
+    }
+}
+
+impl Outlines<'_> {
+    /// A piece that had to be read; `begins` where it begins its line.
+    fn read(&mut self, piece: Piece, begins: bool) -> Piece<Outlined> {
+        match piece {
+            Piece::Section => {
+                self.told = false;
+                Piece::Section
+            }
+            Piece::Program { name, span } => {
+                self.told = true;
+                Piece::Program { name, span }
+            }
+            Piece::Block(block) => {
+                self.told |= !says_nothing(&block);
+                let block = Box::new(block);
+                Piece::Block(if begins { Outlined::Read(block) } else { Outlined::Apart(block) })
             }
         }
     }

@@ -4,6 +4,7 @@ use std::collections::VecDeque;
 use super::ast::{Block, Comment, Item, ProgramName, Unreadable};
 use super::block::{begins_program, read_block};
 use super::comment::blank;
+use super::dividers::undivided;
 use super::number::integer;
 use super::token::{Input, Line, is_space, spaces, unspaced};
 use super::word::program_name;
@@ -23,25 +24,6 @@ pub enum Piece<B = Block> {
     Block(B),
 }
 
-/// What bytes mean to who looks for the parts of a line, as bits. This one may begin a comment or a remark.
-const REMARK: u8 = 1;
-/// May end a block before its line does (`%`, `O`, `:`, `<`), or be of DO, END or EN, or of a folder line.
-const DIVIDES: u8 = 2;
-
-const MEANINGS: [u8; 256] = {
-    let mut all = [0; 256];
-    let mut byte = 0;
-    while byte < all.len() {
-        all[byte] = match byte as u8 {
-            b'(' | b';' | b'/' => REMARK,
-            b'%' | b'O' | b'o' | b':' | b'<' | b'D' | b'd' | b'E' | b'e' | b'&' => DIVIDES,
-            _ => 0,
-        };
-        byte += 1;
-    }
-    all
-};
-
 /// Reads the pieces of a file in order. Lines without anything in them are left out.
 #[derive(Debug)]
 pub struct Pieces<'a> {
@@ -54,8 +36,8 @@ pub struct Pieces<'a> {
     at: usize,
     end: usize,
     code_end: usize,
-    /// All that the line's bytes may mean.
-    meanings: u8,
+    /// How far nothing divides the lines behind the one in hand.
+    undivided: usize,
     /// The line's code where comments had to be blanked, and where it begins.
     blanked: Option<usize>,
     code: Vec<u8>,
@@ -84,7 +66,7 @@ impl<'a> Pieces<'a> {
             at: 0,
             end: 0,
             code_end: 0,
-            meanings: 0,
+            undivided: next,
             blanked: None,
             code,
             comments,
@@ -93,15 +75,17 @@ impl<'a> Pieces<'a> {
 
     /// What stands before the first `%` is a leader, which a control ignores, if nothing in it can be read.
     fn behind_leader(mut self) -> Self {
+        // Nearly every file begins with what can be read.
+        let first = Pieces::starting(self.source, self.bytes, self.next).next();
         let text = &self.bytes[self.next..];
-        if !text.contains(&b'%') {
+        if !first.as_ref().is_some_and(is_silent) || !text.contains(&b'%') {
             return self;
         }
         let begins_line = |at: usize| text[..at].last().is_none_or(|b| matches!(b, b'\n' | b'\r'));
         let mark = text.iter().enumerate().find(|(at, byte)| **byte == b'%' && begins_line(*at));
         let Some((mark, _)) = mark else { return self };
         let mut leader = Pieces::starting(self.source, &self.bytes[..self.next + mark], self.next);
-        if !leader.any(|piece| !matches!(piece, Piece::Block(block) if says_nothing(&block))) {
+        if leader.all(|piece| is_silent(&piece)) {
             self.next += mark;
         }
         self
@@ -112,17 +96,16 @@ impl<'a> Pieces<'a> {
         loop {
             let text = self.bytes.get(self.next..).filter(|text| !text.is_empty())?;
             let length = line_length(text);
-            self.meanings = text[..length].iter().fold(0, |all, byte| all | MEANINGS[usize::from(*byte)]);
             (self.begin, self.at) = (self.next, self.next);
             self.end = self.next + length;
             self.code_end = self.end;
             self.blanked = None;
             self.next = self.end + end_of_line(&text[length..]);
             let line = &text[..length];
-            if self.meanings & DIVIDES != 0 && unspaced(line).starts_with(b"&F=") {
+            if unspaced(line).starts_with(b"&F=") {
                 continue;
             }
-            if self.meanings & REMARK != 0 {
+            if line.iter().fold(false, |any, byte| any | matches!(byte, b'(' | b';' | b'/')) {
                 self.blank_comments(line);
             }
             return Some(());
@@ -141,7 +124,15 @@ impl<'a> Pieces<'a> {
     }
 
     /// Reads the next piece of the line in hand; `None` at its end.
+    #[inline]
     pub(super) fn piece(&mut self) -> Option<Piece> {
+        if self.at == self.code_end && self.comments.is_empty() {
+            return None;
+        }
+        self.read_piece()
+    }
+
+    fn read_piece(&mut self) -> Option<Piece> {
         let text = match self.blanked {
             Some(begin) => &self.code[self.at - begin..],
             None => &self.bytes[self.at..self.code_end],
@@ -177,14 +168,21 @@ impl<'a> Pieces<'a> {
         Some(Piece::Block(block))
     }
 
-    /// The line in hand without spaces around it, where it is one block whatever stands in it: nothing divides it and
-    /// nothing in it is a remark. It counts as read then.
+    /// The line behind the one in hand without spaces around it, where it is one block whatever stands in it: nothing
+    /// divides it and nothing in it is a remark. It counts as read then.
+    #[inline]
     pub(super) fn plain_line(&mut self) -> Option<Span> {
-        if self.meanings != 0 || self.at == self.end {
+        let text = self.bytes.get(self.next..).filter(|text| !text.is_empty())?;
+        let length = line_length(text);
+        let end = self.next + length;
+        if self.undivided <= self.next {
+            self.undivided = undivided(self.bytes, self.next);
+        }
+        if self.undivided < end {
             return None;
         }
-        let span = trimmed(self.source, self.bytes, self.at, self.end);
-        self.at = self.end;
+        let span = trimmed(self.source, self.bytes, self.next, end);
+        self.next = end + end_of_line(&text[length..]);
         Some(span)
     }
 
@@ -237,6 +235,7 @@ fn byte_order_marks(bytes: &[u8]) -> usize {
 }
 
 /// The place of what stands between two offsets, spaces around it left out.
+#[inline]
 fn trimmed(source: SourceId, bytes: &[u8], from: usize, to: usize) -> Span {
     let text = &bytes[from..to];
     let start = from + text.len() - unspaced(text).len();
@@ -261,6 +260,10 @@ fn show(unreadable: &mut Unreadable, bytes: &[u8], end: usize) {
 
 fn is_unreadable(item: &Item) -> bool {
     matches!(item, Item::Unreadable(_))
+}
+
+fn is_silent(piece: &Piece) -> bool {
+    matches!(piece, Piece::Block(block) if says_nothing(block))
 }
 
 /// No word and no statement that can be read: a comment, or text that was never meant for a control.

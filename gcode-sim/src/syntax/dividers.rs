@@ -1,0 +1,51 @@
+//! Bytes without which a line is one block and has no comment: most lines of long files needn't be read to know that.
+
+/// Whether a line with this byte may be more than one block without comments: it may begin a comment or a remark, end a
+/// block before its line does (`%`, `O`, `:`, `<`), or be of DO, END or EN, or of a folder line (`&`). Written so that many
+/// bytes are looked at together.
+const fn divides(byte: u8) -> bool {
+    const fn within(byte: u8, first: u8, last: u8) -> bool {
+        byte.wrapping_sub(first) <= last - first
+    }
+    let small = byte | 0x20;
+    let letter = (small == b'o') | within(small, b'd', b'e');
+    letter | within(byte, b'%', b'(') | (byte == b'/') | within(byte, b':', b'<')
+}
+
+/// The same for single bytes, looked up.
+const DIVIDES: [bool; 256] = {
+    let mut all = [false; 256];
+    let mut byte = 0;
+    while byte < all.len() {
+        all[byte] = divides(byte as u8);
+        byte += 1;
+    }
+    all
+};
+
+/// How far a text has no byte, from a place on, that [`divides`] its line.
+pub(super) fn undivided(bytes: &[u8], from: usize) -> usize {
+    let text = &bytes[from..];
+    let divided = |chunk: &[u8; 32]| chunk.iter().fold(false, |any, byte| any | divides(*byte));
+    let plain = 32 * text.as_chunks().0.iter().take_while(|chunk| !divided(chunk)).count();
+    let found = text[plain..].iter().position(|byte| DIVIDES[usize::from(*byte)]);
+    found.map_or(bytes.len(), |place| from + plain + place)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_that_divides_a_line_is_passed_over() {
+        for byte in *b"(;/%Oo:<DdEe&" {
+            for place in 0..80 {
+                let mut text = b"N10 G1 X-1.5 Y+2. Z#3 F[100*2]=,\tgzAKQ@\n\r9".repeat(3);
+                text[place] = byte;
+                assert_eq!(undivided(&text, 0), place);
+                assert_eq!(undivided(&text, place), place);
+                assert_eq!(undivided(&text, place + 1), text.len());
+            }
+        }
+    }
+}
