@@ -262,9 +262,9 @@ impl Core {
         if word.comma {
             return at(given.put_corner(word, raw), word.span);
         }
-        let letter = match &word.axis {
+        let letter = match word.axis {
             Some(axis) => {
-                let number = self.operand(program, **axis)?.number();
+                let number = self.operand(program, program.axis(axis))?.number();
                 self.settings.axes.letter(at(self.axis_of(number), word.span)?) as u8
             }
             None => word.letter,

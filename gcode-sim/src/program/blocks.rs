@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::loops::Loops;
 use super::lower::{Lowering, lower_case};
-use super::{Code, Instruction, Op, OpIndex, OpKind, Statement};
+use super::{AxisPlace, Code, Instruction, Op, OpIndex, OpKind, Operand, Statement};
 use crate::alarm::Alarm;
 use crate::source::SourceId;
 use crate::syntax::{ast, block_at, sequence_number_at};
@@ -52,9 +52,10 @@ pub(super) struct Blocks {
     entries: Vec<Entry>,
     /// The trees of blocks that don't begin their line.
     apart: BTreeMap<u32, ast::Block>,
-    /// Operations with the places of their blocks.
-    ops: Vec<Op>,
+    /// The places of the blocks that are lowered, and their operations. Behind those stand others that are forgotten: their
+    /// lists of words are filled again.
     places: Vec<u32>,
+    ops: Vec<Op>,
     lowering: Lowering,
 }
 
@@ -100,13 +101,17 @@ impl Blocks {
 
     /// All operations; to ask before all are lowered, in order, is a mistake of ours.
     pub(super) fn all(&self) -> &[Op] {
-        debug_assert_eq!(self.ops.len(), self.entries.len(), "all blocks are lowered");
-        if self.ops.len() == self.entries.len() { &self.ops } else { &[] }
+        debug_assert_eq!(self.places.len(), self.entries.len(), "all blocks are lowered");
+        if self.places.len() == self.entries.len() { &self.ops[..self.places.len()] } else { &[] }
     }
 
     #[inline(always)]
     pub(super) fn code(&self, code: Code) -> &[Instruction] {
         &self.lowering.instructions[..code.end as usize][code.start as usize..]
+    }
+
+    pub(super) fn axis(&self, axis: AxisPlace) -> Operand {
+        self.lowering.axes[axis.0 as usize]
     }
 
     pub(super) fn variable_name(&self, index: u32) -> &str {
@@ -123,7 +128,7 @@ impl Blocks {
 
     #[inline(never)]
     fn make_ready(&mut self, place: OpIndex, loops: &Loops) -> Option<u32> {
-        if self.ops.len() >= KEPT {
+        if self.places.len() >= KEPT {
             self.forget();
         }
         self.lower(place, loops)
@@ -141,34 +146,26 @@ impl Blocks {
         for place in self.places.drain(..) {
             self.entries[place as usize].op = Entry::UNREAD;
         }
-        for op in &mut self.ops {
-            self.lowering.give_up(op);
-        }
-        self.ops.clear();
         self.lowering.forget();
     }
 
     fn lower(&mut self, place: OpIndex, loops: &Loops) -> Option<u32> {
-        let entry = self.entries.get(place)?;
+        let entry = *self.entries.get(place)?;
+        let at = self.places.len();
+        if at == self.ops.len() {
+            self.ops.push(Op::default());
+        }
         let apart = self.apart.contains_key(&(place as u32));
-        let Text { source, .. } = self.text;
-        let numbers =
-            if apart { None } else { self.lowering.numbers(source, self.text.written(), entry.start) };
-        let op = match numbers {
-            Some(op) => op,
-            None => {
-                let tree = self.tree(place)?;
-                let small = lower_case(&tree, &self.text.bytes);
-                let mut op = self.lowering.block(&tree, small);
-                join(&mut op, place, loops);
-                op
-            }
-        };
-        let at = self.ops.len() as u32;
-        self.entries[place].op = at;
+        if apart || !self.ops[at].refill(self.text.source, self.text.written(), entry.start) {
+            let tree = self.tree(place)?;
+            let small = lower_case(&tree, &self.text.bytes);
+            let mut op = self.lowering.block(&tree, small);
+            join(&mut op, place, loops);
+            self.ops[at] = op;
+        }
+        self.entries[place].op = at as u32;
         self.places.push(place as u32);
-        self.ops.push(op);
-        Some(at)
+        Some(at as u32)
     }
 }
 

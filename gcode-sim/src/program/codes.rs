@@ -322,21 +322,22 @@ pub const CODES: &[Row] = &[
     haas(2690, Effect::NotSimulated, "feature coordinate system off"),
 ];
 
-/// The rows of a code × 10: one for each group of controls that has it.
+/// The rows of a code × 10, one for each group of controls that has it: the place of the first, and of the one behind
+/// the last.
 #[derive(Clone, Copy, Debug)]
-pub struct Found(&'static [Row]);
+pub struct Found(u16, u16);
 
 impl Found {
     /// What the code is on a control.
     pub fn on(self, set: CodeSet) -> Option<&'static Row> {
-        self.0.iter().find(|row| row.on.contains(&set))
+        CODES[usize::from(self.0)..usize::from(self.1)].iter().find(|row| row.on.contains(&set))
     }
 }
 
 /// What is known of a code × 10.
 pub fn find(code: u32) -> Found {
-    let place = |code: u32| PLACES.get(code as usize).map_or(CODES.len(), |place| usize::from(*place));
-    Found(&CODES[place(code)..place(code.saturating_add(1))])
+    let place = |code: u32| PLACES.get(code as usize).copied().unwrap_or(CODES.len() as u16);
+    Found(place(code), place(code.saturating_add(1)))
 }
 
 /// The place of the first row whose code is not less, for each code × 10 up to the last one.

@@ -3,7 +3,7 @@ use std::collections::BTreeMap;
 
 use super::code::Instruction;
 use super::expr::Context;
-use super::{Coded, Form, Op, OpKind, PrintPart, Statement, Words};
+use super::{Form, Op, OpKind, Operand, PrintPart, Statement};
 use crate::alarm::{Alarm, Placed};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast;
@@ -18,12 +18,12 @@ pub(super) struct Lowering {
     pub(super) instructions: Vec<Instruction>,
     /// The names that [`super::Operation::NameNumber`] counts: of variables that SETVN names.
     pub(super) names: Vec<String>,
-    /// Their places.
+    /// The numbers of axes that [`super::AxisPlace`] counts.
+    pub(super) axes: Vec<Operand>,
+    /// The places of the names.
     named: BTreeMap<String, u32>,
     /// What the block at hand has that not every control takes.
     forms: Vec<Spanned<Form>>,
-    /// Empty lists of words from blocks that were given up, to be filled again.
-    spare: Vec<Vec<Coded>>,
 }
 
 type Lowered<T> = Result<T, Placed>;
@@ -33,25 +33,8 @@ impl Lowering {
     pub(super) fn forget(&mut self) {
         self.instructions.clear();
         self.names.clear();
+        self.axes.clear();
         self.named.clear();
-    }
-
-    /// Gives up a block; its list of words can be used again.
-    pub(super) fn give_up(&mut self, op: &mut Op) {
-        if let OpKind::Words(Words { list, .. }) = &mut op.kind {
-            self.give_back(std::mem::take(list));
-        }
-    }
-
-    /// Takes back a list of [`Lowering::spare_words`].
-    pub(super) fn give_back(&mut self, mut list: Vec<Coded>) {
-        list.clear();
-        self.spare.push(list);
-    }
-
-    /// An empty list of words.
-    pub(super) fn spare_words(&mut self) -> Vec<Coded> {
-        self.spare.pop().unwrap_or_default()
     }
 
     /// The place of a name.
@@ -132,7 +115,7 @@ impl Lowering {
             (None, false) => {
                 let mut lowered = self.words(&block.items, &skips)?;
                 lowered.punched = block.comments.first().and_then(|comment| sixteen_digits(&comment.text));
-                Ok(lowered.into())
+                Ok(OpKind::Words(lowered))
             }
         }
     }
@@ -209,7 +192,7 @@ impl Lowering {
         })
     }
 
-    fn place(&mut self, to: &ast::Expr) -> Lowered<Spanned<super::Operand>> {
+    fn place(&mut self, to: &ast::Expr) -> Lowered<Spanned<Operand>> {
         Ok(Spanned::new(self.operand(to, Context::Macro)?, to.span))
     }
 

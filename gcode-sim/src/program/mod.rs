@@ -24,7 +24,7 @@ pub use arguments::{ArgumentLocals, argument_letter};
 pub use code::{Code, Computed, Instruction, Operand, Operation, STACK, Slot, Source, Target};
 pub use forms::Form;
 pub use memory::{Library, Memory, NoLibrary, ProgramId};
-pub use words::{CallOp, CallTarget, Calling, Coded, Input, Words};
+pub use words::{AxisPlace, CallOp, CallTarget, Calling, Coded, Input, Words};
 
 use std::sync::OnceLock;
 
@@ -55,7 +55,7 @@ pub struct Program {
 }
 
 /// One block.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Op {
     pub span: Span,
     /// The block skip switch at its start.
@@ -67,10 +67,11 @@ pub struct Op {
 }
 
 /// What a block does. Which of these it is stands in a byte of its own, for it is asked at every block.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 #[repr(u8)]
 pub enum OpKind {
     /// A block without words: an empty line, a comment, a sequence number alone.
+    #[default]
     Empty,
     Words(Words),
     Statement(Statement),
@@ -178,6 +179,11 @@ impl Program {
     #[inline(always)]
     pub fn code(&self, code: Code) -> &[Instruction] {
         self.blocks.code(code)
+    }
+
+    /// The number of the axis that a word is for.
+    pub fn axis(&self, axis: AxisPlace) -> Operand {
+        self.blocks.axis(axis)
     }
 
     pub(crate) fn variable_name(&self, index: u32) -> &str {

@@ -1,47 +1,47 @@
 //! Blocks of numbers, lowered straight from their text.
-use super::lower::Lowering;
-use super::words::{Coded, Input, Words, literal};
+use super::codes;
+use super::words::{Coded, Input, Words, g_code};
 use super::{Op, OpKind};
 use crate::source::{SourceId, Span};
 use crate::syntax::{NumberWord, Numbers};
 
-impl Lowering {
-    /// The block that begins at `start`; `None` where more stands in it than numbers, or a call: then its tree is lowered.
-    pub(super) fn numbers(&mut self, source: SourceId, bytes: &[u8], start: u32) -> Option<Op> {
-        let mut numbers = Numbers::new(source, bytes, start)?;
-        let number = numbers.sequence_number;
-        let mut end = number.map_or(start, |number| number.span.end);
-        let mut list = self.spare_words();
-        for NumberWord { letter, number, span } in numbers.by_ref() {
-            let Some(value) = literal(letter, number).filter(|value| !calls(letter, value)) else {
-                self.give_back(list);
-                return None;
-            };
-            list.push(Coded { letter, axis: None, comma: false, value, span });
-            end = span.end;
+impl Op {
+    /// Becomes the block that begins at `start`; not where more stands in it than numbers, or a call: then it may have
+    /// become anything, and its tree must be lowered.
+    pub(super) fn refill(&mut self, source: SourceId, text: &[u8], start: u32) -> bool {
+        let Some(mut numbers) = Numbers::new(source, text, start) else { return false };
+        if !matches!(self.kind, OpKind::Words(_)) {
+            self.kind = OpKind::Words(Words::default());
         }
-        if !numbers.is_at_end() {
-            self.give_back(list);
-            return None;
+        let OpKind::Words(words) = &mut self.kind else { return false };
+        if !words.refill(|list| fill(list, &mut numbers)) {
+            return false;
         }
-        let kind = if list.is_empty() {
-            self.give_back(list);
-            OpKind::Empty
-        } else {
-            OpKind::Words(Words { list, call: None, short: None, punched: None })
-        };
-        let span = Span { source, start, end };
-        Some(Op { span, skip: None, number: number.map(|number| number.node), forms: Box::default(), kind })
+        if words.list.is_empty() {
+            self.kind = OpKind::Empty;
+        }
+        self.span = Span { source, start, end: numbers.end() };
+        (self.skip, self.number) = (None, numbers.sequence_number);
+        self.forms = Box::default();
+        true
     }
 }
 
-/// Whether a word may make a call of its block.
-fn calls(letter: u8, value: &Input) -> bool {
-    match value {
-        Input::G(code, _) => matches!(code, 650 | 660 | 661 | 670),
-        Input::Literal(number) => letter == b'M' && matches!(number.digits, 97 | 98 | 99 | 198),
-        Input::Operand(_) => false,
+/// Puts the words of a line into an empty list; whether it has no others.
+#[inline]
+fn fill(list: &mut Vec<Coded>, numbers: &mut Numbers<'_>) -> bool {
+    for NumberWord { letter, number, span } in numbers.by_ref() {
+        let coded = |value| Coded { letter, axis: None, comma: false, value, span };
+        match letter {
+            b'G' => match g_code(number) {
+                None | Some(650 | 660 | 661 | 670) => return false,
+                Some(code) => list.push(coded(Input::G(code, codes::find(code)))),
+            },
+            b'M' if matches!(number.digits, 97 | 98 | 99 | 198) => return false,
+            _ => list.push(coded(Input::Literal(number))),
+        }
     }
+    numbers.is_at_end()
 }
 
 #[cfg(test)]
@@ -49,8 +49,15 @@ mod tests {
     use proptest::collection::vec;
     use proptest::prelude::*;
 
+    use super::super::lower::Lowering;
     use super::*;
     use crate::syntax::block_at;
+
+    /// An operation that was another block before.
+    fn another() -> Op {
+        let tree = block_at(SourceId(0), b"/N5 gO04 M30 /2 X1 (0123456789ABCDEF)", 0).unwrap();
+        Lowering::default().block(&tree, None)
+    }
 
     proptest! {
         #[test]
@@ -59,12 +66,12 @@ mod tests {
             end in proptest::sample::select(vec!["", "\n", "\r\n", " \nX5", "\t\r"]),
         ) {
             let text = format!("{}{end}", words.concat().trim_start_matches([' ', '\t', '\x1a']));
-            let mut lowering = Lowering::default();
-            if let Some(op) = lowering.numbers(SourceId(0), text.as_bytes(), 0) {
-                let shown = format!("{op:?}");
+            let mut op = another();
+            if op.refill(SourceId(0), text.as_bytes(), 0) {
                 prop_assume!(op.span.end > 0);
                 let tree = block_at(SourceId(0), text.as_bytes(), 0).unwrap();
-                prop_assert_eq!(format!("{:?}", lowering.block(&tree, None)), shown, "{:?}", text);
+                let lowered = Lowering::default().block(&tree, None);
+                prop_assert_eq!(format!("{op:?}"), format!("{lowered:?}"), "{:?}", text);
             }
         }
     }
@@ -72,7 +79,8 @@ mod tests {
     #[test]
     fn the_common_line_needs_no_tree() {
         let text = b"N10 G1 X1.5 Y-.25 Z+3\r\nG0";
-        let op = Lowering::default().numbers(SourceId(0), text, 0).unwrap();
+        let mut op = another();
+        assert!(op.refill(SourceId(0), text, 0));
         assert_eq!((op.number, op.span.end), (Some(10), 21));
         assert!(matches!(op.kind, OpKind::Words(words) if words.list.len() == 4));
     }
@@ -82,7 +90,7 @@ mod tests {
         for text in
             ["G1 X#1", "G1 (A)", "g1", "G65 P1", "M98 P1", "M99", "X1 O2", "G5.55", "/G1", "X1.2.", "X 1"]
         {
-            assert!(Lowering::default().numbers(SourceId(0), text.as_bytes(), 0).is_none(), "{text}");
+            assert!(!another().refill(SourceId(0), text.as_bytes(), 0), "{text}");
         }
     }
 }

@@ -1,15 +1,15 @@
 //! Blocks of words: codes looked up, calls taken out, the rest left for the run to evaluate.
 use super::Form;
+use super::Operand;
 use super::codes::{self, Found};
 use super::expr::Context;
 use super::lower::Lowering;
-use super::{OpKind, Operand};
 use crate::alarm::{Alarm, Placed};
 use crate::source::Span;
 use crate::syntax::ast::{AX, Decimal, Item, Word, WordValue};
 
 /// The words of one block.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Words {
     pub list: Vec<Coded>,
     pub call: Option<Box<CallOp>>,
@@ -20,16 +20,20 @@ pub struct Words {
 }
 
 /// A word ready to be evaluated.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Coded {
     pub letter: u8,
-    /// `AX[…]`: the number of the axis that the word is for.
-    pub axis: Option<Box<Operand>>,
+    /// `AX[…]`: the number of the axis that the word is for, see [`super::Program::axis`].
+    pub axis: Option<AxisPlace>,
     /// `,R` and `,C`.
     pub comma: bool,
     pub value: Input,
     pub span: Span,
 }
+
+/// Where a program keeps the number of an axis: few words have one.
+#[derive(Clone, Copy, Debug)]
+pub struct AxisPlace(pub(super) u32);
 
 #[derive(Clone, Copy, Debug)]
 pub enum Input {
@@ -81,6 +85,21 @@ pub struct CallOp {
     pub span: Span,
 }
 
+impl Words {
+    pub(super) fn new(list: Vec<Coded>, call: Option<CallOp>) -> Self {
+        Self { list, call: call.map(Box::new), short: None, punched: None }
+    }
+
+    /// Takes the words of another block, which `fill` writes into an empty list; whether it could.
+    #[inline]
+    pub(super) fn refill(&mut self, fill: impl FnOnce(&mut Vec<Coded>) -> bool) -> bool {
+        let Self { list, call, short, punched } = self;
+        (*call, *short, *punched) = (None, None, None);
+        list.clear();
+        fill(list)
+    }
+}
+
 impl Lowering {
     /// A block of words; `skips` are the switches inside it with their places among the items.
     pub(super) fn words(&mut self, items: &[Item], skips: &[(u8, usize)]) -> Result<Words, Placed> {
@@ -94,7 +113,7 @@ impl Lowering {
     fn plain_words(&mut self, items: &[Item]) -> Result<Words, Placed> {
         let words =
             items.iter().filter_map(|item| if let Item::Word(word) = item { Some(word) } else { None });
-        let mut list = self.spare_words();
+        let mut list = Vec::with_capacity(items.len());
         // Macro calls begin with a G code, all others with an M code; names stand in calls.
         let (mut by_g, mut by_m) = (false, false);
         for word in words.clone() {
@@ -104,7 +123,7 @@ impl Lowering {
             list.push(coded);
         }
         match (by_g, by_m) {
-            (false, false) => return Ok(Words { list, call: None, short: None, punched: None }),
+            (false, false) => return Ok(Words::new(list, None)),
             (false, true) => return subprogram(list, words),
             (true, _) => {}
         }
@@ -127,7 +146,7 @@ impl Lowering {
                 arguments: Vec::new(),
                 span,
             };
-            return Ok(Words { list, call: Some(Box::new(call)), short: None, punched: None });
+            return Ok(Words::new(list, Some(call)));
         }
         subprogram(list, words)
     }
@@ -147,7 +166,11 @@ impl Lowering {
             }
         };
         let axis = match &word.axis {
-            Some(axis) => Some(Box::new(self.operand(axis, Context::Macro)?)),
+            Some(axis) => {
+                let axis = self.operand(axis, Context::Macro)?;
+                self.axes.push(axis);
+                Some(AxisPlace(self.axes.len() as u32 - 1))
+            }
             None => None,
         };
         Ok(Coded { letter, axis, comma: word.address.comma, value, span: word.span })
@@ -155,8 +178,7 @@ impl Lowering {
 }
 
 /// What a number is behind its address; `None` for a G code that none can be.
-#[inline(always)]
-pub(super) fn literal(letter: u8, number: Decimal) -> Option<Input> {
+fn literal(letter: u8, number: Decimal) -> Option<Input> {
     if letter == b'G' {
         let code = g_code(number)?;
         return Some(Input::G(code, codes::find(code)));
@@ -165,7 +187,8 @@ pub(super) fn literal(letter: u8, number: Decimal) -> Option<Input> {
 }
 
 /// G code × 10 of a literal with at most one decimal.
-fn g_code(number: Decimal) -> Option<u32> {
+#[inline]
+pub(super) fn g_code(number: Decimal) -> Option<u32> {
     let tenths = match number.places {
         None => number.digits.checked_mul(10)?,
         Some(places) => {
@@ -213,7 +236,7 @@ fn macro_call<'a>(
             _ => call.arguments.push(coded),
         }
     }
-    Ok(Words { list: Vec::new(), call: Some(Box::new(call)), short: None, punched: None })
+    Ok(Words::new(Vec::new(), Some(call)))
 }
 
 /// M97 P, M98, M99 and M198 with their P, L and Q; the other words act first.
@@ -240,7 +263,7 @@ fn subprogram<'a>(list: Vec<Coded>, words: impl Iterator<Item = &'a Word> + Clon
         if let Some(word) = words.clone().find(|w| matches!(w.value, WordValue::Name(_))) {
             return Err(Alarm::NotAWord { text: "a name without M98 or G65".into() }.at(word.span));
         }
-        return Ok(Words { list, call: None, short: None, punched: None });
+        return Ok(Words::new(list, None));
     };
     if let Some((second, _)) = calls.next() {
         return Err(Alarm::TwoSubprogramCalls.at(second.span));
@@ -270,11 +293,5 @@ fn subprogram<'a>(list: Vec<Coded>, words: impl Iterator<Item = &'a Word> + Clon
             _ => left.push(coded),
         }
     }
-    Ok(Words { list: left, call: Some(Box::new(op)), short: None, punched: None })
-}
-
-impl From<Words> for OpKind {
-    fn from(words: Words) -> Self {
-        Self::Words(words)
-    }
+    Ok(Words::new(left, Some(op)))
 }

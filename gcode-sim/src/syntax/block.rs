@@ -3,7 +3,7 @@ use nom::Err;
 
 use super::ast::{Address, Block, Item, Unreadable, Word, WordValue};
 use super::number::integer;
-use super::numbers::number_word;
+use super::numbers::{goes_on, number_word};
 use super::statement::{assignment, keyword, statement};
 use super::token::{Fault, Input, Line, Read, fail, next, other, spaces};
 use super::word::{name_word, word};
@@ -90,12 +90,13 @@ fn item<'a>(line: Line, at: Input<'a>, block: &mut Block) -> Read<'a, ()> {
             (rest, Item::Word(word))
         }
         [b'O' | b'o' | b':', ..] if beginning && begins_program(at) => return fail(at, Alarm::ProgramNumber),
-        [b',' | b'A'..=b'Z' | b'a'..=b'z', ..] => match (number_word(at), keyword(at)) {
-            (Some((rest, letter, number)), _) => {
+        [b',' | b'A'..=b'Z' | b'a'..=b'z', ..] => match (number_word(at, 0), keyword(at)) {
+            (Some((letter, number, end)), _) if !goes_on(at, end) => {
+                let rest = &at[end..];
                 let (address, value) = (Address { letter, comma: false }, WordValue::Literal(number));
                 (rest, Item::Word(Word { address, axis: None, value, span: line.span(at, rest) }))
             }
-            (None, Some(begun)) => {
+            (_, Some(begun)) => {
                 let (rest, (found, short)) = statement(line, &begun)?;
                 let found = line.spanned(found, at, rest);
                 if short {
@@ -103,7 +104,7 @@ fn item<'a>(line: Line, at: Input<'a>, block: &mut Block) -> Read<'a, ()> {
                 }
                 (rest, Item::Statement(Box::new(found)))
             }
-            (None, None) => {
+            (_, None) => {
                 let (rest, word) = word(line, at)?;
                 (rest, Item::Word(word))
             }

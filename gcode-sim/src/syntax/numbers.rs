@@ -4,8 +4,8 @@
 use super::ast::Decimal;
 use super::block::MOST_SEQUENCE;
 use super::number::WORD_LIMIT;
-use super::token::{Input, Line, unspaced};
-use crate::source::{SourceId, Span, Spanned};
+use super::token::{Input, unspaced};
+use crate::source::{SourceId, Span};
 
 /// As many digits fit into 64 bits, leading zeros among them.
 const MOST_DIGITS: usize = 18;
@@ -20,37 +20,47 @@ pub struct NumberWord {
 }
 
 /// The words of one line, from where its block begins. They end where the line does, or before the first thing that is
-/// something else: a comment, a statement, a letter in lower case.
+/// something else: a comment, a statement, a letter in lower case, more digits of the last word's number.
 #[derive(Debug)]
 pub struct Numbers<'a> {
-    line: Line,
-    rest: Input<'a>,
+    source: SourceId,
+    text: Input<'a>,
+    /// Where the last word ends, and where what is behind it begins, spaces left out.
+    end: usize,
+    next: usize,
     /// `N10` at its beginning.
-    pub sequence_number: Option<Spanned<u32>>,
+    pub sequence_number: Option<u32>,
 }
 
 impl<'a> Numbers<'a> {
-    /// `bytes` may go on behind the line. `None` where it begins with an N that is no plain sequence number.
-    pub fn new(source: SourceId, bytes: &'a [u8], start: u32) -> Option<Self> {
-        let (line, rest) = (Line { source, end: bytes.len() as u32 }, &bytes[start as usize..]);
-        let mut numbers = Self { line, rest, sequence_number: None };
-        if let [b'N', first, ..] = rest {
-            let plain = |word: &NumberWord| first.is_ascii_digit() && word.number.places.is_none();
-            let NumberWord { number, span, .. } = numbers.next().filter(plain)?;
-            let number = u32::try_from(number.digits).ok().filter(|number| *number <= MOST_SEQUENCE)?;
-            numbers.sequence_number = Some(Spanned::new(number, span));
+    /// `text` may go on behind the line. `None` where it begins with an N that is no plain sequence number.
+    #[inline]
+    pub fn new(source: SourceId, text: Input<'a>, start: u32) -> Option<Self> {
+        let start = start as usize;
+        let mut numbers = Self { source, text, end: start, next: start, sequence_number: None };
+        if text.get(start) == Some(&b'N') {
+            let (number, end) = digits(0, text, start + 1);
+            let plain = (start + 2..start + MOST_DIGITS).contains(&end) && text.get(end) != Some(&b'.');
+            let number = u32::try_from(number).ok().filter(|number| plain && *number <= MOST_SEQUENCE)?;
+            (numbers.end, numbers.next, numbers.sequence_number) =
+                (end, behind_spaces(text, end), Some(number));
         }
         Some(numbers)
     }
 
+    /// Where the last word ends, or the block begins where no word has been read.
+    pub fn end(&self) -> u32 {
+        self.end as u32
+    }
+
     /// Whether the line ends here, so that nothing else stands in it.
     pub fn is_at_end(&self) -> bool {
-        matches!(self.rest, [] | [b'\n' | b'\r', ..])
+        matches!(self.text.get(self.next), None | Some(b'\n' | b'\r'))
     }
 
     /// Whether a word, or what else begins with a capital, comes next.
     pub(super) fn is_at_letter(&self) -> bool {
-        matches!(self.rest, [b'A'..=b'Z', ..])
+        self.text.get(self.next).is_some_and(u8::is_ascii_uppercase)
     }
 }
 
@@ -59,52 +69,64 @@ impl Iterator for Numbers<'_> {
 
     #[inline]
     fn next(&mut self) -> Option<NumberWord> {
-        let (rest, letter, number) = number_word(self.rest)?;
-        let span = self.line.span(self.rest, rest);
-        self.rest = match rest {
-            [b' ', behind @ ..] if matches!(behind, [b'A'..=b'Z', ..]) => behind,
-            _ => unspaced(rest),
-        };
+        let (letter, number, end) = number_word(self.text, self.next)?;
+        let span = Span { source: self.source, start: self.next as u32, end: end as u32 };
+        (self.end, self.next) = (end, behind_spaces(self.text, end));
         Some(NumberWord { letter, number, span })
     }
 }
 
-/// A capital, perhaps a sign, and a number, nothing between or inside them; `None` where something else stands there.
+/// A capital, perhaps a sign, and the number right behind them, and where that ends; `None` where something else stands
+/// at the place. Behind it the number may go on: `X1 0.5`, `X1..5`.
 #[inline]
-pub(super) fn number_word(at: Input<'_>) -> Option<(Input<'_>, u8, Decimal)> {
-    let [letter @ (b'A'..=b'N' | b'P'..=b'Z'), behind @ ..] = at else { return None };
-    let (negative, unsigned) = match behind {
-        [b'-', unsigned @ ..] => (true, unsigned),
-        [b'+', unsigned @ ..] => (false, unsigned),
-        _ => (false, behind),
+pub(super) fn number_word(text: Input<'_>, place: usize) -> Option<(u8, Decimal, usize)> {
+    let letter = *text.get(place)?;
+    if !letter.is_ascii_uppercase() || letter == b'O' {
+        return None;
+    }
+    let (negative, first) = match text.get(place + 1) {
+        Some(b'-') => (true, place + 2),
+        Some(b'+') => (false, place + 2),
+        _ => (false, place + 1),
     };
-    let (whole, before) = digits(0, unsigned);
-    let (digits, count, places, rest) = match &unsigned[before..] {
-        [b'.', behind @ ..] => {
-            let (digits, places) = digits(whole, behind);
-            (digits, before + places, Some(places as u8), &behind[places..])
+    let (whole, point) = digits(0, text, first);
+    let (digits, end, places) = match text.get(point) {
+        Some(b'.') => {
+            let (digits, end) = digits(whole, text, point + 1);
+            (digits, end, Some((end - point - 1) as u8))
         }
-        rest => (whole, before, None, rest),
+        _ => (whole, point, None),
     };
-    let goes_on = match rest {
-        [b' ', b'A'..=b'Z', ..] => false,
-        _ => matches!(unspaced(rest), [b'0'..=b'9' | b'.', ..]),
-    };
-    let fits = (1..=MOST_DIGITS).contains(&count) && digits < WORD_LIMIT && !goes_on;
-    fits.then_some((rest, *letter, Decimal { negative, digits, places }))
+    let count = end - first - usize::from(places.is_some());
+    if !(1..=MOST_DIGITS).contains(&count) || digits >= WORD_LIMIT {
+        return None;
+    }
+    Some((letter, Decimal { negative, digits, places }, end))
 }
 
-/// A number that goes on with the digits that a text begins with, and how many they are.
+/// Whether a number goes on behind a place.
+pub(super) fn goes_on(text: Input<'_>, place: usize) -> bool {
+    matches!(text.get(behind_spaces(text, place)), Some(b'0'..=b'9' | b'.'))
+}
+
+/// A number that goes on with the digits that stand at a place, and where they end.
 #[inline]
-fn digits(mut number: u64, text: Input<'_>) -> (u64, usize) {
-    let mut count = 0;
-    for byte in text {
-        let digit = byte.wrapping_sub(b'0');
-        if digit > 9 {
-            break;
-        }
-        number = number.wrapping_mul(10).wrapping_add(u64::from(digit));
-        count += 1;
+fn digits(mut number: u64, text: Input<'_>, mut place: usize) -> (u64, usize) {
+    while let Some(byte) = text.get(place)
+        && byte.is_ascii_digit()
+    {
+        number = number.wrapping_mul(10).wrapping_add(u64::from(byte - b'0'));
+        place += 1;
     }
-    (number, count)
+    (number, place)
+}
+
+/// The place behind the spaces that stand at one; mostly it is a single one before the next word.
+#[inline]
+fn behind_spaces(text: Input<'_>, place: usize) -> usize {
+    match text.get(place..) {
+        Some([b' ', b'A'..=b'Z', ..]) => place + 1,
+        Some([0x21..=0x7e, ..] | [b'\r' | b'\n', ..] | []) | None => place,
+        Some(rest) => text.len() - unspaced(rest).len(),
+    }
 }
