@@ -97,7 +97,7 @@ struct FileChord {
     #[schemars(range(min = 1, max = 10))]
     candidates: Spanned<i64>,
     /// How much higher over the model the part may stand at one of E and F than at the other, mm, where they were touched
-    /// [default: 0.05].
+    /// [default: 0.05, or half as much again as a part leaves that the run-out has set right].
     #[schemars(range(min = 0.001, max = 100.0))]
     uneven: Option<Spanned<f64>>,
 }
@@ -221,10 +221,20 @@ impl FileChord {
                 Some(value) => {
                     reader.number("chord.uneven", value, "0.001 to 100 mm", within(0.001, 100.0))?
                 }
-                None => 0.05,
+                None => f64::max(0.05, (1.5e3 * left_uneven(surface, e_radius, f_radius)).ceil() / 1e3),
             },
         })
     }
+}
+
+/// How much higher over one of E and F than over the other a part stands, mm, that is off by what the run-out may leave: 0.004°
+/// about z and 0.01 mm in x. At x it stands higher by δ·x·(1 − b²/a²) and by dx·(b²/a²)·x/y.
+fn left_uneven(surface: Surface, e: f64, f: f64) -> f64 {
+    let Surface { a, b } = surface;
+    let squares = (b * b) / (a * a);
+    let steepness = |x: f64| x / (b * (1.0 - (x / a) * (x / a)).sqrt());
+    Deg(0.004).to_rad() * ((e - f) * (1.0 - squares)).abs()
+        + 0.01 * squares * (steepness(e) - steepness(f)).abs()
 }
 
 impl FileChord {
@@ -338,9 +348,21 @@ angles = [-25.0, 25.0, 11]
         assert_eq!((job.probe_feed, job.probe_search), (100.0, 10.0));
         assert_eq!((job.probe_radius, job.surface.b, job.sine_table.phi), (3.0, 724.3, 38.5));
         assert_eq!((job.sine_table.length, job.sine_table.gauge_blocks.name), (200.0, "metric-87"));
-        assert_eq!((job.chord.e_radius, job.chord.candidates), (812.4, 10));
+        assert_eq!((job.chord.e_radius, job.chord.candidates, job.chord.uneven), (812.4, 10, 0.05));
         assert_eq!((job.runout.heights, job.runout.readings), ([150.0, 420.0], 11));
         assert_eq!((job.runout.from, job.runout.to), (-25.0, 25.0));
+    }
+
+    /// A slender part, a 700 and b 1500: E at 512.4 and F at 318 are 0.004° in rad·194.4·3.592 = 0.048 75 uneven by the tilt, and
+    /// 0.01·4.592·(512.4/1021.93 − 318/1336.25) = 0.012 10 by the shift: 1.5 times both is 0.0913.
+    #[test]
+    fn a_slender_part_may_be_as_uneven_as_the_run_out_leaves_it() {
+        let text = JOB
+            .replace("a = 1158.8", "a = 700.0")
+            .replace("b = 724.3", "b = 1500.0")
+            .replace("812.4", "512.4");
+        let Ok(Job::Alignment(job)) = Job::parse(&text) else { panic!("{text}") };
+        assert_eq!(job.chord.uneven, 0.092);
     }
 
     #[test]
