@@ -80,57 +80,6 @@ proptest! {
     }
 }
 
-/// The programs of the project, each file with other sequence numbers, other locals beyond those that arguments come in, more
-/// blanks, and other remarks: nothing changes.
-#[test]
-fn the_projects_own_macros_rewritten_are_no_change() {
-    let less = [("flutes = 16", "flutes = 1"), ("length = 300.0", "length = 20.0")];
-    for family in gcode_gen::families::ALL {
-        let job = less.iter().fold(family.new_job.to_owned(), |job, (from, to)| job.replace(from, to));
-        let package = gcode_gen::families::emit(&gcode_sim::job::Job::parse(&job).unwrap());
-        let mut other = package.clone();
-        other.programs.iter_mut().for_each(|program| program.text = otherwise(&program.text));
-        for main in &package.mains {
-            let of = |package: &gcode_gen::package::Package| {
-                let machine = Machine::parse(&package.machine).unwrap();
-                let text = package.program(*main).unwrap().text.as_bytes().to_vec();
-                let request = Request::new(format!("O{main}.nc"), text, machine);
-                Revision::of(&request, &mut gcode_gen::check::Programs(package), None).unwrap().record
-            };
-            let (was, is) = (of(&package), of(&other));
-            assert!(1 < was.totals.blocks, "{}: O{main} does nothing", family.name);
-            let found = changes(&was, &is, 0.0001);
-            assert!(found.is_empty(), "{}: O{main}: {found:#?}", family.name);
-        }
-    }
-}
-
-/// A program's text with N and GOTO counted from elsewhere, #27 to #33 in the opposite order, two blanks for one and a remark
-/// in place of each that stands alone. What an operator is shown stays.
-fn otherwise(text: &str) -> String {
-    let line = |line: &str| {
-        if line.starts_with('(') {
-            return "(ANOTHER REMARK)".to_owned();
-        }
-        let (code, remark) = line.find('(').map_or((line, ""), |at| line.split_at(at));
-        let code = (27..=33)
-            .fold(code.to_owned(), |code, n| code.replace(&format!("#{n}"), &format!("#@{}@", 60 - n)));
-        let code = code.replace("#@", "#").replace('@', "").replace(' ', "  ");
-        let mut renumbered = String::new();
-        let mut rest = code.as_str();
-        while let Some(at) = rest.starts_with('N').then_some(1).or(rest.find("GOTO").map(|at| at + 4)) {
-            let digits = rest[at..].trim_start().chars().take_while(char::is_ascii_digit).count();
-            let skip = rest[at..].len() - rest[at..].trim_start().len();
-            let number = &rest[at + skip..at + skip + digits];
-            renumbered.push_str(&rest[..at]);
-            renumbered.push_str(&number.parse::<u32>().map_or(String::new(), |n| (n + 5000).to_string()));
-            rest = &rest[at + skip + digits..];
-        }
-        format!("{renumbered}{rest}{remark}")
-    };
-    text.lines().map(|one| line(one) + "\n").collect()
-}
-
 /// What is different, as `code: message`.
 fn told(old: &str, new: &str) -> Vec<String> {
     let found = changes(&revision(old).record, &revision(new).record, 0.0001);

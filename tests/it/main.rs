@@ -36,6 +36,7 @@ mod page;
 mod pin_holes;
 mod real_files;
 mod results;
+mod rewritten;
 mod round_trip;
 mod schemas;
 mod sheet;

@@ -58,7 +58,7 @@ fn record(main: &Path, text: &str) -> Option<Record> {
 }
 
 /// The programs below the folders of some kinds of cases.
-fn cases() -> Vec<PathBuf> {
+pub(crate) fn cases() -> Vec<PathBuf> {
     let mut found = Vec::new();
     let mut folders: Vec<PathBuf> =
         ["verify", "cli", "picture"].map(|kind| workspace().join("tests/suite").join(kind)).to_vec();
