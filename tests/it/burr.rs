@@ -437,8 +437,8 @@ fn whole_turns_in_one_block_are_seen() {
 #[test]
 fn moves_without_measure_end_in_a_finding() {
     for (blocks, told) in [
-        ("X-19.\nG01 Y0. F30.\nG91 A900000.\nG90 G00 Y50.\n", "more than 1000000 points of passes"),
-        ("Y100.\nG91 A900000.\nG90\n", "more than 4000000 points of the wheel's path"),
+        ("X-19.\nG01 Y0. F30.\nG91 A900000.\nG90 G00 Y50.\n", "more than 4750"), // 2·40·(19 + 8.901)/cos 20°/0.05
+        ("Y100.\nG91 A900000.\nG90\n", "more than 400000 points of the wheel's path"),
     ] {
         let verdict = with(blocks);
         assert!(verdict.verdict == Answer::Fail);

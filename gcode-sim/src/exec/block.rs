@@ -31,8 +31,12 @@ impl Core {
         span: Span,
     ) -> Checked<()> {
         let words = match &words.short {
-            Some((switch, short)) if self.skips(*switch) => short,
-            _ => words,
+            Some((switch, short)) => {
+                let is_on = self.skips(*switch);
+                self.told.set(Some(Note::BlockSkip { switch: (*switch).max(1), is_on }));
+                if is_on { short } else { words }
+            }
+            None => words,
         };
         plan.begin(&self.state);
         let mut calling = None;

@@ -73,6 +73,9 @@ impl Core {
                 plan.notes.push(Note::LevelMissing { letter });
             }
         }
+        if !self.settings.drills_by_plane && plan.state.modal.plane != Plane::Xy {
+            plan.notes.push(Note::DrillsAlongZ { code: plan.state.modal.plane.code() });
+        }
         if cycle.needs_q {
             self.peck_words(plan, given, pattern, span)?;
         }

@@ -55,6 +55,10 @@ pub enum Note {
     LevelMissing { letter: char },
     /// G43 or G44 with H0, which is no offset.
     LengthOfNothing { code: u32 },
+    /// A block, or the rest of one, behind `/`, which a switch of block skip leaves out.
+    BlockSkip { switch: u8, is_on: bool },
+    /// A drilling cycle goes along Z while G18 or G19 has another plane's normal, as FXY 5101#0 = 0 has it.
+    DrillsAlongZ { code: u32 },
     /// `#3000=n` with a number beyond those that the manual names.
     LargeAlarm { number: u16, most: u16 },
 }
@@ -180,6 +184,20 @@ impl Note {
             Self::LengthOfNothing { code } => {
                 let message = format!("G{} with H0: no tool length is in force", spelled(code));
                 ("length-of-nothing", message, "write H with the tool's number")
+            }
+            Self::BlockSkip { switch, is_on } => {
+                let (is, does) = if is_on { ("on", "left out") } else { ("off", "carried out") };
+                let message = format!(
+                    "what is behind / is {does}: block skip {switch} is {is}, and all that is told holds for that"
+                );
+                ("block-skip", message, "--control BDT=1 switches block skip 1 on")
+            }
+            Self::DrillsAlongZ { code } => {
+                let message = format!(
+                    "the cycle drills along Z while G{} is in force: a control may drill along that plane's normal",
+                    spelled(code)
+                );
+                ("drill-plane", message, "write G17, or set FXY=1 if the control drills along the normal")
             }
             Self::LargeAlarm { number, most } => {
                 let message = format!("#3000={number}: a control's manual names numbers up to {most}");

@@ -132,8 +132,12 @@ impl Control {
         core.block = op.span;
         core.blocks += 1;
         core.frame.next = place + 1;
-        if op.skip.is_some_and(|switch| core.skips(switch)) {
-            return Ok(());
+        if let Some(switch) = op.skip {
+            let is_on = core.skips(switch);
+            core.notes.entry(Note::BlockSkip { switch: switch.max(1), is_on }).or_insert(op.span);
+            if is_on {
+                return Ok(());
+            }
         }
         if !op.forms.is_empty() {
             core.take_forms(op)?;

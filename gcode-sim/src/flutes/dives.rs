@@ -3,6 +3,7 @@
 use nalgebra::Point3;
 
 use super::ARITHMETIC;
+use crate::holes::ROUNDED;
 use crate::holes::per_block::PerBlock;
 use crate::motion::Place;
 use crate::part::flutes::Flutes;
@@ -20,6 +21,8 @@ pub enum Kind {
     Sideways(f64),
     /// Straight in, where no pass begins.
     Pit,
+    /// A rapid that ends nearer to the blank than the job's clearance; its depth is below 0.
+    Near,
 }
 
 /// Where the wheel came too near between two passes.
@@ -146,6 +149,7 @@ impl Dives {
             Kind::Sideways(_) => 2,
             Kind::Pit => 3,
             Kind::RapidPass(_) => 4,
+            Kind::Near => 5,
         };
         let Depth { depth, at } = deepest;
         let first = || Dive { place: place.clone(), kind, at, depth, times: 0, moves: 0 };
@@ -199,6 +203,11 @@ impl Dives {
                 }
             } else if !leaves && way.nearest < flutes.tooth_depth + ARITHMETIC {
                 self.add(place, Kind::Rapid, depth);
+            } else if let (Some(clearance), Some(at)) = (flutes.clearance, path.last().copied()) {
+                let above = way.last - flutes.tooth_depth;
+                if above < clearance - ROUNDED {
+                    self.add(place, Kind::Near, Depth { depth: -above, at });
+                }
             }
             return;
         };

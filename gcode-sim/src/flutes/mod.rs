@@ -25,10 +25,13 @@ use crate::units::{Deg, Rpm};
 
 /// More moves than this aren't kept: no burr has so many, but a loop that never ends makes them.
 const MOVES: usize = 500_000;
-/// More points than this aren't kept of all passes together: the whole path of a large burr has a tenth of them.
-const KEPT: usize = 1_000_000;
-/// More points than this aren't computed in all, those between the passes included.
-const COMPUTED: usize = 4_000_000;
+/// Points are kept of all passes together for so many goes over every wanted flute: no burr is ground in as many, …
+const GOES: f64 = 40.0;
+/// … but for so many at least, and never for more than this.
+const KEPT: (f64, f64) = (20_000.0, 1_000_000.0);
+/// So many times as many are computed in all, those between the passes included, and so many at least: turning and going
+/// round between two passes takes more of them than a short flute has.
+const COMPUTED: (usize, usize) = (4, 400_000);
 
 /// How far apart the points of a pass are, and those between two passes, mm.
 const APART: f64 = 0.05;
@@ -102,9 +105,11 @@ pub struct Follower<'m> {
     turning: Turning,
     placing: Placing,
     moves: usize,
-    /// Points kept of passes, and computed at all.
+    /// Points kept of passes, and computed at all, and the most that may be.
     kept: usize,
+    most_kept: usize,
     computed: usize,
+    most_computed: usize,
     /// No more is looked at, and that is told.
     full: bool,
 }
@@ -120,6 +125,7 @@ impl<'m> Follower<'m> {
             let of_axis = |link: &&crate::machine::Link| link.axis == *axis;
             machine.table.0.iter().find(of_axis).is_some_and(|l| matches!(l.motion, LinkMotion::Turn { .. }))
         });
+        let most_kept = (GOES * flutes.length() / APART).clamp(KEPT.0, KEPT.1) as usize;
         Ok(Self {
             machine,
             wheel,
@@ -134,7 +140,9 @@ impl<'m> Follower<'m> {
             placing: Placing::default(),
             moves: 0,
             kept: 0,
+            most_kept,
             computed: 0,
+            most_computed: (COMPUTED.0 * most_kept).max(COMPUTED.1),
             full: false,
         })
     }
@@ -182,13 +190,14 @@ impl<'m> Follower<'m> {
         let grinds = !rapid && from[self.burr] != to[self.burr];
         let apart = if grinds { APART } else { APART_BETWEEN };
         let Some(steps) = self.steps(&travel, apart) else {
-            return self.stop(event, format!("more than {COMPUTED} points of the wheel's path"));
+            return self.stop(event, format!("more than {} points of the wheel's path", self.most_computed));
         };
-        if grinds && (KEPT - self.kept) as f64 <= steps {
-            return self.stop(event, format!("more than {KEPT} points of passes, one every {APART} mm"));
+        if grinds && (self.most_kept - self.kept) as f64 <= steps {
+            let what = format!("more than {} points of passes, one every {APART} mm", self.most_kept);
+            return self.stop(event, what);
         }
         let Some(path) = self.points(&travel, steps) else {
-            return self.stop(event, format!("more than {COMPUTED} points of the wheel's path"));
+            return self.stop(event, format!("more than {} points of the wheel's path", self.most_computed));
         };
         if !grinds {
             self.close();
@@ -200,7 +209,7 @@ impl<'m> Follower<'m> {
             self.dives.look(&self.flutes, event.place(), by, self.moved, &path);
             return;
         }
-        self.kept = KEPT.min(self.kept + path.len());
+        self.kept = self.most_kept.min(self.kept + path.len());
         self.dives.ground(before);
         let head = self.wheel.angle(&from).zip(self.wheel.angle(to));
         let pass = self.open.get_or_insert_with(|| Pass {
@@ -253,7 +262,7 @@ impl<'m> Follower<'m> {
     /// The contact on the burr in so many steps along a motion, one more if that is odd; `None` where that makes too
     /// many of them in all.
     fn points(&mut self, travel: &Travel<'_>, steps: f64) -> Option<Vec<Point3<f64>>> {
-        if (COMPUTED - self.computed) as f64 <= steps + 2.0 {
+        if (self.most_computed.saturating_sub(self.computed)) as f64 <= steps + 2.0 {
             return None;
         }
         let steps = (steps as usize).next_multiple_of(2);

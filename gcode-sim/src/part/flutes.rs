@@ -33,6 +33,8 @@ pub struct Flutes {
     pub speed: Option<f64>,
     /// Into the blank, mm/min, where the job says it.
     pub plunge: Option<f64>,
+    /// From the blank, where rapid motion ends at the nearest, mm, where the job says it.
+    pub clearance: Option<f64>,
     /// Of the wheel, r/min, where the job says it.
     pub wheel: Option<f64>,
     /// From the C axis to the end of the cylinder at C 0, x and y, as the job has it.
@@ -59,10 +61,21 @@ impl Flutes {
             index_tolerance: Deg(job.tolerance.index),
             speed: job.program.speed_said.then_some(job.program.speed),
             plunge: job.program.plunge_said.then_some(job.program.plunge),
+            clearance: job.grinder.clearance_said.then_some(job.grinder.clearance),
             wheel: job.program.wheel_said.then_some(job.program.wheel),
             c_offset: job.grinder.c_offset,
             signs: job.grinder.signs_said.then_some(job.grinder.signs),
         }
+    }
+
+    /// How long all flutes are together, mm, reckoned with the angle on the cylinder.
+    pub fn length(&self) -> f64 {
+        let steps = (90.0 - self.tip_angle.0).ceil().max(1.0);
+        let polar = |step: f64| Deg(90.0 + (self.tip_angle.0 - 90.0) * step / steps);
+        let at = |step: f64| self.profile.at_polar(polar(step));
+        let chords = (0..steps as u32).map(|step| (at(f64::from(step) + 1.0) - at(f64::from(step))).norm());
+        let meridian = (self.start - at(0.0).x).abs() + chords.sum::<f64>();
+        f64::from(self.count) * meridian / self.helix.cos()
     }
 
     /// The tangent of the helix angle at a point of the surface: way around over way along the meridian.

@@ -18,6 +18,10 @@ impl Wanted {
     /// pipe.
     pub fn parse(text: &str) -> Result<Self, ReferenceError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        if text.trim().is_empty() {
+            let message = "the file is empty: a hole list (JSON or CSV) or a job file is wanted".to_owned();
+            return Err(ReferenceError { line: None, message });
+        }
         if text.trim_start().starts_with('{') {
             return Reference::of_list(read::json(text)?).map(Self::Holes);
         }

@@ -268,10 +268,14 @@ impl Run {
     pub fn notes(&self) -> impl Iterator<Item = Diagnostic> + '_ {
         self.control.notes().map(|(note, block)| {
             let (code, message, help) = note.parts();
-            // K0, lower case, G53 to wait and a centre where the tool stands are meant; the others are slips.
+            // K0, lower case, block skip, G53 to wait and a centre where the tool stands are meant; the others are slips.
             let meant = matches!(
                 note,
-                Note::NoRepeats | Note::LowerCase | Note::CentreHere { .. } | Note::NoAxis { code: 530 }
+                Note::NoRepeats
+                    | Note::LowerCase
+                    | Note::CentreHere { .. }
+                    | Note::NoAxis { code: 530 }
+                    | Note::BlockSkip { .. }
             );
             let severity = if meant { Severity::Note } else { Severity::Warning };
             Diagnostic::new(severity, code, message).at(Place { block, calls: None }).help(help)

@@ -315,6 +315,7 @@ impl FileMachine {
                 c: of("C", given.and_then(|s| s.c.as_ref()))?,
             },
             signs_said: given.is_some(),
+            clearance_said: self.clearance.is_some(),
             clearance: optional(
                 reader,
                 "machine.clearance",

@@ -85,6 +85,8 @@ pub struct Grinder {
     pub signs_said: bool,
     /// How far from the blank rapid becomes feed, and the burr stands off while it is turned.
     pub clearance: f64,
+    /// Whether the job says that.
+    pub clearance_said: bool,
 }
 
 /// 1 where an axis obeys the formulas, −1 where it runs the other way.

@@ -46,6 +46,7 @@ pub(in crate::verify) fn check(
         }
     };
     told.extend(depths(comparison, objections));
+    told.extend(twice(comparison, objections));
     objections.splice(0..0, told.into_iter().map(Objection::whole));
 }
 
@@ -109,7 +110,7 @@ fn depths(comparison: &Comparison<'_>, objections: &mut [Objection]) -> Vec<Diag
             "check the programmed depth, the zero in the tool's direction, the tool's length and its offset",
         );
         let wanted = comparison.wanted[group[0].wanted].depth;
-        finding.notes.extend(super::depth::without_point(wanted, wanted + error).map(str::to_owned));
+        finding.notes.extend(super::depth::factor(wanted, wanted + error).map(str::to_owned));
         finding.notes.extend(behind(folded));
         told.push(at_the_call(finding, &comparison.found[group[0].found].place));
     }
@@ -146,6 +147,25 @@ fn places(comparison: &Comparison<'_>, machine: &Machine, objections: &mut [Obje
         told.push(at_the_call(finding, &comparison.found[group[0].found].place));
     }
     told
+}
+
+/// A row, or the whole part, that is drilled again.
+fn twice(comparison: &Comparison<'_>, objections: &mut [Objection]) -> Option<Diagnostic> {
+    let again = |extra: &usize| Some((*extra, comparison.wanted_on_line_of(*extra)?));
+    let (extras, mut members): (Vec<usize>, Vec<usize>) = comparison.extra.iter().filter_map(again).unzip();
+    members.sort_unstable();
+    members.dedup();
+    if members.len() < FEWEST {
+        return None;
+    }
+    let is_again = among(comparison.found.len(), &extras);
+    let folded = fold(objections, &["hole-twice"], |o| o.extra.is_some_and(|extra| is_again[extra]));
+    let set = which(comparison, &members);
+    let mut finding = Diagnostic::error("hole-twice", format!("{set} drilled a second time")).help(
+        "the same tool comes back for nothing: take the second call, or the second round of the loop, out",
+    );
+    finding.notes.extend(behind(folded));
+    Some(at_the_call(finding, &comparison.found[extras[0]].place))
 }
 
 fn turned(set: &str, machine: &Machine, axis: Axis, by: Deg) -> Diagnostic {

@@ -20,15 +20,16 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
         let mut finding = Diagnostic::error("hole-depth", message)
             .help("check the programmed depth, the tool's length and its offset")
             .at(comparison.found[pair.found].place.clone());
-        if let Some(note) = without_point(nominal, nominal + error) {
+        if let Some(note) = factor(nominal, nominal + error) {
             finding = finding.note(note);
         }
         objections.push(Objection::of(pair.wanted, finding));
     }
 }
 
-/// A depth that is a thousandth of the wanted one, or with the finer increment a ten-thousandth.
-pub(super) fn without_point(wanted: f64, found: f64) -> Option<&'static str> {
+/// What a depth that is wrong by a factor comes of: a thousandth of the wanted one, or with the finer increment a
+/// ten-thousandth; inches for millimetres or the other way.
+pub(super) fn factor(wanted: f64, found: f64) -> Option<&'static str> {
     let is = |parts: f64| (found * parts / wanted - 1.0).abs() < 0.01;
     match () {
         () if is(1e3) => {
@@ -36,6 +37,12 @@ pub(super) fn without_point(wanted: f64, found: f64) -> Option<&'static str> {
         }
         () if is(1e4) => Some(
             "that is a ten-thousandth of it: a number without a decimal point counts ten-thousandths here",
+        ),
+        () if (found / wanted / 25.4 - 1.0).abs() < 0.001 => {
+            Some("that is 25.4 times it: millimetres read as inches; is G20 in force where G21 is meant?")
+        }
+        () if (found * 25.4 / wanted - 1.0).abs() < 0.001 => Some(
+            "that is it divided by 25.4: inches read as millimetres; is G21 in force where G20 is meant?",
         ),
         () => None,
     }

@@ -220,7 +220,6 @@ fn not_checked(wanted: &Flutes, ground: &Ground, locate: &dyn Fn(Span) -> (Strin
             .to_owned(),
         "which side of the wheel's swivel B is right: only its angle is held against the helix angle".to_owned(),
         "which way round the wheel has to turn: the job doesn't say".to_owned(),
-        "how far off the blank rapid motion ends: only that it doesn't touch is seen to, not the job's clearance".to_owned(),
     ];
     if wanted.speed.is_none() {
         all.push("the speed along the flutes: the job has no program.speed".to_owned());
@@ -230,6 +229,11 @@ fn not_checked(wanted: &Flutes, ground: &Ground, locate: &dyn Fn(Span) -> (Strin
     }
     if wanted.plunge.is_none() {
         all.push("how fast the wheel is fed into the blank: the job has no program.plunge".to_owned());
+    }
+    if wanted.clearance.is_none() {
+        all.push(
+            "how far off the blank rapid motion ends, but for that it doesn't touch: the job has no machine.clearance".to_owned(),
+        );
     }
     if ground.offset.is_none() {
         all.push("the job's c_offset: the machine file has no axis C that turns about z".to_owned());

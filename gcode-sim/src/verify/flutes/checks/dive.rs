@@ -23,12 +23,20 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
                 "a feed that doesn't turn A takes the wheel {by:.3} mm along the burr in the cut, {depth:.3} mm below the \
                  blank's surface"
             ),
+            Kind::Near => {
+                format!(
+                    "the rapid ends with the wheel {:.3} mm off the blank, and the job wants {} mm",
+                    -depth,
+                    inspection.wanted.clearance.unwrap_or_default()
+                )
+            }
             Kind::Pit => {
                 format!("the wheel is fed {depth:.3} mm below the blank's surface where no pass begins")
             }
         };
         let help = match dive.kind {
             Kind::RapidPass(_) => "grind with G01: G00 stays in force until another motion code",
+            Kind::Near => "end it at machine.clearance from the blank, or correct that in the job",
             Kind::Rapid | Kind::Below | Kind::Sideways(_) | Kind::Pit => {
                 "move Y clear of the burr first, then turn A and C"
             }
@@ -44,14 +52,17 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
                     dive.moves
                 )),
             },
-            Kind::Rapid | Kind::Below | Kind::Sideways(_) | Kind::Pit => {
+            Kind::Rapid | Kind::Below | Kind::Sideways(_) | Kind::Pit | Kind::Near => {
                 (0 < again).then(|| format!("and {again} more of this block"))
             }
         };
-        let finding = Diagnostic::error("wheel-into-burr", message)
-            .help(help)
-            .at(dive.place.clone())
-            .on([Site { pass: None, at: dive.at }]);
+        let finding = match dive.kind {
+            Kind::Near => Diagnostic::warning("wheel-near-burr", message),
+            Kind::Rapid | Kind::RapidPass(_) | Kind::Below | Kind::Sideways(_) | Kind::Pit => {
+                Diagnostic::error("wheel-into-burr", message)
+            }
+        };
+        let finding = finding.help(help).at(dive.place.clone()).on([Site { pass: None, at: dive.at }]);
         findings.push(note.into_iter().fold(finding, Diagnostic::note));
     }
 }
