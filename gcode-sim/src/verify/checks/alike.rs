@@ -46,8 +46,10 @@ pub(in crate::verify) fn check(
         }
     };
     told.extend(depths(comparison, objections));
-    told.extend(twice(comparison, objections));
+    // Rows that stand wrong may close the circle upon one another: that is no second round.
+    let again = if explained.is_none() { twice(comparison, objections) } else { None };
     objections.splice(0..0, told.into_iter().map(Objection::whole));
+    objections.extend(again.map(Objection::whole));
 }
 
 /// Puts the places behind what is wrong with the whole, as far as that puts them there.
