@@ -1,6 +1,6 @@
 //! Straight moves: where a block's axis words lead, and how long the way takes.
 use super::Core;
-use super::eval::{Checked, at};
+use super::eval::Checked;
 use super::notes::Note;
 use super::plan::Plan;
 use super::state::{PolarPoint, State};
@@ -61,8 +61,11 @@ impl Core {
             if polar && self.in_plane(state, axis) {
                 continue;
             }
-            let Some((raw, span)) = given.get(letter) else { continue };
-            let value = at(self.dimension_of(raw, letter, measure), span)?;
+            let Some(raw) = given.raw(letter) else { continue };
+            let value = match self.dimension_of(raw, letter, measure) {
+                Ok(value) => value,
+                Err(alarm) => return Err(alarm.at(given.span(letter))),
+            };
             let from = programmed[axis];
             if !incremental {
                 state.unplaced &= !(1 << axis);

@@ -171,8 +171,11 @@ impl Given {
     }
 
     /// A word's value before anything is made of it.
+    #[inline]
     pub(super) fn raw(&self, letter: u8) -> Option<Raw> {
-        self.get(letter).map(|(raw, _)| raw)
+        let place = letter - b'A';
+        self.read.set(self.read.get() | 1 << place);
+        (self.present >> place & 1 == 1).then(|| self.values[usize::from(place)].0)
     }
 
     /// Whether it has `,R` or `,C`.
