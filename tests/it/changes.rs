@@ -210,7 +210,7 @@ fn what_is_left_names_the_block_that_wrote_it() {
 fn a_hole_that_a_tool_makes_once_more_is_one_entry() {
     let again = "T1 M6\nG43 H1 G0 Z50.\nG98 G81 X10. Y0 Z-1. R2. F100\nG80\n";
     let found = changed("T2 M6", &format!("{again}T2 M6"));
-    assert_eq!(found, ["hole-tool: hole 1: made once more by T1, in all by T1, T1 and T2"]);
+    assert_eq!(found, ["hole-tool: hole 1: made once more by T1, in all by T1 (2 times) and T2"]);
 }
 
 #[test]

@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 
 use anstream::adapter::strip_str;
 use gcode_sim::cli::format::TextFormat;
-use gcode_sim::cli::{Refusal, Status, input, output};
+use gcode_sim::cli::{Refusal, Status, apart, input, output};
 use gcode_sim::job::Job;
 use gcode_sim::picture::{self, PictureError, Scene, Size};
 
@@ -71,6 +71,7 @@ pub(super) fn run(path: &Path, out: &Path, format: TextFormat) -> Result<Status,
     let mut files: Vec<(PathBuf, &[u8])> =
         package.files().into_iter().map(|(name, text)| (out.join(name), text.as_bytes())).collect();
     files.extend(pictures.iter().map(|(name, png)| (out.join(name), png.as_slice())));
+    files.iter().try_for_each(|(file, _)| apart::keep(file, &[path]))?;
     let written: Vec<_> = files.iter().map(|(path, bytes)| (path.as_path(), *bytes)).collect();
     output::write_all(&written)?;
     let left_over = left_over(&job, &package, out);

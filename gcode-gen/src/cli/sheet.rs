@@ -2,7 +2,7 @@
 use std::path::Path;
 
 use gcode_sim::cli::format::TextFormat;
-use gcode_sim::cli::{Refusal, Status, input, output};
+use gcode_sim::cli::{Refusal, Status, apart, input, output};
 use gcode_sim::job::Rates;
 
 use super::emit::{Held, held, pictures};
@@ -15,6 +15,7 @@ pub(super) fn run(
     rates: Option<&Path>,
     format: TextFormat,
 ) -> Result<Status, Refusal> {
+    apart::keep(out, &std::iter::once(path).chain(rates).collect::<Vec<_>>())?;
     let rates = rates.map(read_rates).transpose()?;
     let Held { job, package, checked } = match held(path)? {
         Ok(held) => held,

@@ -66,7 +66,8 @@ pub(super) fn more_or_fewer(was: &[u32], is: &[u32]) -> Option<String> {
         let again = new.iter().any(|tool| was.contains(tool));
         words.push(match (again, is) {
             (true, [_, _]) => "made twice now".to_owned(),
-            (true, _) => format!("made once more by {}", in_words(&new)),
+            (true, _) if new.len() == 1 => format!("made once more by {}", in_words(&new)),
+            (true, _) => format!("made {} more times, by {}", new.len(), in_words(&new)),
             (false, _) => format!("made by {} as well", in_words(&new)),
         });
     }
@@ -74,9 +75,13 @@ pub(super) fn more_or_fewer(was: &[u32], is: &[u32]) -> Option<String> {
     Some(words.join(", "))
 }
 
-/// `T1`, `T1 and T2`, `T1, T2 and T2`.
+/// `T1`, `T1 and T2`, `T1, T2 and T1`; a tool that follows itself is counted, `T1 and T2 (3 times)`.
 pub(super) fn in_words(tools: &[u32]) -> String {
-    let names: Vec<String> = tools.iter().map(|tool| format!("T{tool}")).collect();
+    let name = |run: &[u32]| match run {
+        [tool] => format!("T{tool}"),
+        _ => format!("T{} ({} times)", run[0], run.len()),
+    };
+    let names: Vec<String> = tools.chunk_by(|a, b| a == b).map(name).collect();
     match names.as_slice() {
         [] => String::new(),
         [only] => only.clone(),

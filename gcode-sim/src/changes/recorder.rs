@@ -252,6 +252,17 @@ impl Sink for Shared<'_> {
 }
 
 impl Recorder {
+    /// The standstill that a tool change brings along is no command of its own.
+    fn forget_standstill(&mut self, change: &Event<'_>) {
+        let is_of_change = |step: &Step| {
+            let is_off = step.kind == Kind::Spindle(Spindle::Off, 0.0);
+            is_off && is_same_place(&self.places[step.place], &change.place())
+        };
+        if self.steps.last().is_some_and(is_of_change) {
+            self.steps.pop();
+        }
+    }
+
     fn event(&mut self, event: &Event<'_>) {
         let here = self.at;
         match event.kind {
@@ -260,7 +271,10 @@ impl Recorder {
             EventKind::Arc { to, arc, rate } => self.go(Kind::Arc(*arc, rate.0), *to, event),
             EventKind::Skip { to, rate, .. } => self.go(Kind::Probe(rate.0), *to, event),
             EventKind::Dwell { time } => self.push(Kind::Dwell(time.0), here, event.place()),
-            EventKind::Tool { number } => self.push(Kind::Tool(*number), here, event.place()),
+            EventKind::Tool { number } => {
+                self.forget_standstill(event);
+                self.push(Kind::Tool(*number), here, event.place());
+            }
             EventKind::ToolLength { offset, .. } if *offset == self.length => {}
             EventKind::ToolLength { offset, .. } => {
                 self.length = *offset;

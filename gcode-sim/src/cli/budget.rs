@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicUsize;
 use clap::Args;
 
 use super::format::TextFormat;
-use super::{Refusal, Status, input, options, output, progress};
+use super::{Refusal, Status, apart, input, options, output, progress};
 use crate::budget::{MOST_SAMPLES, Question, budget};
 use crate::job::Job;
 use crate::machine::{Machine, error_file};
@@ -61,6 +61,11 @@ pub(super) fn run(arguments: &BudgetArguments) -> Result<Status, Refusal> {
     let asked = options::tolerance("--tolerance", arguments.tolerance)?;
     if !(1..=MOST_SAMPLES).contains(&arguments.samples) {
         return Err(Refusal::new(format!("--samples {}: 1 to {MOST_SAMPLES}", arguments.samples)));
+    }
+    if let Some(path) = &arguments.picture {
+        let machine = arguments.machine.as_deref();
+        let files = [arguments.job.as_path(), arguments.errors.as_path()].into_iter().chain(machine);
+        apart::keep(path, &files.collect::<Vec<_>>())?;
     }
     let job = Job::parse(&input::text(&arguments.job)?).map_err(|e| named(&arguments.job, &e))?;
     let reference = Wanted::of_job(&job).map_err(|e| named(&arguments.job, &e))?.into_holes();

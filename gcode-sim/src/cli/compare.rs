@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::format::TextFormat;
-use super::{Refusal, Status, input, output};
+use super::{Refusal, Status, apart, input, output};
 use crate::picture;
 use crate::report::pictures::CompareReport;
 
@@ -32,6 +32,9 @@ pub(super) struct CompareArguments {
 }
 
 pub(super) fn run(arguments: &CompareArguments) -> Result<Status, Refusal> {
+    if let Some(path) = &arguments.output {
+        apart::keep(path, &[&arguments.left, &arguments.right])?;
+    }
     let (left, right) = (input::bytes(&arguments.left)?, input::bytes(&arguments.right)?);
     let refused = |error: picture::PictureError| Refusal::new(error.to_string());
     let difference = picture::compare(&left, &right, arguments.tolerance).map_err(refused)?;

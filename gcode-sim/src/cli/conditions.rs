@@ -3,6 +3,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::{Refusal, apart};
+
 /// The program, and everything its run depends on.
 #[derive(Debug, Default, Args)]
 pub(super) struct ProgramArguments {
@@ -66,9 +68,24 @@ pub(super) struct RunConditions {
     pub(super) cycles: Option<u32>,
 }
 
+impl ProgramArguments {
+    /// The files that are read, called programs aside; a reference is one more. Standard input is among them once.
+    pub(super) fn files<'a>(&'a self, reference: Option<&'a Path>) -> Result<Vec<&'a Path>, Refusal> {
+        let files = std::iter::once(self.program.as_path()).chain(self.conditions.files());
+        let files: Vec<&Path> = files.chain(reference).collect();
+        apart::one_pipe(&files)?;
+        Ok(files)
+    }
+}
+
 impl RunConditions {
     /// These, and a program.
     pub(super) fn of(&self, program: &Path) -> ProgramArguments {
         ProgramArguments { program: program.to_owned(), conditions: self.clone() }
+    }
+
+    /// The files that are read besides programs.
+    pub(super) fn files(&self) -> impl Iterator<Item = &Path> {
+        [&self.machine, &self.control_file, &self.part].into_iter().filter_map(|file| file.as_deref())
     }
 }

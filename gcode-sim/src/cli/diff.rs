@@ -5,7 +5,7 @@ use clap::Args;
 
 use super::conditions::RunConditions;
 use super::format::FindingFormat;
-use super::{Refusal, Status, options, output, page, render, unused_machine};
+use super::{Refusal, Status, apart, options, output, page, render, unused_machine};
 use crate::changes::{Compared, Revision};
 use crate::part::reference::Reference;
 use crate::part::wanted::Wanted;
@@ -54,6 +54,14 @@ pub(super) struct DiffArguments {
 
 pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
     let tolerance = options::tolerance("--tolerance", Some(arguments.tolerance))?.unwrap_or_default();
+    let programs = [arguments.old.as_path(), arguments.new.as_path()];
+    let files: Vec<&Path> =
+        programs.into_iter().chain(arguments.run.files()).chain(arguments.reference.as_deref()).collect();
+    apart::one_pipe(&files)?;
+    for result in [&arguments.picture, &arguments.page].into_iter().flatten() {
+        apart::keep(result, &files)?;
+    }
+    arguments.page.as_deref().map(page::is_html).transpose()?;
     let (mut old_request, mut old_folders) = options::request(&arguments.run.of(&arguments.old))?;
     let (mut new_request, mut new_folders) = options::request(&arguments.run.of(&arguments.new))?;
     unused_machine::tell(&arguments.run.of(&arguments.new), &new_request);

@@ -5,7 +5,7 @@ use clap::Args;
 
 use super::conditions::ProgramArguments;
 use super::format::ListFormat;
-use super::{Refusal, Status, options, output, page, progress, unused_machine};
+use super::{Refusal, Status, apart, options, output, page, progress, unused_machine};
 use crate::part::hole::HoleList;
 use crate::report::holes as report;
 use crate::session::{self, Simulation};
@@ -26,6 +26,11 @@ pub(super) struct HolesArguments {
 }
 
 pub(super) fn run(arguments: &HolesArguments) -> Result<Status, Refusal> {
+    let files = arguments.program.files(None)?;
+    if let Some(page) = &arguments.page {
+        apart::keep(page, &files)?;
+        page::is_html(page)?;
+    }
     let (mut request, mut folders) = options::request(&arguments.program)?;
     unused_machine::tell(&arguments.program, &request);
     if let Some(path) = &arguments.page {

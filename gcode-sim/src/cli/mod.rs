@@ -1,4 +1,5 @@
 //! The only place that prints and opens files: arguments in, exit status out.
+pub mod apart;
 mod args;
 mod budget;
 mod check;

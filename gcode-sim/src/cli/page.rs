@@ -41,6 +41,18 @@ pub(super) fn write_alone(
     write(&page, path)
 }
 
+/// A page has no other ending: a program beside it is none.
+pub(super) fn is_html(path: &Path) -> Result<(), Refusal> {
+    let is_other = |extension: &std::ffi::OsStr| {
+        !["html", "htm"].iter().any(|known| extension.eq_ignore_ascii_case(known))
+    };
+    if path.extension().is_some_and(is_other) {
+        let (path, html) = (path.display(), path.with_extension("html"));
+        return Err(Refusal::new(format!("{path}: a page is an HTML file: name it {}", html.display())));
+    }
+    Ok(())
+}
+
 /// Writes a page to its file.
 pub(super) fn write(page: &Page<'_>, path: &Path) -> Result<(), Refusal> {
     let html = page.html().map_err(|error| Refusal::new(format!("the page can't be written: {error}")))?;

@@ -5,7 +5,7 @@ use clap::Args;
 
 use super::conditions::ProgramArguments;
 use super::format::ListFormat;
-use super::{Refusal, Status, options, output, render, unused_machine};
+use super::{Refusal, Status, apart, options, output, render, unused_machine};
 use crate::picture::Size;
 use crate::report::readings::ReadingsReport;
 use crate::session;
@@ -34,6 +34,10 @@ pub(super) struct ReadingsArguments {
 }
 
 pub(super) fn run(arguments: &ReadingsArguments) -> Result<Status, Refusal> {
+    let files = arguments.program.files(None)?;
+    if let Some(picture) = &arguments.picture {
+        apart::keep(picture, &files)?;
+    }
     let (request, mut folders) = options::request(&arguments.program)?;
     unused_machine::tell(&arguments.program, &request);
     let tolerance = options::tolerance("--tolerance", arguments.tolerance)?;

@@ -5,7 +5,7 @@ use clap::{Args, ValueEnum};
 
 use super::conditions::ProgramArguments;
 use super::format::TextFormat;
-use super::{Refusal, Status, options, output, progress, unused_machine};
+use super::{Refusal, Status, apart, options, output, progress, unused_machine};
 use crate::part::flutes::Flutes;
 use crate::part::reference::Reference;
 use crate::part::wanted::Wanted;
@@ -73,6 +73,7 @@ impl View {
 }
 
 pub(super) fn run(arguments: &RenderArguments) -> Result<Status, Refusal> {
+    apart::keep(&arguments.output, &arguments.program.files(arguments.reference.as_deref())?)?;
     match arguments.reference.as_deref().map(options::wanted).transpose()? {
         Some(Wanted::Holes(reference)) => holes(arguments, Some(reference)),
         Some(Wanted::Flutes(wanted)) => flutes(arguments, wanted),

@@ -1,11 +1,11 @@
 //! `gcode-sim run`: executes a program and shows the end state.
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::conditions::ProgramArguments;
 use super::format::TextFormat;
-use super::{Refusal, Status, options, output, progress, unused_machine};
+use super::{Refusal, Status, apart, options, output, progress, unused_machine};
 use crate::holes::Extractor;
 use crate::report::run::{MOST_MOVES, Moves, RunReport};
 use crate::session::{self, SessionError};
@@ -34,6 +34,10 @@ pub(super) struct RunArguments {
 }
 
 pub(super) fn run(arguments: &RunArguments) -> Result<Status, Refusal> {
+    let files = arguments.program.files(None)?;
+    if let Some(path) = &arguments.output {
+        apart::keep(path, &files)?;
+    }
     let (mut request, mut folders) = options::request(&arguments.program)?;
     unused_machine::tell(&arguments.program, &request);
     let wanted = arguments.show.iter().map(|text| options::variable(text)).collect::<Result<Vec<_>, _>>()?;
@@ -54,6 +58,9 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Status, Refusal> {
         system.push((number, value.map_err(|alarm| Refusal::new(format!("--show '#{number}': {alarm}")))?));
     }
     if let Some(path) = &arguments.output {
+        // Called programs are known only now.
+        let called = run.control.memory().sources().iter().map(|(_, source)| Path::new(&source.name));
+        apart::keep(path, &called.collect::<Vec<_>>())?;
         let lines = run.control.output().iter();
         let bytes: Vec<u8> = lines.flat_map(|line| line.iter().copied().chain([b'\n'])).collect();
         output::write(path, &bytes)?;

@@ -6,7 +6,7 @@ use clap::Args;
 use super::conditions::ProgramArguments;
 use super::format::FindingFormat;
 use super::library::Folders;
-use super::{Refusal, Status, options, output, page, progress, render, unused_machine};
+use super::{Refusal, Status, apart, options, output, page, progress, render, unused_machine};
 use crate::diag::Diagnostic;
 use crate::part::flutes::Flutes;
 use crate::part::reference::Reference;
@@ -61,6 +61,11 @@ pub(super) struct VerifyArguments {
 pub(super) fn run(arguments: &VerifyArguments) -> Result<Status, Refusal> {
     let asked = options::tolerance("--tolerance", arguments.tolerance)?;
     let depth = options::tolerance("--depth-tolerance", arguments.depth_tolerance)?;
+    let files = arguments.program.files(Some(&arguments.reference))?;
+    for result in [&arguments.picture, &arguments.page].into_iter().flatten() {
+        apart::keep(result, &files)?;
+    }
+    arguments.page.as_deref().map(page::is_html).transpose()?;
     let (mut request, folders) = options::request(&arguments.program)?;
     unused_machine::tell(&arguments.program, &request);
     match options::wanted(&arguments.reference)? {

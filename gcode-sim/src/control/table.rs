@@ -218,6 +218,7 @@ pub const ROWS: &[Row] = &[
     switch!("LOWER-CASE", "lower case is read as capitals, not refused", unsure.lower_case),
     switch!("LARGE-ALARMS", "#3000=n shows an n that is too large", unsure.large_alarm_numbers),
     switch!("M98-NO-P-311", "M98 without P is PS0311, not PS0076", unsure.missing_p_is_311),
+    switch!("M06-STOPS-SPINDLE", "M06 stops the spindle", unsure.tool_change_stops_spindle),
     choice!("ARGUMENT-E", "what E without a point is as an argument", ArgumentScale::ALL, |s, v| s.unsure.argument_e = v),
     choice!("ARGUMENT-F", "what F without a point is as an argument", ArgumentScale::ALL, |s, v| s.unsure.argument_f = v),
 ];

@@ -59,6 +59,8 @@ pub struct Unsure {
     pub large_alarm_numbers: bool,
     /// M98 without P raises PS0311 instead of PS0076.
     pub missing_p_is_311: bool,
+    /// M06 stops the spindle: the changer needs it to stand.
+    pub tool_change_stops_spindle: bool,
     /// What E and F without a point are as arguments.
     pub argument_e: ArgumentScale,
     pub argument_f: ArgumentScale,
@@ -111,6 +113,7 @@ impl Default for Unsure {
             lower_case: true,
             large_alarm_numbers: true,
             missing_p_is_311: false,
+            tool_change_stops_spindle: true,
             argument_e: ArgumentScale::Whole,
             argument_f: ArgumentScale::Feed,
         }

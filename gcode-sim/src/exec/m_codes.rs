@@ -39,6 +39,10 @@ impl Core {
                     plan.after.push((EventKind::Spindle { turning: Spindle::Off, speed }, 0.0));
                 }
                 MEffect::ToolChange => {
+                    let stops = self.settings.unsure.tool_change_stops_spindle;
+                    if stops && plan.state.spindle != Spindle::Off {
+                        self.turn(plan, Spindle::Off, speed);
+                    }
                     plan.state.tool = plan.state.codes.t;
                     plan.tell(EventKind::Tool { number: plan.state.codes.t });
                 }

@@ -18,6 +18,8 @@ pub struct TestReport {
     pub basis: String,
     /// Which part of the cases this is; `None` for all.
     pub shard: Option<Shard>,
+    /// What differs by no more than this is the same, mm or degrees.
+    pub tolerance: f64,
     pub cases: Vec<CaseReport>,
     /// The names of the cases whose results were accepted now.
     pub accepted: Vec<String>,
@@ -77,11 +79,17 @@ pub struct Against {
 }
 
 impl TestReport {
+<<<<<<< HEAD
     /// With the cases in the order of their names: a whole run and its merged shards are the same document.
     pub fn new(shard: Option<Shard>, mut cases: Vec<CaseReport>, mut accepted: Vec<String>) -> Self {
         cases.sort_by(|a, b| a.name.cmp(&b.name));
         accepted.sort();
         Self { basis: "predicted by simulation, not measured".to_owned(), shard, cases, accepted }
+=======
+    pub fn new(shard: Option<Shard>, tolerance: f64, cases: Vec<CaseReport>, accepted: Vec<String>) -> Self {
+        let basis = "predicted by simulation, not measured".to_owned();
+        Self { basis, shard, tolerance, cases, accepted }
+>>>>>>> 546e113 (A tool change stops the spindle; results never overwrite what they are made of; shards of one tolerance; refused cases reach the log; names of holes keep apart)
     }
 
     /// The same for people: what isn't as accepted, and how many are.
@@ -124,6 +132,12 @@ impl TestReport {
             text.push_str("--accept takes what is new; --only NAME takes one\n");
         }
         text
+    }
+
+    /// What stands in the way of cases that can't be used.
+    pub fn refused(&self) -> impl Iterator<Item = String> + '_ {
+        let refused = self.cases.iter().filter(|case| case.answer == Answer::Refused);
+        refused.map(|case| format!("case {}: {}", case.name, case.error.as_deref().unwrap_or_default()))
     }
 
     /// What isn't as accepted or fails its reference, each with its place.
@@ -187,7 +201,7 @@ impl CaseReport {
     }
 
     fn findings(&self) -> Vec<Finding> {
-        let whole = || self.file.clone().map(|file| At { file, line: None, column: None });
+        let whole = || self.file.clone().map(|file| At { file, line: Some(1), column: None });
         let found = |code: &str, message: String, at: Option<At>, calls: &[Where]| Finding {
             code: code.to_owned(),
             severity: Severity::Error,

@@ -66,6 +66,10 @@ pub(super) fn run(arguments: &TestArguments) -> Result<Status, Refusal> {
         files => merge::merged(files)?,
     };
     print(&report, arguments.format)?;
+    if arguments.format != TestFormat::Text {
+        // A build server keeps the document in a file: its log has to say why it stops.
+        report.refused().for_each(|why| output::tell(&format!("error: {why}\n")));
+    }
     let is_refused = report.cases.iter().any(|case| case.answer == Answer::Refused);
     Ok(match report.cases.iter().all(|case| case.is_good()) {
         true => Status::Holds,
@@ -90,7 +94,7 @@ fn tested(arguments: &TestArguments, tolerance: f64) -> Result<TestReport, Refus
     let (shard, cases) = cases(arguments)?;
     let mut tried = all(&cases, &arguments.libraries, tolerance);
     let accepted = if arguments.accept { accept(&cases, &mut tried)? } else { Vec::new() };
-    Ok(TestReport::new(shard, tried.into_iter().map(|tried| tried.report).collect(), accepted))
+    Ok(TestReport::new(shard, tolerance, tried.into_iter().map(|tried| tried.report).collect(), accepted))
 }
 
 /// The cases that are asked for, and which part of them these are.

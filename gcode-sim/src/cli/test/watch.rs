@@ -48,7 +48,8 @@ fn round(arguments: &TestArguments, tolerance: f64, changed: Option<&[PathBuf]>)
         }
     }
     let tried = all(&cases, &arguments.libraries, tolerance);
-    let report = TestReport::new(shard, tried.into_iter().map(|tried| tried.report).collect(), Vec::new());
+    let report =
+        TestReport::new(shard, tolerance, tried.into_iter().map(|tried| tried.report).collect(), Vec::new());
     text.push_str(&report.text());
     Ok(text)
 }

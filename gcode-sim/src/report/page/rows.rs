@@ -54,6 +54,15 @@ impl Cell {
         Self { text: near(value, decimals), value: Some(value), links: Vec::new() }
     }
 
+    /// A tool that another one has taken the place of stands before it.
+    fn before(&mut self, was: Option<u32>, is: Option<u32>) {
+        if let (Some(was), Some(is)) = (was, is)
+            && was != is
+        {
+            self.text = format!("T{was} → T{is}");
+        }
+    }
+
     fn maybe(value: Option<f64>, decimals: usize) -> Self {
         value.map_or_else(Self::default, |value| Self::number(value, decimals))
     }
@@ -119,6 +128,9 @@ fn described(found: Option<&Found>) -> Vec<Cell> {
 
 const DESCRIBED: [&str; 6] = ["X", "Y", "Z", "Depth", "Φ", "Tool"];
 
+/// Which of them is the tool.
+const TOOL: usize = 5;
+
 pub(super) fn found_rows(sides: &[Side<'_>]) -> (Vec<String>, Vec<Row>) {
     let Some(side) = sides.last() else { return (Vec::new(), Vec::new()) };
     let holes = side.seen.revision.simulation.extracted.holes.iter().enumerate();
@@ -141,6 +153,7 @@ pub(super) fn paired_rows(pairs: &[Paired], sides: &[Side<'_>]) -> (Vec<String>,
         let (was, is) = (pair.old.map(|hole| found(old, hole)), pair.new.map(|hole| found(new, hole)));
         let both = pair.old.is_some() && pair.new.is_some();
         let mut cells = described(is.or(was));
+        cells[TOOL].before(was.and_then(|hole| hole.tool), is.and_then(|hole| hole.tool));
         cells.extend([
             Cell::maybe(both.then_some(pair.moved), 4),
             Cell::maybe(both.then_some(pair.tilted.0), 4),

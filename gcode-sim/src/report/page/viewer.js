@@ -142,14 +142,32 @@ class Side {
       context.setLineDash(isMissing === "true" ? [3, 3] : []);
       this.strokeHoles(groups.get(name), role !== "hole");
       context.setLineDash([]);
-      context.font = "12px system-ui, sans-serif";
-      for (const hole of this.holes.length <= 60 || role !== "hole" ? groups.get(name).slice(0, 60) : []) {
-        const [x, y] = this.point(hole.entry);
-        const radius = this.radius(hole);
-        context.fillText(hole.id, x + radius + 7, y - radius - 3);
-      }
+    }
+    // Those that are worth most a look take their places first.
+    const taken = [];
+    context.font = "12px system-ui, sans-serif";
+    for (const name of [...groups.keys()].sort((a, b) => (order(a) < order(b) ? 1 : -1))) {
+      const [away, role] = name.split(" ");
+      Object.assign(context, { globalAlpha: away === "a" && role === "hole" ? 0.3 : 1, fillStyle: colours[role] });
+      const named = this.holes.length <= 60 || role !== "hole" ? groups.get(name).slice(0, 60) : [];
+      named.forEach((hole) => this.label(hole, taken, role === "pick"));
     }
     context.globalAlpha = 1;
+  }
+
+  // A hole's name beside it, where no other one stands; where all places are taken a click on the hole tells it.
+  label(hole, taken, always) {
+    const [x, y] = this.point(hole.entry);
+    const [away, wide, high] = [this.radius(hole) + 6, this.context.measureText(hole.id).width, 13];
+    const [right, left] = [x + away, x - away - wide];
+    const corners = [y - away + 3, y + away + high - 6, y + high / 2 - 2, y - away - high + 3, y + away + 2 * high - 6];
+    const places = corners.flatMap((bottom) => [[right, bottom], [left, bottom]]);
+    const isFree = ([at, bottom]) =>
+      taken.every(([other, low, width]) => at + wide < other || other + width < at || Math.abs(bottom - low) >= high);
+    const place = places.find(isFree) ?? (always ? places[0] : null);
+    if (!place) return;
+    taken.push([...place, wide]);
+    this.context.fillText(hole.id, ...place);
   }
 
   radius(hole) {
