@@ -40,6 +40,7 @@ mod rewritten;
 mod round_trip;
 mod schemas;
 mod sheet;
+mod silent_changes;
 mod sine_table;
 mod tidy;
 mod watch;

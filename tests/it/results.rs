@@ -56,13 +56,13 @@ fn sarif_is_what_its_schema_wants_and_says_where() {
             (result["ruleId"].as_str().unwrap(), uri, &at["region"]["startLine"])
         })
         .collect();
-    let none = Value::Null;
+    let first = Value::from(1);
     let wanted = [
         ("hole-position", "parts/aside/main.nc", &Value::from(4)),
-        ("stop", "parts/lost/main.nc", &none),
+        ("stop", "parts/lost/main.nc", &Value::from(2)),
         ("hole-moved", "parts/moved/main.nc", &Value::from(4)),
-        ("case-new", "parts/new%20%26%20%3Codd%3E/main.nc", &none),
-        ("case-refused", "", &none),
+        ("case-new", "parts/new%20%26%20%3Codd%3E/main.nc", &first),
+        ("case-refused", "parts/two/a.nc", &first),
     ];
     assert_eq!(told, wanted);
     let moved = results[2]["message"]["text"].as_str().unwrap();
@@ -114,8 +114,10 @@ fn findings_of_verify_and_changes_of_diff_are_sarif() {
     assert!(found.contains(&("hole-position".to_owned(), "new.nc".into(), 3.into())), "{found:?}");
     assert_eq!(told("gcode-sim verify old.nc --reference wanted.csv --format sarif"), []);
     let found = told("gcode-sim diff old.nc new.nc --format sarif");
-    let wanted =
-        [("hole-moved".to_owned(), "new.nc".into(), 3.into()), ("stop".to_owned(), Value::Null, Value::Null)];
+    let wanted = [
+        ("hole-moved".to_owned(), "new.nc".into(), 3.into()),
+        ("stop".to_owned(), "new.nc".into(), 3.into()),
+    ];
     assert_eq!(found, wanted);
     assert_eq!(told("gcode-sim diff old.nc old.nc --format sarif"), []);
 }
@@ -157,6 +159,7 @@ fn the_results_of_shards_merge_to_those_of_one_run() {
     for k in 1..=4 {
         run_line(&format!("gcode-sim test parts --shard {k}/4 --format json > {k}.json"), place.path());
     }
+    run_line("gcode-sim test parts --shard 4/4 --tolerance 0.02 --format json > wide.json", place.path());
     assert_eq!(json("gcode-sim test --merge 3.json 1.json 4.json 2.json --format json", place.path()), whole);
     for (line, wanted) in [
         ("1.json 2.json 4.json", "the results of --shard 3/4 are missing"),
@@ -164,6 +167,10 @@ fn the_results_of_shards_merge_to_those_of_one_run() {
         ("main.json main.json", "case aside is in two of the results"),
         ("1.json main.json", "these aren't shards of one collection of cases"),
         ("odd.json", "missing field"),
+        (
+            "1.json 2.json 3.json wide.json",
+            "some results were made with --tolerance 0.0001 and some with 0.02",
+        ),
     ] {
         std::fs::write(place.path().join("main.json"), whole.to_string()).unwrap();
         std::fs::write(place.path().join("odd.json"), "{}").unwrap();
@@ -172,4 +179,18 @@ fn the_results_of_shards_merge_to_those_of_one_run() {
         assert!(said.contains(wanted), "{line}: {said}");
         assert_eq!(done.status.code(), Some(2), "{line}");
     }
+}
+
+/// A build server keeps the document in a file: its log says why a case can't be used.
+#[test]
+fn a_refused_case_is_told_beside_every_document() {
+    let place = tempfile::tempdir().unwrap();
+    collection(place.path());
+    for format in ["json", "junit", "sarif"] {
+        let done = run_line(&format!("gcode-sim test parts --format {format} > out"), place.path());
+        let said = String::from_utf8(done.stderr).unwrap();
+        assert!(said.starts_with("error: case two: parts/two holds several programs"), "{format}: {said}");
+        assert_eq!(done.status.code(), Some(2), "{format}");
+    }
+    assert!(run_line("gcode-sim test parts", place.path()).stderr.is_empty(), "the text says it itself");
 }

@@ -20,7 +20,7 @@ pub(super) fn is_same_block(old: &Where, new: &Where) -> bool {
 }
 
 /// A block without sequence number, remarks and spaces.
-fn words(block: &str) -> String {
+pub(super) fn words(block: &str) -> String {
     let mut depth = 0;
     let code = block.chars().filter(|c| {
         let is_remark = depth > 0 || *c == '(';

@@ -7,8 +7,10 @@ use serde::{Deserialize, Serialize};
 use super::record::Where;
 
 /// What a change can be called, in the order of their sections in docs/changes.md.
-pub const CODES: [&str; 38] = [
+pub const CODES: [&str; 40] = [
     "outcome",
+    "program",
+    "start",
     "hole-moved",
     "hole-tilted",
     "hole-depth",
@@ -60,12 +62,15 @@ pub struct Change {
     pub old: Option<Where>,
     /// … and of the new one.
     pub new: Option<Where>,
+    /// Of what is gone, the block of the new revision next to where it was.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub near: Option<Where>,
 }
 
 impl Change {
     pub(super) fn new(code: &'static str, message: impl Into<String>) -> Self {
         debug_assert!(CODES.contains(&code), "{code}");
-        Self { code: code.into(), message: message.into(), old: None, new: None }
+        Self { code: code.into(), message: message.into(), old: None, new: None, near: None }
     }
 
     pub(super) fn once_at(self, place: Option<&Where>) -> Self {

@@ -8,6 +8,9 @@ use crate::exec::mode_name;
 /// The parts counter: M02 and M30 count it up.
 pub(super) const PARTS: &str = "#3901";
 
+/// All output signals as one number.
+pub(super) const OUTPUTS: &str = "#1132";
+
 /// Whether the runs ended in the same way.
 pub(super) fn outcome(old: &Record, new: &Record) -> Option<Change> {
     let (was, is) = (&old.ending, &new.ending);
@@ -16,6 +19,13 @@ pub(super) fn outcome(old: &Record, new: &Record) -> Option<Change> {
             .once_at(was.stopped.as_ref())
             .now_at(is.stopped.as_ref())
     })
+}
+
+/// Whether the main programs have one name.
+pub(super) fn program(old: &Record, new: &Record) -> Option<Change> {
+    let (was, is) = (old.program.as_ref()?, new.program.as_ref()?);
+    let message = || format!("{is} instead of {was}: on the control that is another program");
+    (was != is).then(|| Change::new("program", message()))
 }
 
 /// The code of a group that the next program finds in force, of a run to the end.

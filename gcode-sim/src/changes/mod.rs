@@ -3,15 +3,18 @@
 //! Nothing of the text is compared: sequence numbers, spaces, comments, names of locals and the way a number is written
 //! make no difference unless the control does something else because of them.
 mod align;
+mod begin;
 mod cause;
 mod change;
 mod conditions;
 mod groups;
 mod hole_groups;
 mod holes;
+mod idle;
 mod in_force;
 mod left;
 mod motion;
+mod near;
 mod passes;
 mod path;
 mod record;
@@ -22,6 +25,7 @@ mod words;
 
 pub use change::{CODES, Change};
 pub use holes::Paired;
+pub use idle::{Unexecuted, unexecuted};
 pub use path::Leg;
 pub use record::{Record, Revision, Totals, Where};
 pub use recorder::MOST_STEPS;
@@ -62,6 +66,8 @@ impl Compared {
         let is_by_other = outcome.is_some();
         let is_to_the_end = !is_by_other || [old, new].iter().all(|record| record.outcome() == "end");
         let mut changes: Vec<Change> = outcome.into_iter().collect();
+        changes.extend(left::program(old, new));
+        changes.extend(begin::compare(old, new, &links));
         changes.extend(holes.changes);
         let (motion, modes) = motion::compare(old, new, &links, &holes.moved, tolerance);
         changes.extend(motion);
@@ -71,9 +77,11 @@ impl Compared {
         }
         if is_to_the_end {
             let mut told: BTreeSet<String> = modes.into_iter().map(mode_name).collect();
+            told.extend(motion::switches_outputs(old, new, &links).then(|| left::OUTPUTS.to_owned()));
             told.extend(is_by_other.then(|| left::PARTS.to_owned()));
             changes.extend(left::compare(old, new, &told, tolerance));
         }
+        changes.iter_mut().for_each(|change| near::note(change, old, new, &links));
         let different = links.iter().filter(|link| !matches!(link, Link::Same(..)));
         let (was, is): (Vec<_>, Vec<_>) = different.map(|link| link.sides()).unzip();
         let steps = [was.into_iter().flatten().collect(), is.into_iter().flatten().collect()];

@@ -6,15 +6,16 @@ use std::collections::{BTreeMap, BTreeSet};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::begin::Begun;
 use super::in_force::Condition;
-use super::recorder::{End, MOST_STEPS, Recorder, Shared};
+use super::recorder::{Done, End, MOST_STEPS, Recorder, Shared};
 use super::steps::{Kind, Step};
 use crate::diag::{Diagnostic, Severity};
 use crate::exec::{Control, Outcome, Remainder, RemainderKind, Watcher, mode_name};
 use crate::holes::Found;
 use crate::motion::{Axes, Calls, MAX_AXES, Place, Position};
 use crate::part::surface::Surface;
-use crate::program::Library;
+use crate::program::{Library, Program};
 use crate::session::{self, Request, Run, SessionError, Simulation};
 use crate::source::Span;
 
@@ -33,6 +34,10 @@ pub struct Record {
     pub(super) places: Vec<Where>,
     /// What is in force while steps are made: [`Step::under`] counts them.
     pub(super) conditions: Vec<Condition>,
+    /// What the program commands, each at its first time; `None` where nobody has written that down.
+    pub(super) begun: Option<Vec<Begun>>,
+    /// The main program's name as a control shows it.
+    pub(super) program: Option<String>,
     pub(super) ending: Ending,
     pub totals: Totals,
 }
@@ -91,6 +96,7 @@ pub(super) struct Left {
 pub struct Revision {
     pub simulation: Simulation,
     pub record: Record,
+    pub(super) done: Done,
 }
 
 impl Revision {
@@ -114,13 +120,14 @@ impl Revision {
         let recorder = RefCell::new(Recorder::default());
         let (mut told, mut beside) = (Shared(&recorder), Beside(Shared(&recorder), watcher));
         let mut simulation = session::simulate_beside(request, library, surface, &mut told, &mut beside)?;
-        let recorder = recorder.into_inner();
+        let mut recorder = recorder.into_inner();
         if recorder.too_many {
             let message = format!("more than {MOST_STEPS} moves: those behind them aren't compared");
             simulation.extracted.findings.push(Diagnostic::new(Severity::Alarm, "limit", message));
         }
+        let done = std::mem::take(&mut recorder.done);
         let record = record(&simulation, recorder);
-        Ok(Self { simulation, record })
+        Ok(Self { simulation, record, done })
     }
 
     /// The files of the programs, by the names that [`Where`] gives them; those that stand for one file only.
@@ -167,12 +174,15 @@ fn record(simulation: &Simulation, mut recorder: Recorder) -> Record {
     recorder.forget_taken_up();
     let (run, holes) = (&simulation.run, simulation.extracted.holes.clone());
     let feeds = feeds(&recorder, &holes);
-    let Recorder { mut steps, places, mut conditions, mut set, assigned, written, last, end, .. } = recorder;
+    let Recorder { mut steps, places, mut conditions, mut set, assigned, written, begun, last, end, .. } =
+        recorder;
+    let mut begun: Vec<Begun> = begun.into_values().collect();
     if conditions.is_empty() {
         conditions.push(Condition::default());
     }
     let words = conditions.iter_mut().flat_map(|condition| &mut condition.0);
     let named = words.filter_map(|word| word.place.as_mut()).chain(set.values_mut());
+    let named = named.chain(begun.iter_mut().map(|begun| &mut begun.place));
     let places = resolve(run, &places, steps.iter_mut().map(|step| &mut step.place).chain(named));
     let modes = set.iter().map(|(group, place)| (mode_name(*group), places[*place].clone()));
     let at = |place: &Place| Where::of(run, place);
@@ -188,6 +198,8 @@ fn record(simulation: &Simulation, mut recorder: Recorder) -> Record {
             seconds: run.control.seconds().0,
         },
         ending: ending(run, &by, (last.as_ref(), end)),
+        begun: Some(begun),
+        program: run.control.memory().programs().first().map(Program::label),
         conditions,
         steps,
         holes,

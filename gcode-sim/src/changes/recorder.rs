@@ -1,14 +1,15 @@
 //! Looks on at a run and writes down its steps, what they are made under, and which block wrote what it leaves behind.
 use std::cell::RefCell;
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
+use super::begin::{Begun, Kind as What};
 use super::in_force::Condition;
 use super::steps::{Kind, Quiet, Step, difference};
-use crate::exec::{Control, Modal, Remainder, RemainderKind, Silent, Value, Watcher};
+use crate::exec::{Commanded, Control, Modal, Remainder, RemainderKind, Silent, Value, Watcher, modal_code};
 use crate::motion::{Event, EventKind, Place, Position, Sink, Spindle};
-use crate::source::Span;
+use crate::source::{SourceId, Span};
 
 /// More steps than this aren't written down: a loop that never ends must not fill the memory.
 pub const MOST_STEPS: usize = 1_000_000;
@@ -21,6 +22,9 @@ const HELD_BACK: usize = 16;
 
 /// Single block and waiting for M codes; feed hold, override and exact stop.
 const SWITCHES: RangeInclusive<u32> = 3003..=3004;
+
+/// Output signals, one by one and sixteen and thirty-two at a time.
+const OUTPUTS: RangeInclusive<u32> = 1100..=1135;
 
 /// Writes the steps down as the control tells them.
 #[derive(Debug, Default)]
@@ -36,6 +40,11 @@ pub(super) struct Recorder {
     pub assigned: BTreeMap<u32, Place>,
     /// The block that has changed an offset, a parameter, an output or a counter last, by its name.
     pub written: BTreeMap<String, Place>,
+    /// What is commanded, each at its first time.
+    pub begun: BTreeMap<(What, String), Begun>,
+    /// The blocks that were done whole.
+    pub done: Done,
+    moves: usize,
     block: Option<Block>,
     at: Position,
     length: Position,
@@ -51,6 +60,9 @@ pub(super) struct Recorder {
     /// Steps whose conditions are known.
     settled: usize,
 }
+
+/// The blocks that a run has done whole, by text and place.
+pub(super) type Done = BTreeSet<(SourceId, u32)>;
 
 /// How a run comes to its end.
 #[derive(Clone, Copy, Debug, Default)]
@@ -105,10 +117,30 @@ impl Recorder {
             let silent = control.next_silent();
             let tables = if silent.writes { control.left_behind() } else { Vec::new() };
             let mut assigned = control.will_assign();
-            assigned.retain(|number| COMMON.contains(number) || SWITCHES.contains(number));
+            assigned.retain(|number| [COMMON, SWITCHES, OUTPUTS].iter().any(|some| some.contains(number)));
+            if control.next_is_whole() {
+                self.done.insert((block.source, block.start));
+            }
             let place = Place { block, ..control.place() };
+            self.begin(control.next_commanded(), &place);
             Block { place, before: (self.at, self.length), silent, assigned, tables }
         });
+    }
+
+    /// A block is about to command this.
+    fn begin(&mut self, commanded: Commanded, place: &Place) {
+        let Commanded { modes, axes, offsets } = commanded;
+        let modes =
+            modes.into_iter().map(|(group, code)| (What::Mode, format!("{group:02}"), modal_code(code)));
+        let axes = axes.into_iter().map(|letter| (What::Axis, letter.to_string(), letter.to_string()));
+        let offsets = offsets.into_iter().map(|name| (What::Offset, name.clone(), name));
+        for (what, name, text) in modes.chain(axes).chain(offsets) {
+            if !self.begun.contains_key(&(what, name.clone())) {
+                let place = self.place(place.clone());
+                let begun = Begun { what, name: name.clone(), text, moves: self.moves, place };
+                self.begun.insert((what, name), begun);
+            }
+        }
     }
 
     /// A block is done: what it said that moves nothing, and what it has written.
@@ -126,9 +158,10 @@ impl Recorder {
             }
         }
         for number in assigned {
-            if SWITCHES.contains(&number) {
+            if !COMMON.contains(&number) {
+                let what = if OUTPUTS.contains(&number) { Quiet::Signal } else { Quiet::Switch };
                 let value = control.variable(number).map_or(0.0, Value::number);
-                self.push(Kind::Silent(Quiet::Switch, format!("#{number}={value}")), self.at, place.clone());
+                self.push(Kind::Silent(what, format!("#{number}={value}")), self.at, place.clone());
             } else {
                 self.assigned.insert(number, place.clone());
             }
@@ -222,6 +255,7 @@ impl Recorder {
 
     fn go(&mut self, kind: Kind, to: Position, event: &Event<'_>) {
         let from = std::mem::replace(&mut self.at, to);
+        self.moves += usize::from(from != to || matches!(kind, Kind::Arc(..)));
         // A move to where the axes stand does nothing; a full circle ends where it begins.
         if from != to || matches!(kind, Kind::Arc(..)) {
             self.push(kind, from, event.place());

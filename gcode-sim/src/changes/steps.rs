@@ -61,6 +61,8 @@ pub(super) enum Quiet {
     Speed,
     /// #3003 or #3004: single block, waiting for M codes, feed hold, override, exact stop.
     Switch,
+    /// An assignment to an output: a pulse leaves nothing behind.
+    Signal,
 }
 
 /// What can be paired with what.
@@ -128,6 +130,7 @@ impl Kind {
             Self::Silent(Quiet::Tool, _) => "tool call",
             Self::Silent(Quiet::Speed, _) => "spindle speed",
             Self::Silent(Quiet::Switch, _) => "switch",
+            Self::Silent(Quiet::Signal, _) => "output signal",
         }
     }
 }

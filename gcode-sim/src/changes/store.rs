@@ -6,6 +6,7 @@ use nalgebra::{Point3, Unit, Vector3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::begin::Begun;
 use super::in_force::{Aspect, Condition, Word};
 use super::record::{Ending, Record, Totals, Where};
 use super::steps::{Kind, Quiet, Step, difference};
@@ -21,9 +22,15 @@ const VERSION: u32 = 1;
 pub(crate) struct File {
     version: u32,
     axes: String,
+    /// The main program's name as a control shows it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    program: Option<String>,
     totals: Totals,
     ending: Ending,
     places: Vec<Where>,
+    /// What the program commands, each at its first time.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    begun: Option<Vec<Begun>>,
     steps: Vec<Line>,
     holes: Vec<Hole>,
 }
@@ -167,8 +174,14 @@ impl Record {
         let axes: String = self.axes.iter().map(|(_, letter)| letter).collect();
         let mut text = String::from("{\n");
         let _ = writeln!(text, "\"version\": {VERSION},\n\"axes\": \"{axes}\",");
+        if let Some(program) = &self.program {
+            let _ = writeln!(text, "\"program\": {},", json(program)?);
+        }
         let _ = writeln!(text, "\"totals\": {},\n\"ending\": {},", json(&self.totals)?, json(&self.ending)?);
         let _ = writeln!(text, "\"places\": {},", lines(&self.places)?);
+        if let Some(begun) = &self.begun {
+            let _ = writeln!(text, "\"begun\": {},", lines(begun)?);
+        }
         let _ = writeln!(text, "\"steps\": {},", lines(&steps)?);
         let _ = writeln!(text, "\"holes\": {}", lines(&holes.collect::<Vec<_>>())?);
         text.push_str("}\n");
@@ -214,9 +227,14 @@ impl Record {
             holes.push(hole.found(holes.len())?);
             feeds.push(hole.steps);
         }
+        let mut begun = file.begun.iter().flatten();
+        if let Some(begun) = begun.find(|begun| file.places.len() <= begun.place) {
+            return Err(StoreError(format!("{} names block {}, which isn't there", begun.text, begun.place)));
+        }
         let (places, ending, totals) = (file.places, file.ending, file.totals);
         let unfinished = BTreeSet::new();
-        Ok(Self { axes, steps, holes, feeds, unfinished, places, conditions, ending, totals })
+        let (begun, program) = (file.begun, file.program);
+        Ok(Self { axes, steps, holes, feeds, unfinished, places, conditions, begun, program, ending, totals })
     }
 
     fn line(&self, step: &Step, before: &Position) -> Line {

@@ -17,6 +17,7 @@ pub(super) fn code(kind: &Kind) -> &'static str {
         Category::Silent(Quiet::Path) => "path-mode",
         Category::Silent(Quiet::GCode) => "g-code",
         Category::Silent(Quiet::Switch) => "switch",
+        Category::Silent(Quiet::Signal) => "signal",
     }
 }
 

@@ -6,13 +6,13 @@ use clap::Args;
 use super::conditions::RunConditions;
 use super::format::FindingFormat;
 use super::{Refusal, Status, apart, options, output, page, render, unused_machine};
-use crate::changes::{Compared, Revision};
+use crate::changes::{Compared, Revision, unexecuted};
 use crate::part::reference::Reference;
 use crate::part::wanted::Wanted;
 use crate::picture;
 use crate::report::changes::{ChangesReport, change_found};
 use crate::report::page::{Difference, Page, Seen};
-use crate::report::sarif::{self, Finding};
+use crate::report::sarif::{self, At, Finding};
 use crate::report::{diagnostic, top};
 use crate::session::Trace;
 use crate::verify::Tolerances;
@@ -76,17 +76,20 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
     let old = Revision::watched(&old_request, &mut old_folders, surface, &mut old_trace).map_err(refused)?;
     let new = Revision::watched(&new_request, &mut new_folders, surface, &mut new_trace).map_err(refused)?;
     let compared = Compared::new(&old.record, &new.record, tolerance);
+    let unexecuted = unexecuted(&old, &new);
     let report = ChangesReport::new(
         (&old_request.name, &old.record),
         (&new_request.name, &new.record),
         &compared.changes,
+        unexecuted.clone(),
         tolerance,
     );
     match arguments.format {
         FindingFormat::Json => output::json(&report)?,
         FindingFormat::Text => output::print(&report.text())?,
         FindingFormat::Sarif => {
-            output::json(&sarif::log(&findings(&compared, &new), &options::started_in()))?
+            let findings = findings(&compared, &new, &new_request.name);
+            output::json(&sarif::log(&findings, &options::started_in()))?
         }
     }
     if let Some(path) = &arguments.picture {
@@ -108,7 +111,7 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
         };
         let (old_verdict, new_verdict) = (judged(&old), judged(&new));
         let seen = |request, revision, trace, verdict| Seen { request, revision, trace, verdict };
-        let difference = Difference { compared: &compared, tolerance };
+        let difference = Difference { compared: &compared, unexecuted: &unexecuted, tolerance };
         let review = Page {
             old: Some((seen(&old_request, &old, old_trace, old_verdict.as_ref()), difference)),
             new: seen(&new_request, &new, new_trace, new_verdict.as_ref()),
@@ -132,9 +135,15 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
 }
 
 /// For a code review: what changes, at its place in the new revision, and why that stops if it does.
-fn findings(compared: &Compared, new: &Revision) -> Vec<Finding> {
+fn findings(compared: &Compared, new: &Revision, file: &str) -> Vec<Finding> {
     let (files, sources) = (new.files(), new.simulation.run.control.memory().sources());
-    let changes = compared.changes.iter().map(|change| change_found(change, "", &files));
+    // A result without a place is taken by none.
+    let first = At { file: file.to_owned(), line: Some(1), column: None };
+    let found = |change| {
+        let found = change_found(change, "", &files);
+        Finding { at: found.at.or_else(|| Some(first.clone())), ..found }
+    };
+    let changes = compared.changes.iter().map(found);
     changes.chain(new.stopped().map(|stopped| Finding::of(stopped, sources))).collect()
 }
 

@@ -6,6 +6,7 @@ mod block;
 mod calls;
 mod code_calls;
 mod code_words;
+mod commanded;
 mod commit;
 mod cycles;
 mod data_input;
@@ -55,6 +56,7 @@ use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+pub use commanded::{Commanded, modal_code};
 pub use left::{Remainder, RemainderKind, mode_name};
 pub use modal::Modal;
 pub use notes::Note;

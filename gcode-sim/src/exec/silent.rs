@@ -72,7 +72,10 @@ impl Core {
             if word.letter == b'M' {
                 let Ok(code) = count(raw, b'M') else { continue };
                 match m_codes::find(code, self.settings.codes) {
-                    Some(MEffect::NoEffect | MEffect::Orient) => silent.m_codes.push(format!("M{code:02}")),
+                    Some(MEffect::NoEffect) => silent.m_codes.push(format!("M{code:02}")),
+                    Some(MEffect::Orient) => {
+                        silent.m_codes.push(self.with_words(program, words, format!("M{code:02}"), b"PR"));
+                    }
                     Some(MEffect::End) => silent.ends = Some(code),
                     _ => {}
                 }
@@ -87,6 +90,13 @@ impl Core {
                 Effect::OneShot(
                     OneShot::DataInput | OneShot::SetSystem | OneShot::PresetSystem | OneShot::LocalSystem,
                 ) => silent.writes = true,
+                Effect::OneShot(OneShot::OneSide) => silent.path.push("G60".to_owned()),
+                Effect::OneShot(OneShot::Reference | OneShot::CheckReference | OneShot::FromReference) => {
+                    silent.g_codes.push(format!("G{}", spelled(row.code)));
+                }
+                Effect::OneShot(OneShot::SecondReference) => {
+                    silent.g_codes.push(self.with_words(program, words, "G30".to_owned(), b"P"));
+                }
                 _ => {}
             }
         }
@@ -95,7 +105,12 @@ impl Core {
     /// A code with the words that belong to it; exact stop has none.
     fn with_values(&self, program: &Program, words: &Words, code: u32) -> String {
         let name = if code.is_multiple_of(10) { format!("G{:02}", code / 10) } else { two_digits(code) };
-        let of_code = |letter: u8| code != 90 && b"EIPQR".contains(&letter);
+        self.with_words(program, words, name, if code == 90 { b"" } else { b"EIPQR" })
+    }
+
+    /// A name and what stands behind these letters.
+    fn with_words(&self, program: &Program, words: &Words, name: String, letters: &[u8]) -> String {
+        let of_code = |letter: u8| letters.contains(&letter);
         let values = words.list.iter().filter(|word| of_code(word.letter) && !word.comma);
         let shown = values.filter_map(|word| {
             let value = match word.value {
@@ -154,6 +169,10 @@ mod tests {
         assert_eq!(said("G8 P1").path, ["G08 P1"]);
         assert_eq!(said("G25").g_codes, ["G25"]);
         assert_eq!(said("M29 S500").m_codes, ["M29"]);
+        assert_eq!(said("M19 R90.").m_codes, ["M19 R90"]);
+        assert_eq!(said("G91 G28 Z0").g_codes, ["G28"]);
+        assert_eq!(said("G30 P3 Z0").g_codes, ["G30 P3"]);
+        assert_eq!(said("G60 X5.").path, ["G60"]);
         // The spindle stops, and stands at an angle.
         assert_eq!(said("M19").m_codes, ["M19"]);
     }

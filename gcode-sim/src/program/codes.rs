@@ -46,6 +46,35 @@ pub enum Effect {
 }
 
 impl Effect {
+    /// The group of a code that stays in force.
+    pub fn group(self) -> Option<u32> {
+        Some(match self {
+            Self::Motion(_) => 1,
+            Self::Plane(_) => 2,
+            Self::Distance(_) => 3,
+            Self::StrokeCheck(_) => 4,
+            Self::FeedMode(_) => 5,
+            Self::Unit(_) => 6,
+            Self::Cutter(_) => 7,
+            Self::Length(_) => 8,
+            Self::Cycle(_) => 9,
+            Self::ReturnTo(_) => 10,
+            Self::Scaling(_) => 11,
+            Self::SpindleMode(_) => 13,
+            Self::Work(_) | Self::AdditionalWork | Self::NumberedWork(_) => 14,
+            Self::Cutting(_) => 15,
+            Self::Rotation(_) => 16,
+            Self::Polar(_) => 17,
+            Self::Mirror(_) => 22,
+            Self::OneShot(_)
+            | Self::NoEffect
+            | Self::LookAhead
+            | Self::Smoothness
+            | Self::Call
+            | Self::NotSimulated => return None,
+        })
+    }
+
     /// Reference returns and what changes the coordinate system: not while G51 is on (operator's manual, scaling).
     pub fn needs_plain_coordinates(self) -> bool {
         use OneShot::{DataInput, DataInputEnd, Dwell, Skip};

@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::sarif::{At, Finding};
-use crate::changes::{Change, Record, Totals, Where};
+use crate::changes::{Change, Record, Totals, Unexecuted, Where};
 use crate::diag::Severity;
 
 /// The document of `diff --format json`.
@@ -19,6 +19,8 @@ pub struct ChangesReport {
     /// mm, and degrees for axes that turn.
     pub tolerance: f64,
     pub changes: Vec<Change>,
+    /// Blocks that are written otherwise and that neither run executed: what they do isn't compared.
+    pub unexecuted: Vec<Unexecuted>,
     pub old: Side,
     pub new: Side,
     /// How a run ended that stopped before its end: behind that nothing could be compared.
@@ -36,7 +38,13 @@ pub struct Side {
 }
 
 impl ChangesReport {
-    pub fn new(old: (&str, &Record), new: (&str, &Record), changes: &[Change], tolerance: f64) -> Self {
+    pub fn new(
+        old: (&str, &Record),
+        new: (&str, &Record),
+        changes: &[Change],
+        unexecuted: Vec<Unexecuted>,
+        tolerance: f64,
+    ) -> Self {
         let side = |(name, record): (&str, &Record)| Side {
             name: name.to_owned(),
             outcome: record.outcome().to_owned(),
@@ -48,6 +56,7 @@ impl ChangesReport {
             same: changes.is_empty() && stopped.is_none(),
             tolerance,
             changes: changes.to_vec(),
+            unexecuted,
             old: side(old),
             new: side(new),
             stopped: stopped.map(|record| record.words().to_owned()),
@@ -72,6 +81,7 @@ impl ChangesReport {
             1 => writeln!(text, "1 change"),
             n => writeln!(text, "{n} changes"),
         };
+        self.tell_unexecuted(&mut text);
         for (word, Side { name, totals, .. }) in [("old", &self.old), ("new", &self.new)] {
             let _ = writeln!(
                 text,
@@ -83,6 +93,30 @@ impl ChangesReport {
             );
         }
         text
+    }
+}
+
+impl ChangesReport {
+    fn tell_unexecuted(&self, text: &mut String) {
+        const SHOWN: usize = 6;
+        let all = &self.unexecuted;
+        if all.is_empty() {
+            return;
+        }
+        let _ = writeln!(
+            text,
+            "changed blocks that neither run executed, nothing is known of what they do: {}",
+            all.len()
+        );
+        for Unexecuted { old, new } in all.iter().take(SHOWN) {
+            for (word, place) in [("old", old), ("new", new)] {
+                let Some(place) = place else { continue };
+                let _ = writeln!(text, "    {word} {}", line(place));
+            }
+        }
+        if SHOWN < all.len() {
+            let _ = writeln!(text, "… and {} more of them: --format json has them all", all.len() - SHOWN);
+        }
     }
 }
 
@@ -133,7 +167,7 @@ fn line(place: &Where) -> String {
 
 /// A change for a code review, at its place in the new revision; `files` are those of the programs by their names.
 pub fn change_found(change: &Change, before: &str, files: &BTreeMap<String, String>) -> Finding {
-    let Change { code, message, old, new } = change;
+    let Change { code, message, old, new, near } = change;
     // What is gone has no line in the file as it is now: its old one is told in words.
     let was = old.as_ref().filter(|_| new.is_none());
     let was = was.map(|place| format!(" (was {}:{} {})", place.program, place.line, place.block));
@@ -142,7 +176,7 @@ pub fn change_found(change: &Change, before: &str, files: &BTreeMap<String, Stri
         code: code.to_string(),
         severity: Severity::Error,
         message: format!("{before}{message}{}", was.unwrap_or_default()),
-        at: new.as_ref().and_then(|place| place_in(place, files)),
+        at: new.as_ref().or(near.as_ref()).and_then(|place| place_in(place, files)),
         related: calls
             .iter()
             .filter_map(|call| Some((place_in(call, files)?, "called from here".to_owned())))

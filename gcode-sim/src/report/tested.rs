@@ -40,7 +40,7 @@ pub struct Shard {
 #[serde(deny_unknown_fields)]
 pub struct CaseReport {
     pub name: String,
-    /// The main program's file.
+    /// The main program's file; where none is to be run, a file of the case.
     pub file: Option<String>,
     pub answer: Answer,
     pub changes: Vec<Change>,
@@ -79,17 +79,17 @@ pub struct Against {
 }
 
 impl TestReport {
-<<<<<<< HEAD
     /// With the cases in the order of their names: a whole run and its merged shards are the same document.
-    pub fn new(shard: Option<Shard>, mut cases: Vec<CaseReport>, mut accepted: Vec<String>) -> Self {
+    pub fn new(
+        shard: Option<Shard>,
+        tolerance: f64,
+        mut cases: Vec<CaseReport>,
+        mut accepted: Vec<String>,
+    ) -> Self {
         cases.sort_by(|a, b| a.name.cmp(&b.name));
         accepted.sort();
-        Self { basis: "predicted by simulation, not measured".to_owned(), shard, cases, accepted }
-=======
-    pub fn new(shard: Option<Shard>, tolerance: f64, cases: Vec<CaseReport>, accepted: Vec<String>) -> Self {
         let basis = "predicted by simulation, not measured".to_owned();
         Self { basis, shard, tolerance, cases, accepted }
->>>>>>> 546e113 (A tool change stops the spindle; results never overwrite what they are made of; shards of one tolerance; refused cases reach the log; names of holes keep apart)
     }
 
     /// The same for people: what isn't as accepted, and how many are.

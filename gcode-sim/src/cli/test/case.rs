@@ -36,13 +36,19 @@ impl Case {
     /// Runs the case and holds it against what was accepted.
     pub(super) fn run(&self, libraries: &[PathBuf], tolerance: f64) -> Tried {
         let main = self.lost().map_or_else(|| main_program::of(&self.folder, &self.programs), Err);
-        let file = main.as_ref().ok().map(|path| path.display().to_string());
+        let unclear = || self.programs.first().cloned().unwrap_or_else(|| self.accepted());
+        let file = Some(main.as_ref().map_or_else(|_| unclear(), PathBuf::clone).display().to_string());
         let empty = |answer| CaseReport::new(self.name.clone(), file.clone(), answer);
         let tried = main.and_then(|program| self.tried(&program, libraries, tolerance, empty));
         tried.unwrap_or_else(|refusal| {
             let error = Some(refusal.to_string());
             Tried { report: CaseReport { error, ..empty(Answer::Refused) }, record: None }
         })
+    }
+
+    /// The file that holds what was accepted; what stands for the case where even that is gone.
+    fn accepted(&self) -> PathBuf {
+        if self.folder.is_dir() { self.folder.join(ACCEPTED) } else { self.folder.clone() }
     }
 
     /// Why there is nothing to run.
@@ -154,7 +160,7 @@ fn fails(answer: verify::Answer, findings: &[Diagnostic], run: &Run) -> Option<A
 
 /// The files of the programs that are named by what is told.
 fn files(revision: &Revision, changes: &[Change], against: Option<&Against>) -> BTreeMap<String, String> {
-    let places = changes.iter().filter_map(|change| change.new.as_ref());
+    let places = changes.iter().filter_map(|change| change.new.as_ref().or(change.near.as_ref()));
     let places = places.chain(against.and_then(|against| against.place.as_ref()));
     let named: BTreeSet<&str> = places
         .flat_map(|place| std::iter::once(place).chain(&place.calls))

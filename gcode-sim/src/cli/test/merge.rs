@@ -22,14 +22,11 @@ pub(super) fn merged(files: &[PathBuf]) -> Result<TestReport, Refusal> {
     let tolerance = same_tolerance(&reports)?;
     let accepted = reports.iter_mut().flat_map(|report| std::mem::take(&mut report.accepted)).collect();
     let cases = reports.into_iter().flat_map(|report| report.cases).collect();
-    let report = TestReport::new(None, cases, accepted);
+    let report = TestReport::new(None, tolerance, cases, accepted);
     if let Some([first, _]) = report.cases.array_windows().find(|[a, b]| a.name == b.name) {
         return Err(Refusal::new(format!("case {} is in two of the results", first.name)));
     }
-<<<<<<< HEAD
     Ok(report)
-=======
-    Ok(TestReport::new(None, tolerance, cases, accepted))
 }
 
 /// The tolerance of all results: what is the same by one and a change by another has no answer.
@@ -42,7 +39,6 @@ fn same_tolerance(reports: &[TestReport]) -> Result<f64, Refusal> {
             other.tolerance
         ))),
     }
->>>>>>> 546e113 (A tool change stops the spindle; results never overwrite what they are made of; shards of one tolerance; refused cases reach the log; names of holes keep apart)
 }
 
 /// All shards are there, of one collection.

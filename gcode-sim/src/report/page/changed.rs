@@ -4,11 +4,10 @@ use maud::{Markup, html};
 use super::lines::Lines;
 use super::words::shown;
 use super::{Difference, MOST_CHANGES, Side, listed};
-use crate::changes::Where;
+use crate::changes::{Unexecuted, Where};
 
 pub(super) fn changes(difference: &Difference<'_>, sides: &[Side<'_>]) -> Markup {
     let all = &difference.compared.changes;
-    let of = |word: &str| sides.iter().find(|side| side.word == word).map(|side| side.lines);
     html! {
         @if all.is_empty() {
             p { "Nothing changes on the part, nor in what the control is left with." }
@@ -23,12 +22,32 @@ pub(super) fn changes(difference: &Difference<'_>, sides: &[Side<'_>]) -> Markup
             @for change in listed(all) {
                 li {
                     code.code { (change.code) } " " (shown(&change.message))
-                    @for (word, place) in [("old", &change.old), ("new", &change.new)] {
-                        @if let (Some(place), Some(lines)) = (place, of(word)) {
-                            div.place { span.word { (word) } " " (chain(place, lines)) }
-                        }
-                    }
+                    (both(&change.old, &change.new, sides))
                 }
+            }
+        }
+        @if !difference.unexecuted.is_empty() {
+            h3 { "Changed blocks that neither run executed" }
+            p.note { "Nothing is known of what they do: a guard that wasn't needed, a way that wasn't gone." }
+            ol.changes {
+                @for Unexecuted { old, new } in listed(difference.unexecuted) {
+                    li { (both(old, new, sides)) }
+                }
+            }
+            @if MOST_CHANGES < difference.unexecuted.len() {
+                p.note { "The first " (MOST_CHANGES) " of " (difference.unexecuted.len()) " are listed." }
+            }
+        }
+    }
+}
+
+/// The block before and now.
+fn both(old: &Option<Where>, new: &Option<Where>, sides: &[Side<'_>]) -> Markup {
+    let of = |word: &str| sides.iter().find(|side| side.word == word).map(|side| side.lines);
+    html! {
+        @for (word, place) in [("old", old), ("new", new)] {
+            @if let (Some(place), Some(lines)) = (place, of(word)) {
+                div.place { span.word { (word) } " " (chain(place, lines)) }
             }
         }
     }

@@ -14,7 +14,7 @@ mod words;
 
 use maud::{Markup, html};
 
-use crate::changes::{Change, Compared, Revision};
+use crate::changes::{Compared, Revision, Unexecuted};
 use crate::machine::Machine;
 use crate::part::reference::Reference;
 use crate::session::{Request, Trace};
@@ -49,6 +49,7 @@ pub struct Document {
 #[derive(Clone, Copy, Debug)]
 pub struct Difference<'a> {
     pub compared: &'a Compared,
+    pub unexecuted: &'a [Unexecuted],
     pub tolerance: f64,
 }
 
@@ -165,6 +166,6 @@ fn heading(side: &Side<'_>, sides: &[Side<'_>]) -> &'static str {
 }
 
 /// The changes that are listed.
-fn listed(changes: &[Change]) -> &[Change] {
+fn listed<T>(changes: &[T]) -> &[T] {
     &changes[..changes.len().min(MOST_CHANGES)]
 }

@@ -1,0 +1,153 @@
+//! What a program commands first, and what of it moves rely on without: a mode, a place, an offset that it finds as it was left.
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::align::Link;
+use super::change::Change;
+use super::in_force::Aspect;
+use super::record::Record;
+use crate::exec::{Modal, modal_code};
+
+/// What is commanded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Kind {
+    /// A modal code.
+    Mode,
+    /// The place of an axis, wherever it stood.
+    Axis,
+    /// A value of an offset.
+    Offset,
+}
+
+/// Something that the program commands, at its first time.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Begun {
+    pub what: Kind,
+    /// What can't be commanded twice: the group of a mode, `03`, an axis, an offset, `G10 L2 P1 X`.
+    pub name: String,
+    /// As programs write it.
+    pub text: String,
+    /// How many moves were made before.
+    pub moves: usize,
+    /// Its block, by its number in the record.
+    pub place: usize,
+}
+
+/// What the old revision commands before moves that both make, and the new one doesn't.
+pub(super) fn compare(old: &Record, new: &Record, links: &[Link]) -> Vec<Change> {
+    let (Some(was), Some(is)) = (&old.begun, &new.begun) else { return Vec::new() };
+    let moves = same_moves(old, new, links);
+    let mut groups: Vec<Group<'_>> = Vec::new();
+    for begun in was.iter().filter(|begun| is_as_found(begun)) {
+        let later = is.iter().find(|other| (other.what, &other.name) == (begun.what, &begun.name));
+        let until = later.map_or(usize::MAX, |later| later.moves);
+        let relies = |pair: &&Pair| {
+            begun.moves <= pair.before.0 && pair.before.1 < until && !is_told(begun, old, new, pair, links)
+        };
+        let relying: Vec<&Pair> = moves.iter().filter(relies).collect();
+        let Some(first) = relying.first() else { continue };
+        let of_block = |group: &&mut Group<'_>| {
+            let known = group.all[0];
+            (known.what, known.place) == (begun.what, begun.place) && group.first.steps == first.steps
+        };
+        match groups.iter_mut().find(of_block) {
+            Some(group) => group.all.push(begun),
+            None => groups.push(Group { all: vec![begun], first: **first, moves: relying.len() }),
+        }
+    }
+    groups.iter().map(|group| group.change(old, new)).collect()
+}
+
+/// A move that both revisions make in the same way.
+#[derive(Clone, Copy)]
+struct Pair {
+    /// Its steps.
+    steps: (usize, usize),
+    /// How many moves come before it.
+    before: (usize, usize),
+}
+
+fn same_moves(old: &Record, new: &Record, links: &[Link]) -> Vec<Pair> {
+    let mut before = (0, 0);
+    let mut pairs = Vec::new();
+    for link in links {
+        let (i, j) = link.sides();
+        let is_move =
+            |record: &Record, step: Option<usize>| step.is_some_and(|step| record.steps[step].is_move());
+        let moves = (is_move(old, i), is_move(new, j));
+        if let (Link::Same(i, j), (true, _)) = (link, moves) {
+            pairs.push(Pair { steps: (*i, *j), before });
+        }
+        before = (before.0 + usize::from(moves.0), before.1 + usize::from(moves.1));
+    }
+    pairs
+}
+
+/// A mode that a run finds in force by itself: without any other code the moves themselves are others.
+fn is_as_found(begun: &Begun) -> bool {
+    let group = begun.name.parse().ok();
+    let found = group.and_then(|group| Modal::default().code(group)).map(modal_code);
+    begun.what != Kind::Mode || found.as_ref() == Some(&begun.text)
+}
+
+/// Another entry says so: the code in force is another one, or what else the block did is gone.
+fn is_told(begun: &Begun, old: &Record, new: &Record, pair: &Pair, links: &[Link]) -> bool {
+    let (i, j) = pair.steps;
+    match begun.what {
+        Kind::Mode => {
+            let of_group = |aspect: &Aspect| format!("{:02}", aspect.group()) == begun.name;
+            let aspect = Aspect::ALL.into_iter().find(of_group);
+            aspect.is_some_and(|aspect| old.under(i).word(aspect).text != new.under(j).word(aspect).text)
+        }
+        Kind::Axis => {
+            let is_of_block =
+                |link: &&Link| link.sides().0.is_some_and(|i| old.steps[i].place == begun.place);
+            links.iter().filter(is_of_block).any(|link| !matches!(link, Link::Same(..)))
+        }
+        Kind::Offset => false,
+    }
+}
+
+/// What is gone with one block.
+struct Group<'a> {
+    all: Vec<&'a Begun>,
+    first: Pair,
+    moves: usize,
+}
+
+impl Group<'_> {
+    fn change(&self, old: &Record, new: &Record) -> Change {
+        let names: Vec<&str> = self.all.iter().map(|begun| begun.text.as_str()).collect();
+        let one = names.len() == 1;
+        let names = match names.as_slice() {
+            [before @ .., last] if !before.is_empty() => format!("{} and {last}", before.join(", ")),
+            _ => names.concat(),
+        };
+        let (is, stand) = if one { ("is", "it stands") } else { ("are", "they stand") };
+        let first = match (self.first.before.0, self.moves) {
+            (0, _) => "the first move".to_owned(),
+            (_, 1) => "1 move".to_owned(),
+            (_, n) => format!("{n} moves"),
+        };
+        let message = match self.all[0].what {
+            Kind::Mode => format!(
+                "{names} {is} no longer commanded before {first}: the program now relies on what the control was left in"
+            ),
+            Kind::Axis => {
+                format!(
+                    "{names} {is} no longer sent to a place before {first}: the tool goes on from wherever {stand}"
+                )
+            }
+            Kind::Offset => {
+                format!(
+                    "{names} {is} no longer written before {first}: the program now relies on the value that was left"
+                )
+            }
+        };
+        Change::new("start", message)
+            .once_at(old.places.get(self.all[0].place))
+            .now_at(new.places.get(new.steps[self.first.steps.1].place))
+    }
+}

@@ -1,0 +1,199 @@
+//! What a block commands that would otherwise be as it was left: modal codes, the places of axes, offsets.
+use super::words::{Raw, computed_row};
+use super::{Control, Core};
+use crate::program::codes::{Effect, OneShot, spelled};
+use crate::program::modes::Distance;
+use crate::program::{Op, OpKind, Program, Statement, Words};
+
+/// Of a block that is about to be done.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Commanded {
+    /// The group of each modal code, and the code × 10.
+    pub modes: Vec<(u32, u32)>,
+    /// The letters of axes that are sent to a place, wherever they stand.
+    pub axes: Vec<char>,
+    /// Offsets that get a value by G10: `G10 L2 P1 X`.
+    pub offsets: Vec<String>,
+}
+
+impl Control {
+    /// What [`Control::next_block`] commands; nothing for a block that is skipped.
+    pub fn next_commanded(&self) -> Commanded {
+        let mut commanded = Commanded::default();
+        let Some((program, op)) = self.next_op() else { return commanded };
+        if op.skip.is_some_and(|switch| self.core.skips(switch)) {
+            return commanded;
+        }
+        // To look is no part of the run: what a function has to tell is told when the block is done.
+        let told = self.core.told.take();
+        if let OpKind::Words(words) = then(&self.core, program, &op.kind) {
+            self.core.commanded(program, words, &mut commanded);
+        }
+        self.core.told.set(told);
+        commanded
+    }
+
+    /// Whether [`Control::next_block`] will do all that it says: it isn't skipped, and no condition stands in the way.
+    pub fn next_is_whole(&self) -> bool {
+        let Some((program, op)) = self.next_op() else { return true };
+        let told = self.core.told.take();
+        let condition = match &op.kind {
+            OpKind::If { condition, .. }
+            | OpKind::Statement(Statement::IfGoto { condition, .. } | Statement::IfThen { condition, .. }) => {
+                Some(*condition)
+            }
+            OpKind::Empty | OpKind::Words(_) | OpKind::Statement(_) | OpKind::Alarm(_) => None,
+        };
+        let holds = condition.is_none_or(|condition| self.core.holds(program, condition).unwrap_or(true));
+        self.core.told.set(told);
+        holds && !op.skip.is_some_and(|switch| self.core.skips(switch))
+    }
+
+    fn next_op(&self) -> Option<(&Program, &Op)> {
+        let frame = self.core.frames.last()?;
+        let program = self.memory.get(frame.program);
+        Some((program, program.op(frame.next)?))
+    }
+}
+
+/// What stands behind an IF that holds; else the operation itself.
+fn then<'a>(core: &Core, program: &Program, kind: &'a OpKind) -> &'a OpKind {
+    match kind {
+        OpKind::If { condition, then } if core.holds(program, *condition).unwrap_or(false) => then,
+        _ => kind,
+    }
+}
+
+impl Core {
+    fn commanded(&self, program: &Program, words: &Words, commanded: &mut Commanded) {
+        // Behind G65 and M98 letters are arguments.
+        if words.call.is_some() {
+            return;
+        }
+        let words = match &words.short {
+            Some((switch, short)) if self.skips(*switch) => short,
+            _ => words,
+        };
+        let mut distance = self.state.modal.distance;
+        let mut act = None;
+        for word in words.list.iter().filter(|word| word.letter == b'G') {
+            let Ok(Some(raw)) = self.raw(program, word) else { continue };
+            let Ok(row) = computed_row(raw, self.settings.codes) else { continue };
+            match row.effect {
+                Effect::OneShot(one) => act = Some(one),
+                Effect::Distance(new) => distance = new,
+                _ => {}
+            }
+            commanded.modes.extend(row.effect.group().map(|group| (group, row.code)));
+        }
+        if act == Some(OneShot::DataInput) {
+            self.offsets_written(program, words, commanded);
+        } else if is_sent(act, distance) {
+            let letters = words.list.iter().filter(|word| !word.comma && word.axis.is_none());
+            let given = letters.filter(|word| matches!(self.raw(program, word), Ok(Some(_))));
+            let axes = given.filter(|word| self.settings.axes.find(word.letter).is_some());
+            commanded.axes.extend(axes.map(|word| char::from(word.letter)));
+        }
+    }
+
+    /// `G10 L2 P1 X`, for every value that the block gives.
+    fn offsets_written(&self, program: &Program, words: &Words, commanded: &mut Commanded) {
+        let mut table = "G10".to_owned();
+        for letter in *b"LP" {
+            let word = words.list.iter().find(|word| word.letter == letter && !word.comma);
+            let raw = word.and_then(|word| self.raw(program, word).ok().flatten());
+            if let Some(raw) = raw {
+                let number = match raw {
+                    Raw::Literal(number) => number.value(),
+                    Raw::Computed(value) => value,
+                };
+                table.push_str(&format!(" {}{number}", char::from(letter)));
+            }
+        }
+        let values = words.list.iter().filter(|word| !b"GLPN".contains(&word.letter) && !word.comma);
+        commanded.offsets.extend(values.map(|word| format!("{table} {}", char::from(word.letter))));
+    }
+}
+
+/// Whether the axes of a block end where it says, wherever they stood.
+fn is_sent(act: Option<OneShot>, distance: Distance) -> bool {
+    match act {
+        Some(OneShot::Reference | OneShot::SecondReference | OneShot::CheckReference) => true,
+        None
+        | Some(
+            OneShot::MachineSystem
+            | OneShot::OneSide
+            | OneShot::Skip
+            | OneShot::CirclePocket(_)
+            | OneShot::BoltHoles(_),
+        ) => distance == Distance::Absolute,
+        Some(
+            OneShot::Dwell
+            | OneShot::DataInput
+            | OneShot::DataInputEnd
+            | OneShot::FromReference
+            | OneShot::LocalSystem
+            | OneShot::SetSystem
+            | OneShot::PresetSystem
+            | OneShot::CornerArc,
+        ) => false,
+    }
+}
+
+/// A modal code as programs write it: `G90`, `G54.1`, `G00`.
+pub fn modal_code(code: u32) -> String {
+    if code < 100 { format!("G0{}", spelled(code)) } else { format!("G{}", spelled(code)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exec::{Limits, Watcher};
+    use crate::program::{Memory, NoLibrary};
+
+    /// What every block commands, and whether it is done whole.
+    #[derive(Default)]
+    struct Said(Vec<(Commanded, bool)>);
+
+    impl Watcher for Said {
+        fn before(&mut self, control: &mut Control) {
+            if control.next_block().is_some() {
+                self.0.push((control.next_commanded(), control.next_is_whole()));
+            }
+        }
+
+        fn after(&mut self, _: &Control) {}
+    }
+
+    fn said(block: &str) -> (Commanded, bool) {
+        let mut memory = Memory::default();
+        memory.load("O1.nc", format!("O1\n{block}\nM30\n").into_bytes());
+        let mut control = Control::new(memory, crate::control::Settings::default());
+        let mut watcher = Said::default();
+        control.run_watched(Limits::default(), &mut NoLibrary, &mut (), &mut watcher);
+        let last = watcher.0.len() - 2;
+        watcher.0[last].clone()
+    }
+
+    #[test]
+    fn modal_codes_and_places_are_commanded() {
+        let (commanded, _) = said("G90 G54 G0 X5. Y0");
+        assert_eq!(commanded.modes, [(3, 900), (14, 540), (1, 0)]);
+        assert_eq!(commanded.axes, ['X', 'Y']);
+        assert!(said("G91 G0 X5.").0.axes.is_empty(), "by how far is no place");
+        assert!(said("G92 X5.").0.axes.is_empty(), "no axis moves");
+        assert_eq!(said("G91 G28 Z0").0.axes, ['Z']);
+        assert_eq!(said("G10 L2 P1 X0 Y0").0.offsets, ["G10 L2 P1 X", "G10 L2 P1 Y"]);
+        assert_eq!([modal_code(0), modal_code(541)], ["G00", "G54.1"]);
+    }
+
+    #[test]
+    fn what_a_condition_keeps_from_being_done_is_not_whole() {
+        for block in ["IF[1 GT 2]THEN #3000=1", "IF[1 GT 2]GOTO 9", "N5 IF[#1 EQ 1]THEN #2=1"] {
+            assert!(!said(block).1, "{block}");
+        }
+        for block in ["IF[1 LT 2]THEN #2=1", "#2=1", "G0 X1."] {
+            assert!(said(block).1, "{block}");
+        }
+    }
+}
