@@ -1,8 +1,10 @@
 //! How the runs ended and what they leave behind: outcome, printed lines, variables, offsets and modes.
 use std::collections::BTreeSet;
 
+use super::align::Link;
 use super::change::Change;
 use super::record::{Left, Record};
+use super::steps::{Category, Quiet, Step};
 use crate::exec::mode_name;
 
 /// The parts counter: M02 and M30 count it up.
@@ -96,4 +98,13 @@ fn g_code(value: f64) -> String {
 /// Digits that nobody can set aren't shown.
 fn plain(value: f64) -> f64 {
     (value * 1e9).round() / 1e9 + 0.0
+}
+
+/// An output signal is set otherwise: what it is left at comes of that.
+pub(super) fn switches_outputs(old: &Record, new: &Record, links: &[Link]) -> bool {
+    let is_signal = |step: &Step| step.kind.category() == Category::Silent(Quiet::Signal);
+    links.iter().filter(|link| !matches!(link, Link::Same(..))).any(|link| {
+        let (i, j) = link.sides();
+        i.is_some_and(|i| is_signal(&old.steps[i])) || j.is_some_and(|j| is_signal(&new.steps[j]))
+    })
 }

@@ -21,6 +21,7 @@ mod record;
 mod recorder;
 mod steps;
 mod store;
+mod together;
 mod words;
 
 pub use change::{CODES, Change};
@@ -77,7 +78,7 @@ impl Compared {
         }
         if is_to_the_end {
             let mut told: BTreeSet<String> = modes.into_iter().map(mode_name).collect();
-            told.extend(motion::switches_outputs(old, new, &links).then(|| left::OUTPUTS.to_owned()));
+            told.extend(left::switches_outputs(old, new, &links).then(|| left::OUTPUTS.to_owned()));
             told.extend(is_by_other.then(|| left::PARTS.to_owned()));
             changes.extend(left::compare(old, new, &told, tolerance));
         }

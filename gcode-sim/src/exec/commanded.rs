@@ -50,7 +50,7 @@ impl Control {
     }
 
     fn next_op(&self) -> Option<(&Program, &Op)> {
-        let frame = self.core.frames.last()?;
+        let frame = &self.core.frame;
         let program = self.memory.get(frame.program);
         Some((program, program.op(frame.next)?))
     }
