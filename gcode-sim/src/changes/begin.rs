@@ -38,7 +38,7 @@ pub(super) struct Begun {
 /// What the old revision commands before moves that both make, and the new one doesn't.
 pub(super) fn compare(old: &Record, new: &Record, links: &[Link]) -> Vec<Change> {
     let (Some(was), Some(is)) = (&old.begun, &new.begun) else { return Vec::new() };
-    let moves = same_moves(old, new, links);
+    let moves = moves_of_both(old, new, links);
     let mut groups: Vec<Group<'_>> = Vec::new();
     for begun in was.iter().filter(|begun| is_as_found(begun)) {
         let later = is.iter().find(|other| (other.what, &other.name) == (begun.what, &begun.name));
@@ -60,16 +60,18 @@ pub(super) fn compare(old: &Record, new: &Record, links: &[Link]) -> Vec<Change>
     groups.iter().map(|group| group.change(old, new)).collect()
 }
 
-/// A move that both revisions make in the same way.
+/// A move that both revisions make.
 #[derive(Clone, Copy)]
 struct Pair {
     /// Its steps.
     steps: (usize, usize),
+    /// It goes to the same place in the same way.
+    is_same: bool,
     /// How many moves come before it.
     before: (usize, usize),
 }
 
-fn same_moves(old: &Record, new: &Record, links: &[Link]) -> Vec<Pair> {
+fn moves_of_both(old: &Record, new: &Record, links: &[Link]) -> Vec<Pair> {
     let mut before = (0, 0);
     let mut pairs = Vec::new();
     for link in links {
@@ -77,8 +79,8 @@ fn same_moves(old: &Record, new: &Record, links: &[Link]) -> Vec<Pair> {
         let is_move =
             |record: &Record, step: Option<usize>| step.is_some_and(|step| record.steps[step].is_move());
         let moves = (is_move(old, i), is_move(new, j));
-        if let (Link::Same(i, j), (true, _)) = (link, moves) {
-            pairs.push(Pair { steps: (*i, *j), before });
+        if let (Some(i), Some(j), (true, true)) = (i, j, moves) {
+            pairs.push(Pair { steps: (i, j), is_same: matches!(link, Link::Same(..)), before });
         }
         before = (before.0 + usize::from(moves.0), before.1 + usize::from(moves.1));
     }
@@ -101,6 +103,8 @@ fn is_told(begun: &Begun, old: &Record, new: &Record, pair: &Pair, links: &[Link
             let aspect = Aspect::ALL.into_iter().find(of_group);
             aspect.is_some_and(|aspect| old.under(i).word(aspect).text != new.under(j).word(aspect).text)
         }
+        // Where it ends elsewhere, that is told.
+        Kind::Axis | Kind::Offset if !pair.is_same => true,
         Kind::Axis => {
             let is_of_block =
                 |link: &&Link| link.sides().0.is_some_and(|i| old.steps[i].place == begun.place);

@@ -30,6 +30,8 @@ pub(super) struct Tried {
     pub report: CaseReport,
     /// To be accepted; `None` where nothing could be run.
     pub record: Option<Record>,
+    /// What was accepted says less than is accepted today.
+    pub is_old: bool,
 }
 
 impl Case {
@@ -42,7 +44,7 @@ impl Case {
         let tried = main.and_then(|program| self.tried(&program, libraries, tolerance, empty));
         tried.unwrap_or_else(|refusal| {
             let error = Some(refusal.to_string());
-            Tried { report: CaseReport { error, ..empty(Answer::Refused) }, record: None }
+            Tried { report: CaseReport { error, ..empty(Answer::Refused) }, record: None, is_old: false }
         })
     }
 
@@ -113,6 +115,7 @@ impl Case {
                 fails(verdict.verdict, &verdict.diagnostics, &grinding.run)
             }
         };
+        let mut is_old = false;
         let (answer, changes) = match there(ACCEPTED) {
             None => (Answer::New, Vec::new()),
             Some(path) => {
@@ -120,6 +123,7 @@ impl Case {
                 let accepted = Record::from_json(&input::text(&path)?).map_err(|error| {
                     unusable(format!("{error}; delete it, run with --accept, and look at what was accepted"))
                 })?;
+                is_old = accepted.lacks_beginnings();
                 let found = changes(&accepted, &revision.record, tolerance);
                 (if found.is_empty() { Answer::Same } else { Answer::Changed }, found)
             }
@@ -133,7 +137,7 @@ impl Case {
             ending: Some(record.words().to_owned()),
             ..empty(answer)
         };
-        Ok(Tried { report, record: Some(revision.record) })
+        Ok(Tried { report, record: Some(revision.record), is_old })
     }
 }
 

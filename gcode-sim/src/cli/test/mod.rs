@@ -164,8 +164,9 @@ fn all_of(
 fn accept(cases: &[Case], tried: &mut [Tried]) -> Result<Vec<String>, Refusal> {
     let mut files = Vec::new();
     let mut names = Vec::new();
-    for (case, Tried { report, record }) in cases.iter().zip(tried.iter_mut()) {
-        let is_taken = |record: &&Record| report.answer != Answer::Same && !record.lacks_program();
+    for (case, Tried { report, record, is_old }) in cases.iter().zip(tried.iter_mut()) {
+        let is_other = report.answer != Answer::Same || *is_old;
+        let is_taken = |record: &&Record| is_other && !record.lacks_program();
         let Some(record) = record.as_ref().filter(is_taken) else { continue };
         let text = record.to_json().map_err(|error| Refusal::new(error.to_string()))?;
         files.push((case.folder.join(ACCEPTED), text.into_bytes()));
