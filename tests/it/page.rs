@@ -247,6 +247,48 @@ fn what_a_program_says_is_text_and_nothing_else() {
     is_quiet(&browser);
 }
 
+/// The operator turns the part at M00: a program without it is the one mistake that must be seen in the old text too.
+#[test]
+fn a_lost_stop_is_marked_where_it_was() {
+    let old = b"O1\nG21\nG0 X1.\nM00\nG0 X2.\n#3006=1(TURN)\nM30\n";
+    let (_place, page) = of_texts(old, b"O1\nG21\nG0 X1.\nG0 X2.\n#3006=1(CLAMP)\nM30\n");
+    let Some(browser) = Browser::start(1200, 900) else { return };
+    browser.open(&page);
+    let marks = browser.run(
+        "return [...document.querySelectorAll('.half .mark')].map((mark) => \
+         `${mark.closest('.half').id} ${mark.textContent}`)",
+    );
+    let wanted = [
+        "old-0-4 stop not made here by the new program",
+        "old-0-6 stop made otherwise by the new program",
+        "new-0-5 stop made otherwise by the old program",
+    ];
+    assert_eq!(marks, json!(wanted));
+    let listed = browser.run(
+        "return [...document.querySelectorAll('#told .stops li')].map((stop) => \
+         `${stop.querySelector('code').textContent} ${stop.querySelector('.mark').textContent}`)",
+    );
+    let wanted = [
+        "M00 not made here by the new program",
+        "#3006 made otherwise by the new program",
+        "#3006 made otherwise by the old program",
+    ];
+    assert_eq!(listed, json!(wanted));
+
+    // A telephone shows one program's lines where both are alike, and this one's in any case.
+    browser.command(
+        "Emulation.setDeviceMetricsOverride",
+        &json!({"width": 375, "height": 740, "deviceScaleFactor": 2, "mobile": true}),
+    );
+    assert_eq!(browser.run("return document.documentElement.scrollWidth"), 375);
+    let high =
+        browser.run("return document.querySelector('#old-0-4 .mark').getBoundingClientRect().height > 0");
+    assert_eq!(high, true);
+    browser.click("#told .stops li .place a");
+    lands(&browser, "old-0-4 M00");
+    is_quiet(&browser);
+}
+
 #[test]
 fn a_program_that_stops_shows_where_and_why() {
     let old = b"O1\n#1=4.\nG0 X[#1/2.]\nM30\n";

@@ -3,6 +3,7 @@
 //!
 //! `says.snap` beside it has the picture's words. With an `other.toml` the picture is the comparison of both. What
 //! was drawn instead, and where it differs, is left in `target/pictures/`.
+use gcode_sim::changes::{Compared, Revision};
 use gcode_sim::machine::Machine;
 use gcode_sim::part::hole::Hole;
 use gcode_sim::picture::{
@@ -11,7 +12,7 @@ use gcode_sim::picture::{
 };
 use gcode_sim::program::NoLibrary;
 use gcode_sim::report::top;
-use gcode_sim::session::{Request, simulate};
+use gcode_sim::session::Request;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ImageFormat, RgbImage};
 use serde::Deserialize;
@@ -125,9 +126,12 @@ fn changed(old: &str, new: &str, tolerance: f64) -> TopView {
     let machine = Machine::default();
     let made = |text: &str| {
         let request = Request::new("O0100.nc", text.as_bytes(), machine.clone());
-        simulate(&request, &mut NoLibrary, None).unwrap()
+        Revision::of(&request, &mut NoLibrary, None).unwrap()
     };
-    top::of_changes("O0100.nc", &made(old), &made(new), &machine, tolerance).unwrap()
+    let (old, new) = (made(old), made(new));
+    let compared = Compared::new(&old.record, &new.record, tolerance);
+    let differences = (&compared, tolerance);
+    top::of_changes("O0100.nc", &old.simulation, &new.simulation, &machine, differences).unwrap()
 }
 
 fn draw(text: &str) -> (Picture, Sheet) {

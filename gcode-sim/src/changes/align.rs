@@ -27,8 +27,11 @@ impl Link {
     }
 }
 
-/// The search gives up beyond so many lost and added steps: what is left then counts as changed from end to end.
+/// Beyond so many lost and added steps the search isn't for the fewest any more: it goes on piece by piece.
 const MOST_EDITS: usize = 1_000;
+
+/// So many lost and added steps of each piece: those of some dozens of holes.
+const EDITS_AHEAD: usize = 200;
 
 /// Gaps up to this many possible pairs are searched for the nearest ends; in larger ones the steps are paired in order.
 const MOST_PAIRS: usize = 10_000;
@@ -51,7 +54,7 @@ pub(super) fn up_to_the_end(old: &[Step], new: &[Step], stops: (bool, bool), tol
 /// so many steps more as the short one has that are none of its.
 fn reach(long: usize, short: usize, same: impl Fn(usize, usize) -> bool) -> usize {
     let ends = |x: usize, y: usize| y == short || x == long;
-    let Some(pairs) = search_to(long, short, &same, ends) else { return long };
+    let Ok(pairs) = search((long, short), MOST_EDITS, &same, ends) else { return long };
     let (behind, last) = pairs.last().map_or((0, 0), |(x, y)| (x + 1, y + 1));
     (behind + short - last).min(long)
 }
@@ -235,7 +238,7 @@ fn apart(a: &Step, b: &Step) -> Option<f64> {
 }
 
 /// The longest common sequence of two lists of these lengths, as pairs of places; where that takes more than
-/// [`MOST_EDITS`], what is common at their beginnings and ends.
+/// [`MOST_EDITS`], a long one.
 pub(super) fn common(old: usize, new: usize, same: impl Fn(usize, usize) -> bool) -> Vec<(usize, usize)> {
     let shorter = old.min(new);
     let before = (0..shorter).take_while(|k| same(*k, *k)).count();
@@ -243,30 +246,48 @@ pub(super) fn common(old: usize, new: usize, same: impl Fn(usize, usize) -> bool
     let (rows, columns) = (old - before - after, new - before - after);
     let mut pairs: Vec<_> = (0..before).map(|k| (k, k)).collect();
     if rows > 0 && columns > 0 {
-        let middle = search(rows, columns, |i, j| same(before + i, before + j)).unwrap_or_default();
+        let middle = longest_or_long(rows, columns, |i, j| same(before + i, before + j));
         pairs.extend(middle.into_iter().map(|(i, j)| (before + i, before + j)));
     }
     pairs.extend((0..after).rev().map(|k| (old - 1 - k, new - 1 - k)));
     pairs
 }
 
-/// Myers' greedy search: for every number of edits the farthest point on each diagonal.
-fn search(rows: usize, columns: usize, same: impl Fn(usize, usize) -> bool) -> Option<Vec<(usize, usize)>> {
-    search_to(rows, columns, same, |x, y| x == rows && y == columns)
+/// Pairs of places that are the same.
+type Pairs = Vec<(usize, usize)>;
+
+/// Of two lists that take too many edits each piece ends where [`EDITS_AHEAD`] edits lead the farthest.
+fn longest_or_long(rows: usize, columns: usize, same: impl Fn(usize, usize) -> bool) -> Pairs {
+    let ends = |x: usize, y: usize| x == rows && y == columns;
+    if let Ok(pairs) = search((rows, columns), MOST_EDITS, &same, ends) {
+        return pairs;
+    }
+    let mut all = Pairs::new();
+    let (mut i, mut j) = (0, 0);
+    while i < rows && j < columns {
+        let left = (rows - i, columns - j);
+        let piece = search(left, EDITS_AHEAD, |a, b| same(i + a, j + b), |x, y| (x, y) == left);
+        let (pairs, (x, y)) = piece.map_or_else(|far| far, |pairs| (pairs, left));
+        all.extend(pairs.into_iter().map(|(a, b)| (i + a, j + b)));
+        (i, j) = (i + x, j + y);
+    }
+    all
 }
 
-/// To the first place that is an end.
-fn search_to(
-    rows: usize,
-    columns: usize,
+/// Myers' greedy search: for every number of edits up to `most` the farthest point on each diagonal, to the first that is
+/// an end; else to the one that is the farthest of all, and where that is.
+fn search(
+    (rows, columns): (usize, usize),
+    most: usize,
     same: impl Fn(usize, usize) -> bool,
     is_end: impl Fn(usize, usize) -> bool,
-) -> Option<Vec<(usize, usize)>> {
+) -> Result<Pairs, (Pairs, (usize, usize))> {
     let (n, m) = (rows as isize, columns as isize);
-    let most = (rows + columns).min(MOST_EDITS) as isize;
+    let most = (rows + columns).min(most) as isize;
     let place = |k: isize| (k + most + 1) as usize;
     let mut farthest = vec![0_isize; 2 * most as usize + 3];
     let mut history: Vec<Vec<isize>> = Vec::new();
+    let (mut reached, mut by) = ((0, 0), 0);
     for edits in 0..=most {
         history.push(farthest[place(-edits - 1)..=place(edits + 1)].to_vec());
         for k in (-edits..=edits).step_by(2) {
@@ -279,13 +300,17 @@ fn search_to(
             if let (Ok(row), Ok(column)) = (usize::try_from(x), usize::try_from(x - k))
                 && row <= rows
                 && column <= columns
-                && is_end(row, column)
             {
-                return Some(trace(&history, x, x - k));
+                if is_end(row, column) {
+                    return Ok(trace(&history, x, x - k));
+                }
+                if reached.0 + reached.1 < row + column {
+                    (reached, by) = ((row, column), history.len());
+                }
             }
         }
     }
-    None
+    Err((trace(&history[..by], reached.0 as isize, reached.1 as isize), reached))
 }
 
 /// Walks back through the farthest points and collects the diagonal steps.
@@ -339,6 +364,15 @@ mod tests {
         assert_eq!(pairs("ABCD", "ABXCD"), [(0, 0), (1, 1), (2, 3), (3, 4)]);
         assert_eq!(pairs("ABXCD", "ABCD"), [(0, 0), (1, 1), (3, 2), (4, 3)]);
         assert_eq!(pairs("", "AB"), []);
+    }
+
+    /// A thousand holes more pecks than the fewest edits are searched for.
+    #[test]
+    fn steps_that_come_in_every_hole_leave_the_others_paired() {
+        let (old, new) = ("abc".repeat(1000), "axxbxxc".repeat(1000));
+        assert_eq!(pairs(&old, &new).len(), 3000);
+        assert_eq!(pairs(&new, &old).len(), 3000);
+        assert_eq!(pairs(&"a".repeat(1500), &"b".repeat(1500)), []);
     }
 
     /// By the quadratic table of every textbook.

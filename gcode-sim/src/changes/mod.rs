@@ -54,6 +54,8 @@ pub struct Compared {
     pub holes: Vec<Paired>,
     /// The steps that the other one doesn't do in the same way, old and new.
     pub steps: [Vec<usize>; 2],
+    /// Those of them that the other one doesn't do at that point at all.
+    pub alone: [Vec<usize>; 2],
 }
 
 impl Compared {
@@ -86,7 +88,15 @@ impl Compared {
         let different = links.iter().filter(|link| !matches!(link, Link::Same(..)));
         let (was, is): (Vec<_>, Vec<_>) = different.map(|link| link.sides()).unzip();
         let steps = [was.into_iter().flatten().collect(), is.into_iter().flatten().collect()];
-        Self { changes, holes: holes.pairs, steps }
+        let mut alone = [Vec::new(), Vec::new()];
+        for link in &links {
+            match link {
+                Link::Lost(i) => alone[0].push(*i),
+                Link::Added(j) => alone[1].push(*j),
+                Link::Same(..) | Link::Changed(..) => {}
+            }
+        }
+        Self { changes, holes: holes.pairs, steps, alone }
     }
 }
 

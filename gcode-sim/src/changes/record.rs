@@ -242,10 +242,11 @@ fn resolve<'a>(run: &Run, places: &[Place], named: impl Iterator<Item = &'a mut 
 }
 
 impl Record {
-    /// The blocks at which the program waited for the operator, in order.
-    pub fn stops(&self) -> impl Iterator<Item = &Where> {
-        let stops = self.steps.iter().filter(|step| matches!(step.kind, Kind::Stop(..)));
-        stops.map(|step| &self.places[step.place])
+    /// Where the program waited for the operator, in order: the number of the step, and its block.
+    pub fn stops(&self) -> impl Iterator<Item = (usize, &Where)> {
+        let steps = self.steps.iter().enumerate();
+        let stops = steps.filter(|(_, step)| matches!(step.kind, Kind::Stop(..)));
+        stops.map(|(number, step)| (number, &self.places[step.place]))
     }
 
     /// The first steps alone, and the holes that they begin.

@@ -94,7 +94,8 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
     }
     if let Some(path) = &arguments.picture {
         let name = format!("{} against {}", render::name(&new_request), render::name(&old_request));
-        let view = top::of_changes(&name, &old.simulation, &new.simulation, &new_request.machine, tolerance);
+        let machine = &new_request.machine;
+        let view = top::of_changes(&name, &old.simulation, &new.simulation, machine, (&compared, tolerance));
         let scene = picture::top_view(&view.map_err(Refusal::new)?);
         render::write(&scene, "1600x1200", path)?;
         if arguments.format == FindingFormat::Text {

@@ -3,6 +3,8 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
 
+use super::figures::count;
+use crate::changes::Compared;
 use crate::holes::Found;
 use crate::machine::{HeadKind, Link, LinkMotion, Machine};
 use crate::motion::Axis;
@@ -111,13 +113,13 @@ fn signed(by: f64) -> String {
     format!("{by:+.3}").replace('-', "−")
 }
 
-/// The holes of a new revision over those of the old one, which they are held against.
+/// The holes of a new revision over those of the old one, which they are held against, and what else `compared` says.
 pub fn of_changes(
     name: &str,
     old: &Simulation,
     new: &Simulation,
     machine: &Machine,
-    tolerance: f64,
+    (compared, tolerance): (&Compared, f64),
 ) -> Result<TopView, String> {
     let mut list = old.list();
     for (index, hole) in list.holes.iter_mut().enumerate() {
@@ -127,8 +129,34 @@ pub fn of_changes(
     let tolerances = Tolerances { position: 2.0 * tolerance, depth: tolerance, diameter: tolerance };
     let verdict = new.verify(&reference, tolerances, machine);
     let changed = verdict.holes.iter().filter(|hole| !hole.ok).map(|hole| hole.phi).fold(0.0, f64::max);
-    let view = of_verdict(name, new, &reference, &verdict, machine);
-    Ok(TopView { question: Question::Change, tolerance: Some(round_up(changed.max(tolerance))), ..view })
+    let mut view = of_verdict(name, new, &reference, &verdict, machine);
+    let mut by_other_tools = 0;
+    for (judged, drawn) in verdict.holes.iter().zip(&mut view.holes).filter(|(judged, _)| judged.ok) {
+        let pair = compared.holes.iter().find(|pair| pair.changed && pair.new == Some(judged.found));
+        let Some(before) = pair.and_then(|pair| pair.old) else { continue };
+        let tools = [old, new].map(|side| side.extracted.holes.as_slice());
+        let [was, is] = [tools[0][before].tool, tools[1][judged.found].tool];
+        drawn.standing = Standing::Bad;
+        drawn.remark = Some(match (was, is) {
+            (Some(was), Some(is)) if was != is => format!("T{is}, was T{was}"),
+            _ => "other tools".to_owned(),
+        });
+        by_other_tools += 1;
+    }
+    if 0 < by_other_tools {
+        view.lines.push(format!("{} made by another tool", count(by_other_tools, "hole")));
+    }
+    let others = compared.changes.iter().filter(|change| !is_of_one_hole(&change.code)).count();
+    if 0 < others {
+        view.lines.push("other changes: see the text of diff".to_owned());
+    }
+    let tolerance = Some(round_up(changed.max(tolerance)));
+    Ok(TopView { question: Question::Change, others, tolerance, ..view })
+}
+
+/// A change that a hole's own sign shows; of the order there is none.
+fn is_of_one_hole(code: &str) -> bool {
+    code.starts_with("hole-") && code != "hole-order"
 }
 
 /// The next of 1, 2, 5, 10, 20, … from `value` on.

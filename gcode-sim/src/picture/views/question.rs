@@ -63,21 +63,30 @@ impl Question {
         }
     }
 
-    /// `PASS: 5 of 5 holes`, `3 of 5 holes unchanged, 2 lost`; `counts` are the holes that are good, bad, missing, extra.
-    pub(super) fn headline(self, counts: [usize; 4]) -> Option<(Standing, String)> {
+    /// `PASS: 5 of 5 holes`, `3 of 5 unchanged, 2 lost`; `counts` are the holes that are good, bad, missing, extra, and
+    /// `others` the differences that no hole shows.
+    pub(super) fn headline(self, counts: [usize; 4], others: usize) -> Option<(Standing, String)> {
         let [good, bad, missing, extra] = counts;
         let all = good + bad + missing;
-        if all + extra == 0 {
+        if all + extra + others == 0 {
             return None;
         }
-        let is_good = all == good && extra == 0;
+        let is_good = all == good && extra + others == 0;
         if is_good && self == Self::Verdict {
             return Some((Standing::Good, format!("PASS: {good} of {good} holes")));
         }
-        let mut words = vec![format!("{good} of {all} {}", self.word(Standing::Good))];
-        let others = [(bad, Standing::Bad), (missing, Standing::Missing), (extra, Standing::Extra)];
-        for (number, standing) in others.into_iter().filter(|(number, _)| 0 < *number) {
+        let mut words = match all {
+            0 => Vec::new(),
+            _ => vec![format!("{good} of {all} {}", self.word(Standing::Good))],
+        };
+        let wrong = [(bad, Standing::Bad), (missing, Standing::Missing), (extra, Standing::Extra)];
+        for (number, standing) in wrong.into_iter().filter(|(number, _)| 0 < *number) {
             words.push(format!("{number} {}", self.word(standing)));
+        }
+        match others {
+            0 => {}
+            1 => words.push("1 other change".to_owned()),
+            _ => words.push(format!("{others} other changes")),
         }
         let words = words.join(", ");
         Some(match (self, is_good) {
@@ -94,7 +103,7 @@ mod tests {
 
     #[test]
     fn the_headline_names_what_is_wrong_and_what_has_changed() {
-        let headline = |question: Question, counts| question.headline(counts);
+        let headline = |question: Question, counts| question.headline(counts, 0);
         let good = |text: &str| Some((Standing::Good, text.to_owned()));
         let bad = |text: &str| Some((Standing::Bad, text.to_owned()));
         assert_eq!(headline(Question::Verdict, [4, 0, 0, 0]), good("PASS: 4 of 4 holes"));
@@ -102,5 +111,7 @@ mod tests {
         assert_eq!(headline(Question::Change, [4, 0, 0, 0]), good("4 of 4 unchanged"));
         assert_eq!(headline(Question::Change, [2, 1, 0, 1]), bad("2 of 3 unchanged, 1 changed, 1 added"));
         assert_eq!(headline(Question::Change, [0; 4]), None);
+        assert_eq!(Question::Change.headline([4, 0, 0, 0], 1), bad("4 of 4 unchanged, 1 other change"));
+        assert_eq!(Question::Change.headline([0; 4], 2), bad("2 other changes"));
     }
 }

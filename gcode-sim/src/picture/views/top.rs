@@ -28,6 +28,8 @@ pub struct TopView {
     pub holes: Vec<DrawnHole>,
     /// What the holes are held against.
     pub question: Question,
+    /// How many differences of two revisions no hole shows.
+    pub others: usize,
     pub path: Vec<PathPiece>,
     /// Further lines of the title block.
     pub lines: Vec<String>,
@@ -206,7 +208,7 @@ fn count(holes: &[DrawnHole], standing: Standing) -> usize {
 pub(super) fn headline(view: &TopView) -> Option<(Standing, String)> {
     let of = |standing| count(&view.holes, standing);
     let counts = [Standing::Good, Standing::Bad, Standing::Missing, Standing::Extra].map(of);
-    view.question.headline(counts)
+    view.question.headline(counts, view.others)
 }
 
 pub(super) fn worst(view: &TopView) -> Option<String> {

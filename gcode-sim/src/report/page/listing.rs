@@ -5,8 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use maud::{Markup, html};
 
 use super::lines::Text;
+use super::stops::stops;
 use super::words::{count, value};
-use super::{Side, heading};
+use super::{Page, Side, heading};
 use crate::changes::common_lines;
 use crate::exec::Value;
 use crate::session::{Executed, Role, Values};
@@ -18,7 +19,9 @@ const MOST_ROWS: usize = 5_000;
 /// What was executed of one side, by text and line.
 struct Done<'a> {
     blocks: BTreeMap<(SourceId, u32), Vec<&'a Executed>>,
-    /// Lines that holes, changes and findings lead to.
+    /// Operator stops that the other side doesn't make in the same way: how, and how many.
+    stops: BTreeMap<(SourceId, u32), (&'static str, u64)>,
+    /// Lines that holes, findings and those stops lead to.
     wanted: BTreeSet<(SourceId, u32)>,
 }
 
@@ -28,8 +31,8 @@ type Pair<'a> = Vec<Option<&'a Text>>;
 /// One line of each side, by its place from 0.
 type Line = Vec<Option<usize>>;
 
-pub(super) fn listing(sides: &[Side<'_>]) -> Markup {
-    let done: Vec<Done<'_>> = sides.iter().map(executed).collect();
+pub(super) fn listing(page: &Page<'_>, sides: &[Side<'_>]) -> Markup {
+    let done: Vec<Done<'_>> = sides.iter().map(|side| executed(page, side)).collect();
     let mut left = MOST_ROWS;
     html! {
         p.note {
@@ -45,7 +48,7 @@ pub(super) fn listing(sides: &[Side<'_>]) -> Markup {
     }
 }
 
-fn executed<'a>(side: &Side<'a>) -> Done<'a> {
+fn executed<'a>(page: &Page<'_>, side: &Side<'a>) -> Done<'a> {
     let run = &side.seen.revision.simulation.run;
     let sources = run.control.memory().sources();
     let mut blocks: BTreeMap<(SourceId, u32), Vec<&Executed>> = BTreeMap::new();
@@ -58,8 +61,15 @@ fn executed<'a>(side: &Side<'a>) -> Done<'a> {
     let places = holes.chain(findings.iter().filter_map(|finding| finding.place.as_ref()));
     let spans = places
         .flat_map(|place| std::iter::once(place.block).chain(place.calls.as_ref().map(|call| call.from)));
-    let wanted = spans.map(|span| (span.source, sources.place(span).line)).collect();
-    Done { blocks, wanted }
+    let mut wanted: BTreeSet<_> = spans.map(|span| (span.source, sources.place(span).line)).collect();
+    let mut marked: BTreeMap<(SourceId, u32), (&str, u64)> = BTreeMap::new();
+    for stop in stops(page, side) {
+        if let (Some(mark), Some(line)) = (stop.mark, side.lines.of_place(stop.place)) {
+            marked.entry(line).or_insert((mark, 0)).1 += 1;
+        }
+    }
+    wanted.extend(marked.keys());
+    Done { blocks, stops: marked, wanted }
 }
 
 /// The texts that belong together: those with the same programs in them, the main programs in any case.
@@ -164,6 +174,7 @@ struct Half<'a> {
     text: &'a str,
     times: u64,
     values: Vec<String>,
+    stop: Option<String>,
 }
 
 fn half<'a>(at: usize, text: &'a Text, done: &Done<'_>) -> Half<'a> {
@@ -172,7 +183,12 @@ fn half<'a>(at: usize, text: &'a Text, done: &Done<'_>) -> Half<'a> {
     let mut values: Vec<String> =
         blocks.clone().flat_map(|block| in_order(&block.values)).map(|values| said(&values)).collect();
     values.extend(blocks.clone().any(|block| block.cut).then(|| "and more variables".to_owned()));
-    Half { text: &text.lines[at], times: blocks.map(|block| block.times).max().unwrap_or(0), values }
+    let times = blocks.map(|block| block.times).max().unwrap_or(0);
+    let stop = done.stops.get(&(text.source, at as u32 + 1)).map(|(mark, stops)| match stops {
+        1 => format!("stop {mark}"),
+        _ => format!("{} stops {mark}", count(*stops)),
+    });
+    Half { text: &text.lines[at], times, values, stop }
 }
 
 /// What is read, what is assigned, what is passed.
@@ -215,6 +231,7 @@ fn row(line: &Line, pair: &Pair<'_>, sides: &[Side<'_>], done: &[Done<'_>]) -> M
     let class = match halves.as_slice() {
         [Some(old), Some(new)] if old.text != new.text => "edited",
         [Some(old), Some(new)] if old.times != new.times || old.values != new.values => "differs",
+        [Some(old), Some(new)] if old.stop.is_some() || new.stop.is_some() => "differs",
         [None, _] | [_, None] => "edited",
         _ => "same",
     };
@@ -237,6 +254,7 @@ fn half_of(half: &Half<'_>, line: u32, text: &Text, side: &Side<'_>) -> Markup {
             span.line { (line) }
             span.times { @if half.times > 0 { (count(half.times)) "×" } }
             code { (half.text) }
+            @if let Some(stop) = &half.stop { strong.mark { (stop) } }
             @if !half.values.is_empty() {
                 span.values { @for one in &half.values { span { (one) } " " } }
             }

@@ -9,6 +9,7 @@ mod listing;
 mod path;
 mod proof;
 mod rows;
+mod stops;
 mod told;
 mod words;
 
@@ -111,9 +112,9 @@ impl Page<'_> {
                 (section("holes", "Holes", table.markup(self)))
                 (section("path", "Path and program", html! {
                     (path::viewer(&sides, &data))
-                    (listing::listing(&sides))
+                    (listing::listing(self, &sides))
                 }))
-                (section("told", "Stops, alarms and findings", told::told(&sides)))
+                (section("told", "Stops, alarms and findings", told::told(self, &sides)))
                 (section("proof", "What this rests on", proof::proof(self, &sides)))
                 (section("signatures", "Signatures", proof::signatures()))
             }

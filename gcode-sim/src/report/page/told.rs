@@ -2,8 +2,9 @@
 use maud::{Markup, html};
 
 use super::changed::chain;
+use super::stops::{Stop, stops};
 use super::words::{shown, value};
-use super::{Side, heading};
+use super::{Page, Side, heading};
 use crate::changes::Where;
 use crate::diag::{Diagnostic, Severity};
 use crate::exec::printable;
@@ -12,14 +13,14 @@ use crate::motion::StopKind;
 /// More of a kind than this aren't listed.
 const MOST: usize = 200;
 
-pub(super) fn told(sides: &[Side<'_>]) -> Markup {
+pub(super) fn told(page: &Page<'_>, sides: &[Side<'_>]) -> Markup {
     html! {
         div.sides {
             @for side in sides {
                 div {
                     @if sides.len() == 2 { h3 { (heading(side, sides)) } }
                     (findings(side))
-                    (stops(side))
+                    (listed(side, &stops(page, side)))
                     (printed(side))
                 }
             }
@@ -55,9 +56,8 @@ fn findings(side: &Side<'_>) -> Markup {
     }
 }
 
-fn stops(side: &Side<'_>) -> Markup {
+fn listed(side: &Side<'_>, known: &[Stop<'_>]) -> Markup {
     let all = side.seen.revision.simulation.run.control.stops();
-    let places: Vec<&Where> = side.seen.revision.record.stops().collect();
     html! {
         h4 { "Operator stops" }
         @if all.is_empty() { p { "None." } }
@@ -73,7 +73,10 @@ fn stops(side: &Side<'_>) -> Markup {
                     }
                     " " (shown(&stop.text))
                     @for (number, number_value) in &stop.named { ", #" (number) " = " (value(*number_value)) }
-                    @if let Some(place) = places.get(number) { div.place { (chain(place, side.lines)) } }
+                    @if let Some(stop) = known.get(number) {
+                        @if let Some(mark) = stop.mark { " " strong.mark { (mark) } }
+                        div.place { (chain(stop.place, side.lines)) }
+                    }
                 }
             }
         }
