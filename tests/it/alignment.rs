@@ -291,3 +291,27 @@ fn noise_of_the_probe_is_passed_on_as_the_page_says() {
         assert!((0.66..1.4).contains(&ratio), "{} where the page has {page}", variance.sqrt());
     }
 }
+
+/// A right-hand turn about X by 0.2° takes the pole towards Z+ and sinks what lies towards Z+: between supports 1 m apart in Z by 1000·sin 0.2°,
+/// 20 times the 0.1745 of the set-up sheet. So it is the side towards Z+ that gets the shim where #582 is above 0.
+#[test]
+fn the_sheet_shims_the_side_that_a_tilt_of_known_sign_has_sunk() {
+    for tilt in [0.2, -0.2] {
+        let part = placed([0.0; 3], [tilt, 0.0, 0.0]);
+        let [_, _, about_x, _] = found(&measured(&example("alignment"), 8210, part, "", Vec::new()));
+        assert!((about_x - tilt).abs() < 0.004, "{about_x}");
+        let stands = part.frame();
+        let [top, towards, away] =
+            [[0.0, 700.0, 0.0], [0.0, 0.0, 500.0], [0.0, 0.0, -500.0]].map(|p| stands * Point3::from(p));
+        assert!(0.0 < top.z * about_x, "the top leans towards Z+ where #582 is above 0");
+        let shim = away.y - towards.y;
+        assert!((shim - tilt / 0.01 * 0.1745).abs() < 0.001, "{shim}");
+    }
+    let sheet = gcode_tests::sheet::html(&example("alignment"), None);
+    for words in [
+        "#582 above 0: the top leans towards Z+, so shim the side towards Z+.",
+        "is 0.1745 mm thick for each 0.01° and metre between the supports in Z",
+    ] {
+        assert!(sheet.contains(words), "{words}");
+    }
+}

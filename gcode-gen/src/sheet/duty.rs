@@ -1,7 +1,8 @@
 //! What the operator does at a stop, step by step, in the order in which it has to be done.
 use gcode_sim::job::{Alignment, HeadKind, Job, PinHoles};
 use gcode_sim::motion::StopKind;
-use gcode_sim::report::figures::short;
+use gcode_sim::report::figures::{near, short};
+use gcode_sim::units::Deg;
 
 use super::record::Stop;
 
@@ -61,9 +62,16 @@ fn set_up(job: &Alignment, stop: &Stop) -> Option<Vec<String>> {
             "Read #580 to #583 at the control: the part is off by #580 in X and #581 in Z (mm), and tilted by #582 about X and \
              #583 about Z (degrees)."
                 .to_owned(),
-            "Move the part by #580 and #581 and shim it by #582, each against its sign. The tilt #583 is left to O8230, the \
-             sine table."
+            format!(
+                "Within limits: #580 and #581 each ±{} mm, #582 and #583 each ±{}°. Then nothing is moved.",
+                short(job.limits.shift),
+                short(job.limits.tilt)
+            ),
+            "#580 above 0: the part stands too far towards X+, move it towards X−. #581 above 0: too far towards Z+, move it towards \
+             Z−. Below 0 the other way."
                 .to_owned(),
+            shim(),
+            "The tilt #583 is left to O8230, the sine table.".to_owned(),
             "CYCLE START measures again: #580 to #583 then tell what remains, #590 to #593 what was found first.".to_owned(),
         ],
         596 => vec![
@@ -79,8 +87,8 @@ fn set_up(job: &Alignment, stop: &Stop) -> Option<Vec<String>> {
             "Wring blocks to the height #587 (mm) and put them under the table.".to_owned(),
             "Then CYCLE START, and not before: it says that the table is set. #596 becomes its angle, and the tilt is used up."
                 .to_owned(),
-            "Run O8210 again, for a part that is turned on the table moves; then this program again, until #580 to #583 are as \
-             small as is wanted."
+            "Run O8210 again, for a part that is turned on the table moves; then this program again, until #580 to #583 are \
+             within the limits of the readings below."
                 .to_owned(),
         ],
         573 => vec![
@@ -94,6 +102,16 @@ fn set_up(job: &Alignment, stop: &Stop) -> Option<Vec<String>> {
         _ => return None,
     };
     Some(steps)
+}
+
+/// The sense of #582 is a right-hand turn about X, which takes Y+ towards Z+. It sinks what lies towards Z+ by its sine.
+fn shim() -> String {
+    format!(
+        "#582 above 0: the top leans towards Z+, so shim the side towards Z+. Below 0: the top leans towards Z−, shim the side towards Z−. A shim \
+         is {} mm thick for each 0.01° and metre between the supports in Z. A part that is shimmed moves in Z as well: #581 is corrected \
+         after it has been measured again.",
+        near(1000.0 * Deg(0.01).sin(), 4)
+    )
 }
 
 /// X and Y are told the tool's tip, not the head's pivot.

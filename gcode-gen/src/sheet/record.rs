@@ -8,6 +8,7 @@ use gcode_sim::part::surface::Surface;
 use gcode_sim::session::{Request, Run, SessionError, run};
 
 use crate::check::{CheckError, Programs, told};
+use crate::families::alignment::{RUNOUT, SINE_TABLE};
 use crate::package::{Package, file_name, stem};
 
 /// The common variables that a control keeps from one program to the next, and while it is switched off.
@@ -16,7 +17,7 @@ const KEPT: std::ops::RangeInclusive<u32> = 500..=999;
 /// What happens at the machine, in the order in which it does.
 #[derive(Debug, Default)]
 pub struct Record {
-    /// What each main program finds in the common variables that are kept.
+    /// What each main program finds, the first time it is run, in the common variables that are kept.
     pub begins: Vec<Begin>,
     pub stops: Vec<Stop>,
     /// The numbers that M06 puts into the spindle.
@@ -66,7 +67,7 @@ impl Times {
     }
 }
 
-/// Runs the package's main programs on its own machine file, one after the other, each with the common variables that the one
+/// Runs the package's main programs on its own machine file, one after the other in the order of the work, each with the common variables that the one
 /// before it has left: O8230 reads what O8210 has found.
 ///
 /// # Errors
@@ -75,24 +76,34 @@ pub fn record(job: &Job, package: &Package) -> Result<Record, CheckError> {
     let mut listener = Listener::default();
     let mut record = Record::default();
     let mut kept = Vec::new();
-    for main in &package.mains {
-        let begin = Begin { main: *main, variables: std::mem::take(&mut kept) };
+    for main in order(job, package) {
+        let begin = Begin { main, variables: std::mem::take(&mut kept) };
         let request = request(package, &begin)?;
         record.rapids = [request.settings.rapid.0, request.settings.rapid_rotary];
         let run = attended(job, package, &request, &mut listener)
-            .map_err(|error| told(&file_name(*main), &error))?;
+            .map_err(|error| told(&file_name(main), &error))?;
         if !matches!(run.outcome, Outcome::End) {
-            record.waiting.push(stem(*main));
+            record.waiting.push(stem(main));
         }
         kept.extend(run.control.variables().filter(|(number, _)| KEPT.contains(number)));
         let stops = listener.stops.drain(..);
         record.stops.extend(stops.map(|(stop, place)| Stop { at: places(&run, &place), ..stop }));
         record.passed_on.extend(run.control.passed_on().keys());
-        record.begins.push(begin);
+        if record.begins.iter().all(|earlier| earlier.main != main) {
+            record.begins.push(begin);
+        }
     }
+    record.waiting.dedup();
     record.passed_on.sort_unstable();
     record.passed_on.dedup();
     Ok(Record { tools: listener.tools, times: listener.times, ..record })
+}
+
+/// The main programs as they are run. A part that is turned on the sine table moves, so that the run-out is measured twice at least.
+fn order(job: &Job, package: &Package) -> Vec<u32> {
+    let again = |main: u32| matches!(job, Job::Alignment(_)) && main == SINE_TABLE;
+    let twice = |main: &u32| std::iter::once(*main).chain(again(*main).then_some(RUNOUT));
+    package.mains.iter().flat_map(twice).collect()
 }
 
 /// A run with the part on the machine, where the programs are to touch it.

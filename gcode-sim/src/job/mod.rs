@@ -16,7 +16,7 @@ use std::borrow::Cow;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::Deserialize;
 
-pub use alignment::{Alignment, Chord, EllipsePath, Runout, SineTable};
+pub use alignment::{Alignment, AlignmentLimits, Chord, EllipsePath, Runout, SineTable};
 pub use burr::{
     AxisSigns, Burr, BurrProgram, BurrShape, BurrTolerance, FluteLaw, Grinder, Nose, ProgramForm,
 };

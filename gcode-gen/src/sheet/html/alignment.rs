@@ -10,22 +10,43 @@ use crate::families::control::alarm_thousands;
 use crate::package::stem;
 use crate::sheet::Sheet;
 
-/// The common variables that are read at the stops, with room for three passes.
-const VARIABLES: &[(&str, &str)] = &[
-    ("#580", "shift in X, mm"),
-    ("#581", "shift in Z, mm"),
-    ("#582", "tilt about X, °"),
-    ("#583", "tilt about Z, °"),
-    ("#584", "shift in Y, mm, less sure"),
-    ("#585", "what the fit leaves, mm"),
-    ("#587", "height of the gauge blocks, mm"),
-    ("#572", "chord less the model's, mm"),
-    ("#573", "added to X, mm"),
-    ("#574", "added to Y, mm"),
-    ("#575", "added to Z, mm"),
-    ("#576", "added to the rotary, °"),
-    ("#577", "tilt of the chord, °"),
-];
+/// What is read at the stops, with room for three passes.
+fn lines(job: &Alignment) -> Vec<(String, &'static str, String)> {
+    let rotary = job.machine.rotary.letter;
+    let shift = format!("±{}", short(job.limits.shift));
+    let tilt = format!("±{}", short(job.limits.tilt));
+    let line = |place: &str, what: &'static str| (place.to_owned(), what, String::new());
+    let mut all = vec![
+        ("#580".to_owned(), "shift in X, mm", shift.clone()),
+        ("#581".to_owned(), "shift in Z, mm", shift),
+        ("#582".to_owned(), "tilt about X, °", tilt.clone()),
+        ("#583".to_owned(), "tilt about Z, °", tilt),
+        line("#584", "shift in Y, mm, less sure"),
+        ("#585".to_owned(), "what the fit leaves, mm", format!("at most {}", short(2.0 * job.probe_noise))),
+        line("#596", "angle at which the table is taken to stand, °"),
+        line("#586", "angle to set, °"),
+        line("#587", "height of the gauge blocks for it, mm"),
+        line("#588", "how much higher than now, mm"),
+        line("#589", "what #587 makes too much, ″"),
+    ];
+    let offset =
+        |when: &'static str| ["X", "Y", "Z"].map(|axis| (format!("G54 {axis}"), when, String::new()));
+    all.extend(offset("before O8200, mm"));
+    all.push((format!("G54 {rotary}"), "before O8200, °", String::new()));
+    all.extend([
+        line("#570", "number of the point taken for E"),
+        line("#571", "number of the point taken for F"),
+        line("#572", "chord less the model's, mm"),
+        line("#573", "added to X, mm"),
+        line("#574", "added to Y, mm"),
+        line("#575", "added to Z, mm"),
+        line("#576", "added to the rotary, °"),
+        line("#577", "tilt of the chord, °"),
+    ]);
+    all.extend(offset("after O8200, mm"));
+    all.push((format!("G54 {rotary}"), "after O8200, °", String::new()));
+    all
+}
 
 /// So many places of the ellipse have a line.
 const PLACES: u32 = 7;
@@ -33,9 +54,9 @@ const PLACES: u32 = 7;
 pub(super) fn readings(sheet: &Sheet<'_>) -> Markup {
     let Job::Alignment(job) = sheet.job else { return html! {} };
     let blank = || html! {};
-    let variables = VARIABLES
-        .iter()
-        .map(|(number, what)| vec![html! { b { (number) } }, cell(what), blank(), blank(), blank()]);
+    let variables = lines(job).into_iter().map(|(place, what, limit)| {
+        vec![html! { b { (place) } }, cell(what), cell(limit), blank(), blank(), blank()]
+    });
     let places = (0..PLACES).map(|n| {
         let path = &job.ellipse;
         let [x, y, across, up] =
@@ -47,14 +68,20 @@ pub(super) fn readings(sheet: &Sheet<'_>) -> Markup {
     html! {
         div.together {
             h2 { "Readings" }
-            p { "As the control shows them at the stops. A simulation is no measurement: nothing is filled in." }
-            div.fill { (table(&["variable", "what it is", "first pass", "second pass", "third pass"], variables)) }
+            p {
+                "As the control shows them at the stops. A simulation is no measurement: nothing is filled in. The limits are the job's "
+                code { "[limits]" } ", those of #580 to #583 for the last pass. " b { "Write #596 down: " }
+                "after a RESET at the wrong moment (alarm " (alarm_thousands(job.control.dialect)) "169) it is typed in again. Once the blocks are "
+                "changed it is asin(#587/L), within #589 of #586."
+            }
+            div.fill { (table(&["place", "what it is", "limit", "first pass", "second pass", "third pass"], variables)) }
         }
         div.together {
             h3 { "Dial along the ellipse, O8220" }
             p {
                 "Where the centre of the ball is; above 0 a gap. On a part in its true place the dial shows 0 all the way; "
-                code { "gcode-sim readings" } " predicts it for a misplaced one."
+                code { "gcode-sim readings" } " predicts it for a misplaced one. "
+                b { "Limit: ±" (short(job.limits.dial)) " mm" } " at every place."
             }
             div.fill { (table(&["#X", "#Y", "#true place", "reading", "after correction"], places)) }
         }

@@ -44,8 +44,13 @@ fn order_of_the_work() -> Markup {
     html! {
         p {
             "The order of the work: O8210 run-out, O8230 sine table, O8210 again; O8200 chord; O8220 ellipse; then the part's own "
-            "programs, which have a sheet of their own. Stops and minutes are those of each program once: every further O8210 "
-            "and O8230 adds its own."
+            "programs, which have a sheet of their own. Stops and minutes are the least there are: every further O8230 with its O8210 adds "
+            "its own."
+        }
+        p {
+            b { "Marks on the part " } "are measured by hand behind the last O8210, with the rotary at 0, in work coordinates of the surface: before O8200 is "
+            "started make #578 vacant, then write x, y and z of each candidate, E's from #501 on, F's from #531 on. Without marks #501 to #560 and #578 are "
+            "made vacant, and O8200 touches the points itself, which tells Y alone."
         }
     }
 }

@@ -3,10 +3,12 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::ellipse::FileEllipse;
-use super::{Alignment, Chord, Runout, SineTable};
+use super::limits::FileLimits;
+use super::runout::FileRunout;
+use super::{Alignment, Chord, SineTable};
 use crate::gauge::{self, GaugeSet};
 use crate::job::pin_holes::{FileMachine, FileSurface};
-use crate::job::reader::{Exactly, Spanned};
+use crate::job::reader::Spanned;
 use crate::job::sections::{FileControl, length, sign, within};
 use crate::job::sheet::FileSheet;
 use crate::job::{JobError, Reader, Surface};
@@ -40,6 +42,9 @@ pub(in crate::job) struct File {
     /// The outline that an edge finder follows.
     #[serde(default)]
     ellipse: FileEllipse,
+    /// What a part that is set up may be off by.
+    #[serde(default)]
+    limits: FileLimits,
     /// What the set-up sheet says of people, time and money.
     sheet: Option<FileSheet>,
 }
@@ -102,21 +107,6 @@ struct FileChord {
     uneven: Option<Spanned<f64>>,
 }
 
-/// An indicator against the part while the table turns.
-#[derive(Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-struct FileRunout {
-    /// Two different y of the indicator, mm.
-    #[schemars(length(equal = 2))]
-    heights: Spanned<Vec<f64>>,
-    /// From, to, and the number of readings (3 to 100): degrees.
-    #[schemars(inner(range(min = -360.0, max = 360.0)))]
-    angles: Spanned<Exactly<f64, 3>>,
-    /// The largest shift of the part in y that the fit is believed to find, mm [default: 0.4].
-    #[schemars(range(min = 0.01, max = 100.0))]
-    y_shift: Option<Spanned<f64>>,
-}
-
 /// Reads the text of a job of this family.
 pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<Alignment, JobError> {
     let file: File = toml::from_str(reader.text).map_err(|e| reader.syntax(&e))?;
@@ -134,6 +124,7 @@ pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<Alignment, JobError> 
     };
     file.chord.touchable(reader, surface, chord, probe_search)?;
     let increment = control.increment.size();
+    let ellipse = file.ellipse.check(reader, control, surface, chord)?;
     Ok(Alignment {
         control,
         machine: file.machine.check(reader)?,
@@ -154,7 +145,8 @@ pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<Alignment, JobError> 
         sine_table: file.sine_table.check(reader)?,
         chord,
         runout: file.runout.check(reader, surface)?,
-        ellipse: file.ellipse.check(reader, control, surface, chord)?,
+        limits: file.limits.check(reader, surface, ellipse)?,
+        ellipse,
         sheet: FileSheet::of(file.sheet, reader)?,
         surface,
     })
@@ -280,38 +272,6 @@ impl FileChord {
     }
 }
 
-impl FileRunout {
-    fn check(&self, reader: &Reader<'_>, surface: Surface) -> Result<Runout, JobError> {
-        let b = surface.b;
-        let heights = match self.heights.as_ref().as_slice() {
-            [low, high] if low.abs() < b && high.abs() < b && low != high => [*low, *high],
-            _ => {
-                let message =
-                    format!("key 'runout.heights' is two different y, each less than b = {b} mm from 0");
-                return Err(reader.error(&self.heights, message));
-            }
-        };
-        let [from, to, readings] = self.angles.as_ref().0;
-        let fits = from.abs() <= 360.0 && to.abs() <= 360.0 && from < to;
-        if !(fits && (3.0..=100.0).contains(&readings) && readings.fract() == 0.0) {
-            let message = "key 'runout.angles' is from, to and the number of readings: degrees, -360 to 360, and 3 to 100";
-            return Err(reader.error(&self.angles, message));
-        }
-        if from > 0.0 || to < 0.0 {
-            let message = format!(
-                "key 'runout.angles' is from {from} to {to}: 0 has to be among them, for the chord and the ellipse are touched at B0; \
-                 shift the work zero of the rotary so that 0 is on the petal"
-            );
-            return Err(reader.error(&self.angles, message));
-        }
-        let y_shift = match &self.y_shift {
-            Some(value) => reader.number("runout.y_shift", value, "0.01 to 100 mm", within(0.01, 100.0))?,
-            None => 0.4,
-        };
-        Ok(Runout { heights, from, to, readings: readings as u32, y_shift })
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use crate::job::Job;
@@ -430,7 +390,17 @@ angles = [-25.0, 25.0, 11]
             (
                 "[150.0, 420.0]",
                 "[150.0]",
-                "line 23: key 'runout.heights' is two different y, each less than b = 724.3 mm from 0",
+                "line 23: key 'runout.heights' is two different y, each less than b = 724.3 mm from 0, and it has 1",
+            ),
+            (
+                "[150.0, 420.0]",
+                "[150.0, 150.0]",
+                "line 23: key 'runout.heights' is two different y, each less than b = 724.3 mm from 0, and both are 150",
+            ),
+            (
+                "[150.0, 420.0]",
+                "[150.0, -800.0]",
+                "line 23: key 'runout.heights' is two different y, each less than b = 724.3 mm from 0, and -800 isn't",
             ),
             (
                 "phi = 38.5",
@@ -453,7 +423,24 @@ angles = [-25.0, 25.0, 11]
             (
                 "25.0, 11]",
                 "25.0, 2]",
-                "line 24: key 'runout.angles' is from, to and the number of readings: degrees, -360 to 360, and 3 to 100",
+                "line 24: key 'runout.angles' is from, to and the number of readings, and the number of readings is 2: a whole number, 3 to \
+                 100",
+            ),
+            (
+                "25.0, 11]",
+                "25.0, 10.5]",
+                "line 24: key 'runout.angles' is from, to and the number of readings, and the number of readings is 10.5: a whole number, \
+                 3 to 100",
+            ),
+            (
+                "[-25.0, 25.0",
+                "[25.0, -25.0",
+                "line 24: key 'runout.angles' is from, to and the number of readings, and it goes from 25 to -25: from has to be below to",
+            ),
+            (
+                "[-25.0, 25.0",
+                "[-25.0, 365.0",
+                "line 24: key 'runout.angles' is from, to and the number of readings, and the angle to is 365: -360 to 360 degrees",
             ),
         ] {
             let text = JOB.replacen(from, to, 1);

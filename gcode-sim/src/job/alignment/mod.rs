@@ -1,6 +1,8 @@
 //! The job file of the family `alignment`: what is known of the part that is to be set up, and what it is measured with.
 mod ellipse;
 mod file;
+mod limits;
+mod runout;
 
 pub(super) use file::{File, parse};
 
@@ -25,6 +27,7 @@ pub struct Alignment {
     pub chord: Chord,
     pub runout: Runout,
     pub ellipse: EllipsePath,
+    pub limits: AlignmentLimits,
     pub sheet: SheetWords,
 }
 
@@ -76,4 +79,15 @@ pub struct Runout {
     pub readings: u32,
     /// The largest shift of the part in y that the fit is believed to find.
     pub y_shift: f64,
+}
+
+/// What a part that is set up may be off by: the set-up sheet prints it beside the readings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AlignmentLimits {
+    /// #580 and #581 of the last run-out, mm.
+    pub shift: f64,
+    /// #582 and #583 of the last run-out, degrees.
+    pub tilt: f64,
+    /// The dial along the ellipse, mm.
+    pub dial: f64,
 }
