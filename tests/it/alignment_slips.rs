@@ -61,7 +61,7 @@ fn noise_as_large_as_the_job_says_is_no_alarm() {
 }
 
 /// RESET at the stop: an alarm in its place, which leaves the same behind.
-const RESET: (u32, &str, &str) = (8201, "#3006=1(CYCLE START ADDS #573-#576)", "#3000=99(RESET)");
+const RESET: (u32, &str, &str) = (8201, "#3006=1(CYCLE START ADDS #574 #576)", "#3000=99(RESET)");
 
 #[test]
 fn points_are_used_once_whatever_happens_at_the_stop() {

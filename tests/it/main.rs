@@ -3,6 +3,7 @@
 
 mod accepted;
 mod alignment;
+mod alignment_guards;
 mod alignment_slips;
 mod alignment_state;
 mod alignment_touched;

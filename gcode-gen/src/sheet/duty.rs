@@ -91,13 +91,15 @@ fn set_up(job: &Alignment, stop: &Stop) -> Option<Vec<String>> {
              within the limits of the readings below."
                 .to_owned(),
         ],
-        573 => vec![
+        574 => vec![
             format!(
-                "Read #573 to #575 (mm) and #576 (degrees), which are to be added to X, Y, Z and {} of the work offset.",
+                "Read #574 (mm) and #576 (degrees), which are to be added to Y and {} of the work offset.",
                 job.machine.rotary.letter
             ),
             "CYCLE START adds them: nothing is set by hand. RESET keeps them out. The points are used up either way.".to_owned(),
-            "#573 or #575 larger than the run-out has left is no correction: RESET, and O8210 first.".to_owned(),
+            "X and Z stay as they are: the run-out knows better where the axis is. #573 and #575 say how far marks are aside in them. \
+             Where the marks are surer than that, X or Z of G54 isn't on the axis of the rotary: RESET, and set it anew."
+                .to_owned(),
         ],
         _ => return None,
     };

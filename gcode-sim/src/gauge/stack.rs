@@ -38,6 +38,15 @@ impl GaugeSet {
         let indices = fewest(&steps, most, &nearest);
         Stack { blocks: indices.into_iter().map(|index| blocks[index]).collect() }
     }
+
+    /// The lowest height in whole steps of the set, from one to another, that no stack makes. No blocks make a height of 0.
+    pub fn first_gap(&self, from: Mm, to: Mm) -> Option<Thickness> {
+        let grid = self.step().0;
+        let steps: Vec<usize> = self.blocks().iter().map(|block| (block.0 / grid) as usize).collect();
+        let [from, to] = [from, to].map(|height| (height.0 * 2000.0 / f64::from(grid)).round() as usize);
+        let reached = Sums::of_all(&steps, to);
+        (from..=to).find(|sum| !reached.contains(*sum)).map(|sum| Thickness(sum as u32 * grid))
+    }
 }
 
 /// Which blocks make one of some heights that can be made, with as few of them as do; the thickest first.
@@ -171,6 +180,18 @@ mod tests {
         ] {
             assert_eq!(stack(name, height), blocks, "{height} by {name}");
         }
+    }
+
+    /// By hand, set of 87: 1.001 to 1.010 are blocks, 1.011 is none, and no two make so little; the thinnest is 0.5.
+    #[test]
+    fn low_heights_have_gaps() {
+        let set = set("metric-87");
+        let gap = |from, to| set.first_gap(Mm(from), Mm(to));
+        assert_eq!(gap(1.0, 1.5), Some(Thickness(2022)));
+        assert_eq!(gap(1.0, 1.01), None);
+        assert_eq!(gap(0.0, 0.4), Some(Thickness(2)));
+        assert_eq!(gap(0.0, 0.0), None);
+        assert_eq!(gap(4.0, 130.0), None);
     }
 
     #[test]

@@ -14,20 +14,17 @@ type Point = [f64; 3];
 /// The candidates that are E and F themselves, as numbers from 1.
 const TRUE_PAIR: [usize; 2] = [3, 8];
 
-/// How the part stands, as far as a chord can tell: shift in mm, turned about y in degrees.
-const STANDS: [(Point, f64); 2] = [([0.2, -0.3, 0.15], 0.25), ([-0.25, 0.1, -0.3], -0.2)];
+/// How a part stands that the run-out has set right: shift along y in mm, turned about y in degrees.
+const STANDS: [(f64, f64); 2] = [(-0.3, 0.25), (0.1, -0.2)];
 
 pub(super) fn tried(bench: &Bench<'_>) -> Result<Tried, CheckError> {
     let job = bench.job;
     let mut tried = Tried::default();
     let (mut off, allowed) = (0.0_f64, allowed(job));
     let mut farthest = 0.0_f64;
-    // O8201 believes a shift in x of two circles.
-    let scale = (job.chord.circle / 0.25).min(1.0);
-    for (shift, turned) in STANDS {
-        let shift = shift.map(|along| along * scale);
+    for (high, turned) in STANDS {
         let tilt = [Deg::ZERO, Deg(turned), Deg::ZERO];
-        let part = Placement { shift: shift.into(), tilt, ..Placement::default() };
+        let part = Placement { shift: [0.0, high, 0.0].into(), tilt, ..Placement::default() };
         let measured = candidates(job).map(|points| points.map(|p| moved(&part, p)));
         for (points, end) in measured.iter().zip(ends(job)) {
             let distances =

@@ -68,7 +68,7 @@ mod tests {
     }
 
     /// By hand: at y = 420 a tilt of 0.3° moves the surface by 420·(a²/b² − 1)·0.3° in rad = 3.43 along r, the two tilts at B's ends
-    /// and shifts of 0.3 add some tenths. E, turned by 0.25° about y, is 812.4·0.25° in rad = 3.54 aside, and 0.15 by the shift.
+    /// and shifts of 0.3 add some tenths. E, turned by 0.25° about y, is 812.4·0.25° in rad = 3.54 aside, and a candidate half a circle more.
     #[test]
     fn a_search_that_is_too_short_is_told_with_one_that_does() {
         let told = refusals("2.0");

@@ -1,8 +1,12 @@
 //! The sine table's program for tilts either way: the height has to make the angle that takes the tilt away.
+use gcode_sim::gauge::Thickness;
+use gcode_sim::job::SineTable;
 use gcode_sim::machine::Placement;
+use gcode_sim::report::figures::short;
 use gcode_sim::units::Deg;
 
 use super::{Bench, CheckError, Tried, common};
+use crate::families::alignment::{LARGEST_TILT, STEEPEST, gap};
 
 /// Tilts of the part about z, degrees.
 const TILTS: [f64; 3] = [0.0, 0.08, -0.031];
@@ -45,6 +49,7 @@ pub(super) fn tried(bench: &Bench<'_>) -> Result<Tried, CheckError> {
             tried.refusals.push(format!("{}: {message}\n", bench.name()));
         }
     }
+    tried.warnings.extend(warnings(table).map(|told| format!("warning: {}: {told}\n", bench.name())));
     tried.report = format!(
         "{}  the sine table's height for each tilt to within {worst:.4} mm, half a step of {} being {}\n",
         bench.name(),
@@ -52,4 +57,62 @@ pub(super) fn tried(bench: &Bench<'_>) -> Result<Tried, CheckError> {
         step / 2.0
     );
     Ok(tried)
+}
+
+/// Tilts that the macro corrects and this table can't be set for.
+fn warnings(table: &SineTable) -> impl Iterator<Item = String> {
+    let phi = short(table.phi);
+    let room = table.phi.min(STEEPEST - table.phi);
+    let side = if table.phi < LARGEST_TILT { "0" } else { "45" };
+    let edge = (room < LARGEST_TILT).then(|| {
+        format!(
+            "key 'sine_table.phi' is {phi}: a tilt of more than {} degrees one way takes it beyond {side}, which O8230 refuses (PHI BEYOND \
+             0. TO 45.); a part that is tilted so is set by hand",
+            short(room)
+        )
+    });
+    let stack = gap(table).map(|Thickness(half_microns)| {
+        format!(
+            "key 'sine_table.phi' is {phi}: within {} degree of it the set '{}' has gaps, the lowest at {:.4} mm; where O8230 tells a height without a \
+             stack, put blocks under both rollers that differ by it",
+            short(LARGEST_TILT),
+            table.gauge_blocks.name,
+            f64::from(half_microns) / 2000.0
+        )
+    });
+    edge.into_iter().chain(stack)
+}
+
+#[cfg(test)]
+mod tests {
+    use gcode_sim::job::Job;
+
+    use super::*;
+    use crate::families::alignment::FAMILY;
+
+    fn told(phi: &str) -> String {
+        let Ok(Job::Alignment(job)) =
+            Job::parse(&FAMILY.new_job.replace("phi = 38.5", &format!("phi = {phi}")))
+        else {
+            panic!("phi {phi}");
+        };
+        warnings(&job.sine_table).collect::<Vec<_>>().join("\n")
+    }
+
+    /// L = 200: at 0.5° from 0 on, where 0.001 has no stack; at 5° from 13.951 on.
+    #[test]
+    fn a_table_that_some_tilts_cannot_be_set_on_is_warned_of() {
+        for (phi, edge, lowest) in [
+            ("0.5", Some("0.5 degrees one way takes it beyond 0"), true),
+            ("44.9", Some("0.1 degrees one way takes it beyond 45"), false),
+            ("38.5", None, false),
+            ("5.0", None, false),
+        ] {
+            let told = told(phi);
+            assert_eq!(told.contains("PHI BEYOND 0. TO 45."), edge.is_some(), "{told}");
+            assert!(edge.is_none_or(|edge| told.contains(edge)), "{told}");
+            assert_eq!(told.contains("has gaps, the lowest at 0.0010 mm"), lowest, "{told}");
+            assert_eq!(told.contains("gaps"), lowest, "{told}");
+        }
+    }
 }

@@ -15,11 +15,15 @@ const fn alarm(number: u32, text: &'static str, remedy: &'static str) -> MacroAl
 }
 
 const SHIFT: &str = "Cancel what was left in force: G52 X0 Y0 Z0 or G92.1. See that G54 is the work zero of this sheet; start again.";
+const CHANGED: &str = "Cancel what was left in force, in MDI: G15, G50, G50.1 and G69, whichever of them the control has. Start again.";
+const START: &str = "The way to the part would lead through it. Take the ball up above the part's pole, or to X+; start again.";
 const NEEDS: &str = "Somebody has changed the program's second block or the call: load the programs anew.";
 
 /// In the order of the work.
 pub const ALARMS: &[MacroAlarm] = &[
     alarm(138, "G52 OR G92 SHIFT IN X Y Z", SHIFT),
+    alarm(139, "G16 G51 G51.1 G68 IN FORCE", CHANGED),
+    alarm(140, "START ABOVE POLE OR AT +X", START),
     alarm(153, "NEEDS G21 G40 G49 G54 G94", NEEDS),
     alarm(
         154,
@@ -67,6 +71,7 @@ pub const ALARMS: &[MacroAlarm] = &[
         "RESET came while #596 was changed. Write the angle to it that the blocks under the table make, asin(height/L); start again.",
     ),
     alarm(137, "G52 OR G92 SHIFT IN X Y Z", SHIFT),
+    alarm(120, "G16 G51 G51.1 G68 IN FORCE", CHANGED),
     alarm(131, "NEEDS G21 G40 G49 G54 G94", NEEDS),
     alarm(
         133,
@@ -117,6 +122,8 @@ pub const ALARMS: &[MacroAlarm] = &[
     ),
     alarm(69, "NEEDS G21 AND G54 TO G59", NEEDS),
     alarm(112, "G52 OR G92 SHIFT IN X Y Z", SHIFT),
+    alarm(113, "G16 G51 G51.1 G68 IN FORCE", CHANGED),
+    alarm(114, "START ABOVE POLE OR AT +X", START),
     alarm(111, "NEEDS G21 G40 G49 G54 G94", NEEDS),
 ];
 

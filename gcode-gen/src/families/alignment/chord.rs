@@ -52,7 +52,8 @@ fn write(job: &Alignment, text: &mut Text) {
     for line in [
         format!("CANDIDATES {} OF E IN #501 ON, X Y Z EACH, OF F IN #531 ON", chord.candidates),
         "#570 #571 THE CHOSEN NUMBERS, #572 THEIR CHORD LESS THAT OF THE MODEL".to_owned(),
-        "#573-#576 WHAT IS ADDED TO THE WORK OFFSET IN X Y Z AND THE ROTARY".to_owned(),
+        "#574 #576 WHAT IS ADDED TO THE WORK OFFSET IN Y AND THE ROTARY".to_owned(),
+        "#573 #575 HOW FAR THE CHORD IS ASIDE IN X AND Z, NOT CORRECTED".to_owned(),
         "#577 TILT OF THE CHORD ABOUT Z, NOT CORRECTED".to_owned(),
         "TOUCHED POINTS TELL Y ALONE, THEN #573 #575 #576 ARE 0".to_owned(),
         format!("CALLS O{TOUCH}. WHERE #501-#560 AND #578 ARE VACANT IT TOUCHES THEM WITH"),
@@ -61,8 +62,8 @@ fn write(job: &Alignment, text: &mut Text) {
         "ALARM. #578 0. CLEARS ALL CANDIDATES AND TOUCHES ANEW".to_owned(),
         "POINTS ARE USED ONCE, #501-#560 AND #578 ARE VACANT AT THE STOP".to_owned(),
         format!("CALLS O{MATCH}, THE PAIR AND THE WORK OFFSET"),
-        "AT THE STOP CYCLE START ADDS #573-#576, RESET KEEPS THEM OUT".to_owned(),
-        format!("ALARMS {k}061-{k}076 BY O{MATCH}, {k}121-{k}137 BY O{TOUCH}"),
+        "AT THE STOP CYCLE START ADDS #574 #576, RESET KEEPS THEM OUT".to_owned(),
+        format!("ALARMS {k}061-{k}076 BY O{MATCH}, {k}120-{k}137 BY O{TOUCH}"),
         "START WITH THE BALL CLEAR OF THE PART, ABOVE IT OR AT +X".to_owned(),
         format!("AFTERWARDS {rotary}0. TURNS THE CHORD INTO THE PLANE Z 0"),
     ] {

@@ -35,10 +35,10 @@ fn write(job: &Alignment, text: &mut Text) {
     text.remark(format!("FROM X {from} TO X {to} OF THE SURFACE, Z 0., BALL R {}", number(job.probe_radius)));
     common_remarks(job, text);
     for line in [
-        format!("CALLS O{PATH}, ALARMS {k}101-{k}112"),
+        format!("CALLS O{PATH}, ALARMS {k}101-{k}114"),
         "READ THE DIAL ON THE WAY, ON A PART IN ITS TRUE PLACE IT SHOWS 0".to_owned(),
         "GCODE-SIM READINGS PREDICTS WHAT IT SHOWS ON A MISPLACED PART".to_owned(),
-        "START WITH THE BALL CLEAR OF THE PART, ABOVE OR BESIDE IT".to_owned(),
+        "START WITH THE BALL ABOVE THE POLE OF THE PART OR AT +X".to_owned(),
     ] {
         text.remark(line);
     }

@@ -25,7 +25,7 @@ pub use alarms::{ALARMS, MacroAlarm};
 pub use chord::{MAIN as CHORD, MATCH as CHORD_MATCH};
 pub use ellipse::MAIN as ELLIPSE;
 pub use runout::MAIN as RUNOUT;
-pub use sine::MAIN as SINE_TABLE;
+pub use sine::{LARGEST_TILT, MAIN as SINE_TABLE, STEEPEST, gap};
 
 pub const FAMILY: Family =
     Family { name: "alignment", new_job: include_str!("new.toml"), resident: resident::of_the_defaults };
@@ -95,6 +95,7 @@ fn common_remarks(job: &Alignment, text: &mut Text) {
         "ELLIPSOID, FOR THE CENTRE OF THE STYLUS BALL. THE HEAD DOES NOT TURN".to_owned(),
         format!("ROTARY {} = {sign}AZIMUTH, FROM X TOWARDS Z", rotary.letter),
         format!("G52 OF {} IS CANCELLED, A SHIFT OF X Y Z BY G52 OR G92 IS AN ALARM", rotary.letter),
+        "AND SO IS A SCALING, A MIRROR IMAGE, A TURN OR G16 LEFT IN FORCE".to_owned(),
     ] {
         text.remark(line);
     }

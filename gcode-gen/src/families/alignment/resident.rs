@@ -48,6 +48,16 @@ impl Resident {
         }
     }
 
+    /// What is true where coordinates are scaled, mirrored, turned or polar. A Haas has neither G16 nor #4022.
+    fn changed(&self) -> &'static str {
+        match self.dialect {
+            Dialect::HaasNgc => "[#4011 EQ 51]OR[#4016 EQ 68]",
+            Dialect::Fanuc31i | Dialect::Fanuc0iF => {
+                "[#4011 EQ 51]OR[FIX[#4016]EQ 68]OR[#4017 EQ 16]OR[#4022 GT 51]"
+            }
+        }
+    }
+
     fn fill(&self, one: &Macro) -> String {
         let marks = [
             ("{name}", name(one.number, self.dialect)),
@@ -58,6 +68,7 @@ impl Resident {
             ("{rounding}", number(0.75 * self.increment.size())),
             ("{per_unit}", number(self.increment.per_unit())),
             ("{external}", self.external().to_owned()),
+            ("{changed}", self.changed().to_owned()),
             ("{writes}", one.writes.remark()),
         ];
         fill(one.text, &marks)

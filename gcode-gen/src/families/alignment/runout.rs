@@ -45,11 +45,12 @@ fn write(job: &Alignment, text: &mut Text) {
         "X AND Z, OF THE LAST PASS".to_owned(),
         "#584 ITS SHIFT IN Y, LESS SURE. #585 WHAT THE FIT LEAVES".to_owned(),
         "#590-#595 THE SAME OF THE FIRST PASS".to_owned(),
-        "AT THE STOP THE PART IS MOVED BACK BY #580 #581 AND SHIMMED BACK BY".to_owned(),
-        "#582, THE TILT #583 IS LEFT TO O8230. CYCLE START MEASURES AGAIN".to_owned(),
-        format!("ALARMS {k}138, {k}141-{k}160 BY O{FIT}"),
-        format!("START WITH THE BALL CLEAR OF THE PART, ABOVE IT OR AT +X, {rotary} FREE"),
-        "TO TURN".to_owned(),
+        format!("AT THE STOP, AT {rotary}0., THE PART IS MOVED BACK BY #580 #581 AND"),
+        "SHIMMED BACK BY #582, THE TILT #583 IS LEFT TO O8230. CYCLE START".to_owned(),
+        "MEASURES AGAIN".to_owned(),
+        format!("ALARMS {k}138-{k}160 BY O{FIT}"),
+        format!("START WITH THE BALL ABOVE THE POLE OF THE PART OR AT +X, {rotary} FREE TO"),
+        "TURN".to_owned(),
     ] {
         text.remark(line);
     }
@@ -62,7 +63,7 @@ fn write(job: &Alignment, text: &mut Text) {
     for of_pass in 0..6 {
         text.block(Block::of(format!("#{}=#{}", 590 + of_pass, 580 + of_pass)));
     }
-    text.block(Block::of("#3006=1(PART IS OFF BY #580-#583)"));
+    text.block(Block::of(format!("#3006=1(PART OFF #580-#583 AT {rotary}0)")));
     text.block(pass(job).comment("WHAT REMAINS"));
     text.block(Block::of("M30"));
 }

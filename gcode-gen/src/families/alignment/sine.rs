@@ -2,8 +2,8 @@
 //!
 //! The macro gives the height and not the blocks: the fewest of a set are a search through all stacks, which is done here for
 //! the job's φ; for the corrected one they are found by the digits of the height, the last one first, as always at the machine.
-use gcode_sim::gauge::{self, SineSetting};
-use gcode_sim::job::Alignment;
+use gcode_sim::gauge::{self, SineSetting, Thickness};
+use gcode_sim::job::{Alignment, SineTable};
 use gcode_sim::units::{Deg, Mm};
 
 use super::writes::Writes;
@@ -15,6 +15,10 @@ use crate::nc::program::Program as Text;
 
 /// The main program.
 pub const MAIN: u32 = 8230;
+
+/// The largest tilt that O8231 corrects, and the steepest φ that it tells; degrees.
+pub const LARGEST_TILT: f64 = 1.0;
+pub const STEEPEST: f64 = 45.0;
 
 /// Height and angle.
 const TABLE: u32 = 8231;
@@ -47,6 +51,14 @@ fn write(job: &Alignment, text: &mut Text) {
         "AFTER O8210 HAS FOUND THE TILT #583 THIS PROGRAM TELLS".to_owned(),
         "#586 PHI TO SET, #587 HEIGHT OF THE BLOCKS, #588 ITS CHANGE".to_owned(),
         "#589 SECONDS OF ARC BY WHICH #587 MAKES TOO MUCH".to_owned(),
+    ] {
+        text.remark(line);
+    }
+    if gap(table).is_some() {
+        text.remark("NOT EVERY H SO LOW HAS A STACK. WHERE #587 HAS NONE SET BLOCKS UNDER");
+        text.remark("BOTH ROLLERS, #587 IS BY HOW MUCH THEY DIFFER");
+    }
+    for line in [
         "#596 IS PHI AS THE TABLE IS SET, VACANT AT FIRST, THEN IT IS".to_owned(),
         format!("{phi}. WHOEVER SETS THE TABLE OTHERWISE WRITES IT THERE"),
         "THE FIRST STOP ASKS WHETHER IT IS RIGHT, IF NOT RESET AND WRITE IT".to_owned(),
@@ -76,6 +88,13 @@ fn write(job: &Alignment, text: &mut Text) {
     text.block(Block::of("#583=#0"));
     text.block(Block::of(format!("#596=ASIN[#587/{length}]")));
     text.block(Block::of("M30"));
+}
+
+/// The lowest height within the tilts that O8231 corrects for which the set has no stack.
+pub fn gap(table: &SineTable) -> Option<Thickness> {
+    let [low, high] = [-LARGEST_TILT, LARGEST_TILT]
+        .map(|tilt| gauge::height(Mm(table.length), Deg((table.phi + tilt).clamp(0.0, STEEPEST))));
+    table.gauge_blocks.first_gap(low, high)
 }
 
 /// The blocks in lines that a control can show, and what they leave of the angle. Jobs in which no block comes near are refused.

@@ -37,9 +37,9 @@ fn lines(job: &Alignment) -> Vec<(String, &'static str, String)> {
         line("#570", "number of the point taken for E"),
         line("#571", "number of the point taken for F"),
         line("#572", "chord less the model's, mm"),
-        line("#573", "added to X, mm"),
+        line("#573", "chord aside in X, mm, not added"),
         line("#574", "added to Y, mm"),
-        line("#575", "added to Z, mm"),
+        line("#575", "chord aside in Z, mm, not added"),
         line("#576", "added to the rotary, °"),
         line("#577", "tilt of the chord, °"),
     ]);
