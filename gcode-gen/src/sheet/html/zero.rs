@@ -101,14 +101,14 @@ fn alignment(job: &Alignment) -> Vec<String> {
              halve what the indicator shows. A zero that is off in X is found as a shift and a tilt of the part, one in Z by nothing; one in Y \
              is corrected by O8200."
         ),
-        "No shift by G52 or G92 in X, Y or Z is left from before: the programs refuse it.".to_owned(),
+        "No shift by G52 or G92 in X, Y or Z and no G16, G51, G51.1 or G68 is left from before: the programs refuse them.".to_owned(),
         format!(
             "E and F are points of the surface in the plane Z0, at X{} and X{}.",
             short(job.chord.e_radius),
             short(job.chord.f_radius)
         ),
         format!(
-            "Start every program with the ball clear of the part, above it or at X+, and {letter} free to turn. O8210 goes out to X{} first, \
+            "Start every program with the ball above the pole of the part or clear of it at X+, and {letter} free to turn. O8210 goes out to X{} first, \
              O8200 up; O8220 turns {letter} to 0 where the ball stands.",
             short(job.surface.a + job.probe_radius + job.probe_search)
         ),
