@@ -3,7 +3,7 @@ use super::words::{Raw, computed_row};
 use super::{Control, Core};
 use crate::program::codes::{Effect, OneShot, spelled};
 use crate::program::modes::Distance;
-use crate::program::{Op, OpKind, Program, Statement, Words};
+use crate::program::{OpKind, Program, Statement, Words};
 
 /// Of a block that is about to be done.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -20,47 +20,31 @@ impl Control {
     /// What [`Control::next_block`] commands; nothing for a block that is skipped.
     pub fn next_commanded(&self) -> Commanded {
         let mut commanded = Commanded::default();
-        let Some((program, op)) = self.next_op() else { return commanded };
-        if op.skip.is_some_and(|switch| self.core.skips(switch)) {
-            return commanded;
-        }
-        // To look is no part of the run: what a function has to tell is told when the block is done.
-        let told = self.core.told.take();
-        if let OpKind::Words(words) = then(&self.core, program, &op.kind) {
-            self.core.commanded(program, words, &mut commanded);
-        }
-        self.core.told.set(told);
+        self.look_at_next(|core, program, op| {
+            if core.is_skipped(op) {
+                return;
+            }
+            if let OpKind::Words(words) = core.behind_if(program, &op.kind) {
+                core.commanded(program, words, &mut commanded);
+            }
+        });
         commanded
     }
 
     /// Whether [`Control::next_block`] will do all that it says: it isn't skipped, and no condition stands in the way.
     pub fn next_is_whole(&self) -> bool {
-        let Some((program, op)) = self.next_op() else { return true };
-        let told = self.core.told.take();
-        let condition = match &op.kind {
-            OpKind::If { condition, .. }
-            | OpKind::Statement(Statement::IfGoto { condition, .. } | Statement::IfThen { condition, .. }) => {
-                Some(*condition)
-            }
-            OpKind::Empty | OpKind::Words(_) | OpKind::Statement(_) | OpKind::Alarm(_) => None,
-        };
-        let holds = condition.is_none_or(|condition| self.core.holds(program, condition).unwrap_or(true));
-        self.core.told.set(told);
-        holds && !op.skip.is_some_and(|switch| self.core.skips(switch))
-    }
-
-    fn next_op(&self) -> Option<(&Program, &Op)> {
-        let frame = &self.core.frame;
-        let program = self.memory.get(frame.program);
-        Some((program, program.op(frame.next)?))
-    }
-}
-
-/// What stands behind an IF that holds; else the operation itself.
-fn then<'a>(core: &Core, program: &Program, kind: &'a OpKind) -> &'a OpKind {
-    match kind {
-        OpKind::If { condition, then } if core.holds(program, *condition).unwrap_or(false) => then,
-        _ => kind,
+        let is_whole = self.look_at_next(|core, program, op| {
+            let condition = match &op.kind {
+                OpKind::If { condition, .. }
+                | OpKind::Statement(
+                    Statement::IfGoto { condition, .. } | Statement::IfThen { condition, .. },
+                ) => Some(*condition),
+                OpKind::Empty | OpKind::Words(_) | OpKind::Statement(_) | OpKind::Alarm(_) => None,
+            };
+            let holds = condition.is_none_or(|condition| core.holds(program, condition).unwrap_or(true));
+            holds && !core.is_skipped(op)
+        });
+        is_whole.unwrap_or(true)
     }
 }
 
@@ -148,31 +132,11 @@ pub fn modal_code(code: u32) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exec::{Limits, Watcher};
-    use crate::program::{Memory, NoLibrary};
+    use crate::exec::watch::seen_before;
 
-    /// What every block commands, and whether it is done whole.
-    #[derive(Default)]
-    struct Said(Vec<(Commanded, bool)>);
-
-    impl Watcher for Said {
-        fn before(&mut self, control: &mut Control) {
-            if control.next_block().is_some() {
-                self.0.push((control.next_commanded(), control.next_is_whole()));
-            }
-        }
-
-        fn after(&mut self, _: &Control) {}
-    }
-
+    /// What a block commands, and whether it is done whole.
     fn said(block: &str) -> (Commanded, bool) {
-        let mut memory = Memory::default();
-        memory.load("O1.nc", format!("O1\n{block}\nM30\n").into_bytes());
-        let mut control = Control::new(memory, crate::control::Settings::default());
-        let mut watcher = Said::default();
-        control.run_watched(Limits::default(), &mut NoLibrary, &mut (), &mut watcher);
-        let last = watcher.0.len() - 2;
-        watcher.0[last].clone()
+        seen_before(block, |control| (control.next_commanded(), control.next_is_whole()))
     }
 
     #[test]

@@ -62,9 +62,6 @@ impl Core {
     /// The modal call that a block of this program can trigger.
     #[inline]
     fn waiting_call(&self) -> Option<usize> {
-        if self.modal_calls.is_empty() {
-            return None;
-        }
         self.frame.modal.min(self.modal_calls.len()).checked_sub(1)
     }
 

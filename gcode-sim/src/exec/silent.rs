@@ -26,27 +26,19 @@ impl Control {
     /// What [`Control::next_block`] says so; nothing for a block that is skipped.
     pub fn next_silent(&self) -> Silent {
         let mut silent = Silent::default();
-        let frame = &self.core.frame;
-        let program = self.memory.get(frame.program);
-        let Some(op) = program.op(frame.next) else { return silent };
-        if op.skip.is_some_and(|switch| self.core.skips(switch)) {
-            return silent;
-        }
-        silent.skips.extend(op.skip.map(skip));
-        // To look is no part of the run: what a function has to tell is told when the block is done.
-        let told = self.core.told.take();
-        let mut kind = &op.kind;
-        if let OpKind::If { condition, then } = kind
-            && self.core.holds(program, *condition).unwrap_or(false)
-        {
-            kind = then;
-        }
-        match kind {
-            OpKind::Words(words) => self.core.silent(program, words, &mut silent),
-            OpKind::Statement(_) => silent.writes = self.will_assign().iter().any(|number| *number >= 1000),
-            OpKind::Empty | OpKind::If { .. } | OpKind::Alarm(_) => {}
-        }
-        self.core.told.set(told);
+        self.look_at_next(|core, program, op| {
+            if core.is_skipped(op) {
+                return;
+            }
+            silent.skips.extend(op.skip.map(skip));
+            match core.behind_if(program, &op.kind) {
+                OpKind::Words(words) => core.silent(program, words, &mut silent),
+                OpKind::Statement(_) => {
+                    silent.writes = self.will_assign().iter().any(|number| *number >= 1000);
+                }
+                OpKind::Empty | OpKind::If { .. } | OpKind::Alarm(_) => {}
+            }
+        });
         silent
     }
 }
@@ -132,31 +124,10 @@ fn two_digits(code: u32) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exec::{Limits, Watcher};
-    use crate::program::{Memory, NoLibrary};
-
-    /// What every block says, from the one behind the O number.
-    #[derive(Default)]
-    struct Said(Vec<Silent>);
-
-    impl Watcher for Said {
-        fn before(&mut self, control: &mut Control) {
-            if control.next_block().is_some() {
-                self.0.push(control.next_silent());
-            }
-        }
-
-        fn after(&mut self, _: &Control) {}
-    }
+    use crate::exec::watch::seen_before;
 
     fn said(block: &str) -> Silent {
-        let mut memory = Memory::default();
-        memory.load("O1.nc", format!("O1\n{block}\nM30\n").into_bytes());
-        let mut control = Control::new(memory, crate::control::Settings::default());
-        let mut watcher = Said::default();
-        control.run_watched(Limits::default(), &mut NoLibrary, &mut (), &mut watcher);
-        let last = watcher.0.len() - 2;
-        watcher.0[last].clone()
+        seen_before(block, Control::next_silent)
     }
 
     #[test]

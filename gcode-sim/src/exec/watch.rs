@@ -1,7 +1,7 @@
 //! Looking on while a control runs: at what stands in it before and after every block.
 use super::frames::Frame;
 use super::{Control, Core};
-use crate::program::{OpKind, Program, Slot, Statement};
+use crate::program::{Op, OpKind, Program, Slot, Statement};
 use crate::source::Span;
 
 /// Looks at a control between its blocks.
@@ -51,20 +51,41 @@ impl Control {
     /// The variables that [`Control::next_block`] will assign as things stand; those whose numbers are computed as well.
     pub fn will_assign(&self) -> Vec<u32> {
         let mut numbers = Vec::new();
-        let frame = &self.core.frame;
-        let program = self.memory.get(frame.program);
-        let Some(op) = program.op(frame.next) else { return numbers };
+        self.look_at_next(|core, program, op| {
+            if !core.is_skipped(op) {
+                core.targets(program, &op.kind, &mut numbers);
+            }
+        });
+        numbers
+    }
+
+    /// What `look` sees in the operation of [`Control::next_block`]; `None` where there is none that is ready.
+    pub(super) fn look_at_next<T>(&self, look: impl FnOnce(&Core, &Program, &Op) -> T) -> Option<T> {
+        let Frame { program, next, .. } = self.core.frame;
+        let program = self.memory.get(program);
+        let op = program.op(next)?;
         // To look is no part of the run: what a function has to tell is told when the block is done.
         let told = self.core.told.take();
-        if !op.skip.is_some_and(|switch| self.core.skips(switch)) {
-            self.core.targets(program, &op.kind, &mut numbers);
-        }
+        let seen = look(&self.core, program, op);
         self.core.told.set(told);
-        numbers
+        Some(seen)
     }
 }
 
 impl Core {
+    /// Whether the switch of a block skip before a block is on.
+    pub(super) fn is_skipped(&self, op: &Op) -> bool {
+        op.skip.is_some_and(|switch| self.skips(switch))
+    }
+
+    /// What stands behind an IF that holds; else the operation itself.
+    pub(super) fn behind_if<'a>(&self, program: &Program, kind: &'a OpKind) -> &'a OpKind {
+        match kind {
+            OpKind::If { condition, then } if self.holds(program, *condition).unwrap_or(false) => then,
+            _ => kind,
+        }
+    }
+
     fn targets(&self, program: &Program, kind: &OpKind, numbers: &mut Vec<u32>) {
         match kind {
             OpKind::If { condition, then } if self.holds(program, *condition).unwrap_or(false) => {
@@ -87,6 +108,32 @@ impl Core {
             _ => {}
         }
     }
+}
+
+/// What `look` sees of a block before it is done, for tests of what can be seen.
+#[cfg(test)]
+pub(super) fn seen_before<T: Clone>(block: &str, look: fn(&Control) -> T) -> T {
+    use crate::program::{Memory, NoLibrary};
+
+    struct Seen<T>(fn(&Control) -> T, Vec<T>);
+
+    impl<T> Watcher for Seen<T> {
+        fn before(&mut self, control: &mut Control) {
+            if control.next_block().is_some() {
+                self.1.push(self.0(control));
+            }
+        }
+
+        fn after(&mut self, _: &Control) {}
+    }
+
+    let mut memory = Memory::default();
+    memory.load("O1.nc", format!("O1\n{block}\nM30\n").into_bytes());
+    let mut control = Control::new(memory, crate::control::Settings::default());
+    let mut watcher = Seen(look, Vec::new());
+    control.run_watched(super::Limits::default(), &mut NoLibrary, &mut (), &mut watcher);
+    // Behind it stands M30.
+    watcher.1[watcher.1.len() - 2].clone()
 }
 
 #[cfg(test)]
