@@ -113,6 +113,18 @@ impl Reader<'_> {
         Err(self.error(value, format!("key '{key}' is {number}: {allowed}")))
     }
 
+    /// As [`Reader::number`], of a key that may be left out.
+    pub(crate) fn number_or(
+        &self,
+        key: &str,
+        value: Option<&Spanned<f64>>,
+        allowed: &str,
+        within: impl Fn(f64) -> bool,
+        default: f64,
+    ) -> Result<f64, JobError> {
+        value.map_or(Ok(default), |value| self.number(key, value, allowed, within))
+    }
+
     /// One of a fixed list of words.
     pub(crate) fn choice<T: Copy>(
         &self,

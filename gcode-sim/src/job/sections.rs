@@ -30,17 +30,11 @@ pub(super) fn heights(
     clearance: Option<&Spanned<f64>>,
     retract: Option<&Spanned<f64>>,
 ) -> Result<(f64, f64), JobError> {
-    let clearance = match clearance {
-        Some(value) => reader.number("machine.clearance", value, "0.01 to 9999 mm", within(0.01, 9_999.0))?,
-        None => 2.0,
-    };
-    let retract = match retract {
-        Some(value) => {
-            let allowed = format!("{clearance} (the clearance) to 9999 mm");
-            reader.number("machine.retract", value, &allowed, within(clearance, 9_999.0))?
-        }
-        None => clearance.max(50.0),
-    };
+    let clearance =
+        reader.number_or("machine.clearance", clearance, "0.01 to 9999 mm", within(0.01, 9_999.0), 2.0)?;
+    let allowed = format!("{clearance} (the clearance) to 9999 mm");
+    let within = within(clearance, 9_999.0);
+    let retract = reader.number_or("machine.retract", retract, &allowed, within, clearance.max(50.0))?;
     Ok((clearance, retract))
 }
 

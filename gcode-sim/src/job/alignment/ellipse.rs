@@ -34,25 +34,27 @@ impl FileEllipse {
         chord: Chord,
     ) -> Result<EllipsePath, JobError> {
         let allowed = format!("0 to the equatorial radius a = {} mm", surface.a);
-        let radius = |key: &str, value: &Option<Spanned<f64>>, default: f64| match value {
-            Some(value) => reader.number(key, value, &allowed, within(0.0, surface.a)),
-            None => Ok(default),
+        let radius = |key: &str, value: &Option<Spanned<f64>>, default: f64| {
+            reader.number_or(key, value.as_ref(), &allowed, within(0.0, surface.a), default)
         };
         let increment = control.increment.size();
         let path = EllipsePath {
             from: radius("ellipse.from", &self.from, chord.f_radius)?,
             to: radius("ellipse.to", &self.to, chord.e_radius)?,
-            chord_error: match &self.chord_error {
-                Some(value) => {
-                    let allowed = format!("{increment} (the least increment) to 1 mm");
-                    reader.number("ellipse.chord_error", value, &allowed, within(increment, 1.0))?
-                }
-                None => f64::max(0.002, 2.0 * increment),
-            },
-            feed: match &self.feed {
-                Some(value) => reader.number("ellipse.feed", value, "1 to 10000 mm/min", within(1.0, 1e4))?,
-                None => 200.0,
-            },
+            chord_error: reader.number_or(
+                "ellipse.chord_error",
+                self.chord_error.as_ref(),
+                &format!("{increment} (the least increment) to 1 mm"),
+                within(increment, 1.0),
+                f64::max(0.002, 2.0 * increment),
+            )?,
+            feed: reader.number_or(
+                "ellipse.feed",
+                self.feed.as_ref(),
+                "1 to 10000 mm/min",
+                within(1.0, 1e4),
+                200.0,
+            )?,
         };
         if path.from == path.to {
             let message = format!(

@@ -209,12 +209,13 @@ impl FileChord {
             candidates: u32::try_from(candidates).ok().filter(|n| (1..=10).contains(n)).ok_or_else(|| {
                 reader.error(&self.candidates, format!("key 'chord.candidates' is {candidates}: 1 to 10"))
             })?,
-            uneven: match &self.uneven {
-                Some(value) => {
-                    reader.number("chord.uneven", value, "0.001 to 100 mm", within(0.001, 100.0))?
-                }
-                None => f64::max(0.05, (1.5e3 * left_uneven(surface, e_radius, f_radius)).ceil() / 1e3),
-            },
+            uneven: reader.number_or(
+                "chord.uneven",
+                self.uneven.as_ref(),
+                "0.001 to 100 mm",
+                within(0.001, 100.0),
+                f64::max(0.05, (1.5e3 * left_uneven(surface, e_radius, f_radius)).ceil() / 1e3),
+            )?,
         })
     }
 }

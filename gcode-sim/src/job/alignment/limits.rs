@@ -32,13 +32,10 @@ impl FileLimits {
         surface: Surface,
         path: EllipsePath,
     ) -> Result<AlignmentLimits, JobError> {
-        let limit =
-            |key: &str, value: &Option<Spanned<f64>>, (most, unit): (f64, &str), default: f64| match value {
-                Some(value) => {
-                    reader.number(key, value, &format!("0.001 to {most} {unit}"), within(0.001, most))
-                }
-                None => Ok(default),
-            };
+        let limit = |key: &str, value: &Option<Spanned<f64>>, (most, unit): (f64, &str), default: f64| {
+            let allowed = format!("0.001 to {most} {unit}");
+            reader.number_or(key, value.as_ref(), &allowed, within(0.001, most), default)
+        };
         let dial = limit("limits.dial", &self.dial, (10.0, "mm"), 0.03)?;
         Ok(AlignmentLimits {
             shift: limit("limits.shift", &self.shift, (10.0, "mm"), 0.025)?,

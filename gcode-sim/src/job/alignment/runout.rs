@@ -62,10 +62,9 @@ impl FileRunout {
             );
             return Err(reader.error(&self.angles, message));
         }
-        let y_shift = match &self.y_shift {
-            Some(value) => reader.number("runout.y_shift", value, "0.01 to 100 mm", within(0.01, 100.0))?,
-            None => 0.4,
-        };
+        let shift = self.y_shift.as_ref();
+        let y_shift =
+            reader.number_or("runout.y_shift", shift, "0.01 to 100 mm", within(0.01, 100.0), 0.4)?;
         Ok(Runout { heights, from, to, readings: readings as u32, y_shift })
     }
 }
