@@ -3,6 +3,9 @@ use std::ops::Range;
 
 use nalgebra::Point3;
 
+/// A part of so few points is looked at point by point: halving it further takes longer.
+const FEW: usize = 8;
+
 /// Points in an order that halves them again and again; the middle one of each part is its node.
 #[derive(Debug, Default)]
 pub struct PointTree {
@@ -17,11 +20,29 @@ struct Node {
     axis: u8,
 }
 
+impl Node {
+    /// All coordinates are asked, whichever is outside: that takes less than a branch for each.
+    fn is_in(&self, low: &Point3<f64>, high: &Point3<f64>) -> bool {
+        let p = &self.point;
+        (0..3).fold(true, |inside, i| inside & (low[i] <= p[i]) & (p[i] <= high[i]))
+    }
+
+    /// The coordinate by which it halves its part, and where.
+    fn halves(&self) -> (usize, f64) {
+        let axis = usize::from(self.axis);
+        (axis, self.point[axis])
+    }
+}
+
 impl PointTree {
     pub fn new(points: impl IntoIterator<Item = Point3<f64>>) -> Self {
         let nodes = points.into_iter().zip(0u32..).map(|(point, index)| Node { point, index, axis: 0 });
         let mut nodes: Vec<_> = nodes.collect();
-        halve(&mut nodes);
+        if let Some(first) = nodes.first().map(|node| node.point) {
+            let (low, high) =
+                nodes.iter().fold((first, first), |(low, high), n| (low.inf(&n.point), high.sup(&n.point)));
+            halve(&mut nodes, low, high);
+        }
         Self { nodes }
     }
 
@@ -90,23 +111,45 @@ impl Groups<'_> {
         belongs: &impl Fn(usize) -> bool,
     ) {
         let Some(middle) = middle(&part) else { return };
-        let Node { point, index: other, axis } = self.nodes[middle];
-        if self.whole[middle] && self.root(other) == self.root(index) {
+        let node = self.nodes[middle];
+        if self.whole[middle] && self.root(node.index) == self.root(index) {
             return;
         }
-        if (0..3).all(|i| (low[i]..=high[i]).contains(&point[i])) && belongs(other as usize) {
-            let (a, b) = (self.root(index), self.root(other));
-            self.first[a.max(b) as usize] = a.min(b);
+        if part.len() <= FEW {
+            for at in part.clone() {
+                self.look_at(at, index, low, high, belongs);
+            }
+            let root = self.root(node.index);
+            self.whole[middle] = part.into_iter().all(|at| self.root(self.nodes[at].index) == root);
+            return;
         }
-        let axis = usize::from(axis);
+        self.look_at(middle, index, low, high, belongs);
+        let (axis, place) = node.halves();
         let (before, behind) = (part.start..middle, middle + 1..part.end);
-        if low[axis] <= point[axis] {
+        if low[axis] <= place {
             self.visit(before.clone(), index, low, high, belongs);
         }
-        if point[axis] <= high[axis] {
+        if place <= high[axis] {
             self.visit(behind.clone(), index, low, high, belongs);
         }
-        self.whole[middle] = self.is_whole_with(&before, other) && self.is_whole_with(&behind, other);
+        self.whole[middle] =
+            self.is_whole_with(&before, node.index) && self.is_whole_with(&behind, node.index);
+    }
+
+    /// Joins the point of one node, if it lies in the box and belongs to it.
+    fn look_at(
+        &mut self,
+        node: usize,
+        index: u32,
+        low: &Point3<f64>,
+        high: &Point3<f64>,
+        belongs: &impl Fn(usize) -> bool,
+    ) {
+        let node = self.nodes[node];
+        if node.is_in(low, high) && belongs(node.index as usize) {
+            let (a, b) = (self.root(index), self.root(node.index));
+            self.first[a.max(b) as usize] = a.min(b);
+        }
     }
 
     fn is_whole_with(&mut self, part: &Range<usize>, index: u32) -> bool {
@@ -128,40 +171,41 @@ fn middle(part: &Range<usize>) -> Option<usize> {
     (!part.is_empty()).then(|| part.start + part.len() / 2)
 }
 
-fn halve(nodes: &mut [Node]) {
-    if nodes.len() < 2 {
+/// Halves points between `low` and `high` where that box is longest: holes often lie on a plane, and halving across it
+/// would tell nothing apart.
+fn halve(nodes: &mut [Node], low: Point3<f64>, high: Point3<f64>) {
+    if nodes.len() <= FEW {
         return;
     }
-    let axis = widest(nodes);
+    let axis = (high - low).imax();
     let middle = nodes.len() / 2;
     // The index decides between equal ones, so that the same points always make the same tree.
     let order = |a: &Node, b: &Node| a.point[axis].total_cmp(&b.point[axis]).then(a.index.cmp(&b.index));
     nodes.select_nth_unstable_by(middle, order);
     nodes[middle].axis = axis as u8;
+    let (mut end, mut start) = (high, low);
+    end[axis] = nodes[middle].point[axis];
+    start[axis] = end[axis];
     let (before, behind) = nodes.split_at_mut(middle);
-    halve(before);
-    halve(&mut behind[1..]);
-}
-
-/// Holes often lie on a plane: halving across it would tell nothing apart.
-fn widest(nodes: &[Node]) -> usize {
-    let first = nodes[0].point;
-    let (low, high) =
-        nodes.iter().fold((first, first), |(low, high), n| (low.inf(&n.point), high.sup(&n.point)));
-    (high - low).imax()
+    halve(before, low, end);
+    halve(&mut behind[1..], start, high);
 }
 
 fn visit(nodes: &[Node], low: &Point3<f64>, high: &Point3<f64>, each: &mut impl FnMut(usize)) {
     let middle = nodes.len() / 2;
-    let Some(Node { point, index, axis }) = nodes.get(middle) else { return };
-    if (0..3).all(|i| (low[i]..=high[i]).contains(&point[i])) {
-        each(*index as usize);
+    if nodes.len() <= FEW {
+        nodes.iter().filter(|node| node.is_in(low, high)).for_each(|node| each(node.index as usize));
+        return;
     }
-    let axis = usize::from(*axis);
-    if low[axis] <= point[axis] {
+    let node = &nodes[middle];
+    if node.is_in(low, high) {
+        each(node.index as usize);
+    }
+    let (axis, place) = node.halves();
+    if low[axis] <= place {
         visit(&nodes[..middle], low, high, each);
     }
-    if point[axis] <= high[axis] {
+    if place <= high[axis] {
         visit(&nodes[middle + 1..], low, high, each);
     }
 }
@@ -173,13 +217,20 @@ fn closest(
     best: &mut Option<(usize, f64)>,
 ) {
     let middle = nodes.len() / 2;
-    let Some(Node { point, index, axis }) = nodes.get(middle) else { return };
-    let distance = (point - to).norm();
-    let index = *index as usize;
-    if best.is_none_or(|(at, least)| (distance, index) < (least, at)) && counts(index, distance) {
-        *best = Some((index, distance));
+    let mut look_at = |node: &Node| {
+        let distance = (node.point - to).norm();
+        let index = node.index as usize;
+        if best.is_none_or(|(at, least)| (distance, index) < (least, at)) && counts(index, distance) {
+            *best = Some((index, distance));
+        }
+    };
+    if nodes.len() <= FEW {
+        nodes.iter().for_each(look_at);
+        return;
     }
-    let beyond = to[usize::from(*axis)] - point[usize::from(*axis)];
+    look_at(&nodes[middle]);
+    let (axis, place) = nodes[middle].halves();
+    let beyond = to[axis] - place;
     let (near, far) = match beyond < 0.0 {
         true => (&nodes[..middle], &nodes[middle + 1..]),
         false => (&nodes[middle + 1..], &nodes[..middle]),

@@ -92,27 +92,48 @@ fn around(
     let tree = PointTree::new(here.iter().map(|index| places[*index]));
     // Halfway to those that are no neighbours any more.
     let reach = (pattern.pitch + pattern.abreast()) / 2.0;
-    let mut all = vec![None; places.len()];
-    let mut near: Vec<(f64, usize)> = Vec::new();
+    let mut near = vec![Near::default(); places.len()];
     for index in &here {
         let (at, margin) = (places[*index], Vector3::repeat(reach));
-        near.clear();
-        // No way on the surface is shorter than the straight one: all neighbours are in the box.
+        // No way on the surface is shorter than the straight one: all neighbours are in the box. Each two are measured once.
         tree.in_box(&(at - margin), &(at + margin), &mut |other| {
             let other = here[other];
+            if other <= *index {
+                return;
+            }
             let distance = pattern.distance(&at, &places[other]);
-            if other != *index && distance <= reach {
-                near.push((distance, other));
+            if distance <= reach {
+                near[*index].add(distance, other);
+                near[other].add(distance, *index);
             }
         });
-        near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        near.truncate(SIX);
-        if let (Some(first), Some(last)) = (near.first(), near.last()) {
-            let (nearest, farthest) = (first.1, last.1);
-            all[*index] = Some(Around { count: near.len(), min: first.0, max: last.0, nearest, farthest });
+    }
+    (near.iter().map(Near::around).collect(), places)
+}
+
+/// The neighbours of a hole with their distances: the six nearest, the nearest first, of equally near ones the first.
+#[derive(Clone, Copy, Default)]
+struct Near {
+    count: usize,
+    near: [(f64, usize); SIX],
+}
+
+impl Near {
+    fn add(&mut self, distance: f64, other: usize) {
+        let before = |one: &(f64, usize)| *one < (distance, other);
+        let place = self.near[..self.count].iter().rposition(before).map_or(0, |last| last + 1);
+        if place < SIX {
+            self.count = SIX.min(self.count + 1);
+            self.near[place..self.count].rotate_right(1);
+            self.near[place] = (distance, other);
         }
     }
-    (all, places)
+
+    fn around(&self) -> Option<Around> {
+        let near = &self.near[..self.count];
+        let ((min, nearest), (max, farthest)) = (*near.first()?, *near.last()?);
+        Some(Around { count: self.count, min, max, nearest, farthest })
+    }
 }
 
 fn place(p: &Point3<f64>) -> String {
