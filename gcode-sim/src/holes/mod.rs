@@ -5,6 +5,7 @@ mod findings;
 mod group;
 mod judge;
 mod line;
+mod linked;
 mod machine_words;
 pub mod near;
 mod passing;

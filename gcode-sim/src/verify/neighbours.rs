@@ -93,21 +93,15 @@ fn around(
     // Halfway to those that are no neighbours any more.
     let reach = (pattern.pitch + pattern.abreast()) / 2.0;
     let mut near = vec![Near::default(); places.len()];
-    for index in &here {
-        let (at, margin) = (places[*index], Vector3::repeat(reach));
-        // No way on the surface is shorter than the straight one: all neighbours are in the box. Each two are measured once.
-        tree.in_box(&(at - margin), &(at + margin), &mut |other| {
-            let other = here[other];
-            if other <= *index {
-                return;
-            }
-            let distance = pattern.distance(&at, &places[other]);
-            if distance <= reach {
-                near[*index].add(distance, other);
-                near[other].add(distance, *index);
-            }
-        });
-    }
+    // No way on the surface is shorter than the straight one: all neighbours are told.
+    tree.pairs(reach, &mut |one, other| {
+        let (one, other) = (here[one], here[other]);
+        let distance = pattern.distance(&places[one], &places[other]);
+        if distance <= reach {
+            near[one].add(distance, other);
+            near[other].add(distance, one);
+        }
+    });
     (near.iter().map(Near::around).collect(), places)
 }
 
@@ -120,13 +114,18 @@ struct Near {
 
 impl Near {
     fn add(&mut self, distance: f64, other: usize) {
-        let before = |one: &(f64, usize)| *one < (distance, other);
-        let place = self.near[..self.count].iter().rposition(before).map_or(0, |last| last + 1);
-        if place < SIX {
-            self.count = SIX.min(self.count + 1);
-            self.near[place..self.count].rotate_right(1);
-            self.near[place] = (distance, other);
+        let new = (distance, other);
+        if self.count < SIX {
+            self.count += 1;
+        } else if self.near[SIX - 1] < new {
+            return;
         }
+        let mut place = self.count - 1;
+        while 0 < place && new < self.near[place - 1] {
+            self.near[place] = self.near[place - 1];
+            place -= 1;
+        }
+        self.near[place] = new;
     }
 
     fn around(&self) -> Option<Around> {

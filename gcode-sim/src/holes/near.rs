@@ -1,11 +1,10 @@
 //! Which of many points lie near: a k-d tree, so that hundreds of thousands of holes stay n log n.
-mod groups;
+use nalgebra::{Point3, Vector3};
 
-pub use groups::Groups;
-use nalgebra::Point3;
+pub use super::linked::Groups;
 
 /// A part of so few points is looked at point by point: halving it further takes longer.
-const FEW: usize = 8;
+pub(super) const FEW: usize = 8;
 
 /// Points in an order that halves them again and again; the middle one of each part is its node.
 #[derive(Debug, Default)]
@@ -14,22 +13,22 @@ pub struct PointTree {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Node {
-    point: Point3<f64>,
-    index: u32,
+pub(super) struct Node {
+    pub point: Point3<f64>,
+    pub index: u32,
     /// Before the node lie points that are less in this coordinate, behind it those that are more.
     axis: u8,
 }
 
 impl Node {
     /// All coordinates are asked, whichever is outside: that takes less than a branch for each.
-    fn is_in(&self, low: &Point3<f64>, high: &Point3<f64>) -> bool {
+    pub(super) fn is_in(&self, low: &Point3<f64>, high: &Point3<f64>) -> bool {
         let p = &self.point;
         (0..3).fold(true, |inside, i| inside & (low[i] <= p[i]) & (p[i] <= high[i]))
     }
 
     /// The coordinate by which it halves its part, and where.
-    fn halves(&self) -> (usize, f64) {
+    pub(super) fn halves(&self) -> (usize, f64) {
         let axis = usize::from(self.axis);
         (axis, self.point[axis])
     }
@@ -49,7 +48,16 @@ impl PointTree {
 
     /// Tells `each` the index of every point in the box from `low` to `high`.
     pub fn in_box(&self, low: &Point3<f64>, high: &Point3<f64>, each: &mut impl FnMut(usize)) {
-        visit(&self.nodes, low, high, each);
+        visit(&self.nodes, 0, low, high, each);
+    }
+
+    /// Tells `each` the indices of every two points whose coordinates differ by no more than `reach`, once.
+    pub fn pairs(&self, reach: f64, each: &mut impl FnMut(usize, usize)) {
+        let margin = Vector3::repeat(reach);
+        for (place, node) in self.nodes.iter().enumerate() {
+            let mut other = |other| each(node.index as usize, other);
+            visit(&self.nodes, place + 1, &(node.point - margin), &(node.point + margin), &mut other);
+        }
     }
 
     /// The index and the distance of the nearest point.
@@ -94,22 +102,24 @@ fn halve(nodes: &mut [Node], low: Point3<f64>, high: Point3<f64>) {
     halve(&mut behind[1..], start, high);
 }
 
-fn visit(nodes: &[Node], low: &Point3<f64>, high: &Point3<f64>, each: &mut impl FnMut(usize)) {
+/// The points in a box, without the first `but` of the nodes.
+fn visit(nodes: &[Node], but: usize, low: &Point3<f64>, high: &Point3<f64>, each: &mut impl FnMut(usize)) {
     let middle = nodes.len() / 2;
     if nodes.len() <= FEW {
-        nodes.iter().filter(|node| node.is_in(low, high)).for_each(|node| each(node.index as usize));
+        let inside = nodes.iter().skip(but).filter(|node| node.is_in(low, high));
+        inside.for_each(|node| each(node.index as usize));
         return;
     }
     let node = &nodes[middle];
-    if node.is_in(low, high) {
+    if but <= middle && node.is_in(low, high) {
         each(node.index as usize);
     }
     let (axis, place) = node.halves();
-    if low[axis] <= place {
-        visit(&nodes[..middle], low, high, each);
+    if but < middle && low[axis] <= place {
+        visit(&nodes[..middle], but, low, high, each);
     }
-    if place <= high[axis] {
-        visit(&nodes[middle + 1..], low, high, each);
+    if but < nodes.len() && place <= high[axis] {
+        visit(&nodes[middle + 1..], but.saturating_sub(middle + 1), low, high, each);
     }
 }
 
@@ -166,6 +176,14 @@ mod tests {
             let inside = |p: &Point3<f64>| (0..3).all(|i| low[i] <= p[i] && p[i] <= high[i]);
             let all: Vec<_> = (0..points.len()).filter(|i| inside(&points[*i])).collect();
             prop_assert_eq!(found, all);
+
+            let mut pairs = Vec::new();
+            tree.pairs(r, &mut |one, other| pairs.push((one.min(other), one.max(other))));
+            pairs.sort_unstable();
+            let of = |one: usize| (one + 1..points.len()).map(move |other| (one, other));
+            let near = |(one, other): &(usize, usize)| (points[*one] - points[*other]).amax() <= r;
+            let all: Vec<_> = (0..points.len()).flat_map(of).filter(near).collect();
+            prop_assert_eq!(pairs, all);
 
             let to = Point3::new(x, y, z);
             let least = points.iter().map(|p| (p - to).norm()).fold(f64::INFINITY, f64::min);

@@ -3,7 +3,7 @@ use std::ops::Range;
 
 use nalgebra::Point3;
 
-use super::{FEW, Node};
+use super::near::{FEW, Node};
 
 /// Which points belong together. A part of the tree that is one group already is never looked through again, so
 /// that a million points on one spot stay n log n.
@@ -111,8 +111,8 @@ fn middle(part: &Range<usize>) -> Option<usize> {
 mod tests {
     use proptest::prelude::*;
 
-    use super::super::PointTree;
     use super::*;
+    use crate::holes::near::PointTree;
 
     /// Points within `reach` of one another in every coordinate, and whatever hangs together through others.
     fn linked(points: &[Point3<f64>], reach: f64, belongs: &dyn Fn(usize, usize) -> bool) -> Vec<usize> {
