@@ -26,6 +26,14 @@ impl Core {
         for (kind, seconds) in &plan.events {
             self.tell(kind, *seconds, sink);
         }
+        if !plan.plain {
+            self.commit_more(plan, sink);
+        }
+    }
+
+    /// What a plan says that is more than a plain move.
+    #[inline(never)]
+    fn commit_more<S: Sink>(&mut self, plan: &mut Plan, sink: &mut S) {
         if let Some(drill) = plan.drill.take() {
             self.tell_drill(&drill, sink);
         }
@@ -60,6 +68,7 @@ impl Core {
         for code in &plan.passed_on {
             self.passed_on.entry(*code).or_insert(self.block);
         }
+        self.is_plain = self.is_plain();
     }
 
     fn tell_drill<S: Sink>(&mut self, drill: &Drill, sink: &mut S) {

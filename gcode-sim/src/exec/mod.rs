@@ -103,6 +103,8 @@ pub struct Control {
 pub(crate) struct Core {
     settings: Settings,
     state: Box<State>,
+    /// As [`Core::is_plain`] has found it behind the last block that could change it.
+    is_plain: bool,
     vars: Vars,
     offsets: Offsets,
     /// What has been read and waits for the next move.
@@ -155,6 +157,7 @@ impl Control {
         let core = Core {
             settings,
             state: Box::default(),
+            is_plain: false,
             vars,
             offsets,
             ahead: Ahead::default(),

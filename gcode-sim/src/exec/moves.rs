@@ -6,7 +6,7 @@ use super::plan::Plan;
 use super::travel::Goal;
 use super::words::{Given, letters};
 use crate::alarm::Alarm;
-use crate::motion::{EventKind, Position};
+use crate::motion::EventKind;
 use crate::program::codes::{Effect, Row};
 use crate::program::modes::{CutterSide, Length, Motion};
 use crate::source::Span;
@@ -76,23 +76,33 @@ impl Core {
             let what = format!("{} beside a straight move", char::from(letter));
             return Err(Alarm::NotSimulated { what }.at(given.span(letter)));
         }
-        let (mut programmed, mut machine) = (plan.state.programmed, Position::default());
-        self.move_on(given, &mut plan.state, &mut programmed, &mut machine)?;
+        let goal = self.goal(given, &mut plan.state)?;
         if motion == Motion::Thread && given.has_corner() {
             return Err(Alarm::CornerInThread.at(span));
         }
         if motion != Motion::Rapid && given.has_corner() {
             plan.corner = self.corner_word(given, &plan.state)?;
         }
+        self.go(motion, goal, given, plan, span)
+    }
+
+    /// Goes where the axis words lead by a code of group 01.
+    #[inline(always)]
+    pub(super) fn go(
+        &self,
+        motion: Motion,
+        goal: Goal,
+        given: &Given,
+        plan: &mut Plan,
+        span: Span,
+    ) -> Checked<()> {
         match motion {
-            Motion::Rapid => self.rapid(plan, &machine),
-            Motion::Thread => self.thread(plan, machine, given, span)?,
-            Motion::Linear => at(self.feed(plan, &machine, given), span)?,
-            Motion::Clockwise | Motion::Counterclockwise => {
-                self.arc(plan, given, &Goal { programmed, machine }, span)?;
-            }
+            Motion::Rapid => self.rapid(plan, &goal.machine),
+            Motion::Thread => self.thread(plan, goal.machine, given, span)?,
+            Motion::Linear => at(self.feed(plan, &goal.machine, given), span)?,
+            Motion::Clockwise | Motion::Counterclockwise => self.arc(plan, given, &goal, span)?,
         }
-        plan.state.programmed = programmed;
+        plan.state.programmed = goal.programmed;
         plan.moved = true;
         Ok(())
     }

@@ -38,6 +38,7 @@ impl Core {
     }
 
     /// The end point of the block's axis words, from where `state` stands.
+    #[inline(always)]
     pub(super) fn goal(&self, given: &Given, state: &mut State) -> Checked<Goal> {
         let (mut programmed, mut machine) = (state.programmed, Position::default());
         self.move_on(given, state, &mut programmed, &mut machine)?;
@@ -58,11 +59,10 @@ impl Core {
         let polar = state.modal.polar == Polar::On;
         let measure = self.measure(state.modal.unit);
         for (axis, letter) in self.settings.axes.letters() {
-            if polar && self.in_plane(state, axis) {
+            if !given.has(letter) || polar && self.in_plane(state, axis) {
                 continue;
             }
-            let Some(raw) = given.raw(letter) else { continue };
-            let value = match self.dimension_of(raw, letter, measure) {
+            let value = match self.dimension_of(given.raw(letter), letter, measure) {
                 Ok(value) => value,
                 Err(alarm) => return Err(alarm.at(given.span(letter))),
             };

@@ -170,12 +170,12 @@ impl Given {
         Some((char::from(letter), self.span(letter)))
     }
 
-    /// A word's value before anything is made of it.
-    #[inline]
-    pub(super) fn raw(&self, letter: u8) -> Option<Raw> {
+    /// The value, before anything is made of it, of a word that it [has](Self::has); the word is asked for with this.
+    #[inline(always)]
+    pub(super) fn raw(&self, letter: u8) -> Raw {
         let place = letter - b'A';
         self.read.set(self.read.get() | 1 << place);
-        (self.present >> place & 1 == 1).then(|| self.values[usize::from(place)].0)
+        self.values[usize::from(place)].0
     }
 
     /// Whether it has `,R` or `,C`.
