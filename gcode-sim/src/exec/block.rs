@@ -15,6 +15,7 @@ use super::modal_codes::put_motion;
 use super::notes::Note;
 use super::plan::Plan;
 use super::state::State;
+use super::travel::Goal;
 use super::words::{Given, letters};
 use crate::alarm::Alarm;
 use crate::program::modes::{CutterSide, Motion, Polar};
@@ -123,8 +124,9 @@ impl Core {
         if !matches!(motion, Motion::Rapid | Motion::Linear) {
             return self.motion(given, plan, false, span);
         }
-        let goal = self.goal(given, &mut plan.state)?;
-        self.go(motion, goal, given, plan, span)
+        let mut goal = Goal::here(&plan.state);
+        self.lead(given, &mut plan.state, &mut goal, true)?;
+        self.go(motion, &goal, given, plan, span)
     }
 
     /// Whether nothing is in force between two blocks that could make more of axis words than a move.
@@ -137,6 +139,7 @@ impl Core {
             && self.ahead.is_idle()
             && self.settings.code_calls.is_empty()
             && self.settings.stroke.is_none()
+            && self.is_placed()
     }
 
     /// What nothing has read may still mean something to a control: it isn't passed over in silence. In a block

@@ -83,7 +83,7 @@ impl Core {
         if motion != Motion::Rapid && given.has_corner() {
             plan.corner = self.corner_word(given, &plan.state)?;
         }
-        self.go(motion, goal, given, plan, span)
+        self.go(motion, &goal, given, plan, span)
     }
 
     /// Goes where the axis words lead by a code of group 01.
@@ -91,7 +91,7 @@ impl Core {
     pub(super) fn go(
         &self,
         motion: Motion,
-        goal: Goal,
+        goal: &Goal,
         given: &Given,
         plan: &mut Plan,
         span: Span,
@@ -100,7 +100,7 @@ impl Core {
             Motion::Rapid => self.rapid(plan, &goal.machine),
             Motion::Thread => self.thread(plan, goal.machine, given, span)?,
             Motion::Linear => at(self.feed(plan, &goal.machine, given), span)?,
-            Motion::Clockwise | Motion::Counterclockwise => self.arc(plan, given, &goal, span)?,
+            Motion::Clockwise | Motion::Counterclockwise => self.arc(plan, given, goal, span)?,
         }
         plan.state.programmed = goal.programmed;
         plan.moved = true;

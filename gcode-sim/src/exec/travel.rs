@@ -17,6 +17,13 @@ pub(super) struct Goal {
     pub(super) machine: Position,
 }
 
+impl Goal {
+    /// Where the program stands.
+    pub(super) fn here(state: &State) -> Self {
+        Self { programmed: state.programmed, machine: state.machine }
+    }
+}
+
 impl Core {
     /// Whether a block names an axis.
     pub(super) fn names_axis(&self, given: &Given) -> bool {
@@ -38,26 +45,23 @@ impl Core {
     }
 
     /// The end point of the block's axis words, from where `state` stands.
-    #[inline(always)]
     pub(super) fn goal(&self, given: &Given, state: &mut State) -> Checked<Goal> {
-        let (mut programmed, mut machine) = (state.programmed, Position::default());
-        self.move_on(given, state, &mut programmed, &mut machine)?;
-        Ok(Goal { programmed, machine })
+        let mut goal = Goal::here(state);
+        self.lead(given, state, &mut goal, false)?;
+        Ok(goal)
     }
 
-    /// Takes a programmed point to where the block's axis words lead, and finds out where that is on the machine.
+    /// Takes a goal from where `state` stands to where the block's axis words lead; in a `plain` move the axes that aren't
+    /// named keep still.
     #[inline(always)]
-    pub(super) fn move_on(
-        &self,
-        given: &Given,
-        state: &mut State,
-        programmed: &mut Position,
-        machine: &mut Position,
-    ) -> Checked<()> {
+    pub(super) fn lead(&self, given: &Given, state: &mut State, goal: &mut Goal, plain: bool) -> Checked<()> {
+        let Goal { programmed, machine } = goal;
         let mut turned = [0.0; MAX_AXES];
         let incremental = state.modal.distance == Distance::Incremental;
         let polar = state.modal.polar == Polar::On;
         let measure = self.measure(state.modal.unit);
+        let system = self.offsets.system(state.modal.work);
+        given.ask(self.settings.axes.mask());
         for (axis, letter) in self.settings.axes.letters() {
             if !given.has(letter) || polar && self.in_plane(state, axis) {
                 continue;
@@ -77,16 +81,19 @@ impl Core {
             } else {
                 programmed[axis] = if incremental { self.clean(from + value) } else { value };
             }
+            machine[axis] = self.on_machine(system, state, programmed, axis);
         }
-        if polar {
-            self.polar(given, state, programmed)?;
-        }
-        if state.ended.is_some() && !incremental {
-            self.note_left_out(given, state);
-        }
-        self.put_on_machine(state, programmed, machine);
-        for axis in self.settings.rolling().filter(|axis| given.has(self.settings.axes.letter(*axis) as u8)) {
-            machine[axis] = self.clean(state.machine[axis] + turned[axis]);
+        if !plain {
+            if polar {
+                self.polar(given, state, programmed)?;
+            }
+            if state.ended.is_some() && !incremental {
+                self.note_left_out(given, state);
+            }
+            *machine = self.to_machine(state, programmed);
+            for axis in self.settings.rolling().filter(|axis| given.has(self.settings.axes.letter(*axis) as u8)) {
+                machine[axis] = self.clean(state.machine[axis] + turned[axis]);
+            }
         }
         let most = self.farthest();
         if machine.0.iter().fold(false, |beyond, at| beyond | (at.abs() > most)) {

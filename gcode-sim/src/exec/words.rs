@@ -170,12 +170,15 @@ impl Given {
         Some((char::from(letter), self.span(letter)))
     }
 
-    /// The value, before anything is made of it, of a word that it [has](Self::has); the word is asked for with this.
+    /// The value, before anything is made of it, of a word that it [has](Self::has). Who takes it [asks](Self::ask) for it.
     #[inline(always)]
-    pub(super) fn raw(&self, letter: u8) -> Raw {
-        let place = letter - b'A';
-        self.read.set(self.read.get() | 1 << place);
-        self.values[usize::from(place)].0
+    pub(super) fn raw(&self, letter: u8) -> &Raw {
+        &self.values[usize::from(letter - b'A')].0
+    }
+
+    /// Asks for the words of some [`letters`].
+    pub(super) fn ask(&self, letters: u32) {
+        self.read.set(self.read.get() | letters);
     }
 
     /// Whether it has `,R` or `,C`.
