@@ -239,31 +239,39 @@ impl Core {
     ) -> Checked<()> {
         given.clear();
         given.punched = words.punched;
-        for (place, word) in words.list.iter().enumerate() {
-            if calling.is_some_and(|calling| calling.takes(place, word)) {
-                continue;
+        match calling {
+            None => words.list.iter().try_for_each(|word| self.take(program, word, given)),
+            Some(calling) => {
+                let others = words.list.iter().enumerate().filter(|(place, word)| !calling.takes(*place, word));
+                others.map(|(_, word)| self.take(program, word, given)).collect()
             }
-            let raw = match word.value {
-                Input::G(code, found) if !word.comma => {
-                    let row = found.on(self.settings.codes);
-                    let improper = || Alarm::ImproperGCode { code: codes::spelled(code) }.at(word.span);
-                    at(given.put_g(row.ok_or_else(improper)?), word.span)?;
-                    continue;
-                }
-                Input::G(code, _) => Raw::Computed(f64::from(code) / 10.0),
-                Input::Literal(number) => Raw::Literal(number),
-                Input::Operand(operand) => match self.operand(program, operand)? {
-                    Value::Number(value) => Raw::Computed(value),
-                    Value::Vacant => continue,
-                },
-            };
-            self.put(program, word, raw, given)?;
         }
-        Ok(())
     }
 
-    /// Puts a word to those of its block.
-    #[inline]
+    /// Evaluates a word and puts it to those of its block.
+    #[inline(always)]
+    fn take(&self, program: &Program, word: &Coded, given: &mut Given) -> Checked<()> {
+        let raw = match word.value {
+            Input::Literal(number) => Raw::Literal(number),
+            Input::G(code, found) if !word.comma => {
+                let row = found.on(self.settings.codes);
+                let improper = || Alarm::ImproperGCode { code: codes::spelled(code) }.at(word.span);
+                return at(given.put_g(row.ok_or_else(improper)?), word.span);
+            }
+            Input::G(code, _) => Raw::Computed(f64::from(code) / 10.0),
+            Input::Operand(operand) => match self.operand(program, operand)? {
+                Value::Number(value) => Raw::Computed(value),
+                Value::Vacant => return Ok(()),
+            },
+        };
+        if word.comma || word.axis.is_some() || matches!(word.letter, b'G' | b'M') {
+            return self.put(program, word, raw, given);
+        }
+        self.put_value(word.letter, word.span, raw, given)
+    }
+
+    /// Puts a word that is more than a value at an address to those of its block.
+    #[inline(never)]
     fn put(&self, program: &Program, word: &Coded, raw: Raw, given: &mut Given) -> Checked<()> {
         if word.comma {
             return at(given.put_corner(word, raw), word.span);
@@ -284,15 +292,18 @@ impl Core {
                 let code = at(count(raw, b'M'), word.span)?;
                 at(given.put_m(code, word.span, &self.settings), word.span)
             }
-            letter => {
-                if self.settings.no_repeated_address && given.has(letter) {
-                    return Err(Alarm::RepeatedAddress { letter: char::from(letter) }.at(word.span));
-                }
-                given.present |= 1 << (letter - b'A');
-                given.values[usize::from(letter - b'A')] = (raw, word.span);
-                Ok(())
-            }
+            letter => self.put_value(letter, word.span, raw, given),
         }
+    }
+
+    #[inline(always)]
+    fn put_value(&self, letter: u8, span: Span, raw: Raw, given: &mut Given) -> Checked<()> {
+        if self.settings.no_repeated_address && given.has(letter) {
+            return Err(Alarm::RepeatedAddress { letter: char::from(letter) }.at(span));
+        }
+        given.present |= 1 << (letter - b'A');
+        given.values[usize::from(letter - b'A')] = (raw, span);
+        Ok(())
     }
 
     /// The value of a word, or `None` where it is vacant and the word therefore not there.
