@@ -11,14 +11,12 @@
 //!  7. call or return.
 use super::Core;
 use super::eval::Checked;
-use super::modal_codes::put_motion;
 use super::notes::Note;
 use super::plan::Plan;
 use super::state::State;
-use super::travel::Goal;
-use super::words::{Given, letters};
+use super::words::Given;
 use crate::alarm::Alarm;
-use crate::program::modes::{CutterSide, Motion, Polar};
+use crate::program::modes::CutterSide;
 use crate::program::{Calling, Program, Words};
 use crate::source::Span;
 
@@ -40,18 +38,20 @@ impl Core {
             }
             None => words,
         };
-        plan.begin(&self.state);
         let mut calling = None;
         if !self.settings.code_calls.is_empty() {
+            plan.begin(&self.state);
             if self.macro_by_code(program, words, plan)? {
                 return Ok(());
             }
             calling = self.subprogram_by_code(program, words)?;
         }
         self.collect(program, words, calling.as_ref(), given)?;
-        if self.moves_plainly(words, given) {
-            return self.plain_move(given, plan, span);
+        plan.step = self.step(words, given, span)?;
+        if plan.step.is_some() {
+            return Ok(());
         }
+        plan.begin(&self.state);
         self.beside_return(words)?;
         let act = self.modal_codes(given, plan, span)?;
         if self.has_codes(given, &plan.state) {
@@ -95,51 +95,6 @@ impl Core {
             || given.has_more_than_moves()
             || given.m_count > 0
             || state.modal.cutter != CutterSide::Off
-    }
-
-    /// Whether a block has nothing but axis words, codes of group 01, F and S, while nothing is in force that makes more
-    /// of them than a move: then most steps of a block have nothing to do.
-    #[inline(always)]
-    fn moves_plainly(&self, words: &Words, given: &Given) -> bool {
-        self.is_plain
-            && given.has_of(self.settings.axes.mask())
-            && !given.has_of(!(self.settings.axes.mask() | letters(b"FS")))
-            && !given.has_more_than_moves()
-            && !given.has_corner()
-            && given.m_count == 0
-            && words.call.is_none()
-            && !self.waits_for_moves()
-    }
-
-    /// A block that [`Core::moves_plainly`]: of the state it changes what [`State::follow`] takes over.
-    #[inline(always)]
-    fn plain_move(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<()> {
-        plan.plain = true;
-        put_motion(given, &mut plan.state);
-        if given.has_any(b"FS") {
-            self.codes(given, plan, span)?;
-            self.m_codes(given, plan)?;
-        }
-        let motion = plan.state.modal.motion;
-        if !matches!(motion, Motion::Rapid | Motion::Linear) {
-            return self.motion(given, plan, false, span);
-        }
-        let mut goal = Goal::here(&plan.state);
-        self.lead(given, &mut plan.state, &mut goal, true)?;
-        self.go(motion, &goal, given, plan, span)
-    }
-
-    /// Whether nothing is in force between two blocks that could make more of axis words than a move.
-    pub(super) fn is_plain(&self) -> bool {
-        let State { modal, ended, .. } = &*self.state;
-        modal.cycle.is_none()
-            && modal.cutter == CutterSide::Off
-            && modal.polar == Polar::Off
-            && ended.is_none()
-            && self.ahead.is_idle()
-            && self.settings.code_calls.is_empty()
-            && self.settings.stroke.is_none()
-            && self.is_placed()
     }
 
     /// What nothing has read may still mean something to a control: it isn't passed over in silence. In a block

@@ -8,11 +8,9 @@ use crate::motion::{Event, EventKind, Sink, StopKind};
 use crate::units::Seconds;
 
 impl Core {
-    /// Everything a plan says, in the order it says it. The plan's next block begins by clearing it.
+    /// Everything a plan says, in the order it says it.
     pub(super) fn commit<S: Sink>(&mut self, plan: &mut Plan, sink: &mut S) {
-        // What was the state stays in the plan until its next block begins.
         std::mem::swap(&mut self.state, &mut plan.state);
-        plan.follows = plan.plain;
         self.note_work(plan.state.modal.work, plan.moved);
         let before = plan.state.unplaced;
         // What a cycle does along its axis it tells itself.
@@ -26,14 +24,6 @@ impl Core {
         for (kind, seconds) in &plan.events {
             self.tell(kind, *seconds, sink);
         }
-        if !plan.plain {
-            self.commit_more(plan, sink);
-        }
-    }
-
-    /// What a plan says that is more than a plain move.
-    #[inline(never)]
-    fn commit_more<S: Sink>(&mut self, plan: &mut Plan, sink: &mut S) {
         if let Some(drill) = plan.drill.take() {
             self.tell_drill(&drill, sink);
         }

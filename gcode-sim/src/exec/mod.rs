@@ -39,6 +39,7 @@ mod run;
 mod silent;
 mod state;
 mod statements;
+mod step;
 mod stroke;
 mod system_vars;
 mod thread;

@@ -2,7 +2,7 @@
 use super::Core;
 use super::eval::{Checked, at};
 use super::plan::Plan;
-use super::state::{Drilling, PolarPoint, State};
+use super::state::{Drilling, PolarPoint};
 use super::transform_order;
 use super::words::Given;
 use crate::alarm::Alarm;
@@ -29,7 +29,11 @@ impl Core {
         if given.has_more_than_moves() {
             return self.codes_in_force(given, plan, span);
         }
-        put_motion(given, &mut plan.state);
+        for row in given.g_codes() {
+            if let Effect::Motion(motion) = row.effect {
+                plan.state.move_by(motion);
+            }
+        }
         Ok(None)
     }
 
@@ -100,16 +104,6 @@ impl Core {
             && modal.cycle.is_none()
             && given.has_code_beyond_moves(|effect| effect == Effect::Work(1));
         Ok(if additional { Some(Act::AdditionalWork) } else { act })
-    }
-}
-
-/// Puts the codes of group 01 in force of a block that has no others.
-#[inline(always)]
-pub(super) fn put_motion(given: &Given, state: &mut State) {
-    for row in given.g_codes() {
-        if let Effect::Motion(motion) = row.effect {
-            state.move_by(motion);
-        }
     }
 }
 

@@ -3,7 +3,6 @@ use super::Core;
 use super::eval::{Checked, at};
 use super::notes::Note;
 use super::plan::Plan;
-use super::travel::Goal;
 use super::words::{Given, letters};
 use crate::alarm::Alarm;
 use crate::motion::EventKind;
@@ -83,24 +82,11 @@ impl Core {
         if motion != Motion::Rapid && given.has_corner() {
             plan.corner = self.corner_word(given, &plan.state)?;
         }
-        self.go(motion, &goal, given, plan, span)
-    }
-
-    /// Goes where the axis words lead by a code of group 01.
-    #[inline(always)]
-    pub(super) fn go(
-        &self,
-        motion: Motion,
-        goal: &Goal,
-        given: &Given,
-        plan: &mut Plan,
-        span: Span,
-    ) -> Checked<()> {
         match motion {
             Motion::Rapid => self.rapid(plan, &goal.machine),
             Motion::Thread => self.thread(plan, goal.machine, given, span)?,
             Motion::Linear => at(self.feed(plan, &goal.machine, given), span)?,
-            Motion::Clockwise | Motion::Counterclockwise => self.arc(plan, given, goal, span)?,
+            Motion::Clockwise | Motion::Counterclockwise => self.arc(plan, given, &goal, span)?,
         }
         plan.state.programmed = goal.programmed;
         plan.moved = true;

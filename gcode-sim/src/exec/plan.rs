@@ -5,6 +5,7 @@ use super::frames::ByCodes;
 use super::notes::Note;
 use super::offsets::Register;
 use super::state::State;
+use super::step::Step;
 use super::vars::{Locals, Value};
 use crate::contour::Blend;
 use crate::control::ParameterPlace;
@@ -16,11 +17,9 @@ use crate::units::MmPerMin;
 /// Everything one block of words changes. Kept between blocks, so that none of them allocates.
 #[derive(Debug, Default)]
 pub(super) struct Plan {
+    /// The block is a plain move, and nothing else in the plan is about it.
+    pub(super) step: Option<Step>,
     pub(super) state: Box<State>,
-    /// The block is a plain move: of the state it changes what [`State::follow`] takes over.
-    pub(super) plain: bool,
-    /// What this plan leaves behind differs from the control's state by a plain move.
-    pub(super) follows: bool,
     /// What the machine is told, with the seconds it takes.
     pub(super) events: Vec<(EventKind, f64)>,
     /// G31: its motion is planned to the end and may stop before.
@@ -139,9 +138,8 @@ pub(super) enum Target {
 impl Plan {
     pub(super) fn begin(&mut self, state: &State) {
         let Self {
+            step,
             state: own,
-            plain,
-            follows,
             events,
             probing,
             after,
@@ -157,12 +155,8 @@ impl Plan {
             notes,
             flow,
         } = self;
-        if std::mem::take(follows) {
-            own.follow(state);
-        } else {
-            **own = *state;
-        }
-        *plain = false;
+        *step = None;
+        **own = *state;
         events.clear();
         (*probing, *drill, *corner) = (None, None, None);
         after.clear();

@@ -176,6 +176,10 @@ impl Control {
                     return Ok(());
                 }
                 core.prepare(program, words, given, plan, core.block)?;
+                if let Some(step) = &plan.step {
+                    core.take_step(step, op.number, sink);
+                    return Ok(());
+                }
                 if let Some(number) = op.number {
                     plan.state.codes.n = number;
                 }
@@ -190,10 +194,6 @@ impl Control {
 
     /// Carries out the plan of a block of words. What can still alarm comes first.
     fn finish<S: Sink>(&mut self, library: &mut impl Library, sink: &mut S) -> Checked<()> {
-        if self.plan.plain {
-            self.core.commit(&mut self.plan, sink);
-            return Ok(());
-        }
         let span = self.core.block;
         let mut flow = std::mem::take(&mut self.plan.flow);
         match &mut flow {

@@ -11,16 +11,19 @@ use crate::program::modes::{Distance, FeedMode, Plane, Polar, Unit};
 use crate::units::{Deg, MmPerMin};
 
 /// Where a move ends: as programmed, and in machine coordinates.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Goal {
     pub(super) programmed: Position,
     pub(super) machine: Position,
+    /// As [`State::unplaced`], there.
+    pub(super) unplaced: u8,
 }
 
 impl Goal {
     /// Where the program stands.
+    #[inline]
     pub(super) fn here(state: &State) -> Self {
-        Self { programmed: state.programmed, machine: state.machine }
+        Self { programmed: state.programmed, machine: state.machine, unplaced: state.unplaced }
     }
 }
 
@@ -47,16 +50,28 @@ impl Core {
     /// The end point of the block's axis words, from where `state` stands.
     pub(super) fn goal(&self, given: &Given, state: &mut State) -> Checked<Goal> {
         let mut goal = Goal::here(state);
-        self.lead(given, state, &mut goal, false)?;
+        self.lead(given, state, &mut goal)?;
+        state.unplaced = goal.unplaced;
+        if state.modal.polar == Polar::On {
+            self.polar(given, state, &mut goal.programmed)?;
+        }
+        if state.ended.is_some() && state.modal.distance == Distance::Absolute {
+            self.note_left_out(given, state);
+        }
+        let machine = self.to_machine(state, &goal.programmed);
+        let turned = std::mem::replace(&mut goal.machine, machine);
+        for axis in self.settings.rolling().filter(|axis| given.has(self.settings.axes.letter(*axis) as u8)) {
+            goal.machine[axis] = turned[axis];
+        }
+        self.in_range(given, &goal.machine)?;
         Ok(goal)
     }
 
-    /// Takes a goal from where `state` stands to where the block's axis words lead; in a `plain` move the axes that aren't
-    /// named keep still.
+    /// Takes a goal from where `state` stands to where the block's axis words lead, on the axes that are named. On the
+    /// machine that is right as long as the others [stand where they should](Core::is_placed).
     #[inline(always)]
-    pub(super) fn lead(&self, given: &Given, state: &mut State, goal: &mut Goal, plain: bool) -> Checked<()> {
-        let Goal { programmed, machine } = goal;
-        let mut turned = [0.0; MAX_AXES];
+    pub(super) fn lead(&self, given: &Given, state: &State, goal: &mut Goal) -> Checked<()> {
+        let Goal { programmed, machine, unplaced } = goal;
         let incremental = state.modal.distance == Distance::Incremental;
         let polar = state.modal.polar == Polar::On;
         let measure = self.measure(state.modal.unit);
@@ -72,32 +87,16 @@ impl Core {
             };
             let from = programmed[axis];
             if !incremental {
-                state.unplaced &= !(1 << axis);
+                *unplaced &= !(1 << axis);
             }
             if self.settings.roll_over[axis] {
                 let way = if incremental { value } else { shorter_way(from, value) };
-                turned[axis] = way;
                 programmed[axis] = self.rolled(axis, from + way);
+                machine[axis] = self.clean(machine[axis] + way);
             } else {
                 programmed[axis] = if incremental { self.clean(from + value) } else { value };
+                machine[axis] = self.on_machine(system, state, programmed, axis);
             }
-            machine[axis] = self.on_machine(system, state, programmed, axis);
-        }
-        if !plain {
-            if polar {
-                self.polar(given, state, programmed)?;
-            }
-            if state.ended.is_some() && !incremental {
-                self.note_left_out(given, state);
-            }
-            *machine = self.to_machine(state, programmed);
-            for axis in self.settings.rolling().filter(|axis| given.has(self.settings.axes.letter(*axis) as u8)) {
-                machine[axis] = self.clean(state.machine[axis] + turned[axis]);
-            }
-        }
-        let most = self.farthest();
-        if machine.0.iter().fold(false, |beyond, at| beyond | (at.abs() > most)) {
-            self.in_range(given, machine, most)?;
         }
         Ok(())
     }
@@ -118,9 +117,17 @@ impl Core {
         999_999_999.0 / self.settings.increment.per_unit()
     }
 
+    /// Whether no axis is beyond the largest coordinate.
+    #[inline]
+    pub(super) fn in_range(&self, given: &Given, machine: &Position) -> Checked<()> {
+        let most = self.farthest();
+        let is_beyond = machine.0.iter().fold(false, |beyond, at| beyond | (at.abs() > most));
+        if is_beyond { self.beyond_range(given, machine, most) } else { Ok(()) }
+    }
+
     /// The alarm of an axis beyond [`Core::farthest`]; one that rolls over begins anew with each turn.
     #[cold]
-    fn in_range(&self, given: &Given, machine: &Position, most: f64) -> Checked<()> {
+    fn beyond_range(&self, given: &Given, machine: &Position, most: f64) -> Checked<()> {
         for (axis, letter) in self.settings.axes.iter() {
             if machine[axis].abs() > most && !self.settings.roll_over[axis] {
                 let alarm = Alarm::PositionOverflow { letter, value: machine[axis] };
@@ -181,10 +188,10 @@ impl Core {
     }
 
     /// Tells a straight cut; alarms where there is no feed, even if it leads nowhere.
-    #[inline]
     pub(super) fn feed(&self, plan: &mut Plan, to: &Position, given: &Given) -> Result<(), Alarm> {
         let from = &plan.state.machine;
-        let (rate, seconds) = self.feed_seconds(&plan.state, from, to, given.has(b'F'))?;
+        let f = plan.state.codes.f;
+        let (rate, seconds) = self.feed_seconds(&plan.state, f, (from, to), given.has(b'F'))?;
         if to != from {
             plan.events.push((EventKind::Feed { to: *to, rate }, seconds));
             plan.state.machine = *to;
@@ -209,8 +216,8 @@ impl Core {
     pub(super) fn feed_seconds(
         &self,
         state: &State,
-        from: &Position,
-        to: &Position,
+        f: f64,
+        (from, to): (&Position, &Position),
         f_in_block: bool,
     ) -> Result<(MmPerMin, f64), Alarm> {
         let (mut sliding, mut turning) = (0.0, 0.0);
@@ -222,7 +229,7 @@ impl Core {
                 sliding += way * way;
             }
         }
-        self.time_along(state, (sliding + turning).sqrt(), sliding.sqrt(), turning, f_in_block)
+        self.time_at(state, f, ((sliding + turning).sqrt(), sliding.sqrt(), turning), f_in_block)
     }
 
     /// The rate and the time for a path of `length`, of which `sliding` mm are linear and the rest turns.
@@ -235,7 +242,18 @@ impl Core {
         turning: f64,
         f_in_block: bool,
     ) -> Result<(MmPerMin, f64), Alarm> {
-        let f = state.codes.f;
+        self.time_at(state, state.codes.f, (length, sliding, turning), f_in_block)
+    }
+
+    /// As [`Core::time_along`] by an F that isn't in force yet.
+    #[inline]
+    fn time_at(
+        &self,
+        state: &State,
+        f: f64,
+        (length, sliding, turning): (f64, f64, f64),
+        f_in_block: bool,
+    ) -> Result<(MmPerMin, f64), Alarm> {
         if state.modal.feed_mode == FeedMode::InverseTime {
             if !f_in_block {
                 return Err(Alarm::NoInverseTime);

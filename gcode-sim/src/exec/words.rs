@@ -242,7 +242,8 @@ impl Core {
         match calling {
             None => words.list.iter().try_for_each(|word| self.take(program, word, given)),
             Some(calling) => {
-                let others = words.list.iter().enumerate().filter(|(place, word)| !calling.takes(*place, word));
+                let others =
+                    words.list.iter().enumerate().filter(|(place, word)| !calling.takes(*place, word));
                 others.map(|(_, word)| self.take(program, word, given)).collect()
             }
         }
