@@ -10,6 +10,7 @@
 //!  6. stop, end;
 //!  7. call or return.
 use super::Core;
+use super::code_calls::CallingWord;
 use super::eval::Checked;
 use super::notes::Note;
 use super::plan::Plan;
@@ -17,41 +18,63 @@ use super::state::State;
 use super::words::Given;
 use crate::alarm::Alarm;
 use crate::program::modes::CutterSide;
-use crate::program::{Calling, Program, Words};
+use crate::motion::Sink;
+use crate::program::{Calling, Op, Program, Words};
 use crate::source::Span;
 
 impl Core {
-    /// Checks a block of words and makes the plan of it. Nothing changes; an alarm leaves no trace.
-    pub(super) fn prepare(
-        &self,
-        program: &Program,
+    /// Checks a block of words; where it isn't a plain move, that is done already, makes the plan of it, which is to be
+    /// carried out. An alarm leaves no trace.
+    pub(super) fn words<S: Sink>(
+        &mut self,
+        (program, op): (&Program, &Op),
         words: &Words,
         given: &mut Given,
         plan: &mut Plan,
-        span: Span,
-    ) -> Checked<()> {
-        let words = match &words.short {
-            Some((switch, short)) => {
-                let is_on = self.skips(*switch);
-                self.told.set(Some(Note::BlockSkip { switch: (*switch).max(1), is_on }));
-                if is_on { short } else { words }
+        sink: &mut S,
+    ) -> Checked<bool> {
+        let words = self.unskipped(words);
+        if self.is_plain {
+            self.collect(program, words, None, given)?;
+            if self.step(words, given, op.number, sink)? {
+                return Ok(false);
             }
-            None => words,
-        };
-        let mut calling = None;
-        if !self.settings.code_calls.is_empty() {
             plan.begin(&self.state);
-            if self.macro_by_code(program, words, plan)? {
-                return Ok(());
+            self.prepare(program, words, None, given, plan)?;
+        } else {
+            plan.begin(&self.state);
+            let mut calling = None;
+            if !self.settings.code_calls.is_empty() {
+                if self.macro_by_code(program, words, plan)? {
+                    return Ok(true);
+                }
+                calling = self.subprogram_by_code(program, words)?;
             }
-            calling = self.subprogram_by_code(program, words)?;
+            self.collect(program, words, calling.as_ref(), given)?;
+            self.prepare(program, words, calling, given, plan)?;
         }
-        self.collect(program, words, calling.as_ref(), given)?;
-        plan.step = self.step(words, given, span)?;
-        if plan.step.is_some() {
-            return Ok(());
-        }
-        plan.begin(&self.state);
+        Ok(true)
+    }
+
+    /// The words of a block but for those behind a block skip that is on.
+    #[inline(always)]
+    fn unskipped<'a>(&self, words: &'a Words) -> &'a Words {
+        let Some((switch, short)) = &words.short else { return words };
+        let is_on = self.skips(*switch);
+        self.told.set(Some(Note::BlockSkip { switch: (*switch).max(1), is_on }));
+        if is_on { short } else { words }
+    }
+
+    /// Makes the plan of a block of words that are collected. Nothing changes.
+    fn prepare(
+        &self,
+        program: &Program,
+        words: &Words,
+        calling: Option<CallingWord>,
+        given: &Given,
+        plan: &mut Plan,
+    ) -> Checked<()> {
+        let span = self.block;
         self.beside_return(words)?;
         let act = self.modal_codes(given, plan, span)?;
         if self.has_codes(given, &plan.state) {

@@ -5,7 +5,6 @@ use super::frames::ByCodes;
 use super::notes::Note;
 use super::offsets::Register;
 use super::state::State;
-use super::step::Step;
 use super::vars::{Locals, Value};
 use crate::contour::Blend;
 use crate::control::ParameterPlace;
@@ -17,8 +16,6 @@ use crate::units::MmPerMin;
 /// Everything one block of words changes. Kept between blocks, so that none of them allocates.
 #[derive(Debug, Default)]
 pub(super) struct Plan {
-    /// The block is a plain move, and nothing else in the plan is about it.
-    pub(super) step: Option<Step>,
     pub(super) state: Box<State>,
     /// What the machine is told, with the seconds it takes.
     pub(super) events: Vec<(EventKind, f64)>,
@@ -138,7 +135,6 @@ pub(super) enum Target {
 impl Plan {
     pub(super) fn begin(&mut self, state: &State) {
         let Self {
-            step,
             state: own,
             events,
             probing,
@@ -155,7 +151,6 @@ impl Plan {
             notes,
             flow,
         } = self;
-        *step = None;
         **own = *state;
         events.clear();
         (*probing, *drill, *corner) = (None, None, None);

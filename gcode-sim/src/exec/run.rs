@@ -175,9 +175,7 @@ impl Control {
                     core.state.codes.o = memory.get(core.frame.program).shown_number();
                     return Ok(());
                 }
-                core.prepare(program, words, given, plan, core.block)?;
-                if let Some(step) = &plan.step {
-                    core.take_step(step, op.number, sink);
+                if !core.words((program, op), words, given, plan, sink)? {
                     return Ok(());
                 }
                 if let Some(number) = op.number {

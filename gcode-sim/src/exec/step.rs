@@ -8,34 +8,22 @@ use crate::motion::{EventKind, Sink};
 use crate::program::Words;
 use crate::program::codes::Effect;
 use crate::program::modes::{CutterSide, Motion, Polar};
-use crate::source::Span;
 use crate::units::MmPerMin;
 
-/// A plain move, planned.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Step {
-    goal: Goal,
-    motion: Motion,
-    f: f64,
-    rate: MmPerMin,
-    seconds: f64,
-}
-
 impl Core {
-    /// The plan of a block that is a plain move; `None` where it isn't one.
+    /// Does a block that is a plain move, while [`Core::is_plain`]; whether it is one. All checks come first.
     #[inline(always)]
-    pub(super) fn step(&self, words: &Words, given: &Given, span: Span) -> Checked<Option<Step>> {
+    pub(super) fn step<S: Sink>(
+        &mut self,
+        words: &Words,
+        given: &Given,
+        number: Option<u32>,
+        sink: &mut S,
+    ) -> Checked<bool> {
         let state = &*self.state;
-        if !self.is_plain || !self.moves_plainly(words, given) {
-            return Ok(None);
-        }
-        let coded = given.g_codes().filter_map(|row| match row.effect {
-            Effect::Motion(motion) => Some(motion),
-            _ => None,
-        });
-        let motion = coded.last().unwrap_or(state.modal.motion);
-        if !matches!(motion, Motion::Rapid | Motion::Linear) {
-            return Ok(None);
+        let motion = self.plain_motion(words, given);
+        if !matches!(motion, Some(Motion::Rapid | Motion::Linear)) {
+            return Ok(false);
         }
         let f = if given.has(b'F') { self.feed_word(given, state)? } else { None };
         let f = f.unwrap_or(state.codes.f);
@@ -44,23 +32,45 @@ impl Core {
         self.in_range(given, &goal.machine)?;
         let way = (&state.machine, &goal.machine);
         let (rate, seconds) = match motion {
-            Motion::Rapid => (MmPerMin::ZERO, self.rapid_seconds(way.0, way.1)),
-            _ => at(self.feed_seconds(state, f, way, given.has(b'F')), span)?,
+            Some(Motion::Rapid) => (MmPerMin::ZERO, self.rapid_seconds(way.0, way.1)),
+            _ => at(self.feed_seconds(state, f, way, given.has(b'F')), self.block)?,
         };
-        Ok(Some(Step { goal, motion, f, rate, seconds }))
+
+        let Goal { programmed, machine, unplaced } = goal;
+        let (moves, before) = (machine != state.machine, state.unplaced);
+        let state = &mut *self.state;
+        (state.programmed, state.machine, state.unplaced) = (programmed, machine, unplaced);
+        (state.modal.motion, state.codes.f) = (motion.unwrap_or_default(), f);
+        state.codes.n = number.unwrap_or(state.codes.n);
+        self.note_work(self.state.modal.work, true);
+        if unplaced != before {
+            self.tell(&EventKind::Unplaced { axes: unplaced }, 0.0, sink);
+        }
+        match motion {
+            _ if !moves => {}
+            Some(Motion::Rapid) => self.tell(&EventKind::Rapid { to: machine }, seconds, sink),
+            _ => self.tell(&EventKind::Feed { to: machine, rate }, seconds, sink),
+        }
+        Ok(true)
     }
 
-    /// Whether a block has nothing but axis words, codes of group 01 and F, and no modal call waits for it.
+    /// The code of group 01 by which a block moves that has nothing but axis words, F and such codes, while no modal call
+    /// waits for it.
     #[inline(always)]
-    fn moves_plainly(&self, words: &Words, given: &Given) -> bool {
+    fn plain_motion(&self, words: &Words, given: &Given) -> Option<Motion> {
         let axes = self.settings.axes.mask();
-        given.has_of(axes)
+        let alone = given.has_of(axes)
             && !given.has_of(!(axes | letters(b"F")))
             && !given.has_more_than_moves()
             && !given.has_corner()
             && given.m_count == 0
             && words.call.is_none()
-            && !self.waits_for_moves()
+            && !self.waits_for_moves();
+        let coded = given.g_codes().filter_map(|row| match row.effect {
+            Effect::Motion(motion) => Some(motion),
+            _ => None,
+        });
+        alone.then(|| coded.last().unwrap_or(self.state.modal.motion))
     }
 
     /// Whether nothing is in force between two blocks that could make more of axis words than a move of those axes.
@@ -74,28 +84,5 @@ impl Core {
             && self.settings.code_calls.is_empty()
             && self.settings.stroke.is_none()
             && self.is_placed()
-    }
-
-    /// Carries out a plain move.
-    #[inline(always)]
-    pub(super) fn take_step<S: Sink>(&mut self, step: &Step, number: Option<u32>, sink: &mut S) {
-        let Step { goal: Goal { programmed, machine, unplaced }, motion, f, rate, seconds } = step;
-        let state = &mut *self.state;
-        let (moves, before) = (*machine != state.machine, state.unplaced);
-        (state.programmed, state.machine, state.unplaced) = (*programmed, *machine, *unplaced);
-        (state.modal.motion, state.codes.f) = (*motion, *f);
-        if let Some(number) = number {
-            state.codes.n = number;
-        }
-        self.note_work(self.state.modal.work, true);
-        if *unplaced != before {
-            self.tell(&EventKind::Unplaced { axes: *unplaced }, 0.0, sink);
-        }
-        let to = *machine;
-        match motion {
-            _ if !moves => {}
-            Motion::Rapid => self.tell(&EventKind::Rapid { to }, *seconds, sink),
-            _ => self.tell(&EventKind::Feed { to, rate: *rate }, *seconds, sink),
-        }
     }
 }
