@@ -17,8 +17,8 @@ use super::plan::Plan;
 use super::state::State;
 use super::words::Given;
 use crate::alarm::Alarm;
-use crate::program::modes::CutterSide;
 use crate::motion::Sink;
+use crate::program::modes::CutterSide;
 use crate::program::{Calling, Op, Program, Words};
 use crate::source::Span;
 

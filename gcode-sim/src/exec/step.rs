@@ -6,7 +6,6 @@ use super::travel::Goal;
 use super::words::{Given, letters};
 use crate::motion::{EventKind, Sink};
 use crate::program::Words;
-use crate::program::codes::Effect;
 use crate::program::modes::{CutterSide, Motion, Polar};
 use crate::units::MmPerMin;
 
@@ -28,8 +27,10 @@ impl Core {
         let f = if given.has(b'F') { self.feed_word(given, state)? } else { None };
         let f = f.unwrap_or(state.codes.f);
         let mut goal = Goal::here(state);
-        self.lead(given, state, &mut goal)?;
-        self.in_range(given, &goal.machine)?;
+        let led = self.lead(given, state, &mut goal)?;
+        if led.reach > self.farthest() {
+            self.beyond_range(given, &goal.machine)?;
+        }
         let way = (&state.machine, &goal.machine);
         let (rate, seconds) = match motion {
             Some(Motion::Rapid) => (MmPerMin::ZERO, self.rapid_seconds(way.0, way.1)),
@@ -37,7 +38,7 @@ impl Core {
         };
 
         let Goal { programmed, machine, unplaced } = goal;
-        let (moves, before) = (machine != state.machine, state.unplaced);
+        let before = state.unplaced;
         let state = &mut *self.state;
         (state.programmed, state.machine, state.unplaced) = (programmed, machine, unplaced);
         (state.modal.motion, state.codes.f) = (motion.unwrap_or_default(), f);
@@ -47,7 +48,7 @@ impl Core {
             self.tell(&EventKind::Unplaced { axes: unplaced }, 0.0, sink);
         }
         match motion {
-            _ if !moves => {}
+            _ if !led.moves => {}
             Some(Motion::Rapid) => self.tell(&EventKind::Rapid { to: machine }, seconds, sink),
             _ => self.tell(&EventKind::Feed { to: machine, rate }, seconds, sink),
         }
@@ -66,11 +67,7 @@ impl Core {
             && given.m_count == 0
             && words.call.is_none()
             && !self.waits_for_moves();
-        let coded = given.g_codes().filter_map(|row| match row.effect {
-            Effect::Motion(motion) => Some(motion),
-            _ => None,
-        });
-        alone.then(|| coded.last().unwrap_or(self.state.modal.motion))
+        alone.then(|| given.motion.unwrap_or(self.state.modal.motion))
     }
 
     /// Whether nothing is in force between two blocks that could make more of axis words than a move of those axes.

@@ -19,6 +19,15 @@ pub(super) struct Goal {
     pub(super) unplaced: u8,
 }
 
+/// What axes do on their way to a [`Goal`].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Led {
+    /// One of them moves.
+    pub(super) moves: bool,
+    /// The largest machine coordinate that one of them gets to, its sign left out.
+    pub(super) reach: f64,
+}
+
 impl Goal {
     /// Where the program stands.
     #[inline]
@@ -63,16 +72,20 @@ impl Core {
         for axis in self.settings.rolling().filter(|axis| given.has(self.settings.axes.letter(*axis) as u8)) {
             goal.machine[axis] = turned[axis];
         }
-        self.in_range(given, &goal.machine)?;
+        if goal.machine.0.iter().any(|at| at.abs() > self.farthest()) {
+            self.beyond_range(given, &goal.machine)?;
+        }
         Ok(goal)
     }
 
     /// Takes a goal from where `state` stands to where the block's axis words lead, on the axes that are named. On the
     /// machine that is right as long as the others [stand where they should](Core::is_placed).
     #[inline(always)]
-    pub(super) fn lead(&self, given: &Given, state: &State, goal: &mut Goal) -> Checked<()> {
+    pub(super) fn lead(&self, given: &Given, state: &State, goal: &mut Goal) -> Checked<Led> {
+        let mut led = Led { moves: false, reach: 0.0 };
         let Goal { programmed, machine, unplaced } = goal;
         let incremental = state.modal.distance == Distance::Incremental;
+        let places = *unplaced != 0 && !incremental;
         let polar = state.modal.polar == Polar::On;
         let measure = self.measure(state.modal.unit);
         let system = self.offsets.system(state.modal.work);
@@ -86,19 +99,22 @@ impl Core {
                 Err(alarm) => return Err(alarm.at(given.span(letter))),
             };
             let from = programmed[axis];
-            if !incremental {
+            if places {
                 *unplaced &= !(1 << axis);
             }
-            if self.settings.roll_over[axis] {
+            let to = if self.settings.roll_over[axis] {
                 let way = if incremental { value } else { shorter_way(from, value) };
                 programmed[axis] = self.rolled(axis, from + way);
-                machine[axis] = self.clean(machine[axis] + way);
+                self.clean(machine[axis] + way)
             } else {
                 programmed[axis] = if incremental { self.clean(from + value) } else { value };
-                machine[axis] = self.on_machine(system, state, programmed, axis);
-            }
+                self.on_machine(system, state, programmed, axis)
+            };
+            led.moves |= to != machine[axis];
+            led.reach = led.reach.max(to.abs());
+            machine[axis] = to;
         }
-        Ok(())
+        Ok(led)
     }
 
     /// An axis that the block doesn't name keeps still, though its coordinate is another since a transform was switched.
@@ -113,21 +129,15 @@ impl Core {
     }
 
     /// The largest coordinate: nine digits in increments, as a word has.
-    fn farthest(&self) -> f64 {
+    #[inline]
+    pub(super) fn farthest(&self) -> f64 {
         999_999_999.0 / self.settings.increment.per_unit()
     }
 
-    /// Whether no axis is beyond the largest coordinate.
-    #[inline]
-    pub(super) fn in_range(&self, given: &Given, machine: &Position) -> Checked<()> {
-        let most = self.farthest();
-        let is_beyond = machine.0.iter().fold(false, |beyond, at| beyond | (at.abs() > most));
-        if is_beyond { self.beyond_range(given, machine, most) } else { Ok(()) }
-    }
-
-    /// The alarm of an axis beyond [`Core::farthest`]; one that rolls over begins anew with each turn.
+    /// The alarm of an axis beyond [`Core::farthest`], if one is there; one that rolls over begins anew with each turn.
     #[cold]
-    fn beyond_range(&self, given: &Given, machine: &Position, most: f64) -> Checked<()> {
+    pub(super) fn beyond_range(&self, given: &Given, machine: &Position) -> Checked<()> {
+        let most = self.farthest();
         for (axis, letter) in self.settings.axes.iter() {
             if machine[axis].abs() > most && !self.settings.roll_over[axis] {
                 let alarm = Alarm::PositionOverflow { letter, value: machine[axis] };

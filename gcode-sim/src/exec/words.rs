@@ -10,6 +10,7 @@ use crate::alarm::Alarm;
 use crate::control::{CodeSet, Settings};
 use crate::program::codes::{self, Effect, Row};
 use crate::program::m_codes;
+use crate::program::modes::Motion;
 use crate::program::{Coded, Input, Program, Words};
 use crate::source::Span;
 use crate::syntax::ast::Decimal;
@@ -44,6 +45,8 @@ pub(super) struct Given {
     values: [(Raw, Span); 26],
     g: [Option<&'static Row>; G_CODES],
     g_count: usize,
+    /// The last code of group 01.
+    pub(super) motion: Option<Motion>,
     /// A G code stands in the block that is not of group 01.
     beyond_moves: bool,
     pub(super) m: [Option<(u32, Span)>; M_CODES],
@@ -64,6 +67,7 @@ impl Default for Given {
             values: [(Raw::Computed(0.0), Span::default()); 26],
             g: [None; G_CODES],
             g_count: 0,
+            motion: None,
             beyond_moves: false,
             m: [None; M_CODES],
             m_count: 0,
@@ -80,6 +84,7 @@ impl Given {
         self.present = 0;
         self.read.set(0);
         self.g_count = 0;
+        self.motion = None;
         self.beyond_moves = false;
         self.m_count = 0;
         self.corner = None;
@@ -105,7 +110,10 @@ impl Given {
         }
         self.g[self.g_count] = Some(row);
         self.g_count += 1;
-        self.beyond_moves |= !matches!(row.effect, Effect::Motion(_));
+        match row.effect {
+            Effect::Motion(motion) => self.motion = Some(motion),
+            _ => self.beyond_moves = true,
+        }
         Ok(())
     }
 
