@@ -75,6 +75,7 @@ impl Core {
     }
 
     /// Tells the machine one thing and counts it.
+    #[inline]
     pub(super) fn tell<S: Sink>(&mut self, kind: &EventKind, seconds: f64, sink: &mut S) {
         self.count(kind, seconds);
         let block = self.block;

@@ -27,8 +27,7 @@ impl Core {
         }
         let goal = self.goal(given, &mut plan.state)?;
         let (from, to) = (plan.state.machine, goal.machine);
-        let timed = self.feed_seconds(&plan.state, plan.state.codes.f, (&from, &to), given.has(b'F'));
-        let (rate, seconds) = at(timed, span)?;
+        let (rate, seconds) = at(self.feed_seconds(&plan.state, &from, &to, given.has(b'F')), span)?;
         plan.probing = Some(Probing { event: plan.events.len(), from, to, rate, seconds, span });
         plan.events.push((EventKind::Skip { to, rate, touched: false }, seconds));
         plan.state.machine = to;

@@ -31,10 +31,9 @@ impl Core {
         if led.reach > self.farthest() {
             self.beyond_range(given, &goal.machine)?;
         }
-        let way = (&state.machine, &goal.machine);
         let (rate, seconds) = match motion {
-            Some(Motion::Rapid) => (MmPerMin::ZERO, self.rapid_seconds(way.0, way.1)),
-            _ => at(self.feed_seconds(state, f, way, given.has(b'F')), self.block)?,
+            Some(Motion::Rapid) => (MmPerMin::ZERO, self.rapid_seconds(&state.machine, &goal.machine)),
+            _ => at(self.time_of(state, f, led.way, given.has(b'F')), self.block)?,
         };
 
         let Goal { programmed, machine, unplaced } = goal;
@@ -48,7 +47,7 @@ impl Core {
             self.tell(&EventKind::Unplaced { axes: unplaced }, 0.0, sink);
         }
         match motion {
-            _ if !led.moves => {}
+            _ if !led.way.is_some() => {}
             Some(Motion::Rapid) => self.tell(&EventKind::Rapid { to: machine }, seconds, sink),
             _ => self.tell(&EventKind::Feed { to: machine, rate }, seconds, sink),
         }

@@ -19,13 +19,31 @@ pub(super) struct Goal {
     pub(super) unplaced: u8,
 }
 
-/// What axes do on their way to a [`Goal`].
-#[derive(Clone, Copy, Debug)]
+/// What the named axes do on their way to a [`Goal`].
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Led {
-    /// One of them moves.
-    pub(super) moves: bool,
+    pub(super) way: Way,
     /// The largest machine coordinate that one of them gets to, its sign left out.
     pub(super) reach: f64,
+}
+
+/// How far axes move: the sums of the squares of those that slide, in mm, and of those that turn, in degrees.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Way {
+    sliding: f64,
+    turning: f64,
+}
+
+impl Way {
+    #[inline(always)]
+    fn add(&mut self, way: f64, turns: bool) {
+        *if turns { &mut self.turning } else { &mut self.sliding } += way * way;
+    }
+
+    /// Whether one of the axes moves; the increments are far too large for squares that vanish.
+    pub(super) fn is_some(self) -> bool {
+        self.sliding + self.turning > 0.0
+    }
 }
 
 impl Goal {
@@ -82,7 +100,7 @@ impl Core {
     /// machine that is right as long as the others [stand where they should](Core::is_placed).
     #[inline(always)]
     pub(super) fn lead(&self, given: &Given, state: &State, goal: &mut Goal) -> Checked<Led> {
-        let mut led = Led { moves: false, reach: 0.0 };
+        let mut led = Led::default();
         let Goal { programmed, machine, unplaced } = goal;
         let incremental = state.modal.distance == Distance::Incremental;
         let places = *unplaced != 0 && !incremental;
@@ -110,7 +128,7 @@ impl Core {
                 programmed[axis] = if incremental { self.clean(from + value) } else { value };
                 self.on_machine(system, state, programmed, axis)
             };
-            led.moves |= to != machine[axis];
+            led.way.add(to - machine[axis], self.settings.axes.is_rotary(axis));
             led.reach = led.reach.max(to.abs());
             machine[axis] = to;
         }
@@ -200,8 +218,7 @@ impl Core {
     /// Tells a straight cut; alarms where there is no feed, even if it leads nowhere.
     pub(super) fn feed(&self, plan: &mut Plan, to: &Position, given: &Given) -> Result<(), Alarm> {
         let from = &plan.state.machine;
-        let f = plan.state.codes.f;
-        let (rate, seconds) = self.feed_seconds(&plan.state, f, (from, to), given.has(b'F'))?;
+        let (rate, seconds) = self.feed_seconds(&plan.state, from, to, given.has(b'F'))?;
         if to != from {
             plan.events.push((EventKind::Feed { to: *to, rate }, seconds));
             plan.state.machine = *to;
@@ -226,42 +243,47 @@ impl Core {
     pub(super) fn feed_seconds(
         &self,
         state: &State,
-        f: f64,
-        (from, to): (&Position, &Position),
+        from: &Position,
+        to: &Position,
         f_in_block: bool,
     ) -> Result<(MmPerMin, f64), Alarm> {
-        let (mut sliding, mut turning) = (0.0, 0.0);
+        let mut way = Way::default();
         for axis in 0..self.settings.axes.len() {
-            let way = to[axis] - from[axis];
-            if self.settings.axes.is_rotary(axis) {
-                turning += way * way;
-            } else {
-                sliding += way * way;
-            }
+            way.add(to[axis] - from[axis], self.settings.axes.is_rotary(axis));
         }
-        self.time_at(state, f, ((sliding + turning).sqrt(), sliding.sqrt(), turning), f_in_block)
+        self.time_of(state, state.codes.f, way, f_in_block)
     }
 
-    /// The rate and the time for a path of `length`, of which `sliding` mm are linear and the rest turns.
+    /// As [`Core::feed_seconds`] of an F that may not be in force yet.
+    #[inline(always)]
+    pub(super) fn time_of(
+        &self,
+        state: &State,
+        f: f64,
+        Way { sliding, turning }: Way,
+        f_in_block: bool,
+    ) -> Result<(MmPerMin, f64), Alarm> {
+        let in_inches = || inches(sliding.sqrt(), turning);
+        self.time_at(state, f, ((sliding + turning).sqrt(), in_inches), f_in_block)
+    }
+
+    /// The rate and the time for a path of `length` mm on which nothing turns.
     #[inline]
     pub(super) fn time_along(
         &self,
         state: &State,
         length: f64,
-        sliding: f64,
-        turning: f64,
         f_in_block: bool,
     ) -> Result<(MmPerMin, f64), Alarm> {
-        self.time_at(state, state.codes.f, (length, sliding, turning), f_in_block)
+        self.time_at(state, state.codes.f, (length, || inches(length, 0.0)), f_in_block)
     }
 
-    /// As [`Core::time_along`] by an F that isn't in force yet.
-    #[inline]
+    #[inline(always)]
     fn time_at(
         &self,
         state: &State,
         f: f64,
-        (length, sliding, turning): (f64, f64, f64),
+        (length, in_inches): (f64, impl Fn() -> f64),
         f_in_block: bool,
     ) -> Result<(MmPerMin, f64), Alarm> {
         if state.modal.feed_mode == FeedMode::InverseTime {
@@ -281,15 +303,19 @@ impl Core {
             let no_speed = state.modal.feed_mode == FeedMode::PerRevolution && f > 0.0;
             return Err(if no_speed { Alarm::NoSpeedForFeed } else { Alarm::FeedZero });
         }
-        // In inches the composite is of inches and degrees.
         let counted = match state.modal.unit {
             Unit::Metric => length,
-            Unit::Inch => (sliding / 25.4 * (sliding / 25.4) + turning).sqrt(),
+            Unit::Inch => in_inches(),
         };
         let minutes = counted / per_minute;
         let rate = if minutes > 0.0 { length / minutes } else { per_minute };
         Ok((MmPerMin(rate), minutes * 60.0))
     }
+}
+
+/// The composite of a way of `sliding` mm and of what turns, squared degrees, as it counts in inches: of inches and degrees.
+fn inches(sliding: f64, turning: f64) -> f64 {
+    (sliding / 25.4 * (sliding / 25.4) + turning).sqrt()
 }
 
 /// How an axis that rolls over gets from one angle to another: the shorter way, half a turn in the plus direction.
