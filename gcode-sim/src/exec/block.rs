@@ -34,7 +34,7 @@ impl Core {
         sink: &mut S,
     ) -> Checked<bool> {
         let words = self.unskipped(words);
-        if self.is_plain {
+        if self.plain_zero.is_some() {
             self.collect(program, words, None, given)?;
             if self.step(words, given, op.number, sink)? {
                 return Ok(false);

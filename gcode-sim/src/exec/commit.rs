@@ -58,7 +58,7 @@ impl Core {
         for code in &plan.passed_on {
             self.passed_on.entry(*code).or_insert(self.block);
         }
-        self.is_plain = self.is_plain();
+        self.see_if_plain();
     }
 
     fn tell_drill<S: Sink>(&mut self, drill: &Drill, sink: &mut S) {

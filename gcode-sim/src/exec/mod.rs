@@ -80,6 +80,7 @@ use self::words::Given;
 use self::work_use::WorkUse;
 use crate::alarm::Alarm;
 use crate::control::{ParameterPlace, Settings};
+use crate::motion::Position;
 use crate::program::{Memory, ProgramId, Slot};
 use crate::source::Span;
 
@@ -104,8 +105,8 @@ pub struct Control {
 pub(crate) struct Core {
     settings: Settings,
     state: Box<State>,
-    /// As [`Core::is_plain`] has found it behind the last block that could change it.
-    is_plain: bool,
+    /// While a block can be a plain move: where its axes count from.
+    plain_zero: Option<Position>,
     vars: Vars,
     offsets: Offsets,
     /// What has been read and waits for the next move.
@@ -158,7 +159,7 @@ impl Control {
         let core = Core {
             settings,
             state: Box::default(),
-            is_plain: false,
+            plain_zero: None,
             vars,
             offsets,
             ahead: Ahead::default(),

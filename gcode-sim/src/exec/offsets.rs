@@ -87,7 +87,7 @@ impl Offsets {
         self.external[axis] + system[axis] + state.local[axis] + state.shift[axis]
     }
 
-    pub(super) fn system(&self, work: WorkSystem) -> &Position {
+    fn system(&self, work: WorkSystem) -> &Position {
         match work {
             WorkSystem::Standard(number) => &self.standard[usize::from(number) - 1],
             WorkSystem::Additional(number) => &self.additional[usize::from(number) - 1],
@@ -101,13 +101,23 @@ impl Core {
         self.offsets.zero(self.offsets.system(state.modal.work), state, axis)
     }
 
+    /// As [`Core::zero`], of all axes.
+    pub(super) fn zeros(&self, state: &State) -> Position {
+        let system = self.offsets.system(state.modal.work);
+        let mut zeros = Position::default();
+        for axis in 0..MAX_AXES {
+            zeros[axis] = self.offsets.zero(system, state, axis);
+        }
+        zeros
+    }
+
     /// A programmed point in machine coordinates, tool length included.
     pub(super) fn to_machine(&self, state: &State, point: &Position) -> Position {
         let work = state.transform.forward(*point);
-        let system = self.offsets.system(state.modal.work);
+        let zero = self.zeros(state);
         let mut machine = Position::default();
         for axis in 0..MAX_AXES {
-            machine[axis] = self.on_machine(system, state, &work, axis);
+            machine[axis] = self.clean(work[axis] + zero[axis] + state.length[axis]);
         }
         for axis in self.settings.rolling() {
             // From where the axis stands, the shorter way: turns already made stay made.
@@ -115,12 +125,6 @@ impl Core {
             machine[axis] = self.clean(state.machine[axis] + shorter_way(from, work[axis]));
         }
         machine
-    }
-
-    /// One axis of a point in a work coordinate system, in machine coordinates, tool length included.
-    #[inline(always)]
-    pub(super) fn on_machine(&self, system: &Position, state: &State, work: &Position, axis: Axis) -> f64 {
-        self.clean(work[axis] + self.offsets.zero(system, state, axis) + state.length[axis])
     }
 
     /// Whether every axis stands where the programmed point is on the machine, so that one which isn't named stays there.

@@ -10,7 +10,7 @@ use crate::program::modes::{CutterSide, Motion, Polar};
 use crate::units::MmPerMin;
 
 impl Core {
-    /// Does a block that is a plain move, while [`Core::is_plain`]; whether it is one. All checks come first.
+    /// Does a block that is a plain move; whether it is one. All checks come first.
     #[inline(always)]
     pub(super) fn step<S: Sink>(
         &mut self,
@@ -20,6 +20,7 @@ impl Core {
         sink: &mut S,
     ) -> Checked<bool> {
         let state = &*self.state;
+        let Some(zero) = &self.plain_zero else { return Ok(false) };
         let motion = self.plain_motion(words, given);
         if !matches!(motion, Some(Motion::Rapid | Motion::Linear)) {
             return Ok(false);
@@ -27,7 +28,7 @@ impl Core {
         let f = if given.has(b'F') { self.feed_word(given, state)? } else { None };
         let f = f.unwrap_or(state.codes.f);
         let mut goal = Goal::here(state);
-        let led = self.lead(given, state, &mut goal)?;
+        let led = self.lead(given, state, zero, &mut goal)?;
         if led.reach > self.farthest() {
             self.beyond_range(given, &goal.machine)?;
         }
@@ -69,8 +70,14 @@ impl Core {
         alone.then(|| given.motion.unwrap_or(self.state.modal.motion))
     }
 
+    /// Finds out, behind everything that could change it, whether the next block can be a plain move, and what its axes
+    /// count from.
+    pub(super) fn see_if_plain(&mut self) {
+        self.plain_zero = self.is_plain().then(|| self.zeros(&self.state));
+    }
+
     /// Whether nothing is in force between two blocks that could make more of axis words than a move of those axes.
-    pub(super) fn is_plain(&self) -> bool {
+    fn is_plain(&self) -> bool {
         let modal = &self.state.modal;
         modal.cycle.is_none()
             && modal.cutter == CutterSide::Off

@@ -77,7 +77,7 @@ impl Core {
     /// The end point of the block's axis words, from where `state` stands.
     pub(super) fn goal(&self, given: &Given, state: &mut State) -> Checked<Goal> {
         let mut goal = Goal::here(state);
-        self.lead(given, state, &mut goal)?;
+        self.lead(given, state, &self.zeros(state), &mut goal)?;
         state.unplaced = goal.unplaced;
         if state.modal.polar == Polar::On {
             self.polar(given, state, &mut goal.programmed)?;
@@ -97,16 +97,22 @@ impl Core {
     }
 
     /// Takes a goal from where `state` stands to where the block's axis words lead, on the axes that are named. On the
-    /// machine that is right as long as the others [stand where they should](Core::is_placed).
+    /// machine, which has `zero` as [`Core::zeros`], that is right as long as the others stand [where they
+    /// should](Core::is_placed).
     #[inline(always)]
-    pub(super) fn lead(&self, given: &Given, state: &State, goal: &mut Goal) -> Checked<Led> {
+    pub(super) fn lead(
+        &self,
+        given: &Given,
+        state: &State,
+        zero: &Position,
+        goal: &mut Goal,
+    ) -> Checked<Led> {
         let mut led = Led::default();
         let Goal { programmed, machine, unplaced } = goal;
         let incremental = state.modal.distance == Distance::Incremental;
         let places = *unplaced != 0 && !incremental;
         let polar = state.modal.polar == Polar::On;
         let measure = self.measure(state.modal.unit);
-        let system = self.offsets.system(state.modal.work);
         given.ask(self.settings.axes.mask());
         for (axis, letter) in self.settings.axes.letters() {
             if !given.has(letter) || polar && self.in_plane(state, axis) {
@@ -126,7 +132,7 @@ impl Core {
                 self.clean(machine[axis] + way)
             } else {
                 programmed[axis] = if incremental { self.clean(from + value) } else { value };
-                self.on_machine(system, state, programmed, axis)
+                self.clean(programmed[axis] + zero[axis] + state.length[axis])
             };
             led.way.add(to - machine[axis], self.settings.axes.is_rotary(axis));
             led.reach = led.reach.max(to.abs());
