@@ -134,7 +134,7 @@ impl Control {
         core.frame.next = place + 1;
         if let Some(switch) = op.skip {
             let is_on = core.skips(switch);
-            core.notes.entry(Note::BlockSkip { switch: switch.max(1), is_on }).or_insert(op.span);
+            core.notes.entry(Note::BlockSkip { switch: switch.max(1), is_on }).or_insert(core.block);
             if is_on {
                 return Ok(());
             }
