@@ -114,7 +114,7 @@ mod tests {
         memory.load("O1.nc", text.as_bytes().to_vec());
         let mut control = Control::new(memory, settings);
         let mut told = Told(Vec::new());
-        let outcome = control.run(Limits { blocks: 500, ..Limits::default() }, &mut NoLibrary, &mut told);
+        let outcome = control.run(Limits { blocks: 500 }, &mut NoLibrary, &mut told);
         told.0.push(format!("{outcome:?} {:?} {:?}", control.core.state, control.core.notes));
         (told.0, control.core.plain_zero.is_some())
     }
