@@ -21,10 +21,9 @@ impl Core {
     ) -> Checked<bool> {
         let state = &*self.state;
         let Some(zero) = &self.plain_zero else { return Ok(false) };
-        let motion = self.plain_motion(words, given);
-        if !matches!(motion, Some(Motion::Rapid | Motion::Linear)) {
+        let Some(motion @ (Motion::Rapid | Motion::Linear)) = self.plain_motion(words, given) else {
             return Ok(false);
-        }
+        };
         let f = if given.has(b'F') { self.feed_word(given, state)? } else { None };
         let f = f.unwrap_or(state.codes.f);
         let mut goal = Goal::here(state);
@@ -33,7 +32,7 @@ impl Core {
             self.beyond_range(given, &goal.machine)?;
         }
         let (rate, seconds) = match motion {
-            Some(Motion::Rapid) => (MmPerMin::ZERO, self.rapid_seconds(&state.machine, &goal.machine)),
+            Motion::Rapid => (MmPerMin::ZERO, self.rapid_seconds(&state.machine, &goal.machine)),
             _ => at(self.time_of(state, f, led.way, given.has(b'F')), self.block)?,
         };
 
@@ -41,7 +40,7 @@ impl Core {
         let before = state.unplaced;
         let state = &mut *self.state;
         (state.programmed, state.machine, state.unplaced) = (programmed, machine, unplaced);
-        (state.modal.motion, state.codes.f) = (motion.unwrap_or_default(), f);
+        (state.modal.motion, state.codes.f) = (motion, f);
         state.codes.n = number.unwrap_or(state.codes.n);
         self.note_work(self.state.modal.work, true);
         if unplaced != before {
@@ -49,7 +48,7 @@ impl Core {
         }
         match motion {
             _ if !led.way.is_some() => {}
-            Some(Motion::Rapid) => self.tell(&EventKind::Rapid { to: machine }, seconds, sink),
+            Motion::Rapid => self.tell(&EventKind::Rapid { to: machine }, seconds, sink),
             _ => self.tell(&EventKind::Feed { to: machine, rate }, seconds, sink),
         }
         Ok(true)

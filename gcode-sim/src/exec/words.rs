@@ -250,9 +250,9 @@ impl Core {
         match calling {
             None => words.list.iter().try_for_each(|word| self.take(program, word, given)),
             Some(calling) => {
-                let others =
+                let mut others =
                     words.list.iter().enumerate().filter(|(place, word)| !calling.takes(*place, word));
-                others.map(|(_, word)| self.take(program, word, given)).collect()
+                others.try_for_each(|(_, word)| self.take(program, word, given))
             }
         }
     }
