@@ -9,39 +9,38 @@ impl Op {
     /// Becomes the block that begins at `start`; not where more stands in it than numbers, or a call: then it may have
     /// become anything, and its tree must be lowered.
     pub(super) fn refill(&mut self, source: SourceId, text: &[u8], start: u32) -> bool {
-        let Some(mut numbers) = Numbers::new(source, text, start) else { return false };
+        let Some(numbers) = Numbers::new(source, text, start) else { return false };
+        let number = numbers.sequence_number;
         if !matches!(self.kind, OpKind::Words(_)) {
             self.kind = OpKind::Words(Words::default());
         }
         let OpKind::Words(words) = &mut self.kind else { return false };
-        if !words.refill(|list| fill(list, &mut numbers)) {
-            return false;
-        }
+        let Some(end) = fill(words.emptied(), numbers) else { return false };
         if words.list.is_empty() {
             self.kind = OpKind::Empty;
         }
-        self.span = Span { source, start, end: numbers.end() };
-        (self.skip, self.number) = (None, numbers.sequence_number);
+        self.span = Span { source, start, end };
+        (self.skip, self.number) = (None, number);
         self.forms = Box::default();
         true
     }
 }
 
-/// Puts the words of a line into an empty list; whether it has no others.
-#[inline]
-fn fill(list: &mut Vec<Coded>, numbers: &mut Numbers<'_>) -> bool {
+/// Puts the words of a line into an empty list, and tells where the last one ends; not where the line has others.
+#[inline(never)]
+fn fill(list: &mut Vec<Coded>, mut numbers: Numbers<'_>) -> Option<u32> {
     for NumberWord { letter, number, span } in numbers.by_ref() {
         let coded = |value| Coded { letter, axis: None, comma: false, value, span };
         match letter {
-            b'G' => match g_code(number) {
-                None | Some(650 | 660 | 661 | 670) => return false,
-                Some(code) => list.push(coded(Input::G(code, codes::find(code)))),
+            b'G' => match g_code(number)? {
+                650 | 660 | 661 | 670 => return None,
+                code => list.push(coded(Input::G(code, codes::find(code)))),
             },
-            b'M' if matches!(number.digits, 97 | 98 | 99 | 198) => return false,
+            b'M' if matches!(number.digits, 97 | 98 | 99 | 198) => return None,
             _ => list.push(coded(Input::Literal(number))),
         }
     }
-    numbers.is_at_end()
+    numbers.is_at_end().then_some(numbers.end())
 }
 
 #[cfg(test)]

@@ -1,0 +1,60 @@
+//! Digits that stand in a row, four looked at together.
+
+/// What is looked at of a text for one word. Longer ones, with more than eight digits before the point or behind it, are
+/// left to `number`.
+pub(super) type Window = [u8; 24];
+
+/// The window at the beginning of a text that ends somewhere; behind its end it has what no number has.
+pub(super) fn window(text: &[u8]) -> Window {
+    let mut window = Window::default();
+    let length = text.len().min(window.len());
+    window[..length].copy_from_slice(&text[..length]);
+    window
+}
+
+/// An unsigned number that stands at a place: its digits as if it had no point, how many of them stand behind one, and
+/// where it ends. Behind spaces it may go on.
+#[inline(always)]
+pub(super) fn number(window: &Window, first: usize) -> Option<(u64, Option<u8>, usize)> {
+    let (whole, point) = digits(0, window, first)?;
+    let (digits, places, end) = match window.get(point) {
+        Some(b'.') => {
+            let (digits, end) = digits(whole, window, point + 1)?;
+            (digits, Some((end - point - 1) as u8), end)
+        }
+        _ => (whole, None, point),
+    };
+    (end > first + usize::from(places.is_some())).then_some((digits, places, end))
+}
+
+/// A number that goes on with the digits at a place, and where they end; `None` where they are more than eight.
+#[inline(always)]
+fn digits(number: u64, window: &Window, place: usize) -> Option<(u64, usize)> {
+    let (number, end) = four(number, window, place)?;
+    if end < place + 4 { Some((number, end)) } else { four_more(number, window, end) }
+}
+
+#[inline(never)]
+fn four_more(number: u64, window: &Window, place: usize) -> Option<(u64, usize)> {
+    let (number, end) = four(number, window, place)?;
+    window.get(end).is_some_and(|byte| !byte.is_ascii_digit()).then_some((number, end))
+}
+
+/// The same of four digits at most.
+#[inline(always)]
+fn four(number: u64, window: &Window, place: usize) -> Option<(u64, usize)> {
+    let bytes = u32::from_le_bytes(*window.get(place..)?.first_chunk()?);
+    // Each digit is its value; the top bit tells a byte that is none. Behind the first of those it may be wrong.
+    let values = bytes ^ 0x3030_3030;
+    let others = (values.wrapping_add(0x7676_7676) | bytes) & 0x8080_8080;
+    // The digits end where the four bytes do, zeros before them.
+    let (digits, count) = match others.trailing_zeros() {
+        32 => (values, 4),
+        top => (values << (31 - top) << 8, top / 8),
+    };
+    let pairs = digits.wrapping_mul(10 << 8 | 1) >> 8 & 0x00ff_00ff;
+    let value = pairs.wrapping_mul(100 << 16 | 1) >> 16;
+    Some((number * POWERS[count as usize] + u64::from(value), place + count as usize))
+}
+
+const POWERS: [u64; 5] = [1, 10, 100, 1_000, 10_000];
