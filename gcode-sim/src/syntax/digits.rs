@@ -58,3 +58,59 @@ fn four(number: u64, window: &Window, place: usize) -> Option<(u64, usize)> {
 }
 
 const POWERS: [u64; 5] = [1, 10, 100, 1_000, 10_000];
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn a_number_is_what_its_digits_spell(
+            before in "[XN][-+]?", whole in "[0-9]{0,9}", point in any::<bool>(), fraction in "[0-9]{0,9}", behind in "[ A-Z.:/\r\né]{0,9}",
+        ) {
+            let written = if point { format!("{whole}.{fraction}") } else { whole.clone() };
+            let text = format!("{before}{written}{behind}");
+            let found = number(&window(text.as_bytes()), before.len());
+            let fraction = if point { fraction } else { String::new() };
+            prop_assume!(point || !behind.starts_with('.'));
+            let wanted = (1..=8).contains(&whole.len().max(fraction.len())).then(|| {
+                let digits = format!("{whole}{fraction}").parse().unwrap();
+                (digits, point.then_some(fraction.len() as u8), before.len() + written.len())
+            });
+            prop_assert_eq!(found, wanted, "{:?}", text);
+        }
+    }
+
+    #[test]
+    fn digits_end_at_the_first_byte_that_is_none() {
+        for behind in 0..=u8::MAX {
+            for length in 1..=8 {
+                let mut text = b"X98765432?1234567890".to_vec();
+                text[1 + length] = behind;
+                let read = number(&window(&text), 1);
+                match behind {
+                    b'0'..=b'9' | b'.' => {}
+                    _ => {
+                        assert_eq!(read, Some((98_765_432 / 10_u64.pow(8 - length as u32), None, 1 + length)))
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn points_and_what_stands_behind() {
+        let read = |text: &str| number(&window(text.as_bytes()), 1);
+        assert_eq!(read("X12.345 Y1"), Some((12_345, Some(3), 7)));
+        assert_eq!(read("X1234.5678"), Some((12_345_678, Some(4), 10)));
+        assert_eq!(read("X12345678.00000001Z"), Some((1_234_567_800_000_001, Some(8), 18)));
+        assert_eq!(read("X5."), Some((5, Some(0), 3)));
+        assert_eq!(read("X.5.5"), Some((5, Some(1), 3)));
+        assert_eq!(read("X007\0"), Some((7, None, 4)));
+        for none in ["X", "X.", "X-1", "X .5", "X123456789", "X1.123456789", "X#1"] {
+            assert_eq!(read(none), None, "{none}");
+        }
+    }
+}

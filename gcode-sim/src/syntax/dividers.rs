@@ -6,7 +6,10 @@
 const fn divides(byte: u8) -> bool {
     let of_words = byte & 0xde == b'D';
     let slash_or_o = byte & 0x9f == b'/' & 0x9f;
-    of_words | slash_or_o | (byte.wrapping_sub(b'%') <= b'(' - b'%') | (byte.wrapping_sub(b':') <= b'<' - b':')
+    of_words
+        | slash_or_o
+        | (byte.wrapping_sub(b'%') <= b'(' - b'%')
+        | (byte.wrapping_sub(b':') <= b'<' - b':')
 }
 
 /// The same for single bytes, looked up.
