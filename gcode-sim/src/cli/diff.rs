@@ -13,7 +13,7 @@ use crate::picture;
 use crate::report::changes::{ChangesReport, change_found};
 use crate::report::page::{Difference, Page, Seen};
 use crate::report::sarif::{self, At, Finding};
-use crate::report::{diagnostic, top};
+use crate::report::{changed_view, diagnostic};
 use crate::session::Trace;
 use crate::verify::Tolerances;
 
@@ -93,10 +93,17 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
         }
     }
     if let Some(path) = &arguments.picture {
-        let name = format!("{} against {}", render::name(&new_request), render::name(&old_request));
-        let machine = &new_request.machine;
-        let view = top::of_changes(&name, &old.simulation, &new.simulation, machine, (&compared, tolerance));
-        let scene = picture::top_view(&view.map_err(Refusal::new)?);
+        let names = [&new_request, &old_request].map(render::name);
+        // Two of the same name are told apart by their folders.
+        let [is, was] = if names[0] == names[1] {
+            [&new_request, &old_request].map(|request| request.name.clone())
+        } else {
+            names
+        };
+        let name = format!("{is} against {was}");
+        let (machine, reference) = (&new_request.machine, reference.as_ref());
+        let view = changed_view::of_changes(&name, (&old, &new), machine, (&compared, tolerance), reference);
+        let scene = picture::top_view(&view);
         render::write(&scene, "1600x1200", path)?;
         if arguments.format == FindingFormat::Text {
             output::print(&format!("picture: {}\n", path.display()))?;

@@ -1,5 +1,6 @@
 //! Data to words: what the terminal, JSON and CSV say of runs, holes and verdicts.
 pub mod budget;
+pub mod changed_view;
 pub mod changes;
 pub mod check;
 pub mod diagnostic;
