@@ -2,13 +2,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::figures::{count, near};
-use super::top::{Rotary, along, outline, round_up, side, signed, still};
+use super::hole_changes::remarks;
+use super::top::{Rotary, along, outline, round_up, side, still};
 use crate::changes::{Change, Compared, Leg, Paired, Record, Revision};
 use crate::machine::Machine;
-use crate::part::hole::Hole;
 use crate::part::reference::Reference;
 use crate::picture::{DrawnHole, PathKind, PathPiece, Question, Standing, TopView};
-use crate::units::Deg;
 
 /// No more cuts of each revision than this are drawn, nor more points.
 const MOST_MOVES: usize = 20_000;
@@ -31,21 +30,22 @@ pub fn of_changes(
 ) -> TopView {
     let rotary = Rotary::of(machine);
     let lists = [old, new].map(|side| side.simulation.list().holes);
-    let tools = [old, new].map(|side| side.record.made_by());
+    let sides = [old, new];
+    let tools = sides.map(|side| side.record.made_by());
     let drawn = |pair: &Paired| {
         let was = pair.old.map(|hole| lists[0][hole].clone());
         let is = pair.new.map(|hole| lists[1][hole].clone());
         let found = pair.new.map(|hole| &new.simulation.extracted.holes[hole]);
-        let made_by = |side: usize, hole: Option<usize>| hole.map_or(&[][..], |hole| &tools[side][hole]);
-        let passes = (made_by(0, pair.old), made_by(1, pair.new));
-        let (id, standing, remarks) = match (pair.old, pair.new) {
-            (Some(hole), Some(_)) if !pair.changed => ((hole + 1).to_string(), Standing::Good, Vec::new()),
-            (Some(hole), Some(_)) => {
-                ((hole + 1).to_string(), Standing::Bad, remarks(pair, (&was, &is), passes))
-            }
-            (Some(hole), None) => ((hole + 1).to_string(), Standing::Missing, Vec::new()),
-            (None, hole) => (format!("new {}", hole.unwrap_or_default() + 1), Standing::Extra, Vec::new()),
+        let (id, standing) = match (pair.old, pair.new) {
+            (Some(hole), Some(_)) if !pair.changed => ((hole + 1).to_string(), Standing::Good),
+            (Some(hole), Some(_)) => ((hole + 1).to_string(), Standing::Bad),
+            (Some(hole), None) => ((hole + 1).to_string(), Standing::Missing),
+            (None, hole) => (format!("new {}", hole.unwrap_or_default() + 1), Standing::Extra),
         };
+        let made = |side: usize, hole: Option<usize>| {
+            hole.map(|hole| (&sides[side].simulation.extracted.holes[hole], tools[side][hole].as_slice()))
+        };
+        let remarks = remarks(pair, made(0, pair.old), made(1, pair.new));
         let turn = found.and_then(|found| rotary.turn(found));
         DrawnHole { id, nominal: was, found: is, standing, phi: None, turn, remarks }
     };
@@ -88,34 +88,6 @@ pub fn of_changes(
         path: path.cuts,
         lines,
     }
-}
-
-/// What is different about a hole, a few words each.
-fn remarks(
-    pair: &Paired,
-    (was, is): (&Option<Hole>, &Option<Hole>),
-    (before, now): (&[u32], &[u32]),
-) -> Vec<String> {
-    let mut words = Vec::new();
-    let seen = |value: f64| 0.0005 <= value.abs();
-    words.extend(seen(pair.moved).then(|| format!("moved {:.3}", pair.moved)));
-    words.extend(seen(pair.deeper).then(|| format!("depth {}", signed(pair.deeper))));
-    let diameter = |hole: &Option<Hole>| hole.as_ref().and_then(|hole| hole.diameter);
-    if let (Some(was), Some(is)) = (diameter(was), diameter(is))
-        && 1e-9 < (was - is).abs()
-    {
-        words.push(format!("Φ{is}, was Φ{was}"));
-    }
-    let names = |tools: &[u32]| tools.iter().map(|tool| format!("T{tool}")).collect::<Vec<_>>().join(" ");
-    if before != now && !before.is_empty() && !now.is_empty() {
-        words.push(format!("{}, was {}", names(now), names(before)));
-    }
-    let Deg(tilted) = pair.tilted;
-    words.extend(seen(tilted).then(|| format!("tilted {tilted:.3}°")));
-    if words.is_empty() {
-        words.push("changed".to_owned());
-    }
-    words
 }
 
 /// The changes that no hole's sign shows, those of a kind together.

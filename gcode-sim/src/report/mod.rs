@@ -11,6 +11,7 @@ pub mod figures;
 pub mod flute_table;
 pub mod flute_view;
 mod helix_courses;
+mod hole_changes;
 pub mod holes;
 pub mod junit;
 pub mod page;

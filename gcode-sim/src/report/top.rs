@@ -3,6 +3,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
 
+use super::figures::with_sign;
 use crate::holes::Found;
 use crate::machine::{HeadKind, Link, LinkMotion, Machine};
 use crate::motion::Axis;
@@ -65,7 +66,7 @@ pub fn of_verdict(
             .first()
             .into_iter()
             .map(|code| match code.as_str() {
-                "hole-depth" => format!("depth {}", signed(hole.depth_error)),
+                "hole-depth" => format!("depth {}", with_sign(hole.depth_error)),
                 other => other.trim_start_matches("hole-").to_owned(),
             })
             .collect(),
@@ -120,11 +121,6 @@ pub(super) fn still(holes: &mut [DrawnHole]) {
     if holes.iter().all(|hole| hole.turn.is_none_or(|turn| turn == 0.0)) {
         holes.iter_mut().for_each(|hole| hole.turn = None);
     }
-}
-
-/// `+0.120`, `−1.500`.
-pub(super) fn signed(by: f64) -> String {
-    format!("{by:+.3}").replace('-', "−")
 }
 
 /// The next of 1, 2, 5, 10, 20, … from `value` on.

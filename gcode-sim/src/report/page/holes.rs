@@ -3,7 +3,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use maud::{Markup, html};
 
-use super::rows::{Row, State, found_rows, judged_rows, paired_rows};
+use super::rows::{Row, State, found_rows, judged_rows, paired_rows, tools_of};
 use super::words::count;
 use super::{Page, Side};
 
@@ -25,10 +25,12 @@ impl HoleTable {
     pub(super) fn new(page: &Page<'_>, sides: &[Side<'_>]) -> Self {
         let verdicts: Option<Vec<_>> =
             sides.iter().map(|side| side.seen.verdict.map(|verdict| (*side, verdict))).collect();
+        let tools = tools_of(sides);
+        let pairs = page.old.map_or(&[][..], |(_, difference)| &difference.compared.holes);
         let (columns, mut rows) = match (page.reference, verdicts, page.old) {
-            (Some(reference), Some(judged), _) => judged_rows(reference, &judged, sides),
-            (_, _, Some((_, difference))) => paired_rows(&difference.compared.holes, sides),
-            _ => found_rows(sides),
+            (Some(reference), Some(judged), _) => judged_rows(reference, &judged, sides, (pairs, &tools)),
+            (_, _, Some(_)) => paired_rows(pairs, sides, &tools),
+            _ => found_rows(sides, &tools),
         };
         let cut = rows.len().saturating_sub(MOST_ROWS);
         if cut > 0 {
@@ -98,7 +100,7 @@ impl Row {
                 }
                 td.state { (self.words) }
                 @for cell in &self.cells {
-                    td.number[cell.value.is_some()] data-value=[cell.value] {
+                    td.number[cell.value.is_some()].block[!cell.links.is_empty()] data-value=[cell.value] {
                         (cell.text)
                         @for (place, (anchor, name)) in cell.links.iter().enumerate() {
                             @if place > 0 { " ← " }

@@ -104,8 +104,8 @@ class Side {
     this.strokeMoves(colours.feed, 1.6, [], plain("fa"));
     this.strokeMoves(colours.probe, 2, [2, 3], plain("p"));
     const rapid = (move) => this.kinds[move] === "r";
-    if (options.rapids) this.strokeMoves(colours.changed, 2, few ? [5, 4] : [], (move) => this.isChanged.has(move) && rapid(move));
-    this.strokeMoves(colours.changed, 3.5, [], (move) => this.isChanged.has(move) && !rapid(move));
+    if (options.rapids) this.strokeMoves(colours.changed, few ? 2 : 0.8, few ? [5, 4] : [], (move) => this.isChanged.has(move) && rapid(move));
+    this.strokeMoves(colours.changed, few ? 3.5 : 1.2, [], (move) => this.isChanged.has(move) && !rapid(move));
     const line = pick.line?.side === this ? pick.line.number : null;
     if (line !== null) this.strokeMoves(colours.pick, 4, [], (move) => shown(move) && this.places[this.at[move]].includes(line));
     if (pick.side === this && pick.move !== undefined) {
@@ -123,7 +123,7 @@ class Side {
 
   drawHoles(colours, pick) {
     const isPicked = (hole) => hole === pick.hole || (hole.row !== null && hole.row === pick.row);
-    const wrong = (hole) => ["bad", "extra", "changed", "missing"].includes(hole.state);
+    const wrong = (hole) => ["bad", "extra", "changed", "altered", "missing"].includes(hole.state);
     const kind = (hole) => (isPicked(hole) ? "pick" : wrong(hole) ? "wrong" : "hole");
     const groups = new Map();
     for (const hole of this.holes) {
@@ -149,24 +149,30 @@ class Side {
     for (const name of [...groups.keys()].sort((a, b) => (order(a) < order(b) ? 1 : -1))) {
       const [away, role] = name.split(" ");
       Object.assign(context, { globalAlpha: away === "a" && role === "hole" ? 0.3 : 1, fillStyle: colours[role] });
-      const named = this.holes.length <= 60 || role !== "hole" ? groups.get(name).slice(0, 60) : [];
-      named.forEach((hole) => this.label(hole, taken, role === "pick"));
+      const group = groups.get(name);
+      // Of a crowd nobody could tell whose name is whose.
+      const named = this.holes.length <= 60 || (role !== "hole" && group.length <= 60) || role === "pick";
+      if (named) group.forEach((hole) => this.label(hole, taken, colours, role === "pick"));
     }
     context.globalAlpha = 1;
   }
 
   // A hole's name beside it, where no other one stands; where all places are taken a click on the hole tells it.
-  label(hole, taken, always) {
+  label(hole, taken, colours, always) {
     const [x, y] = this.point(hole.entry);
     const [away, wide, high] = [this.radius(hole) + 6, this.context.measureText(hole.id).width, 13];
     const [right, left] = [x + away, x - away - wide];
     const corners = [y - away + 3, y + away + high - 6, y + high / 2 - 2, y - away - high + 3, y + away + 2 * high - 6];
     const places = corners.flatMap((bottom) => [[right, bottom], [left, bottom]]);
     const isFree = ([at, bottom]) =>
+      0 <= at && at + wide <= this.view.width && high <= bottom && bottom <= this.view.height &&
       taken.every(([other, low, width]) => at + wide < other || other + width < at || Math.abs(bottom - low) >= high);
     const place = places.find(isFree) ?? (always ? places[0] : null);
     if (!place) return;
     taken.push([...place, wide]);
+    // Lines end before a name.
+    Object.assign(this.context, { strokeStyle: colours.paper, lineWidth: 3, lineJoin: "round" });
+    this.context.strokeText(hole.id, ...place);
     this.context.fillText(hole.id, ...place);
   }
 
@@ -288,7 +294,7 @@ class Viewer {
   draw() {
     this.waiting = false;
     const style = getComputedStyle(document.documentElement);
-    const names = ["ink", "rapid", "feed", "probe", "changed", "hole", "wrong", "pick"];
+    const names = ["paper", "ink", "rapid", "feed", "probe", "changed", "hole", "wrong", "pick"];
     const colours = Object.fromEntries(names.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
     const rows = this.camera.axes();
     this.scales ??= this.sides.map(({ canvas }) => this.fitting(rows, canvas.clientWidth, canvas.clientHeight));
