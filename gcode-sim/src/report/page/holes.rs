@@ -9,6 +9,8 @@ use super::{Page, Side};
 
 /// So many rows of holes that are as they should be are shown at first, and printed; the others at a button.
 const SHOWN: usize = 200;
+/// More rows than this aren't printed, in the order in which they stand then; page.css counts them as well.
+const PRINTED: usize = 300;
 /// More rows than this aren't on the page.
 const MOST_ROWS: usize = 5_000;
 
@@ -51,6 +53,7 @@ impl HoleTable {
     pub(super) fn markup(&self, page: &Page<'_>) -> Markup {
         let calm = self.rows.iter().enumerate().filter(|(_, row)| !row.state.is_worth_a_look());
         let hidden: BTreeSet<usize> = calm.skip(SHOWN).map(|(number, _)| number).collect();
+        let seen = self.rows.len() - hidden.len();
         html! {
             @if self.rows.is_empty() { p { "No hole is made." } } @else {
                 p.note {
@@ -64,6 +67,11 @@ impl HoleTable {
                 }
                 @if self.cut > 0 {
                     p.note { (count(self.cut as u64)) " rows are left out: a page holds " (MOST_ROWS) ", those worth a look first." }
+                }
+                @if PRINTED < seen {
+                    p.note.paper {
+                        "The first " (PRINTED) " of " (count(seen as u64)) " rows are printed, as they were sorted; the others are on the screen."
+                    }
                 }
                 div.scroll {
                     table.holes {
@@ -81,7 +89,7 @@ impl HoleTable {
                 }
                 @if !hidden.is_empty() {
                     p.note #hidden-rows {
-                        (count(hidden.len() as u64)) " more holes aren't shown, nor printed; those that differ or are wrong all are. "
+                        (count(hidden.len() as u64)) " more holes aren't shown, nor printed; those that differ or are wrong all are shown. "
                         button type="button" #show-rows { "Show all" }
                     }
                 }

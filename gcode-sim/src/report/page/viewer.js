@@ -1,5 +1,7 @@
 // The drawing: one camera for all canvases, which shows the part straight, without perspective.
 const RAD = Math.PI / 180;
+// Below what is fitted into a canvas its scale has a strip of its own, pixels.
+const STRIP = 40;
 
 class Camera {
   constructor(up) {
@@ -170,10 +172,14 @@ class Side {
     const place = places.find(isFree) ?? (always ? places[0] : null);
     if (!place) return;
     taken.push([...place, wide]);
-    // Lines end before a name.
+    this.write(hole.id, ...place, colours);
+  }
+
+  // Lines end before words.
+  write(words, x, y, colours) {
     Object.assign(this.context, { strokeStyle: colours.paper, lineWidth: 3, lineJoin: "round" });
-    this.context.strokeText(hole.id, ...place);
-    this.context.fillText(hole.id, ...place);
+    this.context.strokeText(words, x, y);
+    this.context.fillText(words, x, y);
   }
 
   radius(hole) {
@@ -207,7 +213,8 @@ class Side {
       context.moveTo(ox, oy);
       context.lineTo(ox + dx, oy + dy);
       context.stroke();
-      if (Math.hypot(dx, dy) > 6) context.fillText(name, ox + 1.3 * dx - 4, oy + 1.3 * dy + 4);
+      if (Math.hypot(dx, dy) > 6) this.write(name, ox + 1.3 * dx - 4, oy + 1.3 * dy + 4, colours);
+      Object.assign(context, { strokeStyle: colours.ink, lineWidth: 1.5 });
     });
     const decade = 10 ** Math.floor(Math.log10(120 / scale));
     const length = [5, 2, 1].map((step) => step * decade).find((mm) => mm * scale <= 120) ?? decade;
@@ -219,7 +226,7 @@ class Side {
     context.lineTo(right, bottom - 5);
     context.stroke();
     context.textAlign = "right";
-    context.fillText(`${Number(length.toPrecision(3))} mm`, right, bottom - 8);
+    this.write(`${Number(length.toPrecision(3))} mm`, right, bottom - 8, colours);
     context.textAlign = "left";
   }
 
@@ -277,7 +284,7 @@ class Viewer {
       wide = Math.max(wide, Math.abs(rows[0][0] * a + rows[0][1] * b + rows[0][2] * c));
       high = Math.max(high, Math.abs(rows[1][0] * a + rows[1][1] * b + rows[1][2] * c));
     }
-    return Math.min((0.42 * width) / wide, (0.4 * height) / high);
+    return Math.min((0.42 * width) / wide, (0.42 * (height - STRIP)) / high);
   }
 
   fit() {
@@ -309,7 +316,7 @@ class Viewer {
       }
       side.context.setTransform(dots, 0, 0, dots, 0, 0);
       const scale = fitting * this.camera.zoom;
-      side.project({ rows, middle: this.middle, scale, width, height, cx: width / 2 + this.camera.panX, cy: height / 2 + this.camera.panY });
+      side.project({ rows, middle: this.middle, scale, width, height, cx: width / 2 + this.camera.panX, cy: (height - STRIP) / 2 + this.camera.panY });
       side.draw(colours, this.options, this.pick);
     }
   }
