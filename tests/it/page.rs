@@ -179,6 +179,8 @@ fn the_mouse_turns_zooms_and_picks() {
     browser.run("document.getElementById('viewer').scrollIntoView()");
     let (x, y) =
         middle(&browser, "return document.getElementById('canvas-new').getBoundingClientRect().toJSON()");
+    // The scale has 40 pixels below what is fitted.
+    let y = y - 20.0;
     let before = picture(&browser, "new");
     browser.drag(&[(x + 150.0, y + 60.0), (x + 200.0, y + 60.0), (x + 220.0, y + 80.0)]);
     let turned = picture(&browser, "new");
@@ -309,6 +311,29 @@ fn a_row_says_what_is_different_and_names_all_tools() {
     let sign = browser
         .run("return getComputedStyle(document.querySelector('tr.altered .state'), '::before').content");
     assert_eq!(sign, "\"≠ \"");
+    is_quiet(&browser);
+}
+
+/// 310 holes that are all 1 deeper: a print has 300 of them as they were sorted, and says so.
+#[test]
+fn a_long_table_is_printed_in_part_and_says_so() {
+    let row = |depth: &str| {
+        let drilled = format!("WHILE[#1 LT 310]DO1\n#1=#1+1\nG81 X[#1*5.] Y0 Z{depth} R2. F100\nEND1\n");
+        format!("O1\nS500 M3\n#1=0\nG0 Z5.\n{drilled}G80\nM30\n")
+    };
+    let (_place, page) = of_texts(row("-5.").as_bytes(), row("-6.").as_bytes());
+    let Some(browser) = Browser::start(1200, 900) else { return };
+    browser.open(&page);
+    let rows = "const shown = (element) => getComputedStyle(element).display !== 'none'; \
+         const rows = [...document.querySelectorAll('.holes tbody tr')].filter(shown); \
+         const note = document.querySelector('#holes p.paper'); \
+         return [rows.length, rows[0].cells[0].textContent, shown(note) ? note.textContent : '']";
+    browser.click(".holes th:nth-child(1) button");
+    browser.click(".holes th:nth-child(1) button");
+    assert_eq!(browser.run(rows), json!([310, "310", ""]));
+    browser.command("Emulation.setEmulatedMedia", &json!({"media": "print"}));
+    let note = "The first 300 of 310 rows are printed, as they were sorted; the others are on the screen.";
+    assert_eq!(browser.run(rows), json!([300, "310", note]));
     is_quiet(&browser);
 }
 
