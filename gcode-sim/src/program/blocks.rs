@@ -1,13 +1,12 @@
 //! The blocks of a program, lowered when they are asked for and kept for a while: a loop lowers its blocks once, and a
 //! long file never has all of its blocks lowered at a time.
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 use super::loops::Loops;
 use super::lower::{Lowering, lower_case};
 use super::{AxisPlace, Code, Instruction, Op, OpIndex, OpKind, Operand, Statement};
 use crate::alarm::Alarm;
-use crate::source::SourceId;
+use crate::source::{Bytes, SourceId};
 use crate::syntax::{ast, block_at, sequence_number_at};
 
 /// As many operations are kept, and as many trees' code. Loops are shorter; some megabytes at most.
@@ -17,7 +16,7 @@ const KEPT: usize = 8192;
 #[derive(Clone, Debug)]
 pub(super) struct Text {
     pub(super) source: SourceId,
-    pub(super) bytes: Arc<[u8]>,
+    pub(super) bytes: Bytes,
     /// How much of it is written on.
     pub(super) length: usize,
 }
@@ -160,21 +159,23 @@ impl Blocks {
         }
         let apart = self.apart.contains_key(&(place as u32));
         if apart || !self.ops[at].refill(self.text.source, self.text.written(), start) {
-            self.held[at] = Self::NONE;
-            let op = self.lower_tree(place, loops)?;
-            self.ops[at] = op;
+            self.lower_tree(place, at, loops)?;
         }
         self.held[at] = place as u32;
         Some(at as u32)
     }
 
-    fn lower_tree(&mut self, place: OpIndex, loops: &Loops) -> Option<Op> {
+    /// Lowers a block that is more than numbers into a place.
+    #[inline(never)]
+    fn lower_tree(&mut self, place: OpIndex, at: usize, loops: &Loops) -> Option<()> {
+        self.held[at] = Self::NONE;
         let tree = self.tree(place)?;
         let small = lower_case(&tree, &self.text.bytes);
         let mut op = self.lowering.block(&tree, small);
         self.trees += 1;
         join(&mut op, place, loops);
-        Some(op)
+        self.ops[at] = op;
+        Some(())
     }
 }
 
