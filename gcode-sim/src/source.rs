@@ -131,11 +131,12 @@ pub fn line_length(text: &[u8]) -> usize {
         }
         let (words, _) = chunk.as_chunks::<8>();
         for (half, word) in words.iter().enumerate() {
-            let mut found = small(u64::from_le_bytes(*word));
+            let word = u64::from_le_bytes(*word);
+            let mut found = small(word);
             while found != 0 {
-                let end = found.trailing_zeros() as usize / 8;
-                if ends(&word[end]) {
-                    return 16 * place + 8 * half + end;
+                let bits = found.trailing_zeros() & !7;
+                if ends(&((word >> bits) as u8)) {
+                    return 16 * place + 8 * half + bits as usize / 8;
                 }
                 found &= found - 1;
             }
