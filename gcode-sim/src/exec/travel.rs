@@ -23,8 +23,8 @@ pub(super) struct Goal {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Led {
     pub(super) way: Way,
-    /// The largest machine coordinate that one of them gets to, its sign left out.
-    pub(super) reach: f64,
+    /// One of them gets beyond the largest coordinate.
+    pub(super) beyond: bool,
 }
 
 /// How far axes move: the sums of the squares of those that slide, in mm, and of those that turn, in degrees.
@@ -37,7 +37,11 @@ pub(super) struct Way {
 impl Way {
     #[inline(always)]
     fn add(&mut self, way: f64, turns: bool) {
-        *if turns { &mut self.turning } else { &mut self.sliding } += way * way;
+        if turns {
+            self.turning += way * way;
+        } else {
+            self.sliding += way * way;
+        }
     }
 
     /// Whether one of the axes moves; the increments are far too large for squares that vanish.
@@ -113,6 +117,7 @@ impl Core {
         let places = *unplaced != 0 && !incremental;
         let polar = state.modal.polar == Polar::On;
         let measure = self.measure(state.modal.unit);
+        let most = self.farthest();
         given.ask(self.settings.axes.mask());
         for (axis, letter) in self.settings.axes.letters() {
             if !given.has(letter) || polar && self.in_plane(state, axis) {
@@ -135,7 +140,7 @@ impl Core {
                 self.clean(programmed[axis] + zero[axis] + state.length[axis])
             };
             led.way.add(to - machine[axis], self.settings.axes.is_rotary(axis));
-            led.reach = led.reach.max(to.abs());
+            led.beyond |= to.abs() > most;
             machine[axis] = to;
         }
         Ok(led)
@@ -154,7 +159,7 @@ impl Core {
 
     /// The largest coordinate: nine digits in increments, as a word has.
     #[inline]
-    pub(super) fn farthest(&self) -> f64 {
+    fn farthest(&self) -> f64 {
         999_999_999.0 / self.settings.increment.per_unit()
     }
 
