@@ -40,8 +40,8 @@ pub(super) struct Blocks {
     /// again then. A block has one place for its operation, which it shares with those a multiple of [`KEPT`] away.
     ops: Vec<Op>,
     held: Vec<u32>,
-    /// Whether all are held, each at its own place.
-    whole: bool,
+    /// The bits of a block's place that are the place of its operation: all where all are held.
+    mask: usize,
     lowering: Lowering,
     /// How many trees have been lowered by it.
     trees: usize,
@@ -53,7 +53,7 @@ impl Blocks {
 
     pub(super) fn new(text: Text, starts: Vec<u32>, apart: BTreeMap<u32, ast::Block>) -> Self {
         let (ops, held, lowering) = (Vec::new(), Vec::new(), Lowering::default());
-        Self { text, starts, apart, ops, held, whole: false, lowering, trees: 0 }
+        Self { text, starts, apart, ops, held, mask: KEPT - 1, lowering, trees: 0 }
     }
 
     /// The tree of a block, read anew.
@@ -80,32 +80,20 @@ impl Blocks {
     }
 
     /// The operation of a block, if it is lowered.
+    #[inline(always)]
     pub(super) fn op(&self, place: OpIndex) -> Option<&Op> {
-        self.op_at(self.found(place)?)
+        if self.holds(place) { self.ops.get(place & self.mask) } else { None }
     }
 
-    /// Where the operation of a block is, if it is lowered.
-    #[inline]
-    fn found(&self, place: OpIndex) -> Option<u32> {
-        let at = self.place_of(place);
-        self.held.get(at).is_some_and(|held| *held as usize == place).then_some(at as u32)
-    }
-
-    #[inline]
-    fn place_of(&self, place: OpIndex) -> usize {
-        if self.whole { place } else { place % KEPT }
-    }
-
-    /// An operation by the place that [`Blocks::ready`] tells.
-    #[inline]
-    pub(super) fn op_at(&self, place: u32) -> Option<&Op> {
-        self.ops.get(place as usize)
+    #[inline(always)]
+    fn holds(&self, place: OpIndex) -> bool {
+        self.held.get(place & self.mask).is_some_and(|held| *held as usize == place)
     }
 
     /// All operations; to ask before all are lowered, in order, is a mistake of ours.
     pub(super) fn all(&self) -> &[Op] {
-        debug_assert!(self.whole, "all blocks are lowered");
-        if self.whole { &self.ops } else { &[] }
+        debug_assert_eq!(self.mask, usize::MAX, "all blocks are lowered");
+        if self.mask == usize::MAX { &self.ops } else { &[] }
     }
 
     #[inline(always)]
@@ -123,13 +111,22 @@ impl Blocks {
 
     /// The place of a block's operation, which is lowered where it isn't; `None` behind the last block. Another that had the
     /// place is forgotten, and where too many trees have been lowered, all are.
-    #[inline]
-    pub(super) fn ready(&mut self, place: OpIndex, loops: &Loops) -> Option<u32> {
-        self.found(place).or_else(|| self.make_ready(place, loops))
+    #[inline(always)]
+    pub(super) fn ready(&mut self, place: OpIndex, loops: &Loops) -> Option<usize> {
+        if !self.holds(place) {
+            self.make_ready(place, loops)?;
+        }
+        Some(place & self.mask)
+    }
+
+    /// An operation by the place that [`Blocks::ready`] tells.
+    #[inline(always)]
+    pub(super) fn op_at(&self, place: usize) -> Option<&Op> {
+        self.ops.get(place)
     }
 
     #[inline(never)]
-    fn make_ready(&mut self, place: OpIndex, loops: &Loops) -> Option<u32> {
+    fn make_ready(&mut self, place: OpIndex, loops: &Loops) -> Option<()> {
         if self.trees >= KEPT {
             self.forget();
         }
@@ -139,7 +136,7 @@ impl Blocks {
     /// Lowers all blocks, in order.
     pub(super) fn lower_all(&mut self, loops: &Loops) {
         self.forget();
-        self.whole = true;
+        self.mask = usize::MAX;
         for place in 0..self.starts.len() {
             self.lower(place, loops);
         }
@@ -151,9 +148,9 @@ impl Blocks {
         self.trees = 0;
     }
 
-    fn lower(&mut self, place: OpIndex, loops: &Loops) -> Option<u32> {
+    fn lower(&mut self, place: OpIndex, loops: &Loops) -> Option<()> {
         let start = *self.starts.get(place)?;
-        let at = self.place_of(place);
+        let at = place & self.mask;
         if at >= self.ops.len() {
             self.ops.resize_with(at + 1, Op::default);
             self.held.resize(at + 1, Self::NONE);
@@ -165,7 +162,7 @@ impl Blocks {
             self.ops[at] = op;
         }
         self.held[at] = place as u32;
-        Some(at as u32)
+        Some(())
     }
 
     fn lower_tree(&mut self, place: OpIndex, loops: &Loops) -> Option<Op> {
