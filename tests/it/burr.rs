@@ -161,7 +161,7 @@ proptest! {
             // It leans as B does where it begins and grows steeper from there, tan β over the cosine of the way gone, over
             // which its lean is measured.
             let flat = if wish.helix < 0.0 { most } else { least };
-            let way = Deg::from_rad(verdict.gauge.unwrap() / (wish.diameter / 2.0)).0.min(80.0);
+            let way = Deg::from_rad(verdict.gauge / (wish.diameter / 2.0)).0.min(80.0);
             let steepest = Deg::atan2(Deg(wish.helix.abs()).tan(), Deg(way).cos()).0;
             let most = 3.0 + steepest - wish.helix.abs();
             prop_assert!((flat.abs() - wish.helix.abs()).abs() < most && flat * wish.helix > 0.0, "{flat}: {most}");
