@@ -73,18 +73,14 @@ pub struct Cut {
 /// The holes in the order in which their first passes were made.
 pub(super) fn holes(passes: &[Pass], machine: &Machine) -> Vec<Found> {
     let first = same_line(passes);
-    let mut groups: Vec<Vec<&Pass>> = Vec::new();
-    let mut place = vec![0; passes.len()];
-    for (index, pass) in passes.iter().enumerate() {
-        if first[index] == index {
-            place[index] = groups.len();
-            groups.push(Vec::new());
-        }
-        groups[place[first[index]]].push(pass);
-    }
-    let mut found = Vec::with_capacity(groups.len());
-    for group in &groups {
-        holes_of(group, machine, &mut found);
+    let mut order: Vec<usize> = (0..passes.len()).collect();
+    // On one line they keep their order.
+    order.sort_by_key(|index| first[*index]);
+    let mut found = Vec::with_capacity(passes.len());
+    let mut sorted = Sorted::default();
+    for line in order.chunk_by(|one, other| first[*one] == first[*other]) {
+        sorted.sort(line.iter().map(|index| &passes[*index]));
+        holes_of(&sorted, passes[line[0]].axis, machine, &mut found);
     }
     found
 }
@@ -106,26 +102,41 @@ fn same_line(passes: &[Pass]) -> Vec<usize> {
     groups.firsts()
 }
 
-/// One hole, and one more for every time a tool came back for nothing.
-fn holes_of(group: &[&Pass], machine: &Machine, found: &mut Vec<Found>) {
-    let first = found.len();
-    let out = group[0].axis;
-    let height = |p: &Point3<f64>| p.coords.dot(&out);
-    let mut cutting: Vec<&Pass> = Vec::with_capacity(group.len());
-    let mut again: Vec<&Pass> = Vec::new();
-    let mut reached: BTreeMap<Option<u32>, f64> = BTreeMap::new();
-    for pass in group {
-        let before = reached.entry(pass.tool).or_insert(f64::INFINITY);
-        let bottom = height(&pass.bottom);
-        if bottom < *before - DEEPER {
-            *before = bottom;
-            cutting.push(pass);
-        } else {
-            again.push(pass);
+/// The passes of one line: those that cut, and those of tools that came back for nothing. One is filled again for each line.
+#[derive(Default)]
+struct Sorted<'p> {
+    cutting: Vec<&'p Pass>,
+    again: Vec<&'p Pass>,
+    /// How low each tool has been.
+    reached: BTreeMap<Option<u32>, f64>,
+}
+
+impl<'p> Sorted<'p> {
+    fn sort(&mut self, passes: impl Iterator<Item = &'p Pass>) {
+        self.cutting.clear();
+        self.again.clear();
+        self.reached.clear();
+        let mut out = None;
+        for pass in passes {
+            let bottom = pass.bottom.coords.dot(out.get_or_insert(pass.axis));
+            let before = self.reached.entry(pass.tool).or_insert(f64::INFINITY);
+            if bottom < *before - DEEPER {
+                *before = bottom;
+                self.cutting.push(pass);
+            } else {
+                self.again.push(pass);
+            }
         }
     }
+}
+
+/// One hole, and one more for every time a tool came back for nothing. Heights count along `out`, the first pass's axis.
+fn holes_of(passes: &Sorted<'_>, out: Unit<Vector3<f64>>, machine: &Machine, found: &mut Vec<Found>) {
+    let first = found.len();
+    let height = |p: &Point3<f64>| p.coords.dot(&out);
+    let Sorted { cutting, again, .. } = passes;
     let lowest = cutting.iter().map(|pass| height(&pass.bottom)).fold(f64::INFINITY, f64::min);
-    let finish = finishing(&cutting, lowest, height, machine);
+    let finish = finishing(cutting, lowest, height, machine);
     let diameter = |pass: &Pass| machine.diameter_of(pass.tool);
     let cut = |pass: &&Pass| Cut {
         bottom: pass.bottom,
@@ -136,8 +147,7 @@ fn holes_of(group: &[&Pass], machine: &Machine, found: &mut Vec<Found>) {
         at: pass.at,
     };
     let others = cutting.iter().filter(|pass| !std::ptr::eq(**pass, finish)).map(cut).collect();
-    let one = |pass: &Pass, starts: &[&Pass], bottom: f64, others: Vec<Cut>| {
-        let start = starts.iter().map(|p| height(&p.start)).fold(f64::NEG_INFINITY, f64::max);
+    let one = |pass: &Pass, start: f64, bottom: f64, others: Vec<Cut>| {
         let slope = pass.axis.dot(&out);
         let along =
             |level: f64| pass.bottom + pass.axis.into_inner() * ((level - height(&pass.bottom)) / slope);
@@ -154,9 +164,10 @@ fn holes_of(group: &[&Pass], machine: &Machine, found: &mut Vec<Found>) {
             first,
         }
     };
-    let starts: Vec<&Pass> = cutting.iter().copied().filter(|pass| pass.tool == finish.tool).collect();
-    found.push(one(finish, &starts, lowest, others));
-    found.extend(again.into_iter().map(|pass| one(pass, &[pass], height(&pass.bottom), Vec::new())));
+    let finishing = cutting.iter().filter(|pass| pass.tool == finish.tool);
+    let start = finishing.map(|pass| height(&pass.start)).fold(f64::NEG_INFINITY, f64::max);
+    found.push(one(finish, start, lowest, others));
+    found.extend(again.iter().map(|pass| one(pass, height(&pass.start), height(&pass.bottom), Vec::new())));
 }
 
 /// The last pass of the largest tool that goes at least half as deep as the hole; where diameters aren't known, of

@@ -12,23 +12,25 @@ const ALONG: Deg = Deg(0.05);
 
 impl Extractor<'_> {
     /// The tool has left a line, or the run is over: is it a hole?
-    pub(super) fn judge_line(&mut self, line: Line, after: After, feeding: bool) {
+    pub(super) fn judge_line(&mut self, line: Box<Line>, after: After, feeding: bool) {
         self.note_reach(&line);
-        let place = line.place().clone();
         let off = line.tool_axis.map(|axis| Deg::acos(axis.dot(&line.out).clamp(-1.0, 1.0)));
         let came_back = match after {
             After::On | After::Out => true,
             After::Aside { back } => back > TOUCH,
         };
-        let inside = self.surface.map(|s| s.depth(&s.deepest_between(&line.start, &line.bottom())));
+        // Asked of few lines, and not for nothing.
+        let surface = self.surface;
+        let inside = || surface.map(|s| s.depth(&s.deepest_between(&line.start, &line.bottom())));
         // A feed outwards, as of a tool that was left in its hole, makes none. Told where it begins: a hole on a steep flank may end outside the part again.
         let rises =
             self.surface.is_some_and(|s| s.gradient(&line.start).dot(&(line.bottom() - line.start)) >= 0.0);
         let backwards = off.is_some_and(|off| off.0 > 90.0);
-        if rises || backwards && inside.is_none_or(|depth| depth <= TOUCH) {
+        if rises || backwards && inside().is_none_or(|depth| depth <= TOUCH) {
             return;
         }
         if !came_back {
+            let inside = inside();
             if inside.is_some_and(|depth| depth <= TOUCH) {
                 return;
             }
@@ -40,7 +42,7 @@ impl Extractor<'_> {
             let left_at = line.bottom() + line.out.into_inner() * back;
             let depth = surface.depth(&left_at);
             if depth > TOUCH {
-                self.findings.add("leaves-hole-sideways", &place, 0, || {
+                self.findings.add("leaves-hole-sideways", line.place(), 0, || {
                     Diagnostic::error(
                         "leaves-hole-sideways",
                         format!("the tool leaves the hole sideways, {depth:.3} mm below the surface"),

@@ -5,6 +5,7 @@ mod findings;
 mod group;
 mod judge;
 mod line;
+mod linked;
 mod machine_words;
 pub mod near;
 mod passing;
@@ -87,7 +88,7 @@ pub struct Extractor<'m> {
     pose: Pose,
     /// The tool has been outside the part: what it does before that, nobody knows where it stood.
     outside: bool,
-    line: Option<Line>,
+    line: Option<Box<Line>>,
     passes: Vec<Pass>,
     /// As many passes are kept.
     most: usize,
@@ -275,7 +276,8 @@ impl<'m> Extractor<'m> {
     fn begin_line(&mut self, event: &Event<'_>, start: Point3<f64>) {
         let rounding = self.machine.increment.size() / 2.0;
         let line = Line::begin(start, self.pose.tip, event.place(), self.at, rounding);
-        self.line = line.map(|mut line| {
+        self.line = line.map(|line| {
+            let mut line = Box::new(line);
             line.tool_axis = self.pose.axis;
             line.force = InForce { tool: self.setup.tool, ..self.force };
             line.hold = self.hold;
@@ -290,7 +292,7 @@ impl<'m> Extractor<'m> {
 
     /// How fast a feed inwards is, where it cuts: the way to the part may be fed faster.
     fn note_feed(&self, event: &Event<'_>, line: &mut Line) {
-        let cuts = self.surface.is_none_or(|surface| TOUCH < surface.depth(&self.pose.tip));
+        let cuts = self.surface.is_none_or(|surface| surface.is_deeper(&self.pose.tip, TOUCH));
         if let EventKind::Feed { rate, .. } = event.kind
             && cuts
         {

@@ -1,7 +1,10 @@
 //! Which of many points lie near: a k-d tree, so that hundreds of thousands of holes stay n log n.
-use std::ops::Range;
+use nalgebra::{Point3, Vector3};
 
-use nalgebra::Point3;
+pub use super::linked::Groups;
+
+/// A part of so few points is looked at point by point: halving it further takes longer.
+pub(super) const FEW: usize = 8;
 
 /// Points in an order that halves them again and again; the middle one of each part is its node.
 #[derive(Debug, Default)]
@@ -10,24 +13,51 @@ pub struct PointTree {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Node {
-    point: Point3<f64>,
-    index: u32,
+pub(super) struct Node {
+    pub point: Point3<f64>,
+    pub index: u32,
     /// Before the node lie points that are less in this coordinate, behind it those that are more.
     axis: u8,
+}
+
+impl Node {
+    /// All coordinates are asked, whichever is outside: that takes less than a branch for each.
+    pub(super) fn is_in(&self, low: &Point3<f64>, high: &Point3<f64>) -> bool {
+        let p = &self.point;
+        (0..3).fold(true, |inside, i| inside & (low[i] <= p[i]) & (p[i] <= high[i]))
+    }
+
+    /// The coordinate by which it halves its part, and where.
+    pub(super) fn halves(&self) -> (usize, f64) {
+        let axis = usize::from(self.axis);
+        (axis, self.point[axis])
+    }
 }
 
 impl PointTree {
     pub fn new(points: impl IntoIterator<Item = Point3<f64>>) -> Self {
         let nodes = points.into_iter().zip(0u32..).map(|(point, index)| Node { point, index, axis: 0 });
         let mut nodes: Vec<_> = nodes.collect();
-        halve(&mut nodes);
+        if let Some(first) = nodes.first().map(|node| node.point) {
+            let (low, high) =
+                nodes.iter().fold((first, first), |(low, high), n| (low.inf(&n.point), high.sup(&n.point)));
+            halve(&mut nodes, low, high);
+        }
         Self { nodes }
     }
 
     /// Tells `each` the index of every point in the box from `low` to `high`.
     pub fn in_box(&self, low: &Point3<f64>, high: &Point3<f64>, each: &mut impl FnMut(usize)) {
-        visit(&self.nodes, low, high, each);
+        visit(&self.nodes, 0, low, high, each);
+    }
+
+    /// Tells `each` the indices of every two points whose coordinates differ by no more than `reach`, once.
+    pub fn pairs(&self, reach: f64, each: &mut impl FnMut(usize, usize)) {
+        let margin = Vector3::repeat(reach);
+        for (place, node) in self.nodes.iter().enumerate() {
+            let mut other = |other| each(node.index as usize, other);
+            visit(&self.nodes, place + 1, &(node.point - margin), &(node.point + margin), &mut other);
+        }
     }
 
     /// The index and the distance of the nearest point.
@@ -48,121 +78,48 @@ impl PointTree {
 
     /// Every point a group of its own, to be joined.
     pub fn groups(&self) -> Groups<'_> {
-        let points = self.nodes.len();
-        Groups { nodes: &self.nodes, first: (0..points as u32).collect(), whole: vec![false; points] }
+        Groups::of(&self.nodes)
     }
 }
 
-/// Which points belong together. A part of the tree that is one group already is never looked through again, so
-/// that a million points on one spot stay n log n.
-#[derive(Debug)]
-pub struct Groups<'t> {
-    nodes: &'t [Node],
-    /// For each point another of its group with a lower index; itself where there is none.
-    first: Vec<u32>,
-    /// For each node, in the tree's order: all points of its part are one group.
-    whole: Vec<bool>,
-}
-
-impl Groups<'_> {
-    /// Joins a point with those in the box from `low` to `high` that belong to it.
-    pub fn join(
-        &mut self,
-        index: usize,
-        low: &Point3<f64>,
-        high: &Point3<f64>,
-        belongs: &impl Fn(usize) -> bool,
-    ) {
-        self.visit(0..self.nodes.len(), index as u32, low, high, belongs);
-    }
-
-    /// For each point the lowest index in its group.
-    pub fn firsts(mut self) -> Vec<usize> {
-        (0..self.nodes.len()).map(|index| self.root(index as u32) as usize).collect()
-    }
-
-    fn visit(
-        &mut self,
-        part: Range<usize>,
-        index: u32,
-        low: &Point3<f64>,
-        high: &Point3<f64>,
-        belongs: &impl Fn(usize) -> bool,
-    ) {
-        let Some(middle) = middle(&part) else { return };
-        let Node { point, index: other, axis } = self.nodes[middle];
-        if self.whole[middle] && self.root(other) == self.root(index) {
-            return;
-        }
-        if (0..3).all(|i| (low[i]..=high[i]).contains(&point[i])) && belongs(other as usize) {
-            let (a, b) = (self.root(index), self.root(other));
-            self.first[a.max(b) as usize] = a.min(b);
-        }
-        let axis = usize::from(axis);
-        let (before, behind) = (part.start..middle, middle + 1..part.end);
-        if low[axis] <= point[axis] {
-            self.visit(before.clone(), index, low, high, belongs);
-        }
-        if point[axis] <= high[axis] {
-            self.visit(behind.clone(), index, low, high, belongs);
-        }
-        self.whole[middle] = self.is_whole_with(&before, other) && self.is_whole_with(&behind, other);
-    }
-
-    fn is_whole_with(&mut self, part: &Range<usize>, index: u32) -> bool {
-        middle(part).is_none_or(|m| self.whole[m] && self.root(self.nodes[m].index) == self.root(index))
-    }
-
-    fn root(&mut self, index: u32) -> u32 {
-        let mut at = index as usize;
-        while self.first[at] as usize != at {
-            self.first[at] = self.first[self.first[at] as usize];
-            at = self.first[at] as usize;
-        }
-        at as u32
-    }
-}
-
-/// The node of a part of the tree.
-fn middle(part: &Range<usize>) -> Option<usize> {
-    (!part.is_empty()).then(|| part.start + part.len() / 2)
-}
-
-fn halve(nodes: &mut [Node]) {
-    if nodes.len() < 2 {
+/// Halves points between `low` and `high` where that box is longest: holes often lie on a plane, and halving across it
+/// would tell nothing apart.
+fn halve(nodes: &mut [Node], low: Point3<f64>, high: Point3<f64>) {
+    if nodes.len() <= FEW {
         return;
     }
-    let axis = widest(nodes);
+    let axis = (high - low).imax();
     let middle = nodes.len() / 2;
     // The index decides between equal ones, so that the same points always make the same tree.
     let order = |a: &Node, b: &Node| a.point[axis].total_cmp(&b.point[axis]).then(a.index.cmp(&b.index));
     nodes.select_nth_unstable_by(middle, order);
     nodes[middle].axis = axis as u8;
+    let (mut end, mut start) = (high, low);
+    end[axis] = nodes[middle].point[axis];
+    start[axis] = end[axis];
     let (before, behind) = nodes.split_at_mut(middle);
-    halve(before);
-    halve(&mut behind[1..]);
+    halve(before, low, end);
+    halve(&mut behind[1..], start, high);
 }
 
-/// Holes often lie on a plane: halving across it would tell nothing apart.
-fn widest(nodes: &[Node]) -> usize {
-    let first = nodes[0].point;
-    let (low, high) =
-        nodes.iter().fold((first, first), |(low, high), n| (low.inf(&n.point), high.sup(&n.point)));
-    (high - low).imax()
-}
-
-fn visit(nodes: &[Node], low: &Point3<f64>, high: &Point3<f64>, each: &mut impl FnMut(usize)) {
+/// The points in a box, without the first `but` of the nodes.
+fn visit(nodes: &[Node], but: usize, low: &Point3<f64>, high: &Point3<f64>, each: &mut impl FnMut(usize)) {
     let middle = nodes.len() / 2;
-    let Some(Node { point, index, axis }) = nodes.get(middle) else { return };
-    if (0..3).all(|i| (low[i]..=high[i]).contains(&point[i])) {
-        each(*index as usize);
+    if nodes.len() <= FEW {
+        let inside = nodes.iter().skip(but).filter(|node| node.is_in(low, high));
+        inside.for_each(|node| each(node.index as usize));
+        return;
     }
-    let axis = usize::from(*axis);
-    if low[axis] <= point[axis] {
-        visit(&nodes[..middle], low, high, each);
+    let node = &nodes[middle];
+    if but <= middle && node.is_in(low, high) {
+        each(node.index as usize);
     }
-    if point[axis] <= high[axis] {
-        visit(&nodes[middle + 1..], low, high, each);
+    let (axis, place) = node.halves();
+    if but < middle && low[axis] <= place {
+        visit(&nodes[..middle], but, low, high, each);
+    }
+    if but < nodes.len() && place <= high[axis] {
+        visit(&nodes[middle + 1..], but.saturating_sub(middle + 1), low, high, each);
     }
 }
 
@@ -173,13 +130,20 @@ fn closest(
     best: &mut Option<(usize, f64)>,
 ) {
     let middle = nodes.len() / 2;
-    let Some(Node { point, index, axis }) = nodes.get(middle) else { return };
-    let distance = (point - to).norm();
-    let index = *index as usize;
-    if best.is_none_or(|(at, least)| (distance, index) < (least, at)) && counts(index, distance) {
-        *best = Some((index, distance));
+    let mut look_at = |node: &Node| {
+        let distance = (node.point - to).norm();
+        let index = node.index as usize;
+        if best.is_none_or(|(at, least)| (distance, index) < (least, at)) && counts(index, distance) {
+            *best = Some((index, distance));
+        }
+    };
+    if nodes.len() <= FEW {
+        nodes.iter().for_each(look_at);
+        return;
     }
-    let beyond = to[usize::from(*axis)] - point[usize::from(*axis)];
+    look_at(&nodes[middle]);
+    let (axis, place) = nodes[middle].halves();
+    let beyond = to[axis] - place;
     let (near, far) = match beyond < 0.0 {
         true => (&nodes[..middle], &nodes[middle + 1..]),
         false => (&nodes[middle + 1..], &nodes[..middle]),
@@ -196,55 +160,7 @@ mod tests {
 
     use super::*;
 
-    /// Points within `reach` of one another in every coordinate, and whatever hangs together through others.
-    fn linked(points: &[Point3<f64>], reach: f64, belongs: &dyn Fn(usize, usize) -> bool) -> Vec<usize> {
-        let mut first: Vec<usize> = (0..points.len()).collect();
-        let near = |i: usize, j: usize| (points[i] - points[j]).amax() <= reach && belongs(i, j);
-        while let Some((i, j)) = (0..points.len())
-            .flat_map(|i| (0..points.len()).map(move |j| (i, j)))
-            .find(|(i, j)| near(*i, *j) && first[*i] != first[*j])
-        {
-            let (least, other) = (first[i].min(first[j]), first[i].max(first[j]));
-            first.iter_mut().filter(|f| **f == other).for_each(|f| *f = least);
-        }
-        first
-    }
-
-    /// Looked through pair by pair, it would be 10¹⁰ of them.
-    #[test]
-    fn a_hundred_thousand_points_on_one_spot_are_joined_at_once() {
-        let spot = Point3::new(1.0, 2.0, 3.0);
-        let tree = PointTree::new(std::iter::repeat_n(spot, 100_000));
-        let mut groups = tree.groups();
-        let asked = std::cell::Cell::new(0u32);
-        for index in 0..100_000 {
-            groups.join(index, &spot, &spot, &|_| {
-                asked.set(asked.get() + 1);
-                true
-            });
-        }
-        assert!(groups.firsts().iter().all(|first| *first == 0));
-        assert!(asked.get() < 200_000, "{} pairs", asked.get());
-    }
-
     proptest! {
-        #[test]
-        fn groups_are_what_hangs_together(
-            points in prop::collection::vec((-4i32..4, -4i32..4, -1i32..2, 0u8..3), 1..40),
-        ) {
-            let kinds: Vec<u8> = points.iter().map(|p| p.3).collect();
-            let points: Vec<_> =
-                points.iter().map(|p| Point3::new(f64::from(p.0), f64::from(p.1), f64::from(p.2))).collect();
-            let belongs = |i: usize, j: usize| kinds[i] == kinds[j];
-            let tree = PointTree::new(points.iter().copied());
-            let mut groups = tree.groups();
-            for (index, point) in points.iter().enumerate() {
-                let reach = nalgebra::Vector3::repeat(1.0);
-                groups.join(index, &(point - reach), &(point + reach), &|other| belongs(index, other));
-            }
-            prop_assert_eq!(groups.firsts(), linked(&points, 1.0, &belongs));
-        }
-
         #[test]
         fn the_tree_finds_what_looking_at_all_of_them_finds(
             points in prop::collection::vec((-9i32..9, -9i32..9, -9i32..9), 1..60),
@@ -260,6 +176,14 @@ mod tests {
             let inside = |p: &Point3<f64>| (0..3).all(|i| low[i] <= p[i] && p[i] <= high[i]);
             let all: Vec<_> = (0..points.len()).filter(|i| inside(&points[*i])).collect();
             prop_assert_eq!(found, all);
+
+            let mut pairs = Vec::new();
+            tree.pairs(r, &mut |one, other| pairs.push((one.min(other), one.max(other))));
+            pairs.sort_unstable();
+            let of = |one: usize| (one + 1..points.len()).map(move |other| (one, other));
+            let near = |(one, other): &(usize, usize)| (points[*one] - points[*other]).amax() <= r;
+            let all: Vec<_> = (0..points.len()).flat_map(of).filter(near).collect();
+            prop_assert_eq!(pairs, all);
 
             let to = Point3::new(x, y, z);
             let least = points.iter().map(|p| (p - to).norm()).fold(f64::INFINITY, f64::min);

@@ -37,15 +37,15 @@ impl Extractor<'_> {
         if self.conduct.duty(line.force.tool).is_none() {
             return;
         }
-        let name = line.force.tool.map_or("the tool".to_owned(), |number| format!("T{number}"));
+        let name = || line.force.tool.map_or("the tool".to_owned(), |number| format!("T{number}"));
         let finding = match line.spindle {
             InHole::Turns => return,
             InHole::Stops => {
-                let message = format!("the spindle stops while {name} is in the hole");
+                let message = format!("the spindle stops while {} is in the hole", name());
                 Diagnostic::warning("spindle-in-hole", message).note("G76, G86 and G88 do that for a boring bar; a drill that stands in its hole rubs, or breaks when it is moved aside")
             }
             InHole::Reverses => {
-                let message = format!("the spindle is reversed while {name} is in the hole");
+                let message = format!("the spindle is reversed while {} is in the hole", name());
                 Diagnostic::error("spindle-in-hole", message)
                     .note("G84 and G74 do that for a tap; the job has this hole drilled")
             }

@@ -43,17 +43,16 @@ impl Link {
         Self { axis, motion: LinkMotion::Slide { along }, sign, error: Wave::default() }
     }
 
-    fn frame(&self, at: &Position) -> Frame {
+    /// Where what stands on the link is, on a link that stands at `frame`.
+    fn on(&self, frame: &Frame, at: &Position) -> Frame {
         let value = self.sign * (at[self.axis] + self.error.at(at[self.axis]));
         match &self.motion {
             LinkMotion::Turn { about, centre } => {
                 let rotation = turn(about, Deg(value));
                 let back = centre.coords - rotation * centre.coords;
-                Frame::from_parts(Translation3::from(back), rotation)
+                frame * Frame::from_parts(Translation3::from(back), rotation)
             }
-            LinkMotion::Slide { along } => {
-                Frame::from_parts(Translation3::from(along.into_inner() * value), Rotation3::identity())
-            }
+            LinkMotion::Slide { along } => frame * Translation3::from(along.into_inner() * value),
         }
     }
 }
@@ -85,7 +84,7 @@ impl Chain {
 
     /// From what stands on the chain to what the chain stands on.
     pub fn frame(&self, at: &Position) -> Frame {
-        self.0.iter().fold(Frame::identity(), |frame, link| frame * link.frame(at))
+        self.0.iter().fold(Frame::identity(), |frame, link| link.on(&frame, at))
     }
 
     /// How far the slides of the chain go for a difference of positions; what turns is left out.

@@ -114,11 +114,13 @@ pub(super) fn reference(job: &Honeycomb) -> Result<Reference, ReferenceError> {
         let azimuth = Deg(f64::from(row) * 360.0 / f64::from(pattern.rows));
         let start = if row % 2 == 0 { 0.0 } else { pattern.pitch / 2.0 };
         let places = (0u32..).map(|hole| (hole, start + f64::from(hole) * pattern.pitch));
+        let name = format!("r{row}h");
+        let (first, out) = (point(0.0, azimuth, outer), point(0.0, azimuth, 1.0));
         for (hole, x) in places.take_while(|(_, x)| *x <= job.cylinder.length) {
             holes.push(Hole {
-                id: Some(format!("r{row}h{hole}")),
-                entry: point(x, azimuth, outer).coords.into(),
-                axis: [0.0, azimuth.sin(), azimuth.cos()],
+                id: Some([name.as_str(), &hole.to_string()].concat()),
+                entry: [x, first.y, first.z],
+                axis: out.coords.into(),
                 depth: drill.depth,
                 diameter: Some(drill.diameter),
                 from: None,

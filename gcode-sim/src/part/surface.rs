@@ -47,6 +47,13 @@ impl Surface {
         }
     }
 
+    /// Whether a point is deeper below the surface than so many mm, as [`Self::depth`] counts: one that is stays inside
+    /// when it goes so far out.
+    pub fn is_deeper(&self, p: &Point3<f64>, than: f64) -> bool {
+        let beyond = || p + self.normal(p).unwrap_or(Vector3::y_axis()).into_inner() * than;
+        self.value(p) < 0.0 && self.value(&beyond()) < 0.0
+    }
+
     /// Where a line leaves the body towards `out`; `None` where it misses the body.
     pub fn exit(&self, on: &Point3<f64>, out: &Unit<Vector3<f64>>) -> Option<Point3<f64>> {
         let at = |t: f64| on + out.into_inner() * t;
@@ -191,6 +198,22 @@ mod tests {
         let flat = Surface::Ellipsoid { a: 1000.0, b: 400.0 };
         assert!((flat.depth(&Point3::new(0.0, 322.0, 0.0)) - 78.0).abs() < 1e-9);
         assert!((sphere.depth(&Point3::new(0.0, 100.1, 0.0)) + 0.1).abs() < 1e-3);
+    }
+
+    proptest! {
+        #[test]
+        fn deeper_than_is_asked_as_depth_counts(
+            (a, b) in (1.0..300.0f64, 1.0..300.0f64),
+            (x, y, z) in (-1.2..1.2f64, -1.2..1.2f64, -1.2..1.2f64),
+            than in 0.0..20.0f64,
+        ) {
+            let p = Point3::new(x * a, y * b, z * a);
+            for surface in [Surface::Ellipsoid { a, b }, Surface::Cylinder { radius: a }] {
+                let depth = surface.depth(&p);
+                prop_assume!((depth - than).abs() > 1e-9);
+                prop_assert_eq!(surface.is_deeper(&p, than), than < depth);
+            }
+        }
     }
 
     #[test]

@@ -47,11 +47,13 @@ pub fn table(verdict: &Verdict, layout: Layout) -> String {
 /// Of many holes those that fail, then the farthest off, in the order of the reference.
 fn worst(holes: &[HoleVerdict]) -> Vec<&HoleVerdict> {
     let mut order: Vec<usize> = (0..holes.len()).collect();
-    order.sort_by(|a, b| {
-        let (a, b) = (&holes[*a], &holes[*b]);
-        a.ok.cmp(&b.ok).then(b.phi.total_cmp(&a.phi))
-    });
-    order.truncate(OF_MANY);
+    if OF_MANY < order.len() {
+        order.select_nth_unstable_by(OF_MANY, |one, other| {
+            let (a, b) = (&holes[*one], &holes[*other]);
+            a.ok.cmp(&b.ok).then(b.phi.total_cmp(&a.phi)).then(one.cmp(other))
+        });
+        order.truncate(OF_MANY);
+    }
     order.sort_unstable();
     order.into_iter().map(|index| &holes[index]).collect()
 }

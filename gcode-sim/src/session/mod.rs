@@ -1,10 +1,12 @@
 //! One program through the whole chain: what the command line, the generator and tests call.
+mod places;
 mod slips;
 mod still;
 mod trace;
 
 use std::sync::Arc;
 
+use self::places::Places;
 pub use trace::{Executed, Role, Trace, Values};
 
 use crate::alarm::{Alarm, Code, remedy};
@@ -242,7 +244,8 @@ pub fn simulate_beside<S: Sink>(
 impl Simulation {
     /// The holes against the wanted ones.
     pub fn verify(&self, reference: &Reference, tolerances: Tolerances, machine: &Machine) -> Verdict {
-        let locate = |span| self.run.locate(span);
+        let places = Places::of(&self.run);
+        let locate = |span| places.locate(span);
         let mut verdict = verify(&self.extracted, reference, tolerances, machine, &locate);
         let told = verdict.stands();
         verdict.add_slips(slips::slips(&self.run, machine, told), &locate);
@@ -251,17 +254,15 @@ impl Simulation {
 
     /// The document that `holes` writes.
     pub fn list(&self) -> HoleList {
-        self.extracted.list(|span| self.run.locate(span))
+        let places = Places::of(&self.run);
+        self.extracted.list(|span| places.locate(span))
     }
 }
 
 impl Run {
     /// The program and the line of a block, as people name them: `O8101`, 31.
     pub fn locate(&self, span: Span) -> (String, u32) {
-        let memory = self.control.memory();
-        let line = memory.sources().place(span).line;
-        let program = memory.program_at(span);
-        (program.map_or_else(|| memory.sources().get(span.source).name.clone(), |p| p.label()), line)
+        Places::of(self).locate(span)
     }
 
     /// What the control did without a word and the programmer hardly meant, as warnings.

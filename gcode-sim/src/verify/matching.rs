@@ -1,6 +1,4 @@
 //! Which drilled hole is which wanted one: the pairs that lie nearest to one another first.
-use std::collections::BTreeMap;
-
 use nalgebra::{Point3, Vector3};
 
 use super::Tolerances;
@@ -39,7 +37,7 @@ pub struct Comparison<'a> {
     /// There and not wanted.
     pub extra: Vec<usize>,
     /// The wanted hole that a line was taken for, by the first hole found on the line.
-    on_line: BTreeMap<usize, usize>,
+    on_line: Vec<Option<usize>>,
 }
 
 impl<'a> Comparison<'a> {
@@ -59,6 +57,7 @@ impl<'a> Comparison<'a> {
             let bottom = hole.bottom();
             let low = hole.entry.inf(&bottom) - margin;
             let high = hole.entry.sup(&bottom) + margin;
+            let before = candidates.len();
             tree.in_box(&low, &high, &mut |other| {
                 if hole.axis.dot(&Vector3::from(wanted[other].axis)) < COSINE {
                     return;
@@ -69,30 +68,24 @@ impl<'a> Comparison<'a> {
                     candidates.push(Pair { wanted: other, found: index, deviation });
                 }
             });
+            candidates[before..].sort_unstable_by_key(|pair| pair.wanted);
         }
-        candidates.sort_by(|a, b| {
-            let order = a.deviation.phi().total_cmp(&b.deviation.phi());
-            order.then(a.found.cmp(&b.found)).then(a.wanted.cmp(&b.wanted))
-        });
-        let (mut is_there, mut is_taken) = (vec![false; wanted.len()], vec![false; found.len()]);
-        let mut pairs = Vec::with_capacity(wanted.len());
-        for pair in candidates {
-            if !is_there[pair.wanted] && !is_taken[pair.found] {
-                is_there[pair.wanted] = true;
-                is_taken[pair.found] = true;
-                pairs.push(pair);
-            }
+        let (taken_for, is_taken) = nearest_first(&candidates, wanted.len(), found.len());
+        let pairs: Vec<Pair> = taken_for.iter().flatten().map(|index| candidates[*index]).collect();
+        // Holes that are a part of a list keep the numbers that they have there.
+        let lines = found.iter().map(|hole| hole.first + 1).max().unwrap_or(0);
+        let mut on_line = vec![None; lines];
+        for pair in &pairs {
+            on_line[found[pair.found].first] = Some(pair.wanted);
         }
-        pairs.sort_by_key(|pair| pair.wanted);
-        let on_line = pairs.iter().map(|pair| (found[pair.found].first, pair.wanted)).collect();
-        let missing = (0..wanted.len()).filter(|index| !is_there[*index]).collect();
+        let missing = (0..wanted.len()).filter(|index| taken_for[*index].is_none()).collect();
         let extra = (0..found.len()).filter(|index| !is_taken[*index]).collect();
         Self { wanted, found, tolerances, pattern, pairs, missing, extra, on_line }
     }
 
     /// The wanted hole that was drilled already on the line of one that nobody asked for.
     pub fn wanted_on_line_of(&self, extra: usize) -> Option<usize> {
-        self.on_line.get(&self.found[extra].first).copied()
+        self.on_line[self.found[extra].first]
     }
 
     /// Nothing is missing, nothing too many, and every axis lies in its zone.
@@ -105,6 +98,24 @@ impl<'a> Comparison<'a> {
     pub fn id(&self, wanted: usize) -> &str {
         self.wanted[wanted].id.as_deref().unwrap_or("?")
     }
+}
+
+/// Which of the candidates each wanted hole is taken for, and which of the drilled ones are taken: the nearest first, of
+/// equally near ones the first in the list.
+fn nearest_first(candidates: &[Pair], wanted: usize, found: usize) -> (Vec<Option<usize>>, Vec<bool>) {
+    // The bits of numbers that aren't negative are in the order of the numbers.
+    let nearness = |(index, pair): (usize, &Pair)| (pair.deviation.phi().to_bits(), index);
+    let mut order: Vec<(u64, usize)> = candidates.iter().enumerate().map(nearness).collect();
+    order.sort_unstable();
+    let (mut taken_for, mut is_taken) = (vec![None; wanted], vec![false; found]);
+    for (_, index) in order {
+        let pair = &candidates[index];
+        if taken_for[pair.wanted].is_none() && !is_taken[pair.found] {
+            taken_for[pair.wanted] = Some(index);
+            is_taken[pair.found] = true;
+        }
+    }
+    (taken_for, is_taken)
 }
 
 impl Found {

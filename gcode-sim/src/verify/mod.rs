@@ -17,9 +17,9 @@ mod verdict;
 pub use matching::{Comparison, Pair};
 pub use neighbours::{Around, Distance, Neighbours};
 pub use objection::Objection;
-pub use rounding::{Rounding, Share};
 pub use verdict::{Answer, Extra, Finding, HoleVerdict, OnPart, Placed, Verdict};
 
+use self::rounding::Rounding;
 use crate::diag::Severity;
 use crate::holes::Extracted;
 use crate::machine::Machine;
@@ -58,7 +58,7 @@ pub fn verify(
 ) -> Verdict {
     let pattern = reference.pattern.as_ref();
     let comparison = Comparison::new(&reference.holes, &extracted.holes, tolerances, pattern);
-    let rounding = rounding::shares(&comparison, machine);
+    let rounding = Rounding::of(&comparison, machine);
     let mut objections = Vec::new();
     checks::mirrored::check(&comparison, machine, &mut objections);
     for check in checks::ALL {
@@ -76,7 +76,7 @@ pub fn verify(
     motion.extend(checks::signs::finding(reference, machine));
     motion.extend(checks::clearance::findings(&extracted.passings, &reference.conduct));
     motion.extend(checks::cutting::findings(&extracted.cuttings, &reference.conduct, machine));
-    let mut verdict = verdict::verdict(&comparison, rounding, objections, &motion, locate);
+    let mut verdict = verdict::verdict(&comparison, &rounding, objections, &motion, locate);
     if let Some(pattern) = pattern {
         verdict.say_neighbours(neighbours::neighbours(&comparison, pattern));
     }

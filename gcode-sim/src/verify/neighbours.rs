@@ -92,27 +92,47 @@ fn around(
     let tree = PointTree::new(here.iter().map(|index| places[*index]));
     // Halfway to those that are no neighbours any more.
     let reach = (pattern.pitch + pattern.abreast()) / 2.0;
-    let mut all = vec![None; places.len()];
-    let mut near: Vec<(f64, usize)> = Vec::new();
-    for index in &here {
-        let (at, margin) = (places[*index], Vector3::repeat(reach));
-        near.clear();
-        // No way on the surface is shorter than the straight one: all neighbours are in the box.
-        tree.in_box(&(at - margin), &(at + margin), &mut |other| {
-            let other = here[other];
-            let distance = pattern.distance(&at, &places[other]);
-            if other != *index && distance <= reach {
-                near.push((distance, other));
-            }
-        });
-        near.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        near.truncate(SIX);
-        if let (Some(first), Some(last)) = (near.first(), near.last()) {
-            let (nearest, farthest) = (first.1, last.1);
-            all[*index] = Some(Around { count: near.len(), min: first.0, max: last.0, nearest, farthest });
+    let mut near = vec![Near::default(); places.len()];
+    // No way on the surface is shorter than the straight one: all neighbours are told.
+    tree.pairs(reach, &mut |one, other| {
+        let (one, other) = (here[one], here[other]);
+        let distance = pattern.distance(&places[one], &places[other]);
+        if distance <= reach {
+            near[one].add(distance, other);
+            near[other].add(distance, one);
         }
+    });
+    (near.iter().map(Near::around).collect(), places)
+}
+
+/// The neighbours of a hole with their distances: the six nearest, the nearest first, of equally near ones the first.
+#[derive(Clone, Copy, Default)]
+struct Near {
+    count: usize,
+    near: [(f64, usize); SIX],
+}
+
+impl Near {
+    fn add(&mut self, distance: f64, other: usize) {
+        let new = (distance, other);
+        if self.count < SIX {
+            self.count += 1;
+        } else if self.near[SIX - 1] < new {
+            return;
+        }
+        let mut place = self.count - 1;
+        while 0 < place && new < self.near[place - 1] {
+            self.near[place] = self.near[place - 1];
+            place -= 1;
+        }
+        self.near[place] = new;
     }
-    (all, places)
+
+    fn around(&self) -> Option<Around> {
+        let near = &self.near[..self.count];
+        let ((min, nearest), (max, farthest)) = (*near.first()?, *near.last()?);
+        Some(Around { count: self.count, min, max, nearest, farthest })
+    }
 }
 
 fn place(p: &Point3<f64>) -> String {

@@ -2,56 +2,117 @@
 //! head's angle that is set by hand, the worst way round, at the hole's place.
 use nalgebra::{Point3, Vector3};
 
-use super::Comparison;
+use super::{Comparison, Pair};
 use crate::holes::Found;
 use crate::machine::{Frame, HeadKind, LinkMotion, Machine};
-use crate::motion::Axis;
+use crate::motion::{Axis, Position};
 use crate::units::Deg;
 
 /// What half an increment of an axis, or of the head's angle, moves the hole's axis by, sideways, at the worse end, in mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Share {
+pub(super) struct Share {
     /// Of the axis; `None` of a head that is set by hand.
-    pub letter: Option<char>,
+    letter: Option<char>,
     pub moves: f64,
 }
 
 impl Share {
     /// `X`, or `head`.
-    pub fn name(&self) -> String {
+    pub(super) fn name(&self) -> String {
         self.letter.map_or("head".to_owned(), String::from)
     }
 }
 
-/// The worst case for one hole.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Rounding {
-    /// Of the position, as a diameter in mm.
-    pub phi: f64,
-    /// The axes that have to be rounded at all, the largest share first.
-    pub shares: Vec<Share>,
+/// The worst cases of all pairs.
+#[derive(Debug)]
+pub(super) struct Rounding<'a> {
+    comparison: &'a Comparison<'a>,
+    machine: &'a Machine,
+    /// The axes that have to be rounded at all.
+    axes: Vec<Axis>,
+    /// What it can make of each pair's position, in their order, as a diameter in mm.
+    pub phis: Vec<f64>,
 }
 
-/// For every pair, in order.
-pub(super) fn shares(comparison: &Comparison<'_>, machine: &Machine) -> Vec<Rounding> {
-    let axes = rounded_axes(comparison, machine);
-    let each = comparison.pairs.iter().map(|pair| {
-        let wanted = &comparison.wanted[pair.wanted];
+/// How both ends of a hole's axis move sideways for half an increment of an axis; `None` of a head that is set by hand.
+type Moved = (Option<char>, [Vector3<f64>; 2]);
+
+impl<'a> Rounding<'a> {
+    pub(super) fn of(comparison: &'a Comparison<'a>, machine: &'a Machine) -> Self {
+        let axes = rounded_axes(comparison, machine);
+        let mut rounding = Self { comparison, machine, axes, phis: Vec::new() };
+        let (mut table, mut moved) = (None, Vec::new());
+        let phi = |pair: &Pair| {
+            rounding.moved(pair, &mut table, &mut moved);
+            2.0 * farthest(&moved)
+        };
+        rounding.phis = comparison.pairs.iter().map(phi).collect();
+        rounding
+    }
+
+    /// The axes that move this pair at all, the largest share first.
+    pub(super) fn shares(&self, pair: usize) -> Vec<Share> {
+        let mut moved = Vec::new();
+        self.moved(&self.comparison.pairs[pair], &mut None, &mut moved);
+        let mut shares: Vec<Share> = moved
+            .iter()
+            .map(|(letter, [entry, bottom])| Share {
+                letter: *letter,
+                moves: entry.norm().max(bottom.norm()),
+            })
+            .collect();
+        // What goes along the hole, or turns a hole on the table's own axis, moves nothing sideways.
+        shares.retain(|share| 1e-7 < share.moves);
+        shares.sort_by(|a, b| b.moves.total_cmp(&a.moves));
+        shares
+    }
+
+    /// `table` is where it stood for the last pair: all holes of a row are drilled while it stands still.
+    fn moved(&self, pair: &Pair, table: &mut Option<Table>, moved: &mut Vec<Moved>) {
+        let (wanted, found) = (&self.comparison.wanted[pair.wanted], &self.comparison.found[pair.found]);
+        let machine = self.machine;
+        if table.as_ref().is_none_or(|table| machine.table.differs(&table.at, &found.at)) {
+            *table = Some(Table::at(machine, &self.axes, found.at));
+        }
+        let Some(table) = table else { return };
         let out = Vector3::from(wanted.axis);
         let entry = Point3::from(wanted.entry);
-        let found = &comparison.found[pair.found];
-        let frame = machine.part_frame(&found.at);
-        let moved = axes.iter().map(|axis| {
-            let aside = |v: Vector3<f64>| v - out * v.dot(&out);
+        let aside = |v: Vector3<f64>| v - out * v.dot(&out);
+        moved.clear();
+        moved.extend(self.axes.iter().zip(&table.beside).map(|(axis, beside)| {
+            let move_of = |(end, above)| {
+                aside(match beside {
+                    Some(beside) => beside.inverse_transform_point(&(table.frame * end)) - end,
+                    None => half_increment(machine, *axis, found, &table.frame, above),
+                })
+            };
             let ends = [(entry, wanted.depth), (entry - out * wanted.depth, 0.0)];
-            let move_of = |(end, above)| aside(half_increment(machine, *axis, found, &frame, &end, above));
             (Some(machine.axes.letter(*axis)), ends.map(move_of))
-        });
-        let by_hand = head_by_hand(machine, found, &frame)
-            .map(|aside| (None, [Vector3::zeros(), aside * wanted.depth]));
-        worst_case(moved.chain(by_hand).collect())
-    });
-    each.collect()
+        }));
+        let by_hand = head_by_hand(machine, found, &table.frame);
+        moved.extend(by_hand.map(|aside| (None, [Vector3::zeros(), aside * wanted.depth])));
+    }
+}
+
+/// The part's place while the table stands somewhere.
+struct Table {
+    at: Position,
+    frame: Frame,
+    /// With each axis half an increment further; `None` of those that don't carry the part.
+    beside: Vec<Option<Frame>>,
+}
+
+impl Table {
+    fn at(machine: &Machine, axes: &[Axis], at: Position) -> Self {
+        let beside = |axis: &Axis| {
+            machine.table.has(*axis).then(|| {
+                let mut next = at;
+                next[*axis] += machine.increment.size() / 2.0;
+                machine.part_frame(&next)
+            })
+        };
+        Self { at, frame: machine.part_frame(&at), beside: axes.iter().map(beside).collect() }
+    }
 }
 
 /// An axis that stands at the same whole number of mm or degrees in every hole has nothing to round.
@@ -66,23 +127,10 @@ fn rounded_axes(comparison: &Comparison<'_>, machine: &Machine) -> Vec<Axis> {
     machine.axes.iter().map(|(axis, _)| axis).filter(|axis| moves(*axis)).collect()
 }
 
-/// How a point of the hole's axis, `above` its bottom, moves on the part when `axis` goes half an increment; `frame` is
-/// the part's where the hole was found.
-fn half_increment(
-    machine: &Machine,
-    axis: Axis,
-    found: &Found,
-    frame: &Frame,
-    point: &Point3<f64>,
-    above: f64,
-) -> Vector3<f64> {
+/// How a point of the hole's axis, `above` its bottom, moves on the part when `axis`, which doesn't carry the part, goes half
+/// an increment; `frame` is the part's where the hole was found.
+fn half_increment(machine: &Machine, axis: Axis, found: &Found, frame: &Frame, above: f64) -> Vector3<f64> {
     let half = machine.increment.size() / 2.0;
-    if machine.table.has(axis) {
-        let mut next = found.at;
-        next[axis] += half;
-        let there = frame * point;
-        return machine.part_frame(&next).inverse_transform_point(&there) - point;
-    }
     if let HeadKind::Axis { axis: head, .. } = machine.head.kind
         && head == axis
     {
@@ -118,24 +166,17 @@ fn head_by_hand(machine: &Machine, found: &Found, frame: &Frame) -> Option<Vecto
     Some(frame.rotation.inverse_transform_vector(&(Vector3::new(-out.y, out.x, 0.0) * half)))
 }
 
-/// The signs of all movements that together move one end of the axis farthest.
-fn worst_case(moved: Vec<(Option<char>, [Vector3<f64>; 2])>) -> Rounding {
-    let mut worst = 0.0f64;
+/// How far one end of the axis goes with the signs of all movements that together move it farthest.
+fn farthest(moved: &[Moved]) -> f64 {
+    let mut farthest = 0.0f64;
     // The first sign can stay: turning all of them round changes nothing.
     for signs in 0..1u32 << moved.len().saturating_sub(1) {
         for end in 0..2 {
             let sum = moved.iter().enumerate().fold(Vector3::zeros(), |sum, (i, (_, ends))| {
                 if signs >> i & 1 == 1 { sum - ends[end] } else { sum + ends[end] }
             });
-            worst = worst.max(sum.norm());
+            farthest = farthest.max(sum.norm_squared());
         }
     }
-    let mut shares: Vec<Share> = moved
-        .iter()
-        .map(|(letter, [entry, bottom])| Share { letter: *letter, moves: entry.norm().max(bottom.norm()) })
-        .collect();
-    // What goes along the hole, or turns a hole on the table's own axis, moves nothing sideways.
-    shares.retain(|share| 1e-7 < share.moves);
-    shares.sort_by(|a, b| b.moves.total_cmp(&a.moves));
-    Rounding { phi: 2.0 * worst, shares }
+    farthest.sqrt()
 }

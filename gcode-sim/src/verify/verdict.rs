@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::{Around, Comparison, Neighbours, Objection, Rounding};
+use super::rounding::{Rounding, Share};
+use super::{Around, Comparison, Neighbours, Objection};
 use crate::diag::{Diagnostic, Severity, Site};
 use crate::motion::{Call, Calls};
 use crate::part::hole::{Hole, Origin};
@@ -132,7 +133,7 @@ impl From<&Site> for OnPart {
 
 pub(super) fn verdict(
     comparison: &Comparison<'_>,
-    rounding: Vec<Rounding>,
+    rounding: &Rounding<'_>,
     objections: Vec<Objection>,
     findings: &[Diagnostic],
     locate: &dyn Fn(Span) -> (String, u32),
@@ -147,10 +148,10 @@ pub(super) fn verdict(
     let holes: Vec<HoleVerdict> = comparison
         .pairs
         .iter()
-        .zip(&rounding)
+        .zip(&rounding.phis)
         .map(|(pair, rounding)| {
             let objections = std::mem::take(&mut against[pair.wanted]);
-            hole_verdict(comparison, pair, rounding, objections, locate)
+            hole_verdict(comparison, pair, *rounding, objections, locate)
         })
         .collect();
     let fails = objections.iter().any(|o| failed(&o.finding)) || findings.iter().any(failed);
@@ -163,8 +164,8 @@ pub(super) fn verdict(
         depth_tolerance: comparison.tolerances.depth,
         verdict: if fails { Answer::Fail } else { Answer::Pass },
         worst: worst.map(|index| holes[index].phi),
-        worst_from: worst.map(|index| worst_from(&holes[index], &rounding[index])),
-        rounding: rounding.iter().map(|r| r.phi).reduce(f64::max),
+        worst_from: worst.map(|index| worst_from(&holes[index], &rounding.shares(index))),
+        rounding: rounding.phis.iter().copied().reduce(f64::max),
         missing: comparison.missing.iter().map(|index| comparison.id(*index).to_owned()).collect(),
         extra: comparison.extra.iter().map(|index| extra(comparison, *index, locate)).collect(),
         findings: told
@@ -251,7 +252,7 @@ pub(super) fn readable(findings: impl Iterator<Item = Diagnostic>) -> Vec<Diagno
 fn hole_verdict(
     comparison: &Comparison<'_>,
     pair: &super::Pair,
-    rounding: &Rounding,
+    rounding: f64,
     objections: Vec<String>,
     locate: &dyn Fn(Span) -> (String, u32),
 ) -> HoleVerdict {
@@ -268,7 +269,7 @@ fn hole_verdict(
         ok: objections.is_empty(),
         tilt: deviation.tilt.0,
         out_of_tolerance: (phi - comparison.tolerances.position).max(0.0),
-        rounding: rounding.phi,
+        rounding,
         nominal: Placed {
             entry: wanted.entry,
             axis: wanted.axis,
@@ -295,21 +296,21 @@ fn extra(comparison: &Comparison<'_>, index: usize, locate: &dyn Fn(Span) -> (St
 }
 
 /// In one line: which end, how far, and how much of it rounding is to blame for.
-fn worst_from(hole: &HoleVerdict, rounding: &Rounding) -> String {
+fn worst_from(hole: &HoleVerdict, shares: &[Share]) -> String {
     let (end, off) = match hole.at_bottom > hole.at_entry {
         true => ("bottom", hole.at_bottom),
         false => ("entry", hole.at_entry),
     };
-    let shares: Vec<_> = rounding.shares.iter().map(|s| format!("{} {:.4}", s.name(), s.moves)).collect();
+    let shares: Vec<_> = shares.iter().map(|s| format!("{} {:.4}", s.name(), s.moves)).collect();
     let shares = if shares.is_empty() { String::new() } else { format!(" ({})", shares.join(", ")) };
     // What can be explained by rounding is compared with room for the arithmetic itself.
-    let blame = match hole.phi <= rounding.phi + 1e-6 {
+    let blame = match hole.phi <= hole.rounding + 1e-6 {
         true => "within what rounding explains",
         false => "more than rounding explains",
     };
     format!(
         "hole {}, {off:.4} mm off at its {end}, {blame}; rounding alone makes at most Φ{:.4} there{shares}",
-        hole.id, rounding.phi
+        hole.id, hole.rounding
     )
 }
 

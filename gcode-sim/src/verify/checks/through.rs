@@ -18,6 +18,10 @@ pub(in crate::verify) fn check(
 ) {
     let Some(surface) = surface else { return };
     let thin = |(wanted, hole): (usize, &Hole)| {
+        // What ends inside the part doesn't go through: how thick it is there needn't be asked.
+        if surface.value(&end(hole)) < 0.0 {
+            return None;
+        }
         let thick = thickness(&surface, hole);
         (thick < hole.depth).then_some((wanted, thick))
     };
@@ -42,6 +46,10 @@ pub(in crate::verify) fn check(
         let finding = sentence(&format!("hole {} goes", comparison.id(wanted)), wanted, thick);
         Objection { folded: many, ..Objection::of(wanted, finding) }
     }));
+}
+
+fn end(hole: &Hole) -> Point3<f64> {
+    Point3::from(hole.entry) - Vector3::from(hole.axis) * hole.depth
 }
 
 /// From the entry, along the axis, to the far side; 0 where the axis only touches the part.

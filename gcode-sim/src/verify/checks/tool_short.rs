@@ -32,7 +32,7 @@ pub(in crate::verify) fn check(
         let cuts = found.others.iter().map(|cut| (cut.tool, below(&cut.bottom), &cut.place)).chain([last]);
         let mut deepest: BTreeMap<u32, (f64, &Place)> = BTreeMap::new();
         for (tool, depth, place) in cuts {
-            let Some(tool) = tool else { continue };
+            let Some((tool, _)) = tool.and_then(|tool| Some((tool, length(tool)?))) else { continue };
             let before = deepest.entry(tool).or_insert((depth, place));
             if before.0 < depth {
                 *before = (depth, place);

@@ -20,15 +20,15 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
         }
     }
     for (diameter, group) in alike.into_iter().filter(|(_, group)| FEWEST <= group.len()) {
-        let sets: Vec<Vec<u32>> =
-            group.iter().map(|index| tools(&comparison.found[comparison.pairs[*index].found])).collect();
-        let Some(usual) = most_common(&sets) else { continue };
-        for (index, set) in group.iter().zip(&sets) {
-            let lacks: Vec<String> =
-                usual.iter().filter(|tool| !set.contains(tool)).map(|tool| format!("T{tool}")).collect();
-            if lacks.is_empty() {
+        let found = |index: &usize| &comparison.found[comparison.pairs[*index].found];
+        let Some(usual) = most_common(group.iter().map(|index| tools(found(index)))) else { continue };
+        for index in &group {
+            let cuts = |tool: &u32| tools(found(index)).any(|other| other == *tool);
+            if usual.iter().all(cuts) {
                 continue;
             }
+            let lacks: Vec<String> =
+                usual.iter().filter(|tool| !cuts(tool)).map(|tool| format!("T{tool}")).collect();
             let pair = &comparison.pairs[*index];
             let message = format!(
                 "hole {} is made without {}, which most holes of Φ{} get",
@@ -44,22 +44,30 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
     }
 }
 
-/// The tools that cut in a hole, each once.
-fn tools(found: &Found) -> Vec<u32> {
-    let mut tools: Vec<u32> = found.others.iter().map(|cut| cut.tool).chain([found.tool]).flatten().collect();
-    tools.sort_unstable();
-    tools.dedup();
-    tools
+/// The tools that cut in a hole.
+fn tools(found: &Found) -> impl Iterator<Item = u32> + '_ {
+    found.others.iter().map(|cut| cut.tool).chain([found.tool]).flatten()
 }
 
-/// What more than half of the holes get.
-fn most_common(sets: &[Vec<u32>]) -> Option<Vec<u32>> {
-    let mut counts: BTreeMap<&Vec<u32>, usize> = BTreeMap::new();
-    for set in sets {
-        *counts.entry(set).or_default() += 1;
+/// The tools, each once, that more than half of the holes get.
+fn most_common<T: IntoIterator<Item = u32>>(holes: impl ExactSizeIterator<Item = T>) -> Option<Vec<u32>> {
+    let all = holes.len();
+    let mut counts: BTreeMap<Vec<u32>, usize> = BTreeMap::new();
+    let mut set = Vec::new();
+    for hole in holes {
+        set.clear();
+        set.extend(hole);
+        set.sort_unstable();
+        set.dedup();
+        match counts.get_mut(&set) {
+            Some(count) => *count += 1,
+            None => {
+                counts.insert(set.clone(), 1);
+            }
+        }
     }
     let (set, count) = counts.into_iter().max_by_key(|(_, count)| *count)?;
-    (sets.len() < 2 * count).then(|| set.clone())
+    (all < 2 * count).then_some(set)
 }
 
 #[cfg(test)]
@@ -69,8 +77,8 @@ mod tests {
     #[test]
     fn usual_is_what_more_than_half_have() {
         let (both, one) = (vec![1, 2], vec![1]);
-        assert_eq!(most_common(&[both.clone(), one.clone(), both.clone()]), Some(both.clone()));
-        assert_eq!(most_common(&[both.clone(), one.clone(), both, one]), None);
-        assert_eq!(most_common(&[]), None);
+        assert_eq!(most_common([both.clone(), one.clone(), both.clone()].into_iter()), Some(both.clone()));
+        assert_eq!(most_common([both.clone(), one.clone(), both, one].into_iter()), None);
+        assert_eq!(most_common(std::iter::empty::<Vec<u32>>()), None);
     }
 }
