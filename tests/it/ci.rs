@@ -122,6 +122,42 @@ fn the_hook_refuses_a_changed_macro_with_the_message_of_the_page() {
     assert!(moved.contains("+{\"entry\":[10.0,5.01,"), "{moved}");
 }
 
+/// One branch changes the macro and accepts it, the other has a new program that calls it: either holds alone.
+#[cfg(unix)]
+#[test]
+fn the_hook_refuses_a_merge_of_what_holds_alone() {
+    let repository = repository();
+    let place = repository.path();
+    let is_done = |arguments: &[&str]| {
+        let done = git(place, arguments);
+        assert!(done.status.success(), "{arguments:?}: {done:?}");
+    };
+    let accept = || {
+        run_line("gcode-sim test parts --lib macros --accept", place);
+        is_done(&["add", "--all"]);
+        is_done(&["commit", "--quiet", "-m", "Accepted"]);
+    };
+    is_done(&["branch", "moved"]);
+    std::fs::create_dir(place.join("parts/cover")).unwrap();
+    std::fs::copy(place.join("parts/plate/O0100.nc"), place.join("parts/cover/O0100.nc")).unwrap();
+    accept();
+    is_done(&["checkout", "--quiet", "moved"]);
+    move_the_row(place);
+    accept();
+
+    is_done(&["checkout", "--quiet", "-"]);
+    let merge = git(place, &["merge", "--quiet", "-m", "Both", "moved"]);
+    assert!(!merge.status.success(), "{merge:?}");
+    let said = String::from_utf8([merge.stdout, merge.stderr].concat()).unwrap();
+    assert!(
+        said.contains("changed  cover\n    hole-moved     holes 1, 2, 3, 4: moved by +0.0000 +0.0100"),
+        "{said}"
+    );
+    assert!(!said.contains("changed  plate"), "{said}");
+    run_line("gcode-sim test parts --lib macros --accept", place);
+    is_done(&["commit", "--quiet", "-a", "--no-edit"]);
+}
+
 /// The lines of the workflow that run gcode-sim, with the numbers of the shards in.
 #[test]
 fn the_commands_of_the_workflow_do_what_the_page_says() {

@@ -179,6 +179,8 @@ fn the_mouse_turns_zooms_and_picks() {
     browser.run("document.getElementById('viewer').scrollIntoView()");
     let (x, y) =
         middle(&browser, "return document.getElementById('canvas-new').getBoundingClientRect().toJSON()");
+    // The scale has 40 pixels below what is fitted.
+    let y = y - 20.0;
     let before = picture(&browser, "new");
     browser.drag(&[(x + 150.0, y + 60.0), (x + 200.0, y + 60.0), (x + 220.0, y + 80.0)]);
     let turned = picture(&browser, "new");
@@ -286,6 +288,106 @@ fn a_lost_stop_is_marked_where_it_was() {
     assert_eq!(high, true);
     browser.click("#told .stops li .place a");
     lands(&browser, "old-0-4 M00");
+    is_quiet(&browser);
+}
+
+/// A spot drilling that is lost is nothing that position, depth or diameter of the hole would show.
+#[test]
+fn a_row_says_what_is_different_and_names_all_tools() {
+    let spot = "T1 M6\nS500 M3\nG0 Y50.\nX10. Z0\nG1 Y-2. F100\nG0 Y50.\n";
+    let drill = "T2 M6\nS500 M3\nX10. Z0\nG1 Y-20. F100\nG0 Y50.\nX30.\nG1 Y-20.\nG0 Y50.\nM30\n";
+    let old = format!("O1\nG90\n{spot}{drill}");
+    let (place, page_of_both) = of_texts(old.as_bytes(), format!("O1\nG90\n{drill}").as_bytes());
+    let Some(browser) = Browser::start(1200, 900) else { return };
+    browser.open(&page_of_both);
+    assert_eq!(column(&browser, 2), ["T2, was T1 T2", "same"]);
+    assert_eq!(column(&browser, 8), ["T1 T2 → T2", "T2"]);
+
+    // Against a reference both holes are good; that one is made otherwise stands beside it.
+    let wanted = "id,x,y,z,i,j,k,depth,diameter\na,10,0,0,0,1,0,20,\nb,30,0,0,0,1,0,20,\n";
+    std::fs::write(place.path().join("wanted.csv"), wanted).unwrap();
+    browser.open(&page(place.path(), "diff OLD.nc NEW.nc --reference wanted.csv"));
+    assert_eq!(column(&browser, 2), ["in tolerance, but: T2, was T1 T2", "in tolerance"]);
+    let sign = browser
+        .run("return getComputedStyle(document.querySelector('tr.altered .state'), '::before').content");
+    assert_eq!(sign, "\"≠ \"");
+    is_quiet(&browser);
+}
+
+/// 310 holes that are all 1 deeper: a print has 300 of them as they were sorted, and says so.
+#[test]
+fn a_long_table_is_printed_in_part_and_says_so() {
+    let row = |depth: &str| {
+        let drilled = format!("WHILE[#1 LT 310]DO1\n#1=#1+1\nG81 X[#1*5.] Y0 Z{depth} R2. F100\nEND1\n");
+        format!("O1\nS500 M3\n#1=0\nG0 Z5.\n{drilled}G80\nM30\n")
+    };
+    let (_place, page) = of_texts(row("-5.").as_bytes(), row("-6.").as_bytes());
+    let Some(browser) = Browser::start(1200, 900) else { return };
+    browser.open(&page);
+    let rows = "const shown = (element) => getComputedStyle(element).display !== 'none'; \
+         const rows = [...document.querySelectorAll('.holes tbody tr')].filter(shown); \
+         const note = document.querySelector('#holes p.paper'); \
+         return [rows.length, rows[0].cells[0].textContent, shown(note) ? note.textContent : '']";
+    browser.click(".holes th:nth-child(1) button");
+    browser.click(".holes th:nth-child(1) button");
+    assert_eq!(browser.run(rows), json!([310, "310", ""]));
+    browser.command("Emulation.setEmulatedMedia", &json!({"media": "print"}));
+    let note = "The first 300 of 310 rows are printed, as they were sorted; the others are on the screen.";
+    assert_eq!(browser.run(rows), json!([300, "310", note]));
+    is_quiet(&browser);
+}
+
+#[test]
+fn what_is_worst_and_what_nobody_executed_stands_first() {
+    let cut = "G0 Z5.\nG1 Z-1. F100\nX40.\nY40.\nX0\nY0\nG0 Z50.\n";
+    let old = format!("O1\n#1=2\nIF[#1 GT 3]GOTO 9\n{cut}N9 M30\n");
+    let new = format!("O1\n#1=2\nIF[#1 GT 3]THEN #3000=1(FAR)\n{cut}X[1/0]\nN9 M30\n");
+    let (_place, page) = of_texts(old.as_bytes(), new.as_bytes());
+    let Some(browser) = Browser::start(1200, 900) else { return };
+    browser.open(&page);
+    let found = browser.run(
+        "return [...document.querySelectorAll('#told .sides > div')].map((side) => \
+         [...side.querySelectorAll('.findings > li')].map((finding) => \
+         `${finding.className} ${finding.querySelector('code').textContent} ${finding.querySelectorAll('a').length}`))",
+    );
+    let sides = found.as_array().unwrap();
+    // The alarm comes last in the run and first in the list; feeds that are alike share an entry, each with its link.
+    assert_eq!(sides[1][0], "alarm PS0112 1");
+    let warnings = |side: &Value| {
+        side.as_array()
+            .unwrap()
+            .iter()
+            .filter(|one| !one.as_str().unwrap().starts_with("alarm"))
+            .cloned()
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(warnings(&sides[0]), warnings(&sides[1]));
+    assert_eq!(warnings(&sides[0]).len(), 1, "{found}");
+    let marks = browser.run(
+        "return [...document.querySelectorAll('#told .findings .mark')].map((mark) => mark.textContent)",
+    );
+    assert_eq!(marks, json!(["not of the old program"]));
+
+    let answers = browser
+        .run("return [...document.querySelectorAll('header .answer')].map((answer) => answer.textContent)");
+    let open = "Executed by neither run, so nothing is known of them: 1 changed block";
+    assert_eq!(answers[1], open);
+    browser.click("header .answer a");
+    let seen = browser
+        .run("return location.hash + ' ' + document.querySelector('#unexecuted + .note + ol').textContent");
+    assert!(
+        seen.as_str().unwrap().contains("#unexecuted") && seen.as_str().unwrap().contains("#3000=1(FAR)"),
+        "{seen}"
+    );
+
+    // A telephone names both files above the lines of both.
+    let narrow = json!({"width": 375, "height": 740, "deviceScaleFactor": 2, "mobile": true});
+    browser.command("Emulation.setDeviceMetricsOverride", &narrow);
+    let named = browser.run("return document.querySelector('.listing .names').innerText");
+    assert!(
+        named.as_str().unwrap().contains("Old OLD.nc") && named.as_str().unwrap().contains("New NEW.nc"),
+        "{named}"
+    );
     is_quiet(&browser);
 }
 

@@ -7,11 +7,11 @@ use gcode_sim::changes::{Compared, Revision};
 use gcode_sim::machine::Machine;
 use gcode_sim::part::hole::Hole;
 use gcode_sim::picture::{
-    Cylinder, Difference, DrawnHole, PathPiece, Question, Sheet, Side, Size, Standing, TopView, compare,
-    development, lay_out, paint, png, top_view,
+    Cylinder, Difference, DrawnHole, PathKind, PathPiece, Question, Sheet, Side, Size, Standing, TopView,
+    compare, development, lay_out, paint, png, top_view,
 };
 use gcode_sim::program::NoLibrary;
-use gcode_sim::report::top;
+use gcode_sim::report::changed_view;
 use gcode_sim::session::Request;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ImageFormat, RgbImage};
@@ -131,7 +131,7 @@ fn changed(old: &str, new: &str, tolerance: f64) -> TopView {
     let (old, new) = (made(old), made(new));
     let compared = Compared::new(&old.record, &new.record, tolerance);
     let differences = (&compared, tolerance);
-    top::of_changes("O0100.nc", &old.simulation, &new.simulation, &machine, differences).unwrap()
+    changed_view::of_changes("O0100.nc", (&old, &new), &machine, differences, None)
 }
 
 fn draw(text: &str) -> (Picture, Sheet) {
@@ -151,7 +151,14 @@ fn draw(text: &str) -> (Picture, Sheet) {
         rotary: "B".to_owned(),
         question: Question::Verdict,
         holes: picture.hole.iter().map(drawn).collect(),
-        path: picture.path.iter().map(|p| PathPiece { points: p.points.clone(), rapid: p.rapid }).collect(),
+        path: picture
+            .path
+            .iter()
+            .map(|p| PathPiece {
+                points: p.points.clone(),
+                kind: if p.rapid { PathKind::Rapid } else { PathKind::Feed },
+            })
+            .collect(),
         ..TopView::default()
     };
     let scene = if picture.unrolled { development(&view).unwrap() } else { top_view(&view) };
@@ -185,7 +192,7 @@ fn drawn(case: &HoleCase) -> DrawnHole {
         standing,
         phi: case.phi,
         turn: case.turn,
-        remark: case.remark.clone(),
+        remarks: case.remark.iter().cloned().collect(),
     }
 }
 

@@ -15,6 +15,7 @@ mod in_force;
 mod left;
 mod motion;
 mod near;
+mod older;
 mod passes;
 mod path;
 mod record;

@@ -45,6 +45,14 @@ impl Passes {
     }
 }
 
+impl Record {
+    /// The tools that make each hole, in their order; none where one isn't known, or where it only makes another one
+    /// again.
+    pub fn made_by(&self) -> Vec<Vec<u32>> {
+        Passes::of(self).tools
+    }
+}
+
 /// Which passes are gone and which are new; `None` where as many are made.
 pub(super) fn more_or_fewer(was: &[u32], is: &[u32]) -> Option<String> {
     if was.len() == is.len() || was.is_empty() || is.is_empty() {

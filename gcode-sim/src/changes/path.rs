@@ -1,4 +1,6 @@
 //! The way of the tool on the part, move by move: what a drawing is made of.
+use std::collections::BTreeSet;
+
 use nalgebra::Point3;
 
 use super::record::{Record, Where};
@@ -19,6 +21,8 @@ pub struct Leg {
     pub kind: &'static str,
     /// mm/min, of a cut.
     pub feed: Option<f64>,
+    /// It cuts a hole, or comes out of one the way it went in.
+    pub is_of_hole: bool,
     /// Which of [`Record::places`] moves here.
     pub place: usize,
     /// From its beginning to its end.
@@ -38,7 +42,8 @@ impl Record {
 
     /// The first moves, as long as they are no more than `moves` with no more than `points` points in all.
     pub fn path(&self, machine: &Machine, moves: usize, points: usize) -> Vec<Leg> {
-        let mut legs = Vec::new();
+        let of_holes: BTreeSet<usize> = self.feeds.iter().flatten().copied().collect();
+        let mut legs: Vec<Leg> = Vec::new();
         let mut setup = Setup::default();
         let mut from = Position::default();
         let mut left = points;
@@ -55,7 +60,8 @@ impl Record {
                     break;
                 }
                 left -= way.len();
-                legs.push(leg(index, step, way));
+                let back = legs.last().is_some_and(|leg| leg.is_of_hole && is_back(&leg.points, &way));
+                legs.push(leg(index, step, of_holes.contains(&index) || back, way));
             }
             from = to;
         }
@@ -63,8 +69,14 @@ impl Record {
     }
 }
 
-fn leg(index: usize, step: &Step, points: Vec<Point3<f64>>) -> Leg {
-    Leg { step: index, kind: step.kind.name(), feed: step.kind.rate(), place: step.place, points }
+fn leg(index: usize, step: &Step, is_of_hole: bool, points: Vec<Point3<f64>>) -> Leg {
+    let (kind, feed) = (step.kind.name(), step.kind.rate());
+    Leg { step: index, kind, feed, is_of_hole, place: step.place, points }
+}
+
+/// It ends where the way before began.
+fn is_back(before: &[Point3<f64>], way: &[Point3<f64>]) -> bool {
+    before.first().zip(way.last()).is_some_and(|(begin, end)| (begin - end).norm() < 1e-6)
 }
 
 /// What other than an axis changes where the tool is.

@@ -280,11 +280,6 @@ impl Record {
         self.ending.words.starts_with("alarm PS0076 ")
     }
 
-    /// It was written when less was noted of a run: what a program commands first, and its name.
-    pub fn lacks_beginnings(&self) -> bool {
-        self.begun.is_none()
-    }
-
     /// How the run ended, in words.
     pub fn words(&self) -> &str {
         &self.ending.words

@@ -116,7 +116,8 @@ Examples:
   git show HEAD:O8100.nc | gcode-sim diff - O8100.nc
 
 Sequence numbers, spaces, comments, names of locals and the way numbers are written make no difference.
-Called programs come from each revision's own folder first, then from --lib.
+Called programs come from each revision's own folder first, then from --lib, those of the old one from
+--old-lib where it is given.
 Exit code 0: nothing changes; 1: something does; 3: a revision stops with an alarm or a limit.")]
     Diff(DiffArguments),
 

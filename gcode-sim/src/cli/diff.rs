@@ -13,7 +13,7 @@ use crate::picture;
 use crate::report::changes::{ChangesReport, change_found};
 use crate::report::page::{Difference, Page, Seen};
 use crate::report::sarif::{self, At, Finding};
-use crate::report::{diagnostic, top};
+use crate::report::{changed_view, diagnostic};
 use crate::session::Trace;
 use crate::verify::Tolerances;
 
@@ -29,6 +29,10 @@ pub(super) struct DiffArguments {
 
     #[command(flatten)]
     run: RunConditions,
+
+    /// A folder that holds what OLD.nc calls, in the place of --lib (repeatable): a macro of before
+    #[arg(long = "old-lib", value_name = "DIR")]
+    old_libraries: Vec<PathBuf>,
 
     /// What differs by no more than this is the same, mm or degrees
     #[arg(long, value_name = "MM", default_value_t = 0.0001, allow_negative_numbers = true)]
@@ -62,7 +66,11 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
         apart::keep(result, &files)?;
     }
     arguments.page.as_deref().map(page::is_html).transpose()?;
-    let (mut old_request, mut old_folders) = options::request(&arguments.run.of(&arguments.old))?;
+    let mut before = arguments.run.clone();
+    if !arguments.old_libraries.is_empty() {
+        before.libraries.clone_from(&arguments.old_libraries);
+    }
+    let (mut old_request, mut old_folders) = options::request(&before.of(&arguments.old))?;
     let (mut new_request, mut new_folders) = options::request(&arguments.run.of(&arguments.new))?;
     unused_machine::tell(&arguments.run.of(&arguments.new), &new_request);
     let reference = arguments.reference.as_deref().map(wanted_holes).transpose()?;
@@ -93,10 +101,17 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
         }
     }
     if let Some(path) = &arguments.picture {
-        let name = format!("{} against {}", render::name(&new_request), render::name(&old_request));
-        let machine = &new_request.machine;
-        let view = top::of_changes(&name, &old.simulation, &new.simulation, machine, (&compared, tolerance));
-        let scene = picture::top_view(&view.map_err(Refusal::new)?);
+        let names = [&new_request, &old_request].map(render::name);
+        // Two of the same name are told apart by their folders.
+        let [is, was] = if names[0] == names[1] {
+            [&new_request, &old_request].map(|request| request.name.clone())
+        } else {
+            names
+        };
+        let name = format!("{is} against {was}");
+        let (machine, reference) = (&new_request.machine, reference.as_ref());
+        let view = changed_view::of_changes(&name, (&old, &new), machine, (&compared, tolerance), reference);
+        let scene = picture::top_view(&view);
         render::write(&scene, "1600x1200", path)?;
         if arguments.format == FindingFormat::Text {
             output::print(&format!("picture: {}\n", path.display()))?;
@@ -113,12 +128,14 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
         let (old_verdict, new_verdict) = (judged(&old), judged(&new));
         let seen = |request, revision, trace, verdict| Seen { request, revision, trace, verdict };
         let difference = Difference { compared: &compared, unexecuted: &unexecuted, tolerance };
+        let of_old = arguments.old_libraries.iter().map(|folder| format!("--old-lib {}", folder.display()));
+        let flags: Vec<String> = page::flags(&arguments.run).into_iter().chain(of_old).collect();
         let review = Page {
             old: Some((seen(&old_request, &old, old_trace, old_verdict.as_ref()), difference)),
             new: seen(&new_request, &new, new_trace, new_verdict.as_ref()),
             machine: &new_request.machine,
             reference: reference.as_ref(),
-            conditions: &page::flags(&arguments.run),
+            conditions: &flags,
             documents: &page::documents(&arguments.run, arguments.reference.as_deref())?,
         };
         page::write(&review, path)?;

@@ -8,6 +8,9 @@ use super::role::Standing;
 use super::scene::{Mark, Scene};
 use crate::holes::near::PointTree;
 
+/// Nearer than this, in heights of a line, one sign would cover another: that of a surplus hole moves aside.
+pub(super) const COVERING: f64 = 0.8;
+
 /// How much is drawn of the holes, tried in this order until every hole has its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Detail {
@@ -119,7 +122,7 @@ fn gaps(scene: &Scene, frame: &Frame) -> Vec<f64> {
     let is_extra = |index: usize| scene.marks[index].standing == Standing::Extra;
     let gap = |(index, place): (usize, &Px)| {
         let counts = |other: usize, distance: f64| {
-            other != index && (0.3 * frame.text <= distance || !is_extra(index) && !is_extra(other))
+            other != index && (COVERING * frame.text <= distance || !is_extra(index) && !is_extra(other))
         };
         tree.nearest_that(&flat(place), &counts).map_or(f64::INFINITY, |(_, distance)| distance)
     };

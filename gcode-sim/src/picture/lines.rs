@@ -11,7 +11,7 @@ use super::symbol;
 
 /// The tool's path: seen, but nothing needs to keep off it.
 pub(super) fn is_path(pen: Pen) -> bool {
-    matches!(pen, Pen::Feed | Pen::Faulty | Pen::Hidden | Pen::Rapid)
+    matches!(pen, Pen::Feed | Pen::Faulty | Pen::Hidden | Pen::Rapid | Pen::Kept | Pen::Now | Pen::Before)
 }
 
 pub(super) fn stroke_ink(stroke: &Stroke, frame: &Frame) -> Ink {

@@ -1,5 +1,5 @@
 //! Holes on the sheet: symbol, direction of the axis, and round it the dial that shows the misfit enlarged.
-use super::dials::{Detail, Dials};
+use super::dials::{COVERING, Detail, Dials};
 use super::frame::Frame;
 use super::ink::{Dash, Ink, Px, Rgb};
 use super::labels::Field;
@@ -165,7 +165,7 @@ fn draw_sign(
     let mut centre = place;
     if mark.standing == Standing::Extra
         && !is_dot
-        && let Some(other) = before.iter().find(|d| d.centre.distance(place) < 0.3 * text)
+        && let Some(other) = before.iter().find(|d| d.centre.distance(place) < COVERING * text)
     {
         let step = other.clear + radius + 0.3 * text;
         let free = |c: &Px| before.iter().all(|d| d.clear + radius <= c.distance(d.centre));

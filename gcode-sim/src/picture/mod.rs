@@ -44,7 +44,7 @@ pub use views::flutes::{Fault, FluteView, Spot, side_view, tip_view};
 pub use views::helix::{HelixAt, HelixCourses, helix_graph};
 pub use views::question::Question;
 pub use views::side::Side;
-pub use views::top::{Cylinder, DrawnHole, PathPiece, TopView, top_view};
+pub use views::top::{Cylinder, DrawnHole, PathKind, PathPiece, TopView, top_view};
 
 /// Why a picture can't be made or compared.
 #[derive(Debug, thiserror::Error)]

@@ -10,7 +10,7 @@ use super::lines::{are_arrows_hidden, axes, block_stroke, is_path, scale_bar, st
 use super::marks::draw_marks;
 use super::measure::Scale;
 use super::panel::Panel;
-use super::role::{Point, Standing};
+use super::role::{Pen, Point, Standing};
 use super::scene::{Scene, Shape, Stroke};
 use super::size::Size;
 use super::words::Words;
@@ -156,13 +156,18 @@ fn check(scene: &Scene) -> Result<(), PictureError> {
     Ok(())
 }
 
-/// What must be seen, mm: every line but the tool's path, every hole, and the origin where there are axes.
+/// The path of the tool that somebody looks for.
+fn is_changed(pen: Pen) -> bool {
+    matches!(pen, Pen::Now | Pen::Before)
+}
+
+/// What must be seen, mm: every line but the tool's path where it is as before, every hole, and the origin where there are axes.
 fn extent(scene: &Scene) -> (Point, Point) {
     let mut seen: Vec<(Point, f64)> = Vec::new();
     let path_alone = scene.marks.is_empty() && scene.strokes.iter().all(|s| is_path(s.pen));
     for stroke in &scene.strokes {
         match &stroke.shape {
-            Shape::Line(points) if path_alone || !is_path(stroke.pen) => {
+            Shape::Line(points) if path_alone || !is_path(stroke.pen) || is_changed(stroke.pen) => {
                 seen.extend(points.iter().map(|p| (*p, 0.0)))
             }
             Shape::Line(_) => {}
@@ -192,7 +197,6 @@ fn extent(scene: &Scene) -> (Point, Point) {
 mod tests {
     use super::*;
     use crate::picture::ink::Align;
-    use crate::picture::role::Pen;
     use crate::picture::scene::{Axis, LegendItem, Mark, Misfit, Sample, Title};
     use proptest::prelude::*;
 

@@ -21,6 +21,11 @@ pub fn signed_to(value: f64, places: usize) -> String {
     }
 }
 
+/// As a drawing has it: `+0.120`, `−1.500`.
+pub fn with_sign(value: f64) -> String {
+    signed_to(value, 3).replace('-', "−")
+}
+
 pub fn count(number: usize, what: &str) -> String {
     format!("{number} {what}{}", if number == 1 { "" } else { "s" })
 }

@@ -1,7 +1,7 @@
 //! The cases of `test` as JUnit XML, the form that build servers count and show.
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
-use super::tested::{Answer, CaseReport, TestReport};
+use super::tested::{Answer, CaseReport, OLDER, TestReport};
 
 /// The document of `test --format junit`: one suite, a test for each case.
 ///
@@ -27,6 +27,7 @@ fn case(case: &CaseReport) -> TestCase {
             (&*first.code, format!("{}: {}{and}", first.code, first.message))
         }
         (_, Some(against), _) => (&*against.code, format!("{}: {}", against.code, against.message)),
+        (Answer::Older, ..) => ("case-older", format!("{OLDER}; {}", case.left_open())),
         (Answer::New, ..) => ("case-new", "nothing accepted yet".to_owned()),
         (Answer::Same | Answer::Changed, None, _) => {
             return named(case, TestCaseStatus::success());

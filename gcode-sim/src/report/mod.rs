@@ -1,5 +1,6 @@
 //! Data to words: what the terminal, JSON and CSV say of runs, holes and verdicts.
 pub mod budget;
+pub mod changed_view;
 pub mod changes;
 pub mod check;
 pub mod diagnostic;
@@ -10,6 +11,7 @@ pub mod figures;
 pub mod flute_table;
 pub mod flute_view;
 mod helix_courses;
+mod hole_changes;
 pub mod holes;
 pub mod junit;
 pub mod page;

@@ -44,6 +44,9 @@ pub struct CaseReport {
     pub file: Option<String>,
     pub answer: Answer,
     pub changes: Vec<Change>,
+    /// What an accepted result of an earlier version doesn't say, so that nothing is held against it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub not_compared: Vec<String>,
     /// What the reference says against the holes.
     pub against: Option<Against>,
     /// Why the case can't be used.
@@ -61,11 +64,16 @@ pub enum Answer {
     /// As accepted.
     Same,
     Changed,
+    /// As accepted in all that was noted when it was accepted, and that is less than is noted now.
+    Older,
     /// Nothing is accepted yet.
     New,
     /// The case can't be used.
     Refused,
 }
+
+/// What is said of [`Answer::Older`].
+pub(super) const OLDER: &str = "accepted when less was noted of a run; all that was noted is as accepted";
 
 /// The first thing that a failed verdict has against a program.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -104,7 +112,12 @@ impl TestReport {
         }
         let count = |answer| self.cases.iter().filter(|case| case.answer == answer).count();
         let mut words = vec![format!("{} as accepted", count(Answer::Same))];
-        let others = [(Answer::Changed, "changed"), (Answer::New, "new"), (Answer::Refused, "refused")];
+        let others = [
+            (Answer::Changed, "changed"),
+            (Answer::Older, "accepted when less was noted"),
+            (Answer::New, "new"),
+            (Answer::Refused, "refused"),
+        ];
         for (answer, word) in others.into_iter().filter(|(answer, _)| count(*answer) > 0) {
             words.push(format!("{} {word}", count(answer)));
         }
@@ -119,7 +132,7 @@ impl TestReport {
         let (lacking, open): (Vec<_>, Vec<_>) = self
             .cases
             .iter()
-            .filter(|case| matches!(case.answer, Answer::Changed | Answer::New))
+            .filter(|case| matches!(case.answer, Answer::Changed | Answer::Older | Answer::New))
             .partition(|case| case.lacks_program());
         for case in lacking {
             let name = &case.name;
@@ -154,6 +167,7 @@ impl CaseReport {
             file,
             answer,
             changes: Vec::new(),
+            not_compared: Vec::new(),
             against: None,
             error: None,
             totals: None,
@@ -192,12 +206,21 @@ impl CaseReport {
             }
             Answer::New => writeln!(text, "new      {name}: nothing accepted yet ({totals})"),
             Answer::Changed => writeln!(text, "changed  {name}"),
+            Answer::Older => writeln!(text, "older    {name}: {OLDER} ({totals})"),
             Answer::Same => Ok(()),
         };
         entries(text, &self.changes, "    ");
+        if !self.not_compared.is_empty() {
+            let _ = writeln!(text, "    {}", self.left_open());
+        }
         if let Some(Against { code, message, .. }) = &self.against {
             let _ = writeln!(text, "fails    {name}: {code}: {message}");
         }
+    }
+
+    /// What can't be held against a result of an earlier version.
+    pub(super) fn left_open(&self) -> String {
+        format!("not compared, it wasn't noted when this was accepted: {}", self.not_compared.join(", "))
     }
 
     fn findings(&self) -> Vec<Finding> {
@@ -218,7 +241,10 @@ impl CaseReport {
                 all.push(found("case-refused", self.error.clone().unwrap_or_default(), None, &[]));
             }
             Answer::New => all.push(found("case-new", "nothing accepted yet".to_owned(), None, &[])),
-            Answer::Same | Answer::Changed => {}
+            Answer::Same | Answer::Changed | Answer::Older => {}
+        }
+        if !self.not_compared.is_empty() {
+            all.push(found("case-older", self.left_open(), None, &[]));
         }
         let before = format!("{}: ", self.name);
         for change in &self.changes {

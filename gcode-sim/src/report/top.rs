@@ -3,8 +3,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
 
-use super::figures::count;
-use crate::changes::Compared;
+use super::figures::with_sign;
 use crate::holes::Found;
 use crate::machine::{HeadKind, Link, LinkMotion, Machine};
 use crate::motion::Axis;
@@ -12,9 +11,9 @@ use crate::part::hole::Hole;
 use crate::part::honeycomb::Pattern;
 use crate::part::reference::Reference;
 use crate::part::surface::Surface;
-use crate::picture::{Cylinder, DrawnHole, Question, Side, Standing, TopView};
+use crate::picture::{Cylinder, DrawnHole, Side, Standing, TopView};
 use crate::session::Simulation;
-use crate::verify::{Neighbours, Tolerances, Verdict};
+use crate::verify::{Neighbours, Verdict};
 
 /// The holes of a program nobody has judged.
 pub fn of_holes(name: &str, simulation: &Simulation, machine: &Machine) -> TopView {
@@ -29,14 +28,16 @@ pub fn of_holes(name: &str, simulation: &Simulation, machine: &Machine) -> TopVi
         standing: Standing::Unjudged,
         phi: None,
         turn: rotary.turn(found),
-        remark: None,
+        remarks: Vec::new(),
     });
+    let mut holes: Vec<DrawnHole> = drawn.collect();
+    still(&mut holes);
     TopView {
         name: name.to_owned(),
         side,
         rotary: rotary.letter(),
         backwards: rotary.backwards(),
-        holes: drawn.collect(),
+        holes,
         ..TopView::default()
     }
 }
@@ -60,10 +61,15 @@ pub fn of_verdict(
         standing: if hole.ok { Standing::Good } else { Standing::Bad },
         phi: Some(hole.phi),
         turn: rotary.turn(&found[hole.found]),
-        remark: hole.objections.first().map(|code| match code.as_str() {
-            "hole-depth" => format!("depth {}", signed(hole.depth_error)),
-            other => other.trim_start_matches("hole-").to_owned(),
-        }),
+        remarks: hole
+            .objections
+            .first()
+            .into_iter()
+            .map(|code| match code.as_str() {
+                "hole-depth" => format!("depth {}", with_sign(hole.depth_error)),
+                other => other.trim_start_matches("hole-").to_owned(),
+            })
+            .collect(),
     });
     let missing = verdict.missing.iter().map(|id| DrawnHole {
         id: id.clone(),
@@ -72,7 +78,7 @@ pub fn of_verdict(
         standing: Standing::Missing,
         phi: None,
         turn: None,
-        remark: None,
+        remarks: Vec::new(),
     });
     let extra = verdict.extra.iter().map(|extra| DrawnHole {
         id: extra
@@ -85,8 +91,10 @@ pub fn of_verdict(
         standing: Standing::Extra,
         phi: None,
         turn: None,
-        remark: None,
+        remarks: Vec::new(),
     });
+    let mut holes: Vec<DrawnHole> = judged.chain(missing).chain(extra).collect();
+    still(&mut holes);
     TopView {
         name: name.to_owned(),
         side: along(&reference.holes)
@@ -103,71 +111,27 @@ pub fn of_verdict(
         tolerance: Some(verdict.tolerance),
         rotary: rotary.letter(),
         backwards: rotary.backwards(),
-        holes: judged.chain(missing).chain(extra).collect(),
+        holes,
         ..TopView::default()
     }
 }
 
-/// `+0.120`, `−1.500`.
-fn signed(by: f64) -> String {
-    format!("{by:+.3}").replace('-', "−")
-}
-
-/// The holes of a new revision over those of the old one, which they are held against, and what else `compared` says.
-pub fn of_changes(
-    name: &str,
-    old: &Simulation,
-    new: &Simulation,
-    machine: &Machine,
-    (compared, tolerance): (&Compared, f64),
-) -> Result<TopView, String> {
-    let mut list = old.list();
-    for (index, hole) in list.holes.iter_mut().enumerate() {
-        hole.id = Some((index + 1).to_string());
+/// An axis that stands at 0 for every hole is nothing to be told at each.
+pub(super) fn still(holes: &mut [DrawnHole]) {
+    if holes.iter().all(|hole| hole.turn.is_none_or(|turn| turn == 0.0)) {
+        holes.iter_mut().for_each(|hole| hole.turn = None);
     }
-    let reference = Reference::of_list(list).map_err(|error| error.to_string())?;
-    let tolerances = Tolerances { position: 2.0 * tolerance, depth: tolerance, diameter: tolerance };
-    let verdict = new.verify(&reference, tolerances, machine);
-    let changed = verdict.holes.iter().filter(|hole| !hole.ok).map(|hole| hole.phi).fold(0.0, f64::max);
-    let mut view = of_verdict(name, new, &reference, &verdict, machine);
-    let mut by_other_tools = 0;
-    for (judged, drawn) in verdict.holes.iter().zip(&mut view.holes).filter(|(judged, _)| judged.ok) {
-        let pair = compared.holes.iter().find(|pair| pair.changed && pair.new == Some(judged.found));
-        let Some(before) = pair.and_then(|pair| pair.old) else { continue };
-        let tools = [old, new].map(|side| side.extracted.holes.as_slice());
-        let [was, is] = [tools[0][before].tool, tools[1][judged.found].tool];
-        drawn.standing = Standing::Bad;
-        drawn.remark = Some(match (was, is) {
-            (Some(was), Some(is)) if was != is => format!("T{is}, was T{was}"),
-            _ => "other tools".to_owned(),
-        });
-        by_other_tools += 1;
-    }
-    if 0 < by_other_tools {
-        view.lines.push(format!("{} made by another tool", count(by_other_tools, "hole")));
-    }
-    let others = compared.changes.iter().filter(|change| !is_of_one_hole(&change.code)).count();
-    if 0 < others {
-        view.lines.push("other changes: see the text of diff".to_owned());
-    }
-    let tolerance = Some(round_up(changed.max(tolerance)));
-    Ok(TopView { question: Question::Change, others, tolerance, ..view })
-}
-
-/// A change that a hole's own sign shows; of the order there is none.
-fn is_of_one_hole(code: &str) -> bool {
-    code.starts_with("hole-") && code != "hole-order"
 }
 
 /// The next of 1, 2, 5, 10, 20, … from `value` on.
-fn round_up(value: f64) -> f64 {
+pub(super) fn round_up(value: f64) -> f64 {
     let decade = libm::pow(10.0, libm::floor(libm::log10(value)));
     let step = [1.0, 2.0, 5.0, 10.0].into_iter().find(|step| value <= step * decade * (1.0 + 1e-9));
     step.unwrap_or(10.0) * decade
 }
 
 /// The radius of the part seen along y, where that is a circle.
-fn outline(surface: Surface) -> Option<f64> {
+pub(super) fn outline(surface: Surface) -> Option<f64> {
     match surface {
         Surface::Ellipsoid { a, .. } => Some(a),
         Surface::Cylinder { .. } => None,
@@ -175,21 +139,21 @@ fn outline(surface: Surface) -> Option<f64> {
 }
 
 /// From where most of the holes are looked into: seen from beside them a plate would be a line.
-fn along(holes: &[Hole]) -> Option<Side> {
+pub(super) fn along(holes: &[Hole]) -> Option<Side> {
     let is_along = |hole: &Hole, side: Side| 0.99 < Vector3::from(hole.axis).dot(&side.towards()).abs();
     let are_most = |side: &Side| holes.len() < 2 * holes.iter().filter(|hole| is_along(hole, *side)).count();
     [Side::Y, Side::Z, Side::X].into_iter().find(are_most)
 }
 
 /// A spindle that stands along z looks at the part from there.
-fn side(machine: &Machine) -> Side {
+pub(super) fn side(machine: &Machine) -> Side {
     match machine.head.kind {
         HeadKind::Fixed(out) if out.z > 0.99 => Side::Z,
         _ => Side::Y,
     }
 }
 
-fn cylinder(reference: &Reference) -> Option<Cylinder> {
+pub(super) fn cylinder(reference: &Reference) -> Option<Cylinder> {
     match (reference.surface, reference.pattern) {
         (Some(Surface::Cylinder { radius }), Some(pattern)) => {
             let Pattern { diameter, length, rows, .. } = pattern;
@@ -212,29 +176,29 @@ fn apart(neighbours: &Neighbours) -> Option<String> {
 }
 
 /// A picture shows no blocks.
-fn nowhere(_: crate::source::Span) -> (String, u32) {
+pub(super) fn nowhere(_: crate::source::Span) -> (String, u32) {
     (String::new(), 0)
 }
 
 /// The axis that turns the part: the one whose angle an operator looks for.
-struct Rotary(Option<(Axis, char, bool)>);
+pub(super) struct Rotary(Option<(Axis, char, bool)>);
 
 impl Rotary {
-    fn of(machine: &Machine) -> Self {
+    pub(super) fn of(machine: &Machine) -> Self {
         let turns = |link: &&Link| matches!(link.motion, LinkMotion::Turn { .. });
         let link = machine.table.0.iter().find(turns);
         Self(link.map(|link| (link.axis, machine.axes.letter(link.axis), turns_backwards(link))))
     }
 
-    fn letter(&self) -> String {
+    pub(super) fn letter(&self) -> String {
         self.0.map_or_else(String::new, |(_, letter, _)| letter.to_string())
     }
 
-    fn backwards(&self) -> bool {
+    pub(super) fn backwards(&self) -> bool {
         self.0.is_some_and(|(_, _, backwards)| backwards)
     }
 
-    fn turn(&self, found: &Found) -> Option<f64> {
+    pub(super) fn turn(&self, found: &Found) -> Option<f64> {
         self.0.map(|(axis, ..)| found.at[axis])
     }
 }

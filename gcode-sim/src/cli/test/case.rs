@@ -30,8 +30,6 @@ pub(super) struct Tried {
     pub report: CaseReport,
     /// To be accepted; `None` where nothing could be run.
     pub record: Option<Record>,
-    /// What was accepted says less than is accepted today.
-    pub is_old: bool,
 }
 
 impl Case {
@@ -44,7 +42,7 @@ impl Case {
         let tried = main.and_then(|program| self.tried(&program, libraries, tolerance, empty));
         tried.unwrap_or_else(|refusal| {
             let error = Some(refusal.to_string());
-            Tried { report: CaseReport { error, ..empty(Answer::Refused) }, record: None, is_old: false }
+            Tried { report: CaseReport { error, ..empty(Answer::Refused) }, record: None }
         })
     }
 
@@ -115,7 +113,7 @@ impl Case {
                 fails(verdict.verdict, &verdict.diagnostics, &grinding.run)
             }
         };
-        let mut is_old = false;
+        let mut not_compared = Vec::new();
         let (answer, changes) = match there(ACCEPTED) {
             None => (Answer::New, Vec::new()),
             Some(path) => {
@@ -123,21 +121,27 @@ impl Case {
                 let accepted = Record::from_json(&input::text(&path)?).map_err(|error| {
                     unusable(format!("{error}; delete it, run with --accept, and look at what was accepted"))
                 })?;
-                is_old = accepted.lacks_beginnings();
-                let found = changes(&accepted, &revision.record, tolerance);
-                (if found.is_empty() { Answer::Same } else { Answer::Changed }, found)
+                not_compared = accepted.not_noted().into_iter().map(str::to_owned).collect();
+                let found = changes(&accepted, &revision.record.noted_as(&accepted), tolerance);
+                let answer = match (found.is_empty(), accepted.is_older()) {
+                    (false, _) => Answer::Changed,
+                    (true, true) => Answer::Older,
+                    (true, false) => Answer::Same,
+                };
+                (answer, found)
             }
         };
         let record = &revision.record;
         let report = CaseReport {
             files: files(&revision, &changes, against.as_ref()),
             changes,
+            not_compared,
             against,
             totals: Some(record.totals.clone()),
             ending: Some(record.words().to_owned()),
             ..empty(answer)
         };
-        Ok(Tried { report, record: Some(revision.record), is_old })
+        Ok(Tried { report, record: Some(revision.record) })
     }
 }
 

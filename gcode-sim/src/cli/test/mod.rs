@@ -164,8 +164,8 @@ fn all_of(
 fn accept(cases: &[Case], tried: &mut [Tried]) -> Result<Vec<String>, Refusal> {
     let mut files = Vec::new();
     let mut names = Vec::new();
-    for (case, Tried { report, record, is_old }) in cases.iter().zip(tried.iter_mut()) {
-        let is_other = report.answer != Answer::Same || *is_old;
+    for (case, Tried { report, record }) in cases.iter().zip(tried.iter_mut()) {
+        let is_other = report.answer != Answer::Same;
         let is_taken = |record: &&Record| is_other && !record.lacks_program();
         let Some(record) = record.as_ref().filter(is_taken) else { continue };
         let text = record.to_json().map_err(|error| Refusal::new(error.to_string()))?;
@@ -173,6 +173,7 @@ fn accept(cases: &[Case], tried: &mut [Tried]) -> Result<Vec<String>, Refusal> {
         names.push(report.name.clone());
         report.answer = Answer::Same;
         report.changes.clear();
+        report.not_compared.clear();
     }
     let files: Vec<_> = files.iter().map(|(path, bytes)| (path.as_path(), bytes.as_slice())).collect();
     output::write_all(&files)?;

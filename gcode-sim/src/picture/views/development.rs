@@ -236,7 +236,7 @@ mod tests {
             standing: Standing::Good,
             phi: None,
             turn: None,
-            remark: None,
+            remarks: Vec::new(),
         }
     }
 

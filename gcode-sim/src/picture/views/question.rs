@@ -55,6 +55,14 @@ impl Question {
         self == Self::Verdict || 0.5 <= phi * libm::pow(10.0, f64::from(places))
     }
 
+    /// At a line to where a hole stands in truth.
+    pub(super) fn astray(self) -> &'static str {
+        match self {
+            Self::Verdict => "to where the hole is instead",
+            Self::Change => "to where the hole is now",
+        }
+    }
+
     /// Before the diameter of the circle that a misfit is drawn in.
     pub(super) fn misfit(self) -> &'static str {
         match self {

@@ -2,7 +2,7 @@
 use nalgebra::Vector3;
 
 use super::super::measure::plain;
-use super::super::role::{Pen, Standing};
+use super::super::role::{Pen, Point, Standing};
 use super::super::scene::{LegendItem, Mark, Sample, Scene, Shape, Stroke, Title};
 use super::question::Question;
 use super::side::Side;
@@ -30,6 +30,8 @@ pub struct TopView {
     pub question: Question,
     /// How many differences of two revisions no hole shows.
     pub others: usize,
+    /// That they end differently.
+    pub ends: Option<String>,
     pub path: Vec<PathPiece>,
     /// Further lines of the title block.
     pub lines: Vec<String>,
@@ -59,15 +61,52 @@ pub struct DrawnHole {
     pub phi: Option<f64>,
     /// Where the rotary axis stands while the hole is made, degrees.
     pub turn: Option<f64>,
-    /// What is wrong where it isn't the position: a few words.
-    pub remark: Option<String>,
+    /// What is wrong where it isn't the position: a few words each.
+    pub remarks: Vec<String>,
 }
 
 /// A piece of the tool's path in the part's frame, mm.
 #[derive(Clone, Debug)]
 pub struct PathPiece {
     pub points: Vec<[f64; 3]>,
-    pub rapid: bool,
+    pub kind: PathKind,
+}
+
+/// Of one program a feed or a rapid; of two the cuts, in the order in which they are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum PathKind {
+    Feed,
+    Rapid,
+    /// Made by both.
+    Kept,
+    /// By the new program only, or otherwise.
+    New,
+    /// By the old program only, or otherwise.
+    Gone,
+}
+
+impl PathKind {
+    const ALL: [Self; 5] = [Self::Feed, Self::Rapid, Self::Kept, Self::New, Self::Gone];
+
+    fn pen(self) -> Pen {
+        match self {
+            Self::Feed => Pen::Feed,
+            Self::Rapid => Pen::Rapid,
+            Self::Kept => Pen::Kept,
+            Self::New => Pen::Now,
+            Self::Gone => Pen::Before,
+        }
+    }
+
+    fn legend(self) -> &'static str {
+        match self {
+            Self::Feed => "tool path, feed",
+            Self::Rapid => "tool path, rapid",
+            Self::Kept => "cut as before",
+            Self::New => "cut that is another one, now",
+            Self::Gone => "the same before",
+        }
+    }
 }
 
 /// Of more holes on a cylinder those that are as wanted have neither number nor dial: they would hide each other.
@@ -80,10 +119,10 @@ const MOST_CIRCLES: usize = 12;
 pub fn top_view(view: &TopView) -> Scene {
     let (near, far): (Vec<_>, Vec<_>) = view.holes.iter().partition(|hole| faces_reader(hole, view));
     let mut marks: Vec<Mark> = near.into_iter().filter_map(|hole| mark(hole, view)).collect();
-    if view.cylinder.is_some() {
+    if view.cylinder.is_some() || view.question == Question::Change {
         number_few(&mut marks);
     }
-    let mut strokes: Vec<Stroke> = view.path.iter().map(|piece| path(piece, view.side)).collect();
+    let mut strokes: Vec<Stroke> = view.path.iter().filter_map(|piece| path(piece, view.side)).collect();
     let circles = if view.side == Side::Y { circles(&view.holes) } else { Vec::new() };
     let has_circles = !circles.is_empty();
     strokes.extend(circles);
@@ -137,9 +176,12 @@ fn faces_reader(hole: &DrawnHole, view: &TopView) -> bool {
     view.cylinder.is_none() || !shown.is_some_and(away)
 }
 
-fn path(piece: &PathPiece, side: Side) -> Stroke {
-    let pen = if piece.rapid { Pen::Rapid } else { Pen::Feed };
-    Stroke { shape: Shape::Line(piece.points.iter().map(|p| side.seen(*p)).collect()), pen, caption: None }
+/// Nothing of a piece that runs straight towards the reader.
+fn path(piece: &PathPiece, side: Side) -> Option<Stroke> {
+    let points: Vec<Point> = piece.points.iter().map(|p| side.seen(*p)).collect();
+    let first = *points.first()?;
+    let goes = points.iter().any(|p| 1e-3 < libm::hypot(p[0] - first[0], p[1] - first[1]));
+    goes.then(|| Stroke { shape: Shape::Line(points), pen: piece.kind.pen(), caption: None })
 }
 
 /// A hole's number, and what is to be said of it.
@@ -148,13 +190,14 @@ pub(super) fn label(hole: &DrawnHole, view: &TopView) -> Vec<String> {
     let turn = hole.turn.map(|turn| format!("{} {}°", view.rotary, signed(turn, 3)));
     let phi = hole.phi.filter(|phi| view.question.tells(*phi, 3)).map(|phi| format!("Φ{phi:.3}"));
     let words = match hole.standing {
-        Standing::Missing | Standing::Extra => Some(view.question.word(hole.standing).to_owned()),
-        Standing::Good | Standing::Bad | Standing::Unjudged => hole.remark.clone(),
+        Standing::Missing | Standing::Extra => vec![view.question.word(hole.standing).to_owned()],
+        Standing::Good | Standing::Bad | Standing::Unjudged => hole.remarks.clone(),
     };
+    label.extend(words);
     if hole.standing == Standing::Good {
-        label.extend([words, turn, phi].into_iter().flatten());
+        label.extend([turn, phi].into_iter().flatten());
     } else {
-        label.extend([words, phi, turn].into_iter().flatten());
+        label.extend([phi, turn].into_iter().flatten());
     }
     label.retain(|line| !line.is_empty());
     label
@@ -208,7 +251,8 @@ fn count(holes: &[DrawnHole], standing: Standing) -> usize {
 pub(super) fn headline(view: &TopView) -> Option<(Standing, String)> {
     let of = |standing| count(&view.holes, standing);
     let counts = [Standing::Good, Standing::Bad, Standing::Missing, Standing::Extra].map(of);
-    view.question.headline(counts, view.others)
+    let (standing, words) = view.question.headline(counts, view.others)?;
+    Some((standing, view.ends.iter().cloned().chain([words]).collect::<Vec<_>>().join("; ")))
 }
 
 pub(super) fn worst(view: &TopView) -> Option<String> {
@@ -244,7 +288,7 @@ fn legend(view: &TopView, marks: &[Mark], has_circles: bool) -> Vec<LegendItem> 
         add(Sample::Direction, "hole axis, outwards");
     }
     if marks.iter().any(|m| m.found.is_some()) {
-        add(Sample::Astray, "to where the hole is instead");
+        add(Sample::Astray, view.question.astray());
     }
     if view.outline.is_some() || view.cylinder.is_some() {
         add(Sample::Pen(Pen::Outline), "part outline");
@@ -254,10 +298,9 @@ fn legend(view: &TopView, marks: &[Mark], has_circles: bool) -> Vec<LegendItem> 
         let text = if wanted { "radius r, mm" } else { "radius r where the feed begins, mm" };
         add(Sample::Pen(Pen::Construction), text);
     }
-    for (rapid, pen, text) in [(false, Pen::Feed, "tool path, feed"), (true, Pen::Rapid, "tool path, rapid")]
-    {
-        if view.path.iter().any(|p| p.rapid == rapid) {
-            add(Sample::Pen(pen), text);
+    for kind in PathKind::ALL {
+        if view.path.iter().any(|piece| piece.kind == kind && path(piece, view.side).is_some()) {
+            add(Sample::Pen(kind.pen()), kind.legend());
         }
     }
     items
@@ -279,7 +322,7 @@ mod tests {
             standing: Standing::Good,
             phi: Some(0.02),
             turn: Some(-72.0),
-            remark: None,
+            remarks: Vec::new(),
         }
     }
 

@@ -27,7 +27,7 @@ pub(super) fn changes(difference: &Difference<'_>, sides: &[Side<'_>]) -> Markup
             }
         }
         @if !difference.unexecuted.is_empty() {
-            h3 { "Changed blocks that neither run executed" }
+            h3 #unexecuted { "Changed blocks that neither run executed" }
             p.note { "Nothing is known of what they do: a guard that wasn't needed, a way that wasn't gone." }
             ol.changes {
                 @for Unexecuted { old, new } in listed(difference.unexecuted) {

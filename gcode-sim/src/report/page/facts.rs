@@ -16,6 +16,12 @@ pub(super) fn answer(page: &Page<'_>, sides: &[Side<'_>]) -> Markup {
                 @if changes == 0 { "Nothing changes on the part" } @else { (figures::count(changes, "change")) }
             }
         }
+        @if let Some(difference) = difference && !difference.unexecuted.is_empty() {
+            p.answer {
+                "Executed by neither run, so nothing is known of them: "
+                a href="#unexecuted" { (figures::count(difference.unexecuted.len(), "changed block")) }
+            }
+        }
         @for side in sides {
             @let stopped = side.seen.revision.record.outcome() != "end";
             @if let Some(verdict) = side.seen.verdict {

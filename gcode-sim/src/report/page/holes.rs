@@ -3,12 +3,14 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use maud::{Markup, html};
 
-use super::rows::{Row, State, found_rows, judged_rows, paired_rows};
+use super::rows::{Row, State, found_rows, judged_rows, paired_rows, tools_of};
 use super::words::count;
 use super::{Page, Side};
 
 /// So many rows of holes that are as they should be are shown at first, and printed; the others at a button.
 const SHOWN: usize = 200;
+/// More rows than this aren't printed, in the order in which they stand then; page.css counts them as well.
+const PRINTED: usize = 300;
 /// More rows than this aren't on the page.
 const MOST_ROWS: usize = 5_000;
 
@@ -25,10 +27,12 @@ impl HoleTable {
     pub(super) fn new(page: &Page<'_>, sides: &[Side<'_>]) -> Self {
         let verdicts: Option<Vec<_>> =
             sides.iter().map(|side| side.seen.verdict.map(|verdict| (*side, verdict))).collect();
+        let tools = tools_of(sides);
+        let pairs = page.old.map_or(&[][..], |(_, difference)| &difference.compared.holes);
         let (columns, mut rows) = match (page.reference, verdicts, page.old) {
-            (Some(reference), Some(judged), _) => judged_rows(reference, &judged, sides),
-            (_, _, Some((_, difference))) => paired_rows(&difference.compared.holes, sides),
-            _ => found_rows(sides),
+            (Some(reference), Some(judged), _) => judged_rows(reference, &judged, sides, (pairs, &tools)),
+            (_, _, Some(_)) => paired_rows(pairs, sides, &tools),
+            _ => found_rows(sides, &tools),
         };
         let cut = rows.len().saturating_sub(MOST_ROWS);
         if cut > 0 {
@@ -49,6 +53,7 @@ impl HoleTable {
     pub(super) fn markup(&self, page: &Page<'_>) -> Markup {
         let calm = self.rows.iter().enumerate().filter(|(_, row)| !row.state.is_worth_a_look());
         let hidden: BTreeSet<usize> = calm.skip(SHOWN).map(|(number, _)| number).collect();
+        let seen = self.rows.len() - hidden.len();
         html! {
             @if self.rows.is_empty() { p { "No hole is made." } } @else {
                 p.note {
@@ -62,6 +67,11 @@ impl HoleTable {
                 }
                 @if self.cut > 0 {
                     p.note { (count(self.cut as u64)) " rows are left out: a page holds " (MOST_ROWS) ", those worth a look first." }
+                }
+                @if PRINTED < seen {
+                    p.note.paper {
+                        "The first " (PRINTED) " of " (count(seen as u64)) " rows are printed, as they were sorted; the others are on the screen."
+                    }
                 }
                 div.scroll {
                     table.holes {
@@ -79,7 +89,7 @@ impl HoleTable {
                 }
                 @if !hidden.is_empty() {
                     p.note #hidden-rows {
-                        (count(hidden.len() as u64)) " more holes aren't shown, nor printed; those that differ or are wrong all are. "
+                        (count(hidden.len() as u64)) " more holes aren't shown, nor printed; those that differ or are wrong all are shown. "
                         button type="button" #show-rows { "Show all" }
                     }
                 }
@@ -98,7 +108,7 @@ impl Row {
                 }
                 td.state { (self.words) }
                 @for cell in &self.cells {
-                    td.number[cell.value.is_some()] data-value=[cell.value] {
+                    td.number[cell.value.is_some()].block[!cell.links.is_empty()] data-value=[cell.value] {
                         (cell.text)
                         @for (place, (anchor, name)) in cell.links.iter().enumerate() {
                             @if place > 0 { " ← " }

@@ -7,6 +7,7 @@ use crate::changes::Paired;
 use crate::holes::Found;
 use crate::part::reference::Reference;
 use crate::report::figures::{near, signed};
+use crate::report::hole_changes::{self, remarks};
 use crate::verify::{Extra, HoleVerdict, Verdict};
 
 /// What is to be said of a hole.
@@ -16,6 +17,8 @@ pub(super) enum State {
     Missing,
     Extra,
     Changed,
+    /// Within tolerance, and something about it is different.
+    Altered,
     Good,
     Same,
     Unjudged,
@@ -29,6 +32,7 @@ impl State {
             Self::Missing => "missing",
             Self::Extra => "extra",
             Self::Changed => "changed",
+            Self::Altered => "altered",
             Self::Good => "good",
             Self::Same => "same",
             Self::Unjudged => "unjudged",
@@ -52,15 +56,6 @@ pub(super) struct Cell {
 impl Cell {
     fn number(value: f64, decimals: usize) -> Self {
         Self { text: near(value, decimals), value: Some(value), links: Vec::new() }
-    }
-
-    /// A tool that another one has taken the place of stands before it.
-    fn before(&mut self, was: Option<u32>, is: Option<u32>) {
-        if let (Some(was), Some(is)) = (was, is)
-            && was != is
-        {
-            self.text = format!("T{was} → T{is}");
-        }
     }
 
     fn maybe(value: Option<f64>, decimals: usize) -> Self {
@@ -108,10 +103,20 @@ fn titled(name: &str, side: &Side<'_>, sides: &[Side<'_>]) -> String {
     }
 }
 
-/// What a hole is: where, how deep, how wide, by which tool.
-fn described(found: Option<&Found>) -> Vec<Cell> {
+/// The tools that make each hole of each side; where one only makes another again, its own.
+pub(super) fn tools_of(sides: &[Side<'_>]) -> Vec<Vec<Vec<u32>>> {
+    let of = |side: &Side<'_>| {
+        let holes = &side.seen.revision.simulation.extracted.holes;
+        let made = side.seen.revision.record.made_by().into_iter().zip(holes);
+        made.map(|(tools, hole)| if tools.is_empty() { hole.tool.into_iter().collect() } else { tools })
+            .collect()
+    };
+    sides.iter().map(of).collect()
+}
+
+/// What a hole is: where, how deep, how wide, by which tools.
+fn described(found: Option<&Found>, tools: &[u32]) -> Vec<Cell> {
     let entry = |axis: usize| Cell::maybe(found.map(|found| found.entry[axis]), 3);
-    let tool = found.and_then(|found| found.tool);
     vec![
         entry(0),
         entry(1),
@@ -119,23 +124,23 @@ fn described(found: Option<&Found>) -> Vec<Cell> {
         Cell::maybe(found.map(|found| found.depth), 3),
         Cell::maybe(found.and_then(|found| found.diameter), 2),
         Cell {
-            text: tool.map_or_else(String::new, |t| format!("T{t}")),
-            value: tool.map(f64::from),
+            text: hole_changes::tools(tools),
+            value: tools.last().copied().map(f64::from),
             links: Vec::new(),
         },
     ]
 }
 
-const DESCRIBED: [&str; 6] = ["X", "Y", "Z", "Depth", "Φ", "Tool"];
+const DESCRIBED: [&str; 6] = ["X", "Y", "Z", "Depth", "Φ", "Tools"];
 
-/// Which of them is the tool.
+/// Which of them are the tools.
 const TOOL: usize = 5;
 
-pub(super) fn found_rows(sides: &[Side<'_>]) -> (Vec<String>, Vec<Row>) {
+pub(super) fn found_rows(sides: &[Side<'_>], tools: &[Vec<Vec<u32>>]) -> (Vec<String>, Vec<Row>) {
     let Some(side) = sides.last() else { return (Vec::new(), Vec::new()) };
     let holes = side.seen.revision.simulation.extracted.holes.iter().enumerate();
     let rows = holes.map(|(number, hole)| {
-        let mut cells = described(Some(hole));
+        let mut cells = described(Some(hole), tools.last().map_or(&[], |tools| &tools[number]));
         cells.push(made_by(side, hole));
         let words = "not judged".to_owned();
         Row { id: (number + 1).to_string(), state: State::Unjudged, words, cells, holes: vec![Some(number)] }
@@ -144,7 +149,11 @@ pub(super) fn found_rows(sides: &[Side<'_>]) -> (Vec<String>, Vec<Row>) {
 }
 
 /// Two revisions against one another.
-pub(super) fn paired_rows(pairs: &[Paired], sides: &[Side<'_>]) -> (Vec<String>, Vec<Row>) {
+pub(super) fn paired_rows(
+    pairs: &[Paired],
+    sides: &[Side<'_>],
+    tools: &[Vec<Vec<u32>>],
+) -> (Vec<String>, Vec<Row>) {
     let [old, new] = sides else { return (Vec::new(), Vec::new()) };
     let mut columns = DESCRIBED.map(str::to_owned).to_vec();
     columns.extend(["Moved", "Tilted °", "Deeper"].map(str::to_owned));
@@ -152,8 +161,13 @@ pub(super) fn paired_rows(pairs: &[Paired], sides: &[Side<'_>]) -> (Vec<String>,
     let row = |pair: &Paired| {
         let (was, is) = (pair.old.map(|hole| found(old, hole)), pair.new.map(|hole| found(new, hole)));
         let both = pair.old.is_some() && pair.new.is_some();
-        let mut cells = described(is.or(was));
-        cells[TOOL].before(was.and_then(|hole| hole.tool), is.and_then(|hole| hole.tool));
+        let made = |side: usize, hole: Option<usize>| hole.map_or(&[][..], |hole| &tools[side][hole]);
+        let (before, now) = (made(0, pair.old), made(1, pair.new));
+        let mut cells = described(is.or(was), if is.is_some() { now } else { before });
+        if both && before != now {
+            let [before, now] = [before, now].map(hole_changes::tools);
+            cells[TOOL].text = format!("{before} → {now}");
+        }
         cells.extend([
             Cell::maybe(both.then_some(pair.moved), 4),
             Cell::maybe(both.then_some(pair.tilted.0), 4),
@@ -161,13 +175,17 @@ pub(super) fn paired_rows(pairs: &[Paired], sides: &[Side<'_>]) -> (Vec<String>,
             was.map_or_else(Cell::default, |hole| made_by(old, hole)),
             is.map_or_else(Cell::default, |hole| made_by(new, hole)),
         ]);
+        let remarks = remarks(pair, was.zip(Some(before)), is.zip(Some(now))).join("; ");
         let (id, state, words) = match (pair.old, pair.new) {
-            (Some(hole), None) => (format!("{}", hole + 1), State::Missing, "lost"),
-            (None, Some(hole)) => (format!("new {}", hole + 1), State::Extra, "added"),
-            (Some(hole), Some(_)) if pair.changed => (format!("{}", hole + 1), State::Changed, "changed"),
-            (hole, _) => (hole.map_or_else(String::new, |hole| (hole + 1).to_string()), State::Same, "same"),
+            (Some(hole), None) => (format!("{}", hole + 1), State::Missing, "lost".to_owned()),
+            (None, Some(hole)) => (format!("new {}", hole + 1), State::Extra, "added".to_owned()),
+            (Some(hole), Some(_)) if pair.changed => (format!("{}", hole + 1), State::Changed, remarks),
+            (hole, _) => {
+                let id = hole.map_or_else(String::new, |hole| (hole + 1).to_string());
+                (id, State::Same, "same".to_owned())
+            }
         };
-        Row { id, state, words: words.to_owned(), cells, holes: vec![pair.old, pair.new] }
+        Row { id, state, words, cells, holes: vec![pair.old, pair.new] }
     };
     (columns, pairs.iter().map(row).collect())
 }
@@ -177,7 +195,18 @@ pub(super) fn judged_rows(
     reference: &Reference,
     judged: &[(Side<'_>, &Verdict)],
     sides: &[Side<'_>],
+    (pairs, tools): (&[Paired], &[Vec<Vec<u32>>]),
 ) -> (Vec<String>, Vec<Row>) {
+    let changed: BTreeMap<usize, &Paired> =
+        pairs.iter().filter(|pair| pair.changed).filter_map(|pair| Some((pair.new?, pair))).collect();
+    // What is different about a hole of the new side.
+    let different = |hole: &HoleVerdict| {
+        let pair = changed.get(&hole.found)?;
+        let [old, new] = sides else { return None };
+        let made = |side, number: usize, place: usize| (found(side, number), tools[place][number].as_slice());
+        let was = pair.old.map(|hole| made(old, hole, 0));
+        Some(remarks(pair, was, pair.new.map(|hole| made(new, hole, 1)))).filter(|words| !words.is_empty())
+    };
     let by_id: Vec<BTreeMap<&str, &HoleVerdict>> =
         judged.iter().map(|(_, v)| v.holes.iter().map(|hole| (hole.id.as_str(), hole)).collect()).collect();
     let mut columns: Vec<String> = sides.iter().map(|side| titled("φ", side, sides)).collect();
@@ -202,10 +231,13 @@ pub(super) fn judged_rows(
         cells.extend(judged.iter().zip(&found_by).map(|((side, _), hole)| {
             hole.map_or_else(Cell::default, |hole| made_by(side, found(side, hole.found)))
         }));
-        let (state, words) = match is {
-            None => (State::Missing, "missing".to_owned()),
-            Some(hole) if hole.ok => (State::Good, "in tolerance".to_owned()),
-            Some(hole) => (State::Bad, hole.objections.join(", ")),
+        let (state, words) = match (is, is.and_then(different)) {
+            (None, _) => (State::Missing, "missing".to_owned()),
+            (Some(hole), Some(words)) if hole.ok => {
+                (State::Altered, format!("in tolerance, but: {}", words.join("; ")))
+            }
+            (Some(hole), None) if hole.ok => (State::Good, "in tolerance".to_owned()),
+            (Some(hole), _) => (State::Bad, hole.objections.join(", ")),
         };
         let holes = found_by.iter().map(|hole| hole.map(|hole| hole.found)).collect();
         Row { id: shown(id), state, words, cells, holes }

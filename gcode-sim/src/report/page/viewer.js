@@ -1,5 +1,7 @@
 // The drawing: one camera for all canvases, which shows the part straight, without perspective.
 const RAD = Math.PI / 180;
+// Below what is fitted into a canvas its scale has a strip of its own, pixels.
+const STRIP = 40;
 
 class Camera {
   constructor(up) {
@@ -104,8 +106,8 @@ class Side {
     this.strokeMoves(colours.feed, 1.6, [], plain("fa"));
     this.strokeMoves(colours.probe, 2, [2, 3], plain("p"));
     const rapid = (move) => this.kinds[move] === "r";
-    if (options.rapids) this.strokeMoves(colours.changed, 2, few ? [5, 4] : [], (move) => this.isChanged.has(move) && rapid(move));
-    this.strokeMoves(colours.changed, 3.5, [], (move) => this.isChanged.has(move) && !rapid(move));
+    if (options.rapids) this.strokeMoves(colours.changed, few ? 2 : 0.8, few ? [5, 4] : [], (move) => this.isChanged.has(move) && rapid(move));
+    this.strokeMoves(colours.changed, few ? 3.5 : 1.2, [], (move) => this.isChanged.has(move) && !rapid(move));
     const line = pick.line?.side === this ? pick.line.number : null;
     if (line !== null) this.strokeMoves(colours.pick, 4, [], (move) => shown(move) && this.places[this.at[move]].includes(line));
     if (pick.side === this && pick.move !== undefined) {
@@ -123,7 +125,7 @@ class Side {
 
   drawHoles(colours, pick) {
     const isPicked = (hole) => hole === pick.hole || (hole.row !== null && hole.row === pick.row);
-    const wrong = (hole) => ["bad", "extra", "changed", "missing"].includes(hole.state);
+    const wrong = (hole) => ["bad", "extra", "changed", "altered", "missing"].includes(hole.state);
     const kind = (hole) => (isPicked(hole) ? "pick" : wrong(hole) ? "wrong" : "hole");
     const groups = new Map();
     for (const hole of this.holes) {
@@ -149,25 +151,35 @@ class Side {
     for (const name of [...groups.keys()].sort((a, b) => (order(a) < order(b) ? 1 : -1))) {
       const [away, role] = name.split(" ");
       Object.assign(context, { globalAlpha: away === "a" && role === "hole" ? 0.3 : 1, fillStyle: colours[role] });
-      const named = this.holes.length <= 60 || role !== "hole" ? groups.get(name).slice(0, 60) : [];
-      named.forEach((hole) => this.label(hole, taken, role === "pick"));
+      const group = groups.get(name);
+      // Of a crowd nobody could tell whose name is whose.
+      const named = this.holes.length <= 60 || (role !== "hole" && group.length <= 60) || role === "pick";
+      if (named) group.forEach((hole) => this.label(hole, taken, colours, role === "pick"));
     }
     context.globalAlpha = 1;
   }
 
   // A hole's name beside it, where no other one stands; where all places are taken a click on the hole tells it.
-  label(hole, taken, always) {
+  label(hole, taken, colours, always) {
     const [x, y] = this.point(hole.entry);
     const [away, wide, high] = [this.radius(hole) + 6, this.context.measureText(hole.id).width, 13];
     const [right, left] = [x + away, x - away - wide];
     const corners = [y - away + 3, y + away + high - 6, y + high / 2 - 2, y - away - high + 3, y + away + 2 * high - 6];
     const places = corners.flatMap((bottom) => [[right, bottom], [left, bottom]]);
     const isFree = ([at, bottom]) =>
+      0 <= at && at + wide <= this.view.width && high <= bottom && bottom <= this.view.height &&
       taken.every(([other, low, width]) => at + wide < other || other + width < at || Math.abs(bottom - low) >= high);
     const place = places.find(isFree) ?? (always ? places[0] : null);
     if (!place) return;
     taken.push([...place, wide]);
-    this.context.fillText(hole.id, ...place);
+    this.write(hole.id, ...place, colours);
+  }
+
+  // Lines end before words.
+  write(words, x, y, colours) {
+    Object.assign(this.context, { strokeStyle: colours.paper, lineWidth: 3, lineJoin: "round" });
+    this.context.strokeText(words, x, y);
+    this.context.fillText(words, x, y);
   }
 
   radius(hole) {
@@ -201,7 +213,8 @@ class Side {
       context.moveTo(ox, oy);
       context.lineTo(ox + dx, oy + dy);
       context.stroke();
-      if (Math.hypot(dx, dy) > 6) context.fillText(name, ox + 1.3 * dx - 4, oy + 1.3 * dy + 4);
+      if (Math.hypot(dx, dy) > 6) this.write(name, ox + 1.3 * dx - 4, oy + 1.3 * dy + 4, colours);
+      Object.assign(context, { strokeStyle: colours.ink, lineWidth: 1.5 });
     });
     const decade = 10 ** Math.floor(Math.log10(120 / scale));
     const length = [5, 2, 1].map((step) => step * decade).find((mm) => mm * scale <= 120) ?? decade;
@@ -213,7 +226,7 @@ class Side {
     context.lineTo(right, bottom - 5);
     context.stroke();
     context.textAlign = "right";
-    context.fillText(`${Number(length.toPrecision(3))} mm`, right, bottom - 8);
+    this.write(`${Number(length.toPrecision(3))} mm`, right, bottom - 8, colours);
     context.textAlign = "left";
   }
 
@@ -271,7 +284,7 @@ class Viewer {
       wide = Math.max(wide, Math.abs(rows[0][0] * a + rows[0][1] * b + rows[0][2] * c));
       high = Math.max(high, Math.abs(rows[1][0] * a + rows[1][1] * b + rows[1][2] * c));
     }
-    return Math.min((0.42 * width) / wide, (0.4 * height) / high);
+    return Math.min((0.42 * width) / wide, (0.42 * (height - STRIP)) / high);
   }
 
   fit() {
@@ -288,7 +301,7 @@ class Viewer {
   draw() {
     this.waiting = false;
     const style = getComputedStyle(document.documentElement);
-    const names = ["ink", "rapid", "feed", "probe", "changed", "hole", "wrong", "pick"];
+    const names = ["paper", "ink", "rapid", "feed", "probe", "changed", "hole", "wrong", "pick"];
     const colours = Object.fromEntries(names.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
     const rows = this.camera.axes();
     this.scales ??= this.sides.map(({ canvas }) => this.fitting(rows, canvas.clientWidth, canvas.clientHeight));
@@ -303,7 +316,7 @@ class Viewer {
       }
       side.context.setTransform(dots, 0, 0, dots, 0, 0);
       const scale = fitting * this.camera.zoom;
-      side.project({ rows, middle: this.middle, scale, width, height, cx: width / 2 + this.camera.panX, cy: height / 2 + this.camera.panY });
+      side.project({ rows, middle: this.middle, scale, width, height, cx: width / 2 + this.camera.panX, cy: (height - STRIP) / 2 + this.camera.panY });
       side.draw(colours, this.options, this.pick);
     }
   }

@@ -1,0 +1,153 @@
+//! The top view of two revisions: the new holes over the old ones, and the cuts that are others beside those that aren't.
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::figures::{count, near};
+use super::hole_changes::remarks;
+use super::top::{Rotary, along, outline, round_up, side, still};
+use crate::changes::{Change, Compared, Leg, Paired, Record, Revision};
+use crate::machine::Machine;
+use crate::part::reference::Reference;
+use crate::picture::{DrawnHole, PathKind, PathPiece, Question, Standing, TopView};
+
+/// No more cuts of each revision than this are drawn, nor more points.
+const MOST_MOVES: usize = 20_000;
+const MOST_POINTS: usize = 100_000;
+
+/// So many kinds of changes that no hole shows are told in words.
+const TOLD: usize = 7;
+
+/// Farther than this a hole's way is drawn on the part, not in a circle, mm.
+const FAR: f64 = 5.0;
+
+/// The holes of a new revision over those of the old one, paired as `compared` has them, and the cuts besides. With a
+/// reference the part's outline is known.
+pub fn of_changes(
+    name: &str,
+    (old, new): (&Revision, &Revision),
+    machine: &Machine,
+    (compared, tolerance): (&Compared, f64),
+    reference: Option<&Reference>,
+) -> TopView {
+    let rotary = Rotary::of(machine);
+    let lists = [old, new].map(|side| side.simulation.list().holes);
+    let sides = [old, new];
+    let tools = sides.map(|side| side.record.made_by());
+    let drawn = |pair: &Paired| {
+        let was = pair.old.map(|hole| lists[0][hole].clone());
+        let is = pair.new.map(|hole| lists[1][hole].clone());
+        let found = pair.new.map(|hole| &new.simulation.extracted.holes[hole]);
+        let (id, standing) = match (pair.old, pair.new) {
+            (Some(hole), Some(_)) if !pair.changed => ((hole + 1).to_string(), Standing::Good),
+            (Some(hole), Some(_)) => ((hole + 1).to_string(), Standing::Bad),
+            (Some(hole), None) => ((hole + 1).to_string(), Standing::Missing),
+            (None, hole) => (format!("new {}", hole.unwrap_or_default() + 1), Standing::Extra),
+        };
+        let made = |side: usize, hole: Option<usize>| {
+            hole.map(|hole| (&sides[side].simulation.extracted.holes[hole], tools[side][hole].as_slice()))
+        };
+        let remarks = remarks(pair, made(0, pair.old), made(1, pair.new));
+        let turn = found.and_then(|found| rotary.turn(found));
+        DrawnHole { id, nominal: was, found: is, standing, phi: None, turn, remarks }
+    };
+    let mut holes: Vec<DrawnHole> = compared.holes.iter().map(drawn).collect();
+    still(&mut holes);
+    let moved = || compared.holes.iter().map(|pair| pair.moved);
+    let shown = moved().filter(|moved| *moved <= FAR).fold(0.0, f64::max);
+    let farthest = compared.holes.iter().filter(|pair| tolerance < pair.moved);
+    let farthest = farthest.max_by(|a, b| a.moved.total_cmp(&b.moved));
+    let farthest = farthest.and_then(|pair| {
+        let hole = pair.old? + 1;
+        Some(format!("moved farthest: hole\u{a0}{hole}, by {} mm", near(pair.moved, 4)))
+    });
+    let others: Vec<&Change> =
+        compared.changes.iter().filter(|change| !is_of_one_hole(&change.code)).collect();
+    let path = path([old, new], machine, compared);
+    let more = path.has_other_rapids.then(|| "rapids aren't drawn: see --page".to_owned());
+    let lines = farthest.into_iter().chain(told(&others)).chain(more).collect();
+    TopView {
+        name: name.to_owned(),
+        side: along(&lists[0]).or_else(|| along(&lists[1])).unwrap_or_else(|| side(machine)),
+        outline: reference.and_then(|reference| reference.surface).and_then(outline),
+        cylinder: reference.and_then(super::top::cylinder),
+        // A circle that nothing is seen in has no scale to be told.
+        tolerance: (tolerance < shown).then(|| round_up(2.0 * shown)),
+        rotary: rotary.letter(),
+        backwards: rotary.backwards(),
+        holes,
+        question: Question::Change,
+        others: others.len(),
+        ends: others.iter().find(|change| change.code == "outcome").map(|_| {
+            let stops = |record: &Record| record.outcome() != "end";
+            match (stops(&old.record), stops(&new.record)) {
+                (_, true) => "the new program stops before its end",
+                (true, false) => "the old program stops before its end",
+                (false, false) => "they end differently",
+            }
+            .to_owned()
+        }),
+        path: path.cuts,
+        lines,
+    }
+}
+
+/// The changes that no hole's sign shows, those of a kind together.
+fn told(others: &[&Change]) -> Vec<String> {
+    let mut kinds: Vec<(&str, &str, usize)> = Vec::new();
+    for change in others {
+        match kinds.iter_mut().find(|(code, ..)| *code == change.code) {
+            Some((.., more)) => *more += 1,
+            None => kinds.push((&change.code, &change.message, 0)),
+        }
+    }
+    let line = |(code, message, more): &(&str, &str, usize)| match more {
+        0 => format!("{code}: {message}"),
+        more => format!("{code}: {message}; and {more} more"),
+    };
+    let mut lines: Vec<String> = kinds.iter().take(TOLD).map(line).collect();
+    if TOLD < kinds.len() {
+        let more = count(kinds.len() - TOLD, "more kind");
+        lines.push(format!("{more} of changes: see the text of diff"));
+    }
+    lines
+}
+
+/// A change that a hole's own sign shows; of the order there is none.
+fn is_of_one_hole(code: &str) -> bool {
+    code.starts_with("hole-") && code != "hole-order"
+}
+
+struct Path {
+    /// The cuts that make no hole: those of both, those of the new revision, those of the old one.
+    cuts: Vec<PathPiece>,
+    has_other_rapids: bool,
+}
+
+fn path(sides: [&Revision; 2], machine: &Machine, compared: &Compared) -> Path {
+    let mut has_other_rapids = false;
+    let mut pieces: BTreeMap<PathKind, Vec<PathPiece>> = BTreeMap::new();
+    for (place, side) in sides.into_iter().enumerate() {
+        let different: BTreeSet<usize> = compared.steps[place].iter().copied().collect();
+        let legs = side.record.path(machine, MOST_MOVES, MOST_POINTS);
+        has_other_rapids |= legs.iter().any(|leg| leg.kind == "rapid" && different.contains(&leg.step));
+        for leg in legs.iter().filter(|leg| leg.kind != "rapid" && !leg.is_of_hole) {
+            let kind = match (different.contains(&leg.step), place) {
+                (false, 0) => continue,
+                (false, _) => PathKind::Kept,
+                (true, 0) => PathKind::Gone,
+                (true, _) => PathKind::New,
+            };
+            lengthen(pieces.entry(kind).or_default(), leg, kind);
+        }
+    }
+    Path { cuts: pieces.into_values().flatten().collect(), has_other_rapids }
+}
+
+/// Cuts that follow one another are one line: dashes run on.
+fn lengthen(pieces: &mut Vec<PathPiece>, leg: &Leg, kind: PathKind) {
+    let mut points = leg.points.iter().map(|point| point.coords.into());
+    let ends_at = |piece: &&mut PathPiece| piece.points.last().copied() == points.clone().next();
+    match pieces.last_mut().filter(ends_at) {
+        Some(piece) => piece.points.extend(points.skip(1)),
+        None => pieces.push(PathPiece { points: points.by_ref().collect(), kind }),
+    }
+}

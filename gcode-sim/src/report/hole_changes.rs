@@ -1,0 +1,73 @@
+//! What is different about a hole of two revisions, in a few words each: pictures and pages say the same.
+use super::figures::with_sign;
+use crate::changes::Paired;
+use crate::holes::Found;
+use crate::units::Deg;
+
+/// A hole of one revision, and the tools that make it.
+pub(super) type Made<'a> = (&'a Found, &'a [u32]);
+
+/// Nothing of a hole that is as before, or that is there once only.
+pub(super) fn remarks(pair: &Paired, was: Option<Made<'_>>, is: Option<Made<'_>>) -> Vec<String> {
+    let (true, Some((was, before)), Some((is, now))) = (pair.changed, was, is) else { return Vec::new() };
+    let mut words = Vec::new();
+    let seen = |value: f64| 0.0005 <= value.abs();
+    words.extend(seen(pair.moved).then(|| format!("moved {:.3}", pair.moved)));
+    words.extend(seen(pair.deeper).then(|| format!("depth {}", with_sign(pair.deeper))));
+    if let (Some(was), Some(is)) = (was.diameter, is.diameter)
+        && 1e-9 < (was - is).abs()
+    {
+        words.push(format!("Φ{is}, was Φ{was}"));
+    }
+    if before != now && !before.is_empty() && !now.is_empty() {
+        words.push(format!("{}, was {}", tools(now), tools(before)));
+    }
+    let Deg(tilted) = pair.tilted;
+    words.extend(seen(tilted).then(|| format!("tilted {tilted:.3}°")));
+    if words.is_empty() {
+        words.push("changed".to_owned());
+    }
+    words
+}
+
+/// `T1 T2`.
+pub(super) fn tools(numbers: &[u32]) -> String {
+    numbers.iter().map(|tool| format!("T{tool}")).collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::changes::{Compared, Revision};
+    use crate::machine::Machine;
+    use crate::program::NoLibrary;
+    use crate::session::Request;
+
+    fn told(old: &str, new: &str) -> Vec<Vec<String>> {
+        let made = |text: &str| {
+            let request = Request::new("O1.nc", text.as_bytes(), Machine::default());
+            Revision::of(&request, &mut NoLibrary, None).unwrap()
+        };
+        let sides = [made(old), made(new)];
+        let lists = [0, 1].map(|side: usize| sides[side].record.made_by());
+        let compared = Compared::new(&sides[0].record, &sides[1].record, 1e-4);
+        let of = |side: usize, hole: Option<usize>| {
+            hole.map(|hole| (&sides[side].simulation.extracted.holes[hole], lists[side][hole].as_slice()))
+        };
+        compared.holes.iter().map(|pair| remarks(pair, of(0, pair.old), of(1, pair.new))).collect()
+    }
+
+    /// Spot drilled by T1 and drilled by T2 to 20 below the start; by T2 alone and 2 less; 0.03 aside.
+    #[test]
+    fn a_hole_is_told_with_all_its_tools() {
+        let pass = |tool: u32, x: &str, y: &str| {
+            format!("T{tool} M6\nS500 M3\nG0 Y50.\nX{x} Z0\nG1 Y{y} F100\nG0 Y50.\n")
+        };
+        let program = |passes: &[String]| format!("O1\nG90\n{}M30\n", passes.concat());
+        let old = program(&[pass(1, "10.", "-2."), pass(2, "10.", "-20.")]);
+        assert_eq!(told(&old, &old), [Vec::<String>::new()]);
+        assert_eq!(told(&old, &program(&[pass(2, "10.", "-18.")])), [["depth −2.000", "T2, was T1 T2"]]);
+        let aside = program(&[pass(1, "10.03", "-2."), pass(2, "10.03", "-20.")]);
+        assert_eq!(told(&old, &aside), [["moved 0.030"]]);
+    }
+}
