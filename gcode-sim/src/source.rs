@@ -1,4 +1,5 @@
 //! Program texts as bytes, and places in them: every token, operation, event and finding carries a [`Span`].
+use std::ops::Deref;
 use std::sync::{Arc, OnceLock};
 
 /// Which text a place belongs to.
@@ -33,17 +34,47 @@ pub struct LineColumn {
     pub column: u32,
 }
 
+/// The bytes of a text, shared by all who need them. Those of a file are taken over as they were read, without a copy.
+#[derive(Clone, Debug)]
+pub struct Bytes(Arc<Vec<u8>>);
+
+impl Deref for Bytes {
+    type Target = [u8];
+
+    fn deref(&self) -> &[u8] {
+        &self.0
+    }
+}
+
+impl From<Vec<u8>> for Bytes {
+    fn from(bytes: Vec<u8>) -> Self {
+        Self(Arc::new(bytes))
+    }
+}
+
+impl From<&[u8]> for Bytes {
+    fn from(bytes: &[u8]) -> Self {
+        bytes.to_vec().into()
+    }
+}
+
+impl<const N: usize> From<[u8; N]> for Bytes {
+    fn from(bytes: [u8; N]) -> Self {
+        bytes.to_vec().into()
+    }
+}
+
 /// One text: its name as the user gave it, its bytes, and where its lines begin.
 #[derive(Debug)]
 pub struct Source {
     pub name: String,
-    pub bytes: Arc<[u8]>,
+    pub bytes: Bytes,
     /// Found when a place is asked for.
     lines: OnceLock<Vec<u32>>,
 }
 
 impl Source {
-    fn new(name: String, bytes: Arc<[u8]>) -> Self {
+    fn new(name: String, bytes: Bytes) -> Self {
         Self { name, bytes, lines: OnceLock::new() }
     }
 
@@ -100,11 +131,12 @@ pub fn line_length(text: &[u8]) -> usize {
         }
         let (words, _) = chunk.as_chunks::<8>();
         for (half, word) in words.iter().enumerate() {
-            let mut found = small(u64::from_le_bytes(*word));
+            let word = u64::from_le_bytes(*word);
+            let mut found = small(word);
             while found != 0 {
-                let end = found.trailing_zeros() as usize / 8;
-                if ends(&word[end]) {
-                    return 16 * place + 8 * half + end;
+                let bits = found.trailing_zeros() & !7;
+                if ends(&((word >> bits) as u8)) {
+                    return 16 * place + 8 * half + bits as usize / 8;
                 }
                 found &= found - 1;
             }
@@ -145,7 +177,7 @@ fn stray_returns(rest: &[u8]) -> usize {
 pub struct Sources(Vec<Arc<Source>>);
 
 impl Sources {
-    pub fn add(&mut self, name: impl Into<String>, bytes: impl Into<Arc<[u8]>>) -> SourceId {
+    pub fn add(&mut self, name: impl Into<String>, bytes: impl Into<Bytes>) -> SourceId {
         let id = SourceId(self.0.len() as u32);
         self.0.push(Arc::new(Source::new(name.into(), bytes.into())));
         id

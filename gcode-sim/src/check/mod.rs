@@ -19,14 +19,13 @@ mod vacancy;
 mod variables;
 
 use std::collections::BTreeSet;
-use std::sync::Arc;
 
 pub(crate) use calls::{CalledAs, targets as called};
 
 use crate::control::Settings;
 use crate::diag::{Diagnostic, Severity};
 use crate::program::{Library, Memory, Program, ProgramId};
-use crate::source::Span;
+use crate::source::{Bytes, Span};
 use subject::Subject;
 pub(crate) use variables::variables_read;
 
@@ -44,7 +43,7 @@ pub struct Checked {
 /// `programs` is 0.
 pub fn check(
     name: impl Into<String>,
-    bytes: impl Into<Arc<[u8]>>,
+    bytes: impl Into<Bytes>,
     settings: &Settings,
     library: &mut impl Library,
 ) -> Checked {

@@ -1,13 +1,12 @@
 //! The blocks of a program, lowered when they are asked for and kept for a while: a loop lowers its blocks once, and a
 //! long file never has all of its blocks lowered at a time.
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 use super::loops::Loops;
 use super::lower::{Lowering, lower_case};
 use super::{AxisPlace, Code, Instruction, Op, OpIndex, OpKind, Operand, Statement};
 use crate::alarm::Alarm;
-use crate::source::SourceId;
+use crate::source::{Bytes, SourceId};
 use crate::syntax::{ast, block_at, sequence_number_at};
 
 /// As many operations are kept, and as many trees' code. Loops are shorter; some megabytes at most.
@@ -17,7 +16,7 @@ const KEPT: usize = 8192;
 #[derive(Clone, Debug)]
 pub(super) struct Text {
     pub(super) source: SourceId,
-    pub(super) bytes: Arc<[u8]>,
+    pub(super) bytes: Bytes,
     /// How much of it is written on.
     pub(super) length: usize,
 }
@@ -40,8 +39,8 @@ pub(super) struct Blocks {
     /// again then. A block has one place for its operation, which it shares with those a multiple of [`KEPT`] away.
     ops: Vec<Op>,
     held: Vec<u32>,
-    /// The bits of a block's place that are the place of its operation: all where all are held.
-    mask: usize,
+    /// A block's place for its operation is its own within these bits: all of them where every block is held.
+    bits: usize,
     lowering: Lowering,
     /// How many trees have been lowered by it.
     trees: usize,
@@ -53,7 +52,7 @@ impl Blocks {
 
     pub(super) fn new(text: Text, starts: Vec<u32>, apart: BTreeMap<u32, ast::Block>) -> Self {
         let (ops, held, lowering) = (Vec::new(), Vec::new(), Lowering::default());
-        Self { text, starts, apart, ops, held, mask: KEPT - 1, lowering, trees: 0 }
+        Self { text, starts, apart, ops, held, bits: KEPT - 1, lowering, trees: 0 }
     }
 
     /// The tree of a block, read anew.
@@ -82,18 +81,18 @@ impl Blocks {
     /// The operation of a block, if it is lowered.
     #[inline(always)]
     pub(super) fn op(&self, place: OpIndex) -> Option<&Op> {
-        if self.holds(place) { self.ops.get(place & self.mask) } else { None }
+        if self.holds(place) { self.ops.get(place & self.bits) } else { None }
     }
 
     #[inline(always)]
     fn holds(&self, place: OpIndex) -> bool {
-        self.held.get(place & self.mask).is_some_and(|held| *held as usize == place)
+        self.held.get(place & self.bits).is_some_and(|held| *held as usize == place)
     }
 
     /// All operations; to ask before all are lowered, in order, is a mistake of ours.
     pub(super) fn all(&self) -> &[Op] {
-        debug_assert_eq!(self.mask, usize::MAX, "all blocks are lowered");
-        if self.mask == usize::MAX { &self.ops } else { &[] }
+        debug_assert_eq!(self.bits, usize::MAX, "all blocks are lowered");
+        if self.bits == usize::MAX { &self.ops } else { &[] }
     }
 
     #[inline(always)]
@@ -116,7 +115,7 @@ impl Blocks {
         if !self.holds(place) {
             self.make_ready(place, loops)?;
         }
-        Some(place & self.mask)
+        Some(place & self.bits)
     }
 
     /// An operation by the place that [`Blocks::ready`] tells.
@@ -136,7 +135,7 @@ impl Blocks {
     /// Lowers all blocks, in order.
     pub(super) fn lower_all(&mut self, loops: &Loops) {
         self.forget();
-        self.mask = usize::MAX;
+        self.bits = usize::MAX;
         for place in 0..self.starts.len() {
             self.lower(place, loops);
         }
@@ -150,28 +149,30 @@ impl Blocks {
 
     fn lower(&mut self, place: OpIndex, loops: &Loops) -> Option<()> {
         let start = *self.starts.get(place)?;
-        let at = place & self.mask;
+        let at = place & self.bits;
         if at >= self.ops.len() {
             self.ops.resize_with(at + 1, Op::default);
             self.held.resize(at + 1, Self::NONE);
         }
         let apart = self.apart.contains_key(&(place as u32));
         if apart || !self.ops[at].refill(self.text.source, self.text.written(), start) {
-            self.held[at] = Self::NONE;
-            let op = self.lower_tree(place, loops)?;
-            self.ops[at] = op;
+            self.lower_tree(place, at, loops)?;
         }
         self.held[at] = place as u32;
         Some(())
     }
 
-    fn lower_tree(&mut self, place: OpIndex, loops: &Loops) -> Option<Op> {
+    /// Lowers a block that is more than numbers into a place.
+    #[inline(never)]
+    fn lower_tree(&mut self, place: OpIndex, at: usize, loops: &Loops) -> Option<()> {
+        self.held[at] = Self::NONE;
         let tree = self.tree(place)?;
         let small = lower_case(&tree, &self.text.bytes);
         let mut op = self.lowering.block(&tree, small);
         self.trees += 1;
         join(&mut op, place, loops);
-        Some(op)
+        self.ops[at] = op;
+        Some(())
     }
 }
 
@@ -197,4 +198,49 @@ fn join(op: &mut Op, place: OpIndex, loops: &Loops) {
         _ => return,
     };
     op.kind = OpKind::Alarm(alarm.at(op.span));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Memory, Operation, Source};
+    use super::*;
+
+    /// Every third block is an assignment with code of its own.
+    fn line(place: usize) -> String {
+        if place.is_multiple_of(3) { format!("#1={place}+#2") } else { format!("N{place} X{place}.") }
+    }
+
+    #[test]
+    fn a_block_is_itself_whatever_was_asked_for_before() {
+        const LINES: usize = 3 * KEPT + 5;
+        let text: Vec<String> = (0..LINES).map(line).collect();
+        let mut memory = Memory::default();
+        memory.load("O1.nc", format!("O1\n{}", text.join("\n")).into_bytes());
+        let id = memory.ids().next().unwrap();
+        let near = (0..2 * KEPT).map(|step| step * KEPT % (LINES - 3));
+        for place in (0..LINES).chain((0..2 * LINES).map(|step| step * 7919 % LINES)).chain(near) {
+            let (program, op) = memory.ready(id, place).unwrap();
+            let span = op.span;
+            if let OpKind::Statement(Statement::Assign { value: Operand::Code(code), .. }) = op.kind {
+                let wanted = Operation::Add([Source::Number(place as f64), Source::Free(2)]);
+                assert_eq!(program.code(code)[0].operation, wanted);
+            } else {
+                assert_eq!(op.number, Some(place as u32));
+            }
+            assert_eq!(memory.sources().text(span), line(place));
+            assert_eq!(memory.get(id).op(place).map(|op| op.span), Some(span));
+        }
+        assert!(memory.ready(id, LINES).is_none());
+        assert_eq!(memory.lowered(id).ops().len(), LINES);
+        assert_eq!(memory.ready(id, 2 * KEPT).unwrap().1.number, Some(2 * KEPT as u32));
+    }
+
+    #[test]
+    fn a_block_that_another_took_the_place_of_is_not_there() {
+        let mut memory = Memory::default();
+        memory.load("O1.nc", format!("O1\n{}", "X1.\n".repeat(KEPT + 1)).into_bytes());
+        let id = memory.ids().next().unwrap();
+        assert!(memory.ready(id, 0).is_some() && memory.get(id).op(0).is_some());
+        assert!(memory.ready(id, KEPT).is_some() && memory.get(id).op(0).is_none());
+    }
 }

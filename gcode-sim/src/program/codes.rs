@@ -364,23 +364,24 @@ impl Found {
 }
 
 /// What is known of a code × 10.
+#[inline]
 pub fn find(code: u32) -> Found {
-    let place = |code: u32| PLACES.get(code as usize).copied().unwrap_or(CODES.len() as u16);
-    Found(place(code), place(code.saturating_add(1)))
+    FOUND.get(code as usize).copied().unwrap_or(Found(0, 0))
 }
 
-/// The place of the first row whose code is not less, for each code × 10 up to the last one.
-const PLACES: [u16; LAST_CODE + 1] = {
-    let mut places = [0; LAST_CODE + 1];
+/// The rows of each code × 10 up to the last one.
+const FOUND: [Found; LAST_CODE + 1] = {
+    let mut all = [Found(0, 0); LAST_CODE + 1];
     let (mut code, mut place) = (0, 0);
     while code <= LAST_CODE {
-        while CODES[place].code < code as u32 {
+        let first = place;
+        while place < CODES.len() && CODES[place].code == code as u32 {
             place += 1;
         }
-        places[code] = place as u16;
+        all[code] = Found(first as u16, place as u16);
         code += 1;
     }
-    places
+    all
 };
 
 const LAST_CODE: usize = CODES[CODES.len() - 1].code as usize;

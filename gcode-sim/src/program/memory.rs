@@ -1,9 +1,8 @@
 //! A control's program memory: the texts, and the programs in them by number.
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 use super::{Op, OpIndex, Program, outline};
-use crate::source::{SourceId, Sources, Span};
+use crate::source::{Bytes, SourceId, Sources, Span};
 use crate::syntax::ast::ProgramName;
 
 /// A program in [`Memory`].
@@ -64,7 +63,7 @@ pub struct Memory {
 impl Memory {
     /// Reads the outline of a file. Of two programs with one number the first stays, as on a control, which refuses
     /// the second: see [`Memory::refused`].
-    pub fn load(&mut self, name: impl Into<String>, bytes: impl Into<Arc<[u8]>>) -> SourceId {
+    pub fn load(&mut self, name: impl Into<String>, bytes: impl Into<Bytes>) -> SourceId {
         let source = self.sources.add(name, bytes);
         let bytes = &self.sources.get(source).bytes;
         for program in outline::programs(source, bytes) {

@@ -8,6 +8,7 @@ use crate::syntax::{NumberWord, Numbers};
 impl Op {
     /// Becomes the block that begins at `start`; not where more stands in it than numbers, or a call: then it may have
     /// become anything, and its tree must be lowered.
+    #[inline]
     pub(super) fn refill(&mut self, source: SourceId, text: &[u8], start: u32) -> bool {
         let Some(numbers) = Numbers::new(source, text, start) else { return false };
         let number = numbers.sequence_number;
@@ -29,7 +30,9 @@ impl Op {
 /// Puts the words of a line into an empty list, and tells where the last one ends; not where the line has others.
 #[inline(never)]
 fn fill(list: &mut Vec<Coded>, mut numbers: Numbers<'_>) -> Option<u32> {
+    let mut end = numbers.begin;
     for NumberWord { letter, number, span } in numbers.by_ref() {
+        end = span.end;
         let coded = |value| Coded { letter, axis: None, comma: false, value, span };
         match letter {
             b'G' => match g_code(number)? {
@@ -40,7 +43,7 @@ fn fill(list: &mut Vec<Coded>, mut numbers: Numbers<'_>) -> Option<u32> {
             _ => list.push(coded(Input::Literal(number))),
         }
     }
-    numbers.is_at_end().then_some(numbers.end())
+    numbers.is_at_end().then_some(end)
 }
 
 #[cfg(test)]

@@ -1,12 +1,12 @@
 //! What is known of a program when its file is loaded: where its blocks begin, its first sequence number, its loops.
 use std::collections::BTreeMap;
-use std::sync::{Arc, OnceLock};
+use std::sync::OnceLock;
 
 use super::blocks::{Blocks, Text};
 use super::loops::{Loops, Part};
 use super::lower::Lowering;
 use super::{OpIndex, OpKind, Program, Statement};
-use crate::source::{SourceId, Span};
+use crate::source::{Bytes, SourceId, Span};
 use crate::syntax::ast::{self, ProgramName};
 use crate::syntax::{Outlined, Parts, end_without_spaces, outline, sequence_number_at, written};
 
@@ -22,7 +22,7 @@ struct Growing {
 }
 
 /// Outlines the programs of a file.
-pub(super) fn programs(source: SourceId, bytes: &Arc<[u8]>) -> Vec<Program> {
+pub(super) fn programs(source: SourceId, bytes: &Bytes) -> Vec<Program> {
     let text = Text { source, bytes: bytes.clone(), length: written(bytes).len() };
     let programs = outline(source, bytes, |growing: &mut Growing, block| growing.block(block, &text));
     programs.into_iter().map(|parts| finish(parts, text.clone())).collect()

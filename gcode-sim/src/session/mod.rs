@@ -23,7 +23,7 @@ use crate::part::hole::HoleList;
 use crate::part::reference::Reference;
 use crate::part::surface::Surface;
 use crate::program::{Library, Memory};
-use crate::source::Span;
+use crate::source::{Bytes, Span};
 use crate::stylus::{Followed, Rapids, Stylus};
 use crate::verify::flutes::{FluteVerdict, verify_flutes};
 use crate::verify::{Tolerances, Verdict, verify};
@@ -33,7 +33,7 @@ use crate::verify::{Tolerances, Verdict, verify};
 pub struct Request {
     /// The file's name as the user gave it.
     pub name: String,
-    pub bytes: Arc<[u8]>,
+    pub bytes: Bytes,
     pub settings: Settings,
     pub machine: Machine,
     pub limits: Limits,
@@ -49,7 +49,7 @@ pub struct Request {
 
 impl Request {
     /// A program on a machine, with that machine's control and the limits of [`Limits::default`].
-    pub fn new(name: impl Into<String>, bytes: impl Into<Arc<[u8]>>, machine: Machine) -> Self {
+    pub fn new(name: impl Into<String>, bytes: impl Into<Bytes>, machine: Machine) -> Self {
         let mut settings =
             Settings { axes: machine.axes.clone(), increment: machine.increment, ..Settings::default() };
         settings.become_dialect(machine.dialect);

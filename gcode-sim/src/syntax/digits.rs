@@ -17,47 +17,45 @@ pub(super) fn window(text: &[u8]) -> Window {
 #[inline(always)]
 pub(super) fn number(window: &Window, first: usize) -> Option<(u64, Option<u8>, usize)> {
     let (whole, point) = digits(0, window, first)?;
-    let (digits, places, end) = match window.get(point) {
-        Some(b'.') => {
-            let (digits, end) = digits(whole, window, point + 1)?;
-            (digits, Some((end - point - 1) as u8), end)
-        }
-        _ => (whole, None, point),
-    };
-    (end > first + usize::from(places.is_some())).then_some((digits, places, end))
+    let Some(b'.') = window.get(point) else { return (point > first).then_some((whole, None, point)) };
+    let (digits, end) = digits(whole, window, point + 1)?;
+    (end > first + 1).then_some((digits, Some((end - point - 1) as u8), end))
 }
 
 /// A number that goes on with the digits at a place, and where they end; `None` where they are more than eight.
 #[inline(always)]
 fn digits(number: u64, window: &Window, place: usize) -> Option<(u64, usize)> {
-    let (number, end) = four(number, window, place)?;
-    if end < place + 4 { Some((number, end)) } else { four_more(number, window, end) }
-}
-
-#[inline(never)]
-fn four_more(number: u64, window: &Window, place: usize) -> Option<(u64, usize)> {
-    let (number, end) = four(number, window, place)?;
-    window.get(end).is_some_and(|byte| !byte.is_ascii_digit()).then_some((number, end))
-}
-
-/// The same of four digits at most.
-#[inline(always)]
-fn four(number: u64, window: &Window, place: usize) -> Option<(u64, usize)> {
     let bytes = u32::from_le_bytes(*window.get(place..)?.first_chunk()?);
     // Each digit is its value; the top bit tells a byte that is none. Behind the first of those it may be wrong.
     let values = bytes ^ 0x3030_3030;
     let others = (values.wrapping_add(0x7676_7676) | bytes) & 0x8080_8080;
+    if others == 0 {
+        return four_and_more(number, values, window, place + 4).filter(|(_, end)| *end <= place + 8);
+    }
     // The digits end where the four bytes do, zeros before them.
-    let (digits, count) = match others.trailing_zeros() {
-        32 => (values, 4),
-        top => (values << (31 - top) << 8, top / 8),
-    };
-    let pairs = digits.wrapping_mul(10 << 8 | 1) >> 8 & 0x00ff_00ff;
-    let value = pairs.wrapping_mul(100 << 16 | 1) >> 16;
-    Some((number * POWERS[count as usize] + u64::from(value), place + count as usize))
+    let top = others.trailing_zeros();
+    let (digits, count) = (values << (31 - top) << 8, top as usize / 8);
+    Some((number * POWERS[count] + value(digits), place + count))
 }
 
-const POWERS: [u64; 5] = [1, 10, 100, 1_000, 10_000];
+const POWERS: [u64; 4] = [1, 10, 100, 1_000];
+
+/// The number of four digits, the first of them the lowest byte: pairs, then all.
+#[inline(always)]
+fn value(digits: u32) -> u64 {
+    let pairs = digits.wrapping_mul(10 << 8 | 1) >> 8 & 0x00ff_00ff;
+    u64::from(pairs.wrapping_mul(100 << 16 | 1) >> 16)
+}
+
+/// The same with four digits that are known, and those behind them.
+#[inline(never)]
+fn four_and_more(number: u64, values: u32, window: &Window, place: usize) -> Option<(u64, usize)> {
+    let text = window.get(place..)?;
+    let count = text.iter().take_while(|byte| byte.is_ascii_digit()).count();
+    let further = |number, byte: &u8| number * 10 + u64::from(byte - b'0');
+    let known = number * 10_000 + value(values);
+    (count <= 4).then(|| (text[..count].iter().fold(known, further), place + count))
+}
 
 #[cfg(test)]
 mod tests {

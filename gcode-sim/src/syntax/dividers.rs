@@ -24,6 +24,7 @@ const DIVIDES: [bool; 256] = {
 };
 
 /// How far a text has no byte, from a place on, that [`divides`] its line.
+#[inline(never)]
 pub(super) fn undivided(bytes: &[u8], from: usize) -> usize {
     let text = &bytes[from..];
     let divided = |chunk: &[u8; 32]| chunk.iter().fold(false, |any, byte| any | divides(*byte));

@@ -5,7 +5,7 @@ use super::ast::Decimal;
 use super::block::MOST_SEQUENCE;
 use super::digits::{Window, number};
 use super::number::WORD_LIMIT;
-use super::token::{Input, unspaced};
+use super::token::{Input, is_space, unspaced};
 use crate::source::{SourceId, Span};
 
 /// An address and the number right behind it.
@@ -24,8 +24,9 @@ pub struct NumberWord {
 pub struct Numbers<'a> {
     source: SourceId,
     text: Input<'a>,
-    /// Where the last word ends, and where the next one may begin, spaces before it.
-    end: usize,
+    /// Where the sequence number ends, or the block begins where there is none.
+    pub begin: u32,
+    /// Where the next word may begin, spaces before it.
     next: usize,
     /// `N10` at its beginning.
     pub sequence_number: Option<u32>,
@@ -35,44 +36,44 @@ impl<'a> Numbers<'a> {
     /// `text` may go on behind the line. `None` where it begins with an N that is no plain sequence number.
     #[inline]
     pub fn new(source: SourceId, text: Input<'a>, start: u32) -> Option<Self> {
-        let start = start as usize;
-        let mut numbers = Self { source, text, end: start, next: start, sequence_number: None };
-        if text.get(start) == Some(&b'N') {
+        let mut numbers = Self { source, text, begin: start, next: start as usize, sequence_number: None };
+        if text.get(start as usize) == Some(&b'N') {
             let window = numbers.window()?;
             let (number, None, length) = number(window, 1)? else { return None };
             numbers.sequence_number = u32::try_from(number).ok().filter(|number| *number <= MOST_SEQUENCE);
             numbers.sequence_number?;
-            numbers.is_behind(window, length);
+            numbers.begin = start + length as u32;
+            numbers.next = behind(window, length, numbers.next);
         }
         Some(numbers)
     }
 
-    /// Where the last word ends, or the block begins where no word has been read.
-    pub fn end(&self) -> u32 {
-        self.end as u32
-    }
-
     /// Whether the line ends here, so that nothing else stands in it.
     pub fn is_at_end(&self) -> bool {
-        matches!(self.text.get(behind_spaces(self.text, self.next)), None | Some(b'\n' | b'\r'))
+        matches!(self.behind_spaces(), [] | [b'\n' | b'\r', ..])
     }
 
     /// Whether a word, or what else begins with a capital, comes next.
     pub(super) fn is_at_letter(&self) -> bool {
-        self.text.get(behind_spaces(self.text, self.next)).is_some_and(u8::is_ascii_uppercase)
+        self.behind_spaces().first().is_some_and(u8::is_ascii_uppercase)
+    }
+
+    #[inline]
+    fn behind_spaces(&self) -> Input<'a> {
+        let rest = self.text.get(self.next..).unwrap_or_default();
+        if rest.first().is_some_and(|byte| is_space(*byte)) { unspaced(rest) } else { rest }
     }
 
     #[inline(always)]
     fn window(&self) -> Option<&'a Window> {
         self.text.get(self.next..)?.first_chunk()
     }
+}
 
-    /// A word of some bytes has been read. Mostly a single space stands before the next one.
-    #[inline(always)]
-    fn is_behind(&mut self, window: &Window, length: usize) {
-        self.end = self.next + length;
-        self.next = self.end + usize::from(window.get(length) == Some(&b' '));
-    }
+/// What is behind a word of some bytes that stands at a place: mostly a single space, and then the next one.
+#[inline(always)]
+fn behind(window: &Window, length: usize, place: usize) -> usize {
+    place + length + usize::from(window.get(length) == Some(&b' '))
 }
 
 impl Iterator for Numbers<'_> {
@@ -83,33 +84,39 @@ impl Iterator for Numbers<'_> {
         loop {
             let window = self.window()?;
             if let Some((letter, number, length)) = number_word(window) {
-                let start = self.next;
-                self.is_behind(window, length);
-                let span = Span { source: self.source, start: start as u32, end: self.end as u32 };
+                let start = self.next as u32;
+                let span = Span { source: self.source, start, end: start + length as u32 };
+                self.next = behind(window, length, self.next);
                 return Some(NumberWord { letter, number, span });
             }
-            let behind = behind_spaces(self.text, self.next);
-            if behind == self.next {
+            if !is_space(window[0]) {
                 return None;
             }
-            self.next = behind;
+            self.next = self.text.len() - self.behind_spaces().len();
         }
     }
 }
+
+/// Whether a word may begin with a byte: it is a capital, and no O, which begins a program.
+const BEGINS_WORD: [bool; 256] = {
+    let mut all = [false; 256];
+    let mut byte = b'A';
+    while byte <= b'Z' {
+        all[byte as usize] = byte != b'O';
+        byte += 1;
+    }
+    all
+};
 
 /// A capital, perhaps a sign, and the number right behind them, and how long they are; `None` where something else stands at
 /// the beginning. Behind it the number may go on: `X1 0.5`, `X1..5`.
 #[inline(always)]
 pub(super) fn number_word(window: &Window) -> Option<(u8, Decimal, usize)> {
-    let letter = window[0];
-    if !letter.is_ascii_uppercase() || letter == b'O' {
+    let [letter, sign, ..] = *window;
+    if !BEGINS_WORD[usize::from(letter)] {
         return None;
     }
-    let (negative, first) = match window[1] {
-        b'-' => (true, 2),
-        b'+' => (false, 2),
-        _ => (false, 1),
-    };
+    let (negative, first) = (sign == b'-', 1 + usize::from(matches!(sign, b'-' | b'+')));
     let (digits, places, length) = number(window, first)?;
     (digits < WORD_LIMIT).then_some((letter, Decimal { negative, digits, places }, length))
 }
@@ -117,13 +124,4 @@ pub(super) fn number_word(window: &Window) -> Option<(u8, Decimal, usize)> {
 /// Whether a number goes on at the beginning of a text.
 pub(super) fn goes_on(text: Input<'_>) -> bool {
     matches!(unspaced(text), [b'0'..=b'9' | b'.', ..])
-}
-
-/// The place behind the spaces that stand at one.
-#[inline(always)]
-fn behind_spaces(text: Input<'_>, place: usize) -> usize {
-    match text.get(place..) {
-        Some([0x21..=0x7e, ..] | [b'\r' | b'\n', ..] | []) | None => place,
-        Some(rest) => text.len() - unspaced(rest).len(),
-    }
 }

@@ -171,24 +171,24 @@ impl<'a> Pieces<'a> {
     /// nothing divides it and nothing in it is a remark. They count as read then.
     #[inline]
     pub(super) fn plain_lines(&mut self, mut each: impl FnMut(Span)) {
-        let Self { source, bytes, next, undivided: plain, .. } = self;
-        loop {
-            let text = &bytes[*next..];
-            let length = line_length(text);
-            let end = *next + length;
-            if *plain <= *next {
-                *plain = undivided(bytes, *next);
+        let mut text = &self.bytes[self.next..];
+        while !text.is_empty() {
+            let place = self.bytes.len() - text.len();
+            if self.undivided <= place {
+                self.undivided = undivided(self.bytes, place);
             }
-            if *plain < end || text.is_empty() {
-                return;
+            let (line, behind) = text.split_at(line_length(text));
+            let end = place + line.len();
+            if self.undivided < end {
+                break;
             }
-            let (line, behind) = text.split_at(length);
             let line = if let [0x21..=0x7e, ..] = line { line } else { unspaced(line) };
-            *next = end + end_of_line(behind);
             if !line.is_empty() {
-                each(Span { source: *source, start: (end - line.len()) as u32, end: end as u32 });
+                each(Span { source: self.source, start: (end - line.len()) as u32, end: end as u32 });
             }
+            text = &behind[end_of_line(behind)..];
         }
+        self.next = self.bytes.len() - text.len();
     }
 
     /// Whether nothing of the line in hand has been read.
