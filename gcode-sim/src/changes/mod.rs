@@ -19,8 +19,10 @@ mod passes;
 mod path;
 mod record;
 mod recorder;
+mod returns;
 mod steps;
 mod store;
+mod strayed;
 mod together;
 mod words;
 

@@ -9,10 +9,11 @@ use super::groups::{Groups, Sides};
 use super::holes::Explained;
 use super::left::mode;
 use super::record::Record;
-use super::steps::{Category, Kind, Quiet, Step, difference, is_same_arc, near};
+use super::returns::returns;
+use super::steps::{Category, Kind, Quiet, Step, difference, goes_with, is_same_arc, near};
 use super::together::{with_code, with_moves};
 use super::words::{code, described, point};
-use crate::motion::{Axes, MAX_AXES, Position};
+use crate::motion::{Axes, Position};
 
 pub(super) fn compare(
     old: &Record,
@@ -34,7 +35,7 @@ pub(super) fn compare(
         records,
     };
     for region in regions(links, &old.steps, &new.steps) {
-        motion.region(&region, explained);
+        motion.region(&region, links, explained);
     }
     let shifted = shifted(links, &old.steps, &new.steps, tolerance);
     let mut set_up = set_up(links, explained, (&old.steps, &new.steps));
@@ -66,16 +67,16 @@ pub(super) fn compare(
 /// What is said of G01 where G00 was, and of G00 where G01 was.
 const KINDS: [&str; 2] = ["a feed where a rapid was", "a rapid where a feed was"];
 
-/// Moves next to one another that are all different; other steps between them don't part them.
-fn regions(links: &[Link], old: &[Step], new: &[Step]) -> Vec<Vec<Link>> {
+/// Moves next to one another that are all different, each with its place among the links; other steps between them don't part them.
+fn regions(links: &[Link], old: &[Step], new: &[Step]) -> Vec<Vec<(usize, Link)>> {
     let mut regions = vec![Vec::new()];
-    for link in links {
+    for (k, link) in links.iter().enumerate() {
         let (i, j) = link.sides();
         let is_move = i.map(|i| &old[i]).or(j.map(|j| &new[j])).is_some_and(Step::is_move);
         match (is_move, link) {
             (false, _) => {}
             (true, Link::Same(..)) => regions.push(Vec::new()),
-            (true, _) => regions.last_mut().into_iter().for_each(|region| region.push(*link)),
+            (true, _) => regions.last_mut().into_iter().for_each(|region| region.push((k, *link))),
         }
     }
     regions.retain(|region| !region.is_empty());
@@ -174,28 +175,6 @@ fn nearest<'a>(
         .collect()
 }
 
-/// How far rounded end points of moves that go together may be apart, mm or degrees.
-const ROUNDED: f64 = 0.0025;
-
-/// A move of a hole's old and new revision, each with the hole's feed: it has moved as the hole has, in every axis or in
-/// none, or stands as far above the hole's bottom on its line as before.
-fn goes_with(
-    (old, feed_old): (&Step, &Step),
-    (new, feed_new): (&Step, &Step),
-    deeper: f64,
-    tolerance: f64,
-) -> bool {
-    if std::mem::discriminant(&old.kind) != std::mem::discriminant(&new.kind) {
-        return false;
-    }
-    let (shift, hole) = (difference(&new.to, &old.to), difference(&feed_new.to, &feed_old.to));
-    let with = |axis: usize| shift[axis].abs() <= tolerance || (shift[axis] - hole[axis]).abs() <= tolerance;
-    let is_on_line = old.is_on_line_of(feed_old) && new.is_on_line_of(feed_new);
-    let above = new.distance(feed_new) - old.distance(feed_old) - deeper;
-    let moved_alike = (0..MAX_AXES).all(with) && (is_on_line || old.kind == Kind::Rapid);
-    moved_alike || is_on_line && above.abs() <= ROUNDED
-}
-
 struct Motion<'a> {
     old: &'a [Step],
     new: &'a [Step],
@@ -208,7 +187,9 @@ struct Motion<'a> {
 
 impl<'a> Motion<'a> {
     /// Moves that are different, but for those of changed holes: the way there and back is part of the change.
-    fn region(&mut self, region: &[Link], explained: &Explained) {
+    fn region(&mut self, placed: &[(usize, Link)], links: &[Link], explained: &Explained) {
+        let region: Vec<Link> = placed.iter().map(|(_, link)| *link).collect();
+        let region = &region[..];
         // For every move the nearest feed of a changed hole before and behind it.
         let before = nearest(region.iter(), |link| feed_of(link, explained));
         let mut behind = nearest(region.iter().rev(), |link| feed_of(link, explained));
@@ -226,8 +207,10 @@ impl<'a> Motion<'a> {
         };
         let parts: Vec<bool> = (0..region.len()).map(is_part).collect();
         let shifts = self.shifts(region, &parts);
-        for ((link, is_part), is_peck) in region.iter().zip(parts).zip(pecks) {
-            if is_peck || self.strokes.explain(link, self.records.0, self.records.1) {
+        let ways: Vec<Position> = shifts.iter().map(|(way, _)| *way).collect();
+        let returns = returns(placed, links, (self.old, self.new), &ways, self.tolerance);
+        for (((link, is_part), is_peck), is_back) in region.iter().zip(parts).zip(pecks).zip(returns) {
+            if is_peck || is_back || self.strokes.explain(link, self.records.0, self.records.1) {
                 continue;
             }
             match *link {

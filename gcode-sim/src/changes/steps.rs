@@ -196,6 +196,28 @@ impl Step {
     }
 }
 
+/// How far rounded end points of moves that go together may be apart, mm or degrees.
+const ROUNDED: f64 = 0.0025;
+
+/// A move of a hole's old and new revision, each with the hole's feed: it has moved as the hole has, in every axis or in
+/// none, or stands as far above the hole's bottom on its line as before.
+pub(super) fn goes_with(
+    (old, feed_old): (&Step, &Step),
+    (new, feed_new): (&Step, &Step),
+    deeper: f64,
+    tolerance: f64,
+) -> bool {
+    if std::mem::discriminant(&old.kind) != std::mem::discriminant(&new.kind) {
+        return false;
+    }
+    let (shift, hole) = (difference(&new.to, &old.to), difference(&feed_new.to, &feed_old.to));
+    let with = |axis: usize| shift[axis].abs() <= tolerance || (shift[axis] - hole[axis]).abs() <= tolerance;
+    let is_on_line = old.is_on_line_of(feed_old) && new.is_on_line_of(feed_new);
+    let above = new.distance(feed_new) - old.distance(feed_old) - deeper;
+    let moved_alike = (0..MAX_AXES).all(with) && (is_on_line || old.kind == Kind::Rapid);
+    moved_alike || is_on_line && above.abs() <= ROUNDED
+}
+
 /// The same curve about the same centre.
 pub(super) fn is_same_arc(a: &Arc2, b: &Arc2, tolerance: f64) -> bool {
     let off = (a.centre.0 - b.centre.0).abs().max((a.centre.1 - b.centre.1).abs());
