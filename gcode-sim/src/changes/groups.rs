@@ -16,9 +16,9 @@ struct Group {
     text: String,
     /// What it is that is different, "move", "dwell", and how often; of moves that go elsewhere each kind.
     counts: Vec<(&'static str, usize)>,
-    /// How many times as fast a move is; of moves that end elsewhere nothing.
-    factor: Option<f64>,
-    /// Those behind the first say other numbers: of a feed with the same factor, of moves with one cause or from one block.
+    /// How many times as fast a move is, at least and at most; of moves that end elsewhere nothing.
+    factors: Option<(f64, f64)>,
+    /// Those behind the first say other numbers: of moves with one cause or from one block.
     varies: bool,
     /// The next program finds it so.
     stays: bool,
@@ -63,7 +63,8 @@ impl<'a> Groups<'a> {
     }
 
     /// A move that ends elsewhere by `shift`. One that is there once only has no cause of its own.
-    pub(super) fn tell_shift(&mut self, what: &'static str, shift: &Position, sides: Sides<'_>) {
+    /// Gives the group's number for what is carried on from there.
+    pub(super) fn tell_shift(&mut self, what: &'static str, shift: &Position, sides: Sides<'_>) -> usize {
         let text = coordinates(shift, &self.old.axes, self.tolerance, true);
         let places = sides.0.zip(sides.1).map(|(old, new)| (old.place, new.place));
         let cause = places.map(|(old, new)| cause(&self.old.places[old], &self.new.places[new]));
@@ -85,23 +86,32 @@ impl<'a> Groups<'a> {
         for axis in 0..MAX_AXES {
             group.most[axis] = group.most[axis].max(shift[axis].abs());
         }
+        place
     }
 
-    /// A move at another feed. In one block feeds that are all so many times as fast say the same: of G93 each is another.
+    /// A move that ends elsewhere because one of a group does, and no axis of its own.
+    pub(super) fn carry(&mut self, group: usize, what: &'static str, shift: &Position) {
+        let text = coordinates(shift, &self.old.axes, self.tolerance, true);
+        let group = &mut self.all[group];
+        group.varies |= group.text != text;
+        group.count(what);
+    }
+
+    /// A move at another feed. Those of one block say the same: of G93 each is another.
     pub(super) fn tell_feed(&mut self, was: f64, is: f64, (old, new): (&Step, &Step)) {
         let text = format!("feed F{} instead of F{}", short(is), short(was));
         let factor = is / was;
         let is_alike = |group: &&mut Group| {
             let is_place = group.old == Some(old.place) && group.new == Some(new.place);
-            let is_factor = group.factor.is_some_and(|known| (known - factor).abs() <= 1e-6 * known.abs());
-            group.code == "feed" && (group.text == text || is_place && is_factor)
+            group.code == "feed" && (group.text == text || is_place)
         };
         match self.all.iter_mut().find(is_alike) {
             Some(group) => {
                 group.varies |= group.text != text;
+                group.factors = group.factors.map(|(least, most)| (least.min(factor), most.max(factor)));
                 group.count("move");
             }
-            None => self.begin("feed", "move", text, (Some(old), Some(new)), Some(factor)),
+            None => self.begin("feed", "move", text, (Some(old), Some(new)), Some((factor, factor))),
         }
     }
 
@@ -111,7 +121,7 @@ impl<'a> Groups<'a> {
         what: &'static str,
         text: String,
         (old, new): Sides<'_>,
-        factor: Option<f64>,
+        factors: Option<(f64, f64)>,
     ) {
         let place = |step: Option<&Step>| step.map(|step| step.place);
         let counts = vec![(what, 1)];
@@ -120,7 +130,7 @@ impl<'a> Groups<'a> {
             code,
             text,
             counts,
-            factor,
+            factors,
             varies: false,
             stays: false,
             most: Position::default(),
@@ -166,8 +176,14 @@ impl Group {
     fn counted(&self) -> String {
         let counted: Vec<String> = self.counts.iter().map(|(what, n)| format!("{n} {what}s")).collect();
         match (self.varies, &self.counts[..]) {
-            (true, _) if self.code == "feed" => {
-                format!("{} ({}, all by the same factor)", self.text, counted.join(", "))
+            (true, _) if let Some((least, most)) = self.factors => {
+                let is_one = (most - least).abs() <= 1e-6 * most.abs();
+                let by = if is_one {
+                    "the same factor".to_owned()
+                } else {
+                    format!("factors of {least:.4} to {most:.4}")
+                };
+                format!("{} ({}, all by {by})", self.text, counted.join(", "))
             }
             (true, _) => format!("{} ({} of its block)", self.text, counted.join(", ")),
             (false, [(_, 1)]) => self.text.clone(),

@@ -214,7 +214,8 @@ impl Told<'_> {
                 others.extend(text.map(|text| ("hole-tool", text)));
                 self.moved.tools.extend(swapped);
             }
-            Some(text) => {
+            Some((text, swapped)) => {
+                self.moved.tools.extend(swapped);
                 self.moved.elsewhen.0.extend(&self.passes.0.steps[hole]);
                 self.moved.elsewhen.1.extend(&self.passes.1.steps[other]);
                 others.push(("hole-tool", text));

@@ -15,6 +15,7 @@ mod in_force;
 mod left;
 mod motion;
 mod near;
+mod one_cause;
 mod passes;
 mod path;
 mod record;
@@ -76,6 +77,7 @@ impl Compared {
         changes.extend(holes.changes);
         let (motion, modes) = motion::compare(old, new, &links, &holes.moved, tolerance);
         changes.extend(motion);
+        changes = one_cause::joined(changes, old, new);
         if !is_to_the_end && [old, new].iter().any(|record| record.outcome() == "limit") {
             // Which round of a program without an end the other one is held against, nobody knows.
             changes.truncate(1);

@@ -13,7 +13,7 @@ use super::returns::returns;
 use super::steps::{Category, Kind, Quiet, Step, difference, goes_with, is_same_arc, near};
 use super::together::{with_code, with_moves};
 use super::words::{code, described, point};
-use crate::motion::{Axes, Position};
+use crate::motion::{Axes, MAX_AXES, Position};
 
 pub(super) fn compare(
     old: &Record,
@@ -32,6 +32,7 @@ pub(super) fn compare(
         tolerance,
         groups: Groups::new(old, new, tolerance),
         strokes,
+        elsewhere: elsewhere(links, &old.steps, &new.steps, tolerance),
         records,
     };
     for region in regions(links, &old.steps, &new.steps) {
@@ -81,6 +82,26 @@ fn regions(links: &[Link], old: &[Step], new: &[Step]) -> Vec<Vec<(usize, Link)>
     }
     regions.retain(|region| !region.is_empty());
     regions
+}
+
+/// More ways than these aren't kept: a new move is looked for among them.
+const MOST_WAYS: usize = 64;
+
+/// By how much moves end elsewhere.
+fn elsewhere(links: &[Link], old: &[Step], new: &[Step], tolerance: f64) -> Vec<Position> {
+    let mut ways: Vec<Position> = Vec::new();
+    for link in links {
+        let Link::Changed(i, j) = *link else { continue };
+        let way = difference(&new[j].to, &old[i].to);
+        let is_known = |known: &Position| near(known, &way, tolerance);
+        if old[i].is_move() && !is_known(&Position::default()) && !ways.iter().any(is_known) {
+            ways.push(way);
+        }
+        if ways.len() == MOST_WAYS {
+            break;
+        }
+    }
+    ways
 }
 
 /// The lost and the added step of what comes at another time, and whether that is `earlier` or `later`.
@@ -182,7 +203,29 @@ struct Motion<'a> {
     tolerance: f64,
     groups: Groups<'a>,
     strokes: Strokes,
+    /// By how much moves of all regions end elsewhere, the first of these ways.
+    elsewhere: Vec<Position>,
     records: (&'a Record, &'a Record),
+}
+
+/// A move that ends elsewhere by as much as the one before it, in axes that it doesn't move itself.
+fn is_carried(old: &Step, new: &Step, before: &Position, tolerance: f64) -> bool {
+    let shift = difference(&new.to, &old.to);
+    let (was, is) = (old.way(), new.way());
+    let is_from_before = |axis: usize| {
+        shift[axis].abs() <= tolerance
+            || was[axis].abs() <= tolerance
+                && is[axis].abs() <= tolerance
+                && (shift[axis] - before[axis]).abs() <= tolerance
+    };
+    std::mem::discriminant(&old.kind) == std::mem::discriminant(&new.kind)
+        && !matches!(old.kind, Kind::Arc(..))
+        && (0..MAX_AXES).all(is_from_before)
+}
+
+/// The old revision's last move before a link.
+fn moves_before(links: &[Link], at: usize, old: &[Step]) -> Option<usize> {
+    links[..at].iter().rev().filter_map(|link| link.sides().0).find(|i| old[*i].is_move())
 }
 
 impl<'a> Motion<'a> {
@@ -209,22 +252,41 @@ impl<'a> Motion<'a> {
         let shifts = self.shifts(region, &parts);
         let ways: Vec<Position> = shifts.iter().map(|(way, _)| *way).collect();
         let returns = returns(placed, links, (self.old, self.new), &ways, self.tolerance);
-        for (((link, is_part), is_peck), is_back) in region.iter().zip(parts).zip(pecks).zip(returns) {
-            if is_peck || is_back || self.strokes.explain(link, self.records.0, self.records.1) {
+        // The last move that ends elsewhere: by how much, and where it is told; nowhere if it goes with its hole.
+        let mut last: Option<(Position, Option<usize>)> = None;
+        for (k, (link, is_back)) in region.iter().zip(returns).enumerate() {
+            let is_part = parts[k];
+            if pecks[k] || is_back || self.strokes.explain(link, self.records.0, self.records.1) {
                 continue;
             }
             match *link {
-                Link::Changed(i, j) if !is_part => self.changed(&self.old[i], &self.new[j]),
+                Link::Changed(i, j) => {
+                    let (old, new) = (&self.old[i], &self.new[j]);
+                    let shift = difference(&new.to, &old.to);
+                    let carried = last.filter(|(way, _)| is_carried(old, new, way, self.tolerance));
+                    let told = match carried {
+                        _ if is_part => None,
+                        None => self.changed(old, new),
+                        Some((_, None)) => None,
+                        Some((_, Some(group))) => {
+                            self.groups.carry(group, new.kind.name(), &shift);
+                            Some(group)
+                        }
+                    };
+                    last = Some((shift, told));
+                }
                 Link::Lost(i) if !(is_part && gone) => {
                     let step = &self.old[i];
                     let text =
                         format!("{} to {} is no longer there", step.kind.one(), point(step, self.axes));
-                    self.alone(&shifts, "move-lost", text, (Some(step), None));
+                    self.alone(&shifts, "move-lost", text, (Some(step), None), false);
                 }
                 Link::Added(j) if !(is_part && gone) => {
                     let step = &self.new[j];
                     let text = format!("{} to {} is new", step.kind.one(), point(step, self.axes));
-                    self.alone(&shifts, "move-added", text, (None, Some(step)));
+                    let stand = moves_before(links, placed[k].0, self.old).map(|i| &self.old[i]);
+                    let begins = stand.is_some_and(|stand| self.near(&stand.to, &step.from));
+                    self.alone(&shifts, "move-added", text, (None, Some(step)), begins);
                 }
                 _ => {}
             }
@@ -232,8 +294,16 @@ impl<'a> Motion<'a> {
     }
 
     /// A move that is there once only. One that goes the way by which those next to it end elsewhere, where none was
-    /// needed before, is one of these; one that makes up for that way is no difference of its own.
-    fn alone(&mut self, shifts: &[(Position, bool)], code: &'static str, text: String, sides: Sides<'a>) {
+    /// needed before, is one of these; one that makes up for that way is no difference of its own. One that begins where the
+    /// old revision stands may also go the way by which moves of other regions end elsewhere.
+    fn alone(
+        &mut self,
+        shifts: &[(Position, bool)],
+        code: &'static str,
+        text: String,
+        sides: Sides<'a>,
+        begins: bool,
+    ) {
         let (Some(step), is_new) = (sides.0.or(sides.1), sides.1.is_some()) else { return };
         let way = if is_new { step.way() } else { opposite(&step.way()) };
         let with = shifts.iter().find(|(shift, _)| self.near(&way, shift));
@@ -241,6 +311,9 @@ impl<'a> Motion<'a> {
         match with {
             Some((shift, false)) => {
                 self.groups.tell_shift(step.kind.name(), shift, sides);
+            }
+            None if begins && self.elsewhere.iter().any(|shift| self.near(shift, &way)) => {
+                self.groups.tell_shift(step.kind.name(), &way, sides);
             }
             None if !back => self.groups.tell(code, "move", text, sides),
             _ => {}
@@ -307,8 +380,8 @@ impl<'a> Motion<'a> {
         [i.map(|i| &self.old[i]), j.map(|j| &self.new[j])]
     }
 
-    /// A move that goes elsewhere or in another way.
-    fn changed(&mut self, old: &'a Step, new: &'a Step) {
+    /// A move that goes elsewhere or in another way; gives the group that says where.
+    fn changed(&mut self, old: &'a Step, new: &'a Step) -> Option<usize> {
         let sides = (Some(old), Some(new));
         let (was, is) = (old.kind.one(), new.kind.one());
         if was != is {
@@ -316,7 +389,7 @@ impl<'a> Motion<'a> {
         }
         let way = difference(&new.to, &old.to);
         if !self.near(&way, &Position::default()) {
-            self.groups.tell_shift(new.kind.name(), &way, sides);
+            return Some(self.groups.tell_shift(new.kind.name(), &way, sides));
         } else if let (Kind::Arc(a, _), Kind::Arc(b, _)) = (&old.kind, &new.kind)
             && !is_same_arc(a, b, self.tolerance)
         {
@@ -331,7 +404,7 @@ impl<'a> Motion<'a> {
                 || is_with(a.plane.0, a.centre.0, b.centre.0)
                 || is_with(a.plane.1, a.centre.1, b.centre.1)
             {
-                return;
+                return None;
             }
             let text = format!(
                 "an arc sweeps {:+.3}° about {:.4} {:.4} instead of {:+.3}° about {:.4} {:.4}",
@@ -339,6 +412,7 @@ impl<'a> Motion<'a> {
             );
             self.groups.tell("move-arc", "arc", text, sides);
         }
+        None
     }
 
     /// Feeds, and everything that is no move.

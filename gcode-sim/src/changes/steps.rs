@@ -211,7 +211,9 @@ pub(super) fn goes_with(
         return false;
     }
     let (shift, hole) = (difference(&new.to, &old.to), difference(&feed_new.to, &feed_old.to));
-    let with = |axis: usize| shift[axis].abs() <= tolerance || (shift[axis] - hole[axis]).abs() <= tolerance;
+    // A hole that is moved: the ends of its other moves are rounded each for itself.
+    let rounded = if near(&hole, &Position::default(), tolerance) { tolerance } else { ROUNDED };
+    let with = |axis: usize| shift[axis].abs() <= tolerance || (shift[axis] - hole[axis]).abs() <= rounded;
     let is_on_line = old.is_on_line_of(feed_old) && new.is_on_line_of(feed_new);
     let above = new.distance(feed_new) - old.distance(feed_old) - deeper;
     let moved_alike = (0..MAX_AXES).all(with) && (is_on_line || old.kind == Kind::Rapid);

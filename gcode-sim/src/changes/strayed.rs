@@ -37,11 +37,15 @@ pub(super) fn strayed(
     let finish = (&old.steps[*i], &new.steps[*j]);
     let stays = |a: &Step, b: &Step| near(&a.to, &b.to, tolerance);
     let is_finished_as_before = stays(finish.0, finish.1);
+    let finish_shift = difference(&finish.1.to, &finish.0.to);
     let mut all = Vec::new();
     for (place, (i, j)) in was.iter().zip(is).enumerate() {
         let (before, now) = (&old.steps[*i], &new.steps[*j]);
         let is_with_hole = || {
-            !is_finished_as_before && goes_with((before, finish.0), (now, finish.1), hole_deeper, tolerance)
+            let shift = difference(&now.to, &before.to);
+            near(&shift, &finish_shift, tolerance)
+                || !is_finished_as_before
+                    && goes_with((before, finish.0), (now, finish.1), hole_deeper, tolerance)
         };
         if stays(before, now) || std::ptr::eq(before, finish.0) || is_with_hole() {
             continue;
