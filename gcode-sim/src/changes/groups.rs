@@ -18,6 +18,8 @@ struct Group {
     counts: Vec<(&'static str, usize)>,
     /// How many times as fast a move is, at least and at most; of moves that end elsewhere nothing.
     factors: Option<(f64, f64)>,
+    /// Of a spindle that turns as fast as that, before and now.
+    speeds: Option<(f64, f64)>,
     /// Those behind the first say other numbers: of moves with one cause or from one block.
     varies: bool,
     /// The next program finds it so.
@@ -97,12 +99,34 @@ impl<'a> Groups<'a> {
         group.count(what);
     }
 
+    /// The spindle at another speed, whichever way it turns: a tapping cycle turns it back.
+    pub(super) fn tell_speed(&mut self, was: f64, is: f64, text: String, (old, new): (&Step, &Step)) {
+        let places = (Some(old.said_at()), Some(new.said_at()));
+        let is_alike = |group: &&mut Group| {
+            group.speeds == Some((was, is)) && (group.text == text || (group.old, group.new) == places)
+        };
+        match self.all.iter_mut().find(is_alike) {
+            Some(group) => {
+                if group.text != text {
+                    group.text = format!("S{is} instead of S{was}");
+                }
+                group.count(old.kind.name());
+            }
+            None => {
+                self.begin("spindle", old.kind.name(), text, (Some(old), Some(new)), None);
+                self.all.last_mut().into_iter().for_each(|group| {
+                    (group.speeds, group.old, group.new) = (Some((was, is)), places.0, places.1);
+                });
+            }
+        }
+    }
+
     /// A move at another feed. Those of one block say the same: of G93 each is another.
     pub(super) fn tell_feed(&mut self, was: f64, is: f64, (old, new): (&Step, &Step)) {
         let text = format!("feed F{} instead of F{}", short(is), short(was));
         let factor = is / was;
         let is_alike = |group: &&mut Group| {
-            let is_place = group.old == Some(old.place) && group.new == Some(new.place);
+            let is_place = group.old == Some(old.said_at()) && group.new == Some(new.said_at());
             group.code == "feed" && (group.text == text || is_place)
         };
         match self.all.iter_mut().find(is_alike) {
@@ -123,7 +147,9 @@ impl<'a> Groups<'a> {
         (old, new): Sides<'_>,
         factors: Option<(f64, f64)>,
     ) {
-        let place = |step: Option<&Step>| step.map(|step| step.place);
+        // What is there once only stands in its own block.
+        let is_said = code == "feed" || code == "tool" && old.is_some() && new.is_some();
+        let place = |step: Option<&Step>| step.map(|step| if is_said { step.said_at() } else { step.place });
         let counts = vec![(what, 1)];
         let (old, new) = (place(old), place(new));
         self.all.push(Group {
@@ -131,6 +157,7 @@ impl<'a> Groups<'a> {
             text,
             counts,
             factors,
+            speeds: None,
             varies: false,
             stays: false,
             most: Position::default(),
@@ -146,6 +173,24 @@ impl<'a> Groups<'a> {
         found.map(|group| group.stays = true).is_some()
     }
 
+    /// All moves that end elsewhere in one, for they have one cause.
+    pub(super) fn join_shifts(&mut self) {
+        let mut others = Vec::with_capacity(self.all.len());
+        let mut first: Option<usize> = None;
+        for group in std::mem::take(&mut self.all) {
+            match first.filter(|_| group.code == "move-shifted") {
+                Some(place) => Group::join(&mut others[place], group),
+                None => {
+                    if group.code == "move-shifted" {
+                        first = Some(others.len());
+                    }
+                    others.push(group);
+                }
+            }
+        }
+        self.all = others;
+    }
+
     pub(super) fn changes(self) -> Vec<Change> {
         let (old, new, tolerance) = (self.old, self.new, self.tolerance);
         self.all.into_iter().map(|group| group.change(old, new, tolerance)).collect()
@@ -153,6 +198,16 @@ impl<'a> Groups<'a> {
 }
 
 impl Group {
+    fn join(&mut self, other: Self) {
+        self.varies |= other.varies || other.text != self.text;
+        for axis in 0..MAX_AXES {
+            self.most[axis] = self.most[axis].max(other.most[axis]);
+        }
+        for (what, times) in other.counts {
+            (0..times).for_each(|_| self.count(what));
+        }
+    }
+
     fn count(&mut self, what: &'static str) {
         match self.counts.iter_mut().find(|(known, _)| *known == what) {
             Some((_, count)) => *count += 1,

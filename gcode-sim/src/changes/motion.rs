@@ -21,6 +21,7 @@ pub(super) fn compare(
     links: &[Link],
     explained: &Explained,
     tolerance: f64,
+    is_one_edit: bool,
 ) -> (Vec<Change>, BTreeSet<u32>) {
     let conditions = Conditions::new(old, new);
     let strokes = conditions.strokes(links);
@@ -60,6 +61,9 @@ pub(super) fn compare(
         .find(|(was, is, _)| (left.0.as_deref(), left.1.as_deref()) == (Some(was), Some(is)));
     if kind.is_some_and(|(_, _, text)| motion.groups.stays("move-kind", text)) {
         modes.insert(1);
+    }
+    if is_one_edit {
+        motion.groups.join_shifts();
     }
     changes.extend(motion.groups.changes());
     (changes, modes)
@@ -467,7 +471,12 @@ impl<'a> Motion<'a> {
         if !old.is_move() && !is_told_of_holes((Some(&old.kind), Some(&new.kind)), explained) {
             let text =
                 format!("{} instead of {}", described(&new.kind, self.axes), described(&old.kind, self.axes));
-            self.groups.tell(code(&old.kind), old.kind.name(), text, (Some(old), Some(new)));
+            match (&old.kind, &new.kind) {
+                (Kind::Spindle(was, a), Kind::Spindle(is, b)) if was == is => {
+                    self.groups.tell_speed(*a, *b, text, (old, new));
+                }
+                _ => self.groups.tell(code(&old.kind), old.kind.name(), text, (Some(old), Some(new))),
+            }
         }
     }
 }

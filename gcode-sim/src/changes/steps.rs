@@ -16,6 +16,9 @@ pub(super) struct Step {
     pub at: Position,
     /// The block it comes from, by its number in the record.
     pub place: usize,
+    /// The block that has said the T, the S or the feed that is taken up here, where that is another; nothing of what was read
+    /// from a file.
+    pub said: Option<usize>,
     /// What is in force, by its number in the record.
     pub under: usize,
 }
@@ -92,6 +95,7 @@ impl Kind {
             Self::Stop(..) => Category::Stop,
             Self::Silent(Quiet::Tool, _) => Category::Tool,
             Self::Silent(Quiet::Speed, _) => Category::Spindle,
+            Self::Silent(Quiet::MCode, _) => Category::Auxiliary,
             Self::Silent(what, _) => Category::Silent(*what),
         }
     }
@@ -136,6 +140,11 @@ impl Kind {
 }
 
 impl Step {
+    /// The block that a reader changes for another tool, speed or feed.
+    pub(super) fn said_at(&self) -> usize {
+        self.said.unwrap_or(self.place)
+    }
+
     pub(super) fn is_move(&self) -> bool {
         self.kind.category() == Category::Move
     }
