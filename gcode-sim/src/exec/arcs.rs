@@ -106,7 +106,7 @@ impl Core {
         };
         let length = radius * sweep.abs().to_radians();
         // F is along the arc; all other axes follow (1403#5 HTG = 0).
-        let timed = self.time_along(state, length, length, 0.0, given.has(b'F'));
+        let timed = self.time_along(state, length, given.has(b'F'));
         let (rate, seconds) = timed.map_err(|alarm| match alarm {
             Alarm::FeedZero | Alarm::NoSpeedForFeed => Alarm::ArcFeedZero.at(span),
             other => other.at(span),

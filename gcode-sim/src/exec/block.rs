@@ -10,43 +10,71 @@
 //!  6. stop, end;
 //!  7. call or return.
 use super::Core;
+use super::code_calls::CallingWord;
 use super::eval::Checked;
 use super::notes::Note;
 use super::plan::Plan;
 use super::state::State;
-use super::words::{Given, letters};
+use super::words::Given;
 use crate::alarm::Alarm;
-use crate::program::modes::{CutterSide, Polar};
-use crate::program::{Calling, Program, Words};
+use crate::motion::Sink;
+use crate::program::modes::CutterSide;
+use crate::program::{Calling, Op, Program, Words};
 use crate::source::Span;
 
 impl Core {
-    /// Checks a block of words and makes the plan of it. Nothing changes; an alarm leaves no trace.
-    pub(super) fn prepare(
-        &self,
-        program: &Program,
+    /// Checks a block of words; where it isn't a plain move, that is done already, makes the plan of it, which is to be
+    /// carried out. An alarm leaves no trace.
+    pub(super) fn words<S: Sink>(
+        &mut self,
+        (program, op): (&Program, &Op),
         words: &Words,
         given: &mut Given,
         plan: &mut Plan,
-        span: Span,
-    ) -> Checked<()> {
-        let words = match &words.short {
-            Some((switch, short)) => {
-                let is_on = self.skips(*switch);
-                self.told.set(Some(Note::BlockSkip { switch: (*switch).max(1), is_on }));
-                if is_on { short } else { words }
+        sink: &mut S,
+    ) -> Checked<bool> {
+        let words = self.unskipped(words);
+        if self.plain_zero.is_some() {
+            self.collect(program, words, None, given)?;
+            if self.step(words, given, op.number, sink)? {
+                return Ok(false);
             }
-            None => words,
-        };
-        plan.begin(&self.state);
-        let mut calling = None;
-        if !self.settings.code_calls.is_empty() {
-            if self.macro_by_code(program, words, plan)? {
-                return Ok(());
+            plan.begin(&self.state);
+            self.prepare(program, words, None, given, plan)?;
+        } else {
+            plan.begin(&self.state);
+            let mut calling = None;
+            if !self.settings.code_calls.is_empty() {
+                if self.macro_by_code(program, words, plan)? {
+                    return Ok(true);
+                }
+                calling = self.subprogram_by_code(program, words)?;
             }
-            calling = self.subprogram_by_code(program, words)?;
+            self.collect(program, words, calling.as_ref(), given)?;
+            self.prepare(program, words, calling, given, plan)?;
         }
-        self.collect(program, words, calling.as_ref(), given)?;
+        Ok(true)
+    }
+
+    /// The words of a block but for those behind a block skip that is on.
+    #[inline(always)]
+    fn unskipped<'a>(&self, words: &'a Words) -> &'a Words {
+        let Some((switch, short)) = &words.short else { return words };
+        let is_on = self.skips(*switch);
+        self.told.set(Some(Note::BlockSkip { switch: (*switch).max(1), is_on }));
+        if is_on { short } else { words }
+    }
+
+    /// Makes the plan of a block of words that are collected. Nothing changes.
+    fn prepare(
+        &self,
+        program: &Program,
+        words: &Words,
+        calling: Option<CallingWord>,
+        given: &Given,
+        plan: &mut Plan,
+    ) -> Checked<()> {
+        let span = self.block;
         self.beside_return(words)?;
         let act = self.modal_codes(given, plan, span)?;
         if self.has_codes(given, &plan.state) {
@@ -70,7 +98,6 @@ impl Core {
             self.plan_calling_word(program, words, &calling, plan)?;
         }
         if plan.moved {
-            plan.plain = self.moves_plainly(given, &plan.state);
             plan.state.ended = None;
             self.check_modal_call(&plan.flow, span)?;
         }
@@ -91,20 +118,6 @@ impl Core {
             || given.has_more_than_moves()
             || given.m_count > 0
             || state.modal.cutter != CutterSide::Off
-    }
-
-    /// Whether a block that moves changes no more than where the program stands, group 01, F, S and N.
-    #[inline(always)]
-    fn moves_plainly(&self, given: &Given, state: &State) -> bool {
-        let before = &*self.state;
-        let alone = !given.has_of(!(self.settings.axes.mask() | letters(b"FS")))
-            && !given.has_more_than_moves()
-            && given.m_count == 0;
-        alone
-            && before.modal.cycle.is_none()
-            && before.ended.is_none()
-            && state.modal.cutter == CutterSide::Off
-            && state.modal.polar == Polar::Off
     }
 
     /// What nothing has read may still mean something to a control: it isn't passed over in silence. In a block

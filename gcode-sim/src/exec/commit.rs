@@ -8,11 +8,9 @@ use crate::motion::{Event, EventKind, Sink, StopKind};
 use crate::units::Seconds;
 
 impl Core {
-    /// Everything a plan says, in the order it says it. The plan's next block begins by clearing it.
+    /// Everything a plan says, in the order it says it.
     pub(super) fn commit<S: Sink>(&mut self, plan: &mut Plan, sink: &mut S) {
-        // What was the state stays in the plan until its next block begins.
         std::mem::swap(&mut self.state, &mut plan.state);
-        plan.follows = plan.plain;
         self.note_work(plan.state.modal.work, plan.moved);
         let before = plan.state.unplaced;
         // What a cycle does along its axis it tells itself.
@@ -60,6 +58,7 @@ impl Core {
         for code in &plan.passed_on {
             self.passed_on.entry(*code).or_insert(self.block);
         }
+        self.see_if_plain();
     }
 
     fn tell_drill<S: Sink>(&mut self, drill: &Drill, sink: &mut S) {
@@ -76,6 +75,7 @@ impl Core {
     }
 
     /// Tells the machine one thing and counts it.
+    #[inline]
     pub(super) fn tell<S: Sink>(&mut self, kind: &EventKind, seconds: f64, sink: &mut S) {
         self.count(kind, seconds);
         let block = self.block;

@@ -79,7 +79,7 @@ impl Core {
         if cycle.needs_q {
             self.peck_words(plan, given, pattern, span)?;
         }
-        let (rate, _) = at(self.time_along(&plan.state, 1.0, 1.0, 0.0, given.has(b'F')), span)?;
+        let (rate, _) = at(self.time_along(&plan.state, 1.0, given.has(b'F')), span)?;
         plan.moved = true;
         if cycle.needs_q && are_too_many(&plan.state.drilling.unscaled(stretch), repeats) {
             let what = "more than a million pecks in one block".into();

@@ -154,21 +154,23 @@ impl Core {
         binary(op, self.number(left, last), self.number(right, last), &self.settings.unsure)
     }
 
+    #[inline(always)]
     fn function(&self, name: Function, argument: f64) -> Result<f64, Alarm> {
-        let value = function(name, argument, &self.settings)?;
-        if name == Function::Tan && (argument % 180.0).abs() == 90.0 {
+        let value = function(name, argument, &self.settings);
+        if name == Function::Tan && (argument % 180.0).abs() == 90.0 && value.is_ok() {
             self.told.set(Some(Note::TangentOf90));
         }
-        Ok(value)
+        value
     }
 
     /// ATAN of two values.
+    #[inline(always)]
     fn atan(&self, y: f64, x: f64) -> Result<f64, Alarm> {
-        let value = atan2(y, x, &self.settings)?;
-        if y == 0.0 && x == 0.0 {
+        let value = atan2(y, x, &self.settings);
+        if y == 0.0 && x == 0.0 && value.is_ok() {
             self.told.set(Some(Note::AtanOf0));
         }
-        Ok(value)
+        value
     }
 
     /// What only some expressions contain. It stands apart so that the others needn't carry it.

@@ -8,7 +8,7 @@ use crate::units::{Deg, round};
 /// Results beyond what a double holds are PS0111.
 #[inline]
 fn finite(value: f64) -> Result<f64, Alarm> {
-    if (f64::MIN..=f64::MAX).contains(&value) { Ok(value) } else { Err(Alarm::FloatOverflow) }
+    if value.abs() <= f64::MAX { Ok(value) } else { Err(Alarm::FloatOverflow) }
 }
 
 #[inline(always)]

@@ -39,6 +39,7 @@ mod run;
 mod silent;
 mod state;
 mod statements;
+mod step;
 mod stroke;
 mod system_vars;
 mod thread;
@@ -79,6 +80,7 @@ use self::words::Given;
 use self::work_use::WorkUse;
 use crate::alarm::Alarm;
 use crate::control::{ParameterPlace, Settings};
+use crate::motion::Position;
 use crate::program::{Memory, ProgramId, Slot};
 use crate::source::Span;
 
@@ -103,6 +105,8 @@ pub struct Control {
 pub(crate) struct Core {
     settings: Settings,
     state: Box<State>,
+    /// While a block can be a plain move: where its axes count from.
+    plain_zero: Option<Position>,
     vars: Vars,
     offsets: Offsets,
     /// What has been read and waits for the next move.
@@ -155,6 +159,7 @@ impl Control {
         let core = Core {
             settings,
             state: Box::default(),
+            plain_zero: None,
             vars,
             offsets,
             ahead: Ahead::default(),

@@ -29,10 +29,8 @@ impl Core {
         if given.has_more_than_moves() {
             return self.codes_in_force(given, plan, span);
         }
-        for row in given.g_codes() {
-            if let Effect::Motion(motion) = row.effect {
-                plan.state.move_by(motion);
-            }
+        if let Some(motion) = given.motion {
+            plan.state.move_by(motion);
         }
         Ok(None)
     }

@@ -3,10 +3,9 @@ use super::Core;
 use super::eval::{Checked, at};
 use super::notes::Note;
 use super::plan::Plan;
-use super::travel::Goal;
 use super::words::{Given, letters};
 use crate::alarm::Alarm;
-use crate::motion::{EventKind, Position};
+use crate::motion::EventKind;
 use crate::program::codes::{Effect, Row};
 use crate::program::modes::{CutterSide, Length, Motion};
 use crate::source::Span;
@@ -76,8 +75,7 @@ impl Core {
             let what = format!("{} beside a straight move", char::from(letter));
             return Err(Alarm::NotSimulated { what }.at(given.span(letter)));
         }
-        let (mut programmed, mut machine) = (plan.state.programmed, Position::default());
-        self.move_on(given, &mut plan.state, &mut programmed, &mut machine)?;
+        let goal = self.goal(given, &mut plan.state)?;
         if motion == Motion::Thread && given.has_corner() {
             return Err(Alarm::CornerInThread.at(span));
         }
@@ -85,14 +83,12 @@ impl Core {
             plan.corner = self.corner_word(given, &plan.state)?;
         }
         match motion {
-            Motion::Rapid => self.rapid(plan, &machine),
-            Motion::Thread => self.thread(plan, machine, given, span)?,
-            Motion::Linear => at(self.feed(plan, &machine, given), span)?,
-            Motion::Clockwise | Motion::Counterclockwise => {
-                self.arc(plan, given, &Goal { programmed, machine }, span)?;
-            }
+            Motion::Rapid => self.rapid(plan, &goal.machine),
+            Motion::Thread => self.thread(plan, goal.machine, given, span)?,
+            Motion::Linear => at(self.feed(plan, &goal.machine, given), span)?,
+            Motion::Clockwise | Motion::Counterclockwise => self.arc(plan, given, &goal, span)?,
         }
-        plan.state.programmed = programmed;
+        plan.state.programmed = goal.programmed;
         plan.moved = true;
         Ok(())
     }

@@ -101,34 +101,38 @@ impl Core {
         self.offsets.zero(self.offsets.system(state.modal.work), state, axis)
     }
 
-    /// A programmed point in machine coordinates, tool length included.
-    pub(super) fn to_machine(&self, state: &State, point: &Position) -> Position {
-        let mut machine = Position::default();
-        self.put_on_machine(state, point, &mut machine);
-        machine
+    /// As [`Core::zero`], of all axes.
+    pub(super) fn zeros(&self, state: &State) -> Position {
+        let system = self.offsets.system(state.modal.work);
+        let mut zeros = Position::default();
+        for axis in 0..MAX_AXES {
+            zeros[axis] = self.offsets.zero(system, state, axis);
+        }
+        zeros
     }
 
-    /// As [`Core::to_machine`], into a place of the caller's.
-    #[inline(always)]
-    pub(super) fn put_on_machine(&self, state: &State, point: &Position, machine: &mut Position) {
-        let transformed;
-        let work = if state.transform.is_none() {
-            point
-        } else {
-            transformed = state.transform.forward(*point);
-            &transformed
-        };
-        let (system, grid) = (self.offsets.system(state.modal.work), self.grid());
-        // All places alike, those without an axis too: they are computed several at a time.
+    /// A programmed point in machine coordinates, tool length included.
+    pub(super) fn to_machine(&self, state: &State, point: &Position) -> Position {
+        let work = state.transform.forward(*point);
+        let zero = self.zeros(state);
+        let mut machine = Position::default();
         for axis in 0..MAX_AXES {
-            let zero = self.offsets.zero(system, state, axis);
-            machine[axis] = cleaned(work[axis] + zero + state.length[axis], grid);
+            machine[axis] = self.clean(work[axis] + zero[axis] + state.length[axis]);
         }
         for axis in self.settings.rolling() {
             // From where the axis stands, the shorter way: turns already made stay made.
             let from = state.machine[axis] - self.zero(state, axis) - state.length[axis];
             machine[axis] = self.clean(state.machine[axis] + shorter_way(from, work[axis]));
         }
+        machine
+    }
+
+    /// Whether every axis stands where the programmed point is on the machine, so that one which isn't named stays there.
+    pub(super) fn is_placed(&self) -> bool {
+        self.state.transform.is_none()
+            && self.settings.rolling().next().is_none()
+            && self.to_machine(&self.state, &self.state.programmed).0.map(f64::to_bits)
+                == self.state.machine.0.map(f64::to_bits)
     }
 
     /// The tool in the work coordinate system, without the length offset.
@@ -171,13 +175,10 @@ impl Core {
     }
 
     /// A coordinate without the residues of adding: a hundredth of the increment carries both mm and inches exactly.
+    #[inline]
     pub(super) fn clean(&self, value: f64) -> f64 {
-        cleaned(value, self.grid())
-    }
-
-    /// What [`Core::clean`] rounds to, parts of a millimetre or a degree.
-    fn grid(&self) -> f64 {
-        self.settings.increment.per_unit() * 100.0
+        let grid = self.settings.increment.per_unit() * 100.0;
+        round(value * grid) / grid
     }
 
     /// A work coordinate from 0 to 360 on an axis that rolls over.
@@ -247,9 +248,4 @@ impl Offsets {
             _ => &mut self.additional[system - 7],
         }
     }
-}
-
-#[inline]
-fn cleaned(value: f64, grid: f64) -> f64 {
-    round(value * grid) / grid
 }

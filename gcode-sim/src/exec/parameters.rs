@@ -71,7 +71,7 @@ impl Core {
         }
         let number = number.and_then(|number| u16::try_from(number).ok());
         let number = number.ok_or_else(|| wrong("N, the parameter's number, is missing or too large"))?;
-        let raw = given.raw(b'R').ok_or_else(|| wrong("R is missing"))?;
+        let (raw, _) = given.get(b'R').ok_or_else(|| wrong("R is missing"))?;
         let axis = match given.count(b'P')? {
             None => None,
             Some(axis) => Some(self.axis_of(f64::from(axis)).map_err(|_| wrong("P is no axis"))?),

@@ -17,10 +17,6 @@ use crate::units::MmPerMin;
 #[derive(Debug, Default)]
 pub(super) struct Plan {
     pub(super) state: Box<State>,
-    /// The block is a plain move: of the state it changes what [`State::follow`] takes over.
-    pub(super) plain: bool,
-    /// What this plan leaves behind differs from the control's state by a plain move.
-    pub(super) follows: bool,
     /// What the machine is told, with the seconds it takes.
     pub(super) events: Vec<(EventKind, f64)>,
     /// G31: its motion is planned to the end and may stop before.
@@ -140,8 +136,6 @@ impl Plan {
     pub(super) fn begin(&mut self, state: &State) {
         let Self {
             state: own,
-            plain,
-            follows,
             events,
             probing,
             after,
@@ -157,12 +151,7 @@ impl Plan {
             notes,
             flow,
         } = self;
-        if std::mem::take(follows) {
-            own.follow(state);
-        } else {
-            **own = *state;
-        }
-        *plain = false;
+        **own = *state;
         events.clear();
         (*probing, *drill, *corner) = (None, None, None);
         after.clear();

@@ -106,7 +106,7 @@ impl Core {
         span: Span,
     ) -> Checked<()> {
         let length = radius * sweep.abs().to_radians();
-        let timed = self.time_along(&plan.state, length, length, 0.0, given.has(b'F'));
+        let timed = self.time_along(&plan.state, length, given.has(b'F'));
         let (rate, seconds) = timed.map_err(|_| Alarm::ArcFeedZero.at(span))?;
         let mut end = plan.state.machine;
         end[0] = to;

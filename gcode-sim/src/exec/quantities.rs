@@ -15,6 +15,8 @@ use crate::units::nearest;
 pub(super) struct Measure {
     /// Of the least increment in mm and degrees; inches have one more.
     decimals: usize,
+    /// Increments in a mm or a degree.
+    scale: f64,
     inch: bool,
 }
 
@@ -35,66 +37,75 @@ impl Core {
 
     /// Whole increments: literals are cut off (or rounded, by setting), computed values rounded half away from 0.
     #[inline(always)]
-    fn increments(&self, raw: Raw, decimals: usize) -> Result<f64, Alarm> {
+    fn increments(&self, raw: &Raw, decimals: usize) -> Result<f64, Alarm> {
         let number = match raw {
-            Raw::Computed(value) => nearest(value, POWERS[decimals]),
+            Raw::Computed(value) => nearest(*value, POWERS[decimals]),
             Raw::Literal(Decimal { digits, places, negative }) => {
                 let places = match places {
                     // Without a point the digits count increments, or whole units in calculator notation.
                     None if self.settings.calculator_input => 0,
                     None => decimals,
-                    Some(places) => usize::from(places),
+                    Some(places) => usize::from(*places),
                 };
-                let magnitude = if places <= decimals {
-                    // Signed numbers become doubles in one step; no word has as many digits.
-                    digits.min(i64::MAX as u64) as i64 as f64 * POWERS[decimals - places]
+                // Signed numbers become doubles in one step; no literal has as many digits.
+                let magnitude = if places == decimals {
+                    *digits as i64 as f64
+                } else if places < decimals {
+                    *digits as i64 as f64 * POWERS[decimals - places]
                 } else {
-                    let unit = 10_u64.saturating_pow((places - decimals) as u32);
-                    let half = if self.settings.unsure.round_literals { unit / 2 } else { 0 };
-                    (digits.saturating_add(half) / unit) as f64
+                    self.cut(*digits, places - decimals)
                 };
-                if negative { -magnitude } else { magnitude }
+                if *negative { -magnitude } else { magnitude }
             }
         };
         // Nine digits in increments (8.1, PS0003).
         if number.abs() > 999_999_999.0 { Err(Alarm::TooManyDigits) } else { Ok(number + 0.0) }
     }
 
+    /// Digits without the last ones, which are less than an increment.
+    #[inline(never)]
+    fn cut(&self, digits: u64, places: usize) -> f64 {
+        let unit = 10_u64.saturating_pow(places as u32);
+        let half = if self.settings.unsure.round_literals { unit / 2 } else { 0 };
+        (digits.saturating_add(half) / unit) as f64
+    }
+
     /// A length in mm or an angle in degrees, a multiple of the increment of its address.
     pub(super) fn dimension(&self, given: &Given, letter: u8, state: &State) -> Checked<Option<f64>> {
         let Some((raw, span)) = given.get(letter) else { return Ok(None) };
-        at(self.dimension_of(raw, letter, self.measure(state.modal.unit)), span).map(Some)
+        at(self.dimension_of(&raw, letter, self.measure(state.modal.unit)), span).map(Some)
     }
 
     /// How the numbers of axis words are read while a unit is in force.
     #[inline]
     pub(super) fn measure(&self, unit: Unit) -> Measure {
-        Measure { decimals: self.decimals(b'A', unit), inch: unit == Unit::Inch }
+        let decimals = self.decimals(b'A', unit);
+        Measure { decimals, scale: POWERS[decimals], inch: unit == Unit::Inch }
     }
 
     /// As [`Core::dimension`], of a word's value.
     #[inline(always)]
-    pub(super) fn dimension_of(&self, raw: Raw, letter: u8, measure: Measure) -> Result<f64, Alarm> {
-        let Measure { decimals, inch } = measure;
+    pub(super) fn dimension_of(&self, raw: &Raw, letter: u8, measure: Measure) -> Result<f64, Alarm> {
+        let Measure { decimals, scale, inch } = measure;
         if inch && !turns(letter) {
             let inches = self.increments(raw, decimals + 1)? / POWERS[decimals + 1];
             return Ok(self.clean(inches * 25.4));
         }
-        Ok(self.increments(raw, decimals)? / POWERS[decimals])
+        Ok(self.increments(raw, decimals)? / scale)
     }
 
     /// An angle at an address that is a length elsewhere: R of G68.
     pub(super) fn angle(&self, given: &Given, letter: u8) -> Checked<Option<f64>> {
         let Some((raw, span)) = given.get(letter) else { return Ok(None) };
         let decimals = self.decimals(b'A', Unit::Metric);
-        Ok(Some(at(self.increments(raw, decimals), span)? / POWERS[decimals]))
+        Ok(Some(at(self.increments(&raw, decimals), span)? / POWERS[decimals]))
     }
 
     /// `,R` or `,C` of a cutting move.
     pub(super) fn corner_word(&self, given: &Given, state: &State) -> Checked<Option<Blend>> {
         let Some((letter, raw, span)) = given.corner else { return Ok(None) };
         let decimals = self.decimals(b'X', state.modal.unit);
-        let value = at(self.increments(raw, decimals), span)? / POWERS[decimals];
+        let value = at(self.increments(&raw, decimals), span)? / POWERS[decimals];
         if value < 0.0 {
             return Err(Alarm::IllegalMinus { letter: char::from(letter) }.at(span));
         }
@@ -118,7 +129,7 @@ impl Core {
     pub(super) fn seconds(&self, given: &Given, letter: u8) -> Checked<Option<f64>> {
         let Some((raw, span)) = given.get(letter) else { return Ok(None) };
         let decimals = self.decimals(b'A', Unit::Metric);
-        let value = at(self.increments(raw, decimals), span)? / POWERS[decimals];
+        let value = at(self.increments(&raw, decimals), span)? / POWERS[decimals];
         if value < 0.0 {
             return Err(Alarm::IllegalMinus { letter: char::from(letter) }.at(span));
         }

@@ -134,7 +134,7 @@ impl Control {
         core.frame.next = place + 1;
         if let Some(switch) = op.skip {
             let is_on = core.skips(switch);
-            core.notes.entry(Note::BlockSkip { switch: switch.max(1), is_on }).or_insert(op.span);
+            core.notes.entry(Note::BlockSkip { switch: switch.max(1), is_on }).or_insert(core.block);
             if is_on {
                 return Ok(());
             }
@@ -175,7 +175,9 @@ impl Control {
                     core.state.codes.o = memory.get(core.frame.program).shown_number();
                     return Ok(());
                 }
-                core.prepare(program, words, given, plan, core.block)?;
+                if !core.words((program, op), words, given, plan, sink)? {
+                    return Ok(());
+                }
                 if let Some(number) = op.number {
                     plan.state.codes.n = number;
                 }

@@ -50,18 +50,6 @@ impl State {
         self.unplaced = self.unplaced & !(1 << axis) | u8::from(unplaced) << axis;
     }
 
-    /// Becomes `other`, from which it differs in nothing but what a plain move changes and #5201… write.
-    #[inline]
-    pub(super) fn follow(&mut self, other: &Self) {
-        self.modal = other.modal;
-        self.programmed = other.programmed;
-        self.machine = other.machine;
-        self.local = other.local;
-        self.codes = other.codes;
-        self.unplaced = other.unplaced;
-        debug_assert_eq!(self, other, "a plain move changes nothing else");
-    }
-
     /// Puts a code of group 01 in force, which ends a drilling cycle (operator's manual, canned cycle for drilling).
     #[inline]
     pub(super) fn move_by(&mut self, motion: Motion) {

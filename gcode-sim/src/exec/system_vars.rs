@@ -324,6 +324,7 @@ impl Core {
         let mut state = *self.state;
         self.recompute(&mut state);
         *self.state = state;
+        self.see_if_plain();
     }
 
     fn register(&self, register: Register) -> Register {

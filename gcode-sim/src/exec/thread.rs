@@ -14,7 +14,7 @@ impl Core {
     pub(super) fn thread(&self, plan: &mut Plan, to: Position, given: &Given, span: Span) -> Checked<()> {
         given.accept(b"Q");
         let refused = |what: &str, span| Err(Alarm::NotSimulated { what: what.into() }.at(span));
-        if let Some(Raw::Literal(lead)) = given.raw(b'F')
+        if let Some((Raw::Literal(lead), _)) = given.get(b'F')
             && lead.places.is_none()
         {
             return refused("F without a point in G33, whose unit controls differ in,", given.span(b'F'));

@@ -6,15 +6,52 @@ use super::plan::Plan;
 use super::state::{PolarPoint, State};
 use super::words::Given;
 use crate::alarm::Alarm;
-use crate::motion::{Axis, EventKind, MAX_AXES, Position};
+use crate::motion::{Axis, EventKind, Position};
 use crate::program::modes::{Distance, FeedMode, Plane, Polar, Unit};
 use crate::units::{Deg, MmPerMin};
 
 /// Where a move ends: as programmed, and in machine coordinates.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Goal {
     pub(super) programmed: Position,
     pub(super) machine: Position,
+    /// As [`State::unplaced`], there.
+    pub(super) unplaced: u8,
+}
+
+/// What the named axes do on their way to a [`Goal`].
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Led {
+    pub(super) way: Way,
+    /// The largest machine coordinate that one of them gets to, its sign left out.
+    pub(super) reach: f64,
+}
+
+/// How far axes move: the sums of the squares of those that slide, in mm, and of those that turn, in degrees.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Way {
+    sliding: f64,
+    turning: f64,
+}
+
+impl Way {
+    #[inline(always)]
+    fn add(&mut self, way: f64, turns: bool) {
+        *if turns { &mut self.turning } else { &mut self.sliding } += way * way;
+    }
+
+    /// Whether one of the axes moves; the increments are far too large for squares that vanish.
+    pub(super) fn is_some(self) -> bool {
+        self.sliding + self.turning > 0.0
+    }
+}
+
+impl Goal {
+    /// Where the program stands.
+    #[inline]
+    pub(super) fn here(state: &State) -> Self {
+        Self { programmed: state.programmed, machine: state.machine, unplaced: state.unplaced }
+    }
 }
 
 impl Core {
@@ -39,60 +76,69 @@ impl Core {
 
     /// The end point of the block's axis words, from where `state` stands.
     pub(super) fn goal(&self, given: &Given, state: &mut State) -> Checked<Goal> {
-        let (mut programmed, mut machine) = (state.programmed, Position::default());
-        self.move_on(given, state, &mut programmed, &mut machine)?;
-        Ok(Goal { programmed, machine })
+        let mut goal = Goal::here(state);
+        self.lead(given, state, &self.zeros(state), &mut goal)?;
+        state.unplaced = goal.unplaced;
+        if state.modal.polar == Polar::On {
+            self.polar(given, state, &mut goal.programmed)?;
+        }
+        if state.ended.is_some() && state.modal.distance == Distance::Absolute {
+            self.note_left_out(given, state);
+        }
+        let machine = self.to_machine(state, &goal.programmed);
+        let turned = std::mem::replace(&mut goal.machine, machine);
+        for axis in self.settings.rolling().filter(|axis| given.has(self.settings.axes.letter(*axis) as u8)) {
+            goal.machine[axis] = turned[axis];
+        }
+        if goal.machine.0.iter().any(|at| at.abs() > self.farthest()) {
+            self.beyond_range(given, &goal.machine)?;
+        }
+        Ok(goal)
     }
 
-    /// Takes a programmed point to where the block's axis words lead, and finds out where that is on the machine.
+    /// Takes a goal from where `state` stands to where the block's axis words lead, on the axes that are named. On the
+    /// machine, which has `zero` as [`Core::zeros`], that is right as long as the others stand [where they
+    /// should](Core::is_placed).
     #[inline(always)]
-    pub(super) fn move_on(
+    pub(super) fn lead(
         &self,
         given: &Given,
-        state: &mut State,
-        programmed: &mut Position,
-        machine: &mut Position,
-    ) -> Checked<()> {
-        let mut turned = [0.0; MAX_AXES];
+        state: &State,
+        zero: &Position,
+        goal: &mut Goal,
+    ) -> Checked<Led> {
+        let mut led = Led::default();
+        let Goal { programmed, machine, unplaced } = goal;
         let incremental = state.modal.distance == Distance::Incremental;
+        let places = *unplaced != 0 && !incremental;
         let polar = state.modal.polar == Polar::On;
         let measure = self.measure(state.modal.unit);
+        given.ask(self.settings.axes.mask());
         for (axis, letter) in self.settings.axes.letters() {
-            if polar && self.in_plane(state, axis) {
+            if !given.has(letter) || polar && self.in_plane(state, axis) {
                 continue;
             }
-            let Some(raw) = given.raw(letter) else { continue };
-            let value = match self.dimension_of(raw, letter, measure) {
+            let value = match self.dimension_of(given.raw(letter), letter, measure) {
                 Ok(value) => value,
                 Err(alarm) => return Err(alarm.at(given.span(letter))),
             };
             let from = programmed[axis];
-            if !incremental {
-                state.unplaced &= !(1 << axis);
+            if places {
+                *unplaced &= !(1 << axis);
             }
-            if self.settings.roll_over[axis] {
+            let to = if self.settings.roll_over[axis] {
                 let way = if incremental { value } else { shorter_way(from, value) };
-                turned[axis] = way;
                 programmed[axis] = self.rolled(axis, from + way);
+                self.clean(machine[axis] + way)
             } else {
                 programmed[axis] = if incremental { self.clean(from + value) } else { value };
-            }
+                self.clean(programmed[axis] + zero[axis] + state.length[axis])
+            };
+            led.way.add(to - machine[axis], self.settings.axes.is_rotary(axis));
+            led.reach = led.reach.max(to.abs());
+            machine[axis] = to;
         }
-        if polar {
-            self.polar(given, state, programmed)?;
-        }
-        if state.ended.is_some() && !incremental {
-            self.note_left_out(given, state);
-        }
-        self.put_on_machine(state, programmed, machine);
-        for axis in self.settings.rolling().filter(|axis| given.has(self.settings.axes.letter(*axis) as u8)) {
-            machine[axis] = self.clean(state.machine[axis] + turned[axis]);
-        }
-        let most = self.farthest();
-        if machine.0.iter().fold(false, |beyond, at| beyond | (at.abs() > most)) {
-            self.in_range(given, machine, most)?;
-        }
-        Ok(())
+        Ok(led)
     }
 
     /// An axis that the block doesn't name keeps still, though its coordinate is another since a transform was switched.
@@ -107,13 +153,15 @@ impl Core {
     }
 
     /// The largest coordinate: nine digits in increments, as a word has.
-    fn farthest(&self) -> f64 {
+    #[inline]
+    pub(super) fn farthest(&self) -> f64 {
         999_999_999.0 / self.settings.increment.per_unit()
     }
 
-    /// The alarm of an axis beyond [`Core::farthest`]; one that rolls over begins anew with each turn.
+    /// The alarm of an axis beyond [`Core::farthest`], if one is there; one that rolls over begins anew with each turn.
     #[cold]
-    fn in_range(&self, given: &Given, machine: &Position, most: f64) -> Checked<()> {
+    pub(super) fn beyond_range(&self, given: &Given, machine: &Position) -> Checked<()> {
+        let most = self.farthest();
         for (axis, letter) in self.settings.axes.iter() {
             if machine[axis].abs() > most && !self.settings.roll_over[axis] {
                 let alarm = Alarm::PositionOverflow { letter, value: machine[axis] };
@@ -174,7 +222,6 @@ impl Core {
     }
 
     /// Tells a straight cut; alarms where there is no feed, even if it leads nowhere.
-    #[inline]
     pub(super) fn feed(&self, plan: &mut Plan, to: &Position, given: &Given) -> Result<(), Alarm> {
         let from = &plan.state.machine;
         let (rate, seconds) = self.feed_seconds(&plan.state, from, to, given.has(b'F'))?;
@@ -206,29 +253,45 @@ impl Core {
         to: &Position,
         f_in_block: bool,
     ) -> Result<(MmPerMin, f64), Alarm> {
-        let (mut sliding, mut turning) = (0.0, 0.0);
+        let mut way = Way::default();
         for axis in 0..self.settings.axes.len() {
-            let way = to[axis] - from[axis];
-            if self.settings.axes.is_rotary(axis) {
-                turning += way * way;
-            } else {
-                sliding += way * way;
-            }
+            way.add(to[axis] - from[axis], self.settings.axes.is_rotary(axis));
         }
-        self.time_along(state, (sliding + turning).sqrt(), sliding.sqrt(), turning, f_in_block)
+        self.time_of(state, state.codes.f, way, f_in_block)
     }
 
-    /// The rate and the time for a path of `length`, of which `sliding` mm are linear and the rest turns.
+    /// As [`Core::feed_seconds`] of an F that may not be in force yet.
+    #[inline(always)]
+    pub(super) fn time_of(
+        &self,
+        state: &State,
+        f: f64,
+        Way { sliding, turning }: Way,
+        f_in_block: bool,
+    ) -> Result<(MmPerMin, f64), Alarm> {
+        let in_inches = || inches(sliding.sqrt(), turning);
+        self.time_at(state, f, ((sliding + turning).sqrt(), in_inches), f_in_block)
+    }
+
+    /// The rate and the time for a path of `length` mm on which nothing turns.
     #[inline]
     pub(super) fn time_along(
         &self,
         state: &State,
         length: f64,
-        sliding: f64,
-        turning: f64,
         f_in_block: bool,
     ) -> Result<(MmPerMin, f64), Alarm> {
-        let f = state.codes.f;
+        self.time_at(state, state.codes.f, (length, || inches(length, 0.0)), f_in_block)
+    }
+
+    #[inline(always)]
+    fn time_at(
+        &self,
+        state: &State,
+        f: f64,
+        (length, in_inches): (f64, impl Fn() -> f64),
+        f_in_block: bool,
+    ) -> Result<(MmPerMin, f64), Alarm> {
         if state.modal.feed_mode == FeedMode::InverseTime {
             if !f_in_block {
                 return Err(Alarm::NoInverseTime);
@@ -246,15 +309,19 @@ impl Core {
             let no_speed = state.modal.feed_mode == FeedMode::PerRevolution && f > 0.0;
             return Err(if no_speed { Alarm::NoSpeedForFeed } else { Alarm::FeedZero });
         }
-        // In inches the composite is of inches and degrees.
         let counted = match state.modal.unit {
             Unit::Metric => length,
-            Unit::Inch => (sliding / 25.4 * (sliding / 25.4) + turning).sqrt(),
+            Unit::Inch => in_inches(),
         };
         let minutes = counted / per_minute;
         let rate = if minutes > 0.0 { length / minutes } else { per_minute };
         Ok((MmPerMin(rate), minutes * 60.0))
     }
+}
+
+/// The composite of a way of `sliding` mm and of what turns, squared degrees, as it counts in inches: of inches and degrees.
+fn inches(sliding: f64, turning: f64) -> f64 {
+    (sliding / 25.4 * (sliding / 25.4) + turning).sqrt()
 }
 
 /// How an axis that rolls over gets from one angle to another: the shorter way, half a turn in the plus direction.

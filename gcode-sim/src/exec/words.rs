@@ -10,6 +10,7 @@ use crate::alarm::Alarm;
 use crate::control::{CodeSet, Settings};
 use crate::program::codes::{self, Effect, Row};
 use crate::program::m_codes;
+use crate::program::modes::Motion;
 use crate::program::{Coded, Input, Program, Words};
 use crate::source::Span;
 use crate::syntax::ast::Decimal;
@@ -44,6 +45,8 @@ pub(super) struct Given {
     values: [(Raw, Span); 26],
     g: [Option<&'static Row>; G_CODES],
     g_count: usize,
+    /// The last code of group 01.
+    pub(super) motion: Option<Motion>,
     /// A G code stands in the block that is not of group 01.
     beyond_moves: bool,
     pub(super) m: [Option<(u32, Span)>; M_CODES],
@@ -64,6 +67,7 @@ impl Default for Given {
             values: [(Raw::Computed(0.0), Span::default()); 26],
             g: [None; G_CODES],
             g_count: 0,
+            motion: None,
             beyond_moves: false,
             m: [None; M_CODES],
             m_count: 0,
@@ -80,6 +84,7 @@ impl Given {
         self.present = 0;
         self.read.set(0);
         self.g_count = 0;
+        self.motion = None;
         self.beyond_moves = false;
         self.m_count = 0;
         self.corner = None;
@@ -105,7 +110,10 @@ impl Given {
         }
         self.g[self.g_count] = Some(row);
         self.g_count += 1;
-        self.beyond_moves |= !matches!(row.effect, Effect::Motion(_));
+        match row.effect {
+            Effect::Motion(motion) => self.motion = Some(motion),
+            _ => self.beyond_moves = true,
+        }
         Ok(())
     }
 
@@ -170,12 +178,15 @@ impl Given {
         Some((char::from(letter), self.span(letter)))
     }
 
-    /// A word's value before anything is made of it.
-    #[inline]
-    pub(super) fn raw(&self, letter: u8) -> Option<Raw> {
-        let place = letter - b'A';
-        self.read.set(self.read.get() | 1 << place);
-        (self.present >> place & 1 == 1).then(|| self.values[usize::from(place)].0)
+    /// The value, before anything is made of it, of a word that it [has](Self::has). Who takes it [asks](Self::ask) for it.
+    #[inline(always)]
+    pub(super) fn raw(&self, letter: u8) -> &Raw {
+        &self.values[usize::from(letter - b'A')].0
+    }
+
+    /// Asks for the words of some [`letters`].
+    pub(super) fn ask(&self, letters: u32) {
+        self.read.set(self.read.get() | letters);
     }
 
     /// Whether it has `,R` or `,C`.
@@ -236,31 +247,40 @@ impl Core {
     ) -> Checked<()> {
         given.clear();
         given.punched = words.punched;
-        for (place, word) in words.list.iter().enumerate() {
-            if calling.is_some_and(|calling| calling.takes(place, word)) {
-                continue;
+        match calling {
+            None => words.list.iter().try_for_each(|word| self.take(program, word, given)),
+            Some(calling) => {
+                let mut others =
+                    words.list.iter().enumerate().filter(|(place, word)| !calling.takes(*place, word));
+                others.try_for_each(|(_, word)| self.take(program, word, given))
             }
-            let raw = match word.value {
-                Input::G(code, found) if !word.comma => {
-                    let row = found.on(self.settings.codes);
-                    let improper = || Alarm::ImproperGCode { code: codes::spelled(code) }.at(word.span);
-                    at(given.put_g(row.ok_or_else(improper)?), word.span)?;
-                    continue;
-                }
-                Input::G(code, _) => Raw::Computed(f64::from(code) / 10.0),
-                Input::Literal(number) => Raw::Literal(number),
-                Input::Operand(operand) => match self.operand(program, operand)? {
-                    Value::Number(value) => Raw::Computed(value),
-                    Value::Vacant => continue,
-                },
-            };
-            self.put(program, word, raw, given)?;
         }
-        Ok(())
     }
 
-    /// Puts a word to those of its block.
-    #[inline]
+    /// Evaluates a word and puts it to those of its block.
+    #[inline(always)]
+    fn take(&self, program: &Program, word: &Coded, given: &mut Given) -> Checked<()> {
+        let raw = match word.value {
+            Input::Literal(number) => Raw::Literal(number),
+            Input::G(code, found) if !word.comma => {
+                let row = found.on(self.settings.codes);
+                let improper = || Alarm::ImproperGCode { code: codes::spelled(code) }.at(word.span);
+                return at(given.put_g(row.ok_or_else(improper)?), word.span);
+            }
+            Input::G(code, _) => Raw::Computed(f64::from(code) / 10.0),
+            Input::Operand(operand) => match self.operand(program, operand)? {
+                Value::Number(value) => Raw::Computed(value),
+                Value::Vacant => return Ok(()),
+            },
+        };
+        if word.comma || word.axis.is_some() || matches!(word.letter, b'G' | b'M') {
+            return self.put(program, word, raw, given);
+        }
+        self.put_value(word.letter, word.span, raw, given)
+    }
+
+    /// Puts a word that is more than a value at an address to those of its block.
+    #[inline(never)]
     fn put(&self, program: &Program, word: &Coded, raw: Raw, given: &mut Given) -> Checked<()> {
         if word.comma {
             return at(given.put_corner(word, raw), word.span);
@@ -281,15 +301,18 @@ impl Core {
                 let code = at(count(raw, b'M'), word.span)?;
                 at(given.put_m(code, word.span, &self.settings), word.span)
             }
-            letter => {
-                if self.settings.no_repeated_address && given.has(letter) {
-                    return Err(Alarm::RepeatedAddress { letter: char::from(letter) }.at(word.span));
-                }
-                given.present |= 1 << (letter - b'A');
-                given.values[usize::from(letter - b'A')] = (raw, word.span);
-                Ok(())
-            }
+            letter => self.put_value(letter, word.span, raw, given),
         }
+    }
+
+    #[inline(always)]
+    fn put_value(&self, letter: u8, span: Span, raw: Raw, given: &mut Given) -> Checked<()> {
+        if self.settings.no_repeated_address && given.has(letter) {
+            return Err(Alarm::RepeatedAddress { letter: char::from(letter) }.at(span));
+        }
+        given.present |= 1 << (letter - b'A');
+        given.values[usize::from(letter - b'A')] = (raw, span);
+        Ok(())
     }
 
     /// The value of a word, or `None` where it is vacant and the word therefore not there.

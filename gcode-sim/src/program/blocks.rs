@@ -10,7 +10,7 @@ use crate::alarm::Alarm;
 use crate::source::SourceId;
 use crate::syntax::{ast, block_at, sequence_number_at};
 
-/// As many operations are kept. Loops are shorter; some megabytes at most.
+/// As many operations are kept, and as many trees' code. Loops are shorter; some megabytes at most.
 const KEPT: usize = 8192;
 
 /// The text that a program stands in.
@@ -28,46 +28,37 @@ impl Text {
     }
 }
 
-/// Where a block begins, and where its operation is.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Entry {
-    start: u32,
-    /// The place of its operation, [`Entry::UNREAD`] where it isn't lowered.
-    op: u32,
-}
-
-impl Entry {
-    /// No operation has this place.
-    const UNREAD: u32 = u32::MAX;
-
-    pub(super) fn new(start: u32) -> Self {
-        Self { start, op: Self::UNREAD }
-    }
-}
-
 /// All blocks of a program, and the operations of some.
 #[derive(Debug)]
 pub(super) struct Blocks {
     text: Text,
-    entries: Vec<Entry>,
+    /// Where each block begins.
+    starts: Vec<u32>,
     /// The trees of blocks that don't begin their line.
     apart: BTreeMap<u32, ast::Block>,
-    /// The places of the blocks that are lowered, and their operations. Behind those stand others that are forgotten: their
-    /// lists of words are filled again.
-    places: Vec<u32>,
+    /// Operations, and the block that each is of, [`Blocks::NONE`] where it is forgotten: its list of words is filled
+    /// again then. A block has one place for its operation, which it shares with those a multiple of [`KEPT`] away.
     ops: Vec<Op>,
+    held: Vec<u32>,
+    /// Whether all are held, each at its own place.
+    whole: bool,
     lowering: Lowering,
+    /// How many trees have been lowered by it.
+    trees: usize,
 }
 
 impl Blocks {
-    pub(super) fn new(text: Text, entries: Vec<Entry>, apart: BTreeMap<u32, ast::Block>) -> Self {
-        let (ops, places, lowering) = (Vec::new(), Vec::new(), Lowering::default());
-        Self { text, entries, apart, ops, places, lowering }
+    /// No block has this place.
+    const NONE: u32 = u32::MAX;
+
+    pub(super) fn new(text: Text, starts: Vec<u32>, apart: BTreeMap<u32, ast::Block>) -> Self {
+        let (ops, held, lowering) = (Vec::new(), Vec::new(), Lowering::default());
+        Self { text, starts, apart, ops, held, whole: false, lowering, trees: 0 }
     }
 
     /// The tree of a block, read anew.
     pub(super) fn tree(&self, place: OpIndex) -> Option<ast::Block> {
-        let start = self.entries.get(place)?.start;
+        let start = *self.starts.get(place)?;
         match self.apart.get(&(place as u32)) {
             Some(block) => Some(block.clone()),
             None => block_at(self.text.source, self.text.written(), start),
@@ -77,10 +68,10 @@ impl Blocks {
     /// The sequence numbers with their blocks, by number, then by place.
     pub(super) fn sequence_numbers(&self) -> Vec<(u32, u32)> {
         let mut numbers = Vec::new();
-        for (place, entry) in (0..).zip(&self.entries) {
+        for (place, start) in (0..).zip(&self.starts) {
             let number = match self.apart.get(&place) {
                 Some(block) => block.number.map(|number| number.node),
-                None => sequence_number_at(self.text.source, self.text.written(), entry.start),
+                None => sequence_number_at(self.text.source, self.text.written(), *start),
             };
             numbers.extend(number.map(|number| (number, place)));
         }
@@ -90,7 +81,19 @@ impl Blocks {
 
     /// The operation of a block, if it is lowered.
     pub(super) fn op(&self, place: OpIndex) -> Option<&Op> {
-        self.op_at(self.entries.get(place)?.op)
+        self.op_at(self.found(place)?)
+    }
+
+    /// Where the operation of a block is, if it is lowered.
+    #[inline]
+    fn found(&self, place: OpIndex) -> Option<u32> {
+        let at = self.place_of(place);
+        self.held.get(at).is_some_and(|held| *held as usize == place).then_some(at as u32)
+    }
+
+    #[inline]
+    fn place_of(&self, place: OpIndex) -> usize {
+        if self.whole { place } else { place % KEPT }
     }
 
     /// An operation by the place that [`Blocks::ready`] tells.
@@ -101,8 +104,8 @@ impl Blocks {
 
     /// All operations; to ask before all are lowered, in order, is a mistake of ours.
     pub(super) fn all(&self) -> &[Op] {
-        debug_assert_eq!(self.places.len(), self.entries.len(), "all blocks are lowered");
-        if self.places.len() == self.entries.len() { &self.ops[..self.places.len()] } else { &[] }
+        debug_assert!(self.whole, "all blocks are lowered");
+        if self.whole { &self.ops } else { &[] }
     }
 
     #[inline(always)]
@@ -118,17 +121,16 @@ impl Blocks {
         self.lowering.names.get(index as usize).map_or("", String::as_str)
     }
 
-    /// The place of a block's operation, which is lowered where it isn't; `None` behind the last block. Where too many are,
-    /// the others are forgotten.
+    /// The place of a block's operation, which is lowered where it isn't; `None` behind the last block. Another that had the
+    /// place is forgotten, and where too many trees have been lowered, all are.
     #[inline]
     pub(super) fn ready(&mut self, place: OpIndex, loops: &Loops) -> Option<u32> {
-        let op = self.entries.get(place)?.op;
-        if (op as usize) < self.ops.len() { Some(op) } else { self.make_ready(place, loops) }
+        self.found(place).or_else(|| self.make_ready(place, loops))
     }
 
     #[inline(never)]
     fn make_ready(&mut self, place: OpIndex, loops: &Loops) -> Option<u32> {
-        if self.places.len() >= KEPT {
+        if self.trees >= KEPT {
             self.forget();
         }
         self.lower(place, loops)
@@ -137,35 +139,42 @@ impl Blocks {
     /// Lowers all blocks, in order.
     pub(super) fn lower_all(&mut self, loops: &Loops) {
         self.forget();
-        for place in 0..self.entries.len() {
+        self.whole = true;
+        for place in 0..self.starts.len() {
             self.lower(place, loops);
         }
     }
 
     fn forget(&mut self) {
-        for place in self.places.drain(..) {
-            self.entries[place as usize].op = Entry::UNREAD;
-        }
+        self.held.fill(Self::NONE);
         self.lowering.forget();
+        self.trees = 0;
     }
 
     fn lower(&mut self, place: OpIndex, loops: &Loops) -> Option<u32> {
-        let entry = *self.entries.get(place)?;
-        let at = self.places.len();
-        if at == self.ops.len() {
-            self.ops.push(Op::default());
+        let start = *self.starts.get(place)?;
+        let at = self.place_of(place);
+        if at >= self.ops.len() {
+            self.ops.resize_with(at + 1, Op::default);
+            self.held.resize(at + 1, Self::NONE);
         }
         let apart = self.apart.contains_key(&(place as u32));
-        if apart || !self.ops[at].refill(self.text.source, self.text.written(), entry.start) {
-            let tree = self.tree(place)?;
-            let small = lower_case(&tree, &self.text.bytes);
-            let mut op = self.lowering.block(&tree, small);
-            join(&mut op, place, loops);
+        if apart || !self.ops[at].refill(self.text.source, self.text.written(), start) {
+            self.held[at] = Self::NONE;
+            let op = self.lower_tree(place, loops)?;
             self.ops[at] = op;
         }
-        self.entries[place].op = at as u32;
-        self.places.push(place as u32);
+        self.held[at] = place as u32;
         Some(at as u32)
+    }
+
+    fn lower_tree(&mut self, place: OpIndex, loops: &Loops) -> Option<Op> {
+        let tree = self.tree(place)?;
+        let small = lower_case(&tree, &self.text.bytes);
+        let mut op = self.lowering.block(&tree, small);
+        self.trees += 1;
+        join(&mut op, place, loops);
+        Some(op)
     }
 }
 

@@ -9,39 +9,38 @@ impl Op {
     /// Becomes the block that begins at `start`; not where more stands in it than numbers, or a call: then it may have
     /// become anything, and its tree must be lowered.
     pub(super) fn refill(&mut self, source: SourceId, text: &[u8], start: u32) -> bool {
-        let Some(mut numbers) = Numbers::new(source, text, start) else { return false };
+        let Some(numbers) = Numbers::new(source, text, start) else { return false };
+        let number = numbers.sequence_number;
         if !matches!(self.kind, OpKind::Words(_)) {
             self.kind = OpKind::Words(Words::default());
         }
         let OpKind::Words(words) = &mut self.kind else { return false };
-        if !words.refill(|list| fill(list, &mut numbers)) {
-            return false;
-        }
+        let Some(end) = fill(words.emptied(), numbers) else { return false };
         if words.list.is_empty() {
             self.kind = OpKind::Empty;
         }
-        self.span = Span { source, start, end: numbers.end() };
-        (self.skip, self.number) = (None, numbers.sequence_number);
+        self.span = Span { source, start, end };
+        (self.skip, self.number) = (None, number);
         self.forms = Box::default();
         true
     }
 }
 
-/// Puts the words of a line into an empty list; whether it has no others.
-#[inline]
-fn fill(list: &mut Vec<Coded>, numbers: &mut Numbers<'_>) -> bool {
+/// Puts the words of a line into an empty list, and tells where the last one ends; not where the line has others.
+#[inline(never)]
+fn fill(list: &mut Vec<Coded>, mut numbers: Numbers<'_>) -> Option<u32> {
     for NumberWord { letter, number, span } in numbers.by_ref() {
         let coded = |value| Coded { letter, axis: None, comma: false, value, span };
         match letter {
-            b'G' => match g_code(number) {
-                None | Some(650 | 660 | 661 | 670) => return false,
-                Some(code) => list.push(coded(Input::G(code, codes::find(code)))),
+            b'G' => match g_code(number)? {
+                650 | 660 | 661 | 670 => return None,
+                code => list.push(coded(Input::G(code, codes::find(code)))),
             },
-            b'M' if matches!(number.digits, 97 | 98 | 99 | 198) => return false,
+            b'M' if matches!(number.digits, 97 | 98 | 99 | 198) => return None,
             _ => list.push(coded(Input::Literal(number))),
         }
     }
-    numbers.is_at_end()
+    numbers.is_at_end().then_some(numbers.end())
 }
 
 #[cfg(test)]
@@ -59,13 +58,17 @@ mod tests {
         Lowering::default().block(&tree, None)
     }
 
+    /// A long file goes on behind a line.
+    const BEHIND: &str = "\nX1.\nG4 (AND SO FORTH) X1.\n";
+
     proptest! {
         #[test]
         fn a_block_of_numbers_is_what_its_tree_is(
-            words in vec("[A-Z]|G(1|0?4|54\\.1|65|5\\.55|-1)|M(3|9[7-9]|198)|[XNIFO][-+]?[0-9]{0,4}[.]?[0-9]{0,2}|[ \t\x1a]|[#%(;/n]", 1..8),
+            words in vec("[A-Z]|G(1|0?4|54\\.1|65|5\\.55|-1)|M(3|9[7-9]|198)|[XNIFO][-+]?[0-9]{0,10}[.]?[0-9]{0,10}|[XNY][0-9]{1,3}\\.?[0-9]{1,3} ?|[ \t\x1a]|[#%(;/n]", 1..8),
             end in proptest::sample::select(vec!["", "\n", "\r\n", " \nX5", "\t\r"]),
+            behind in proptest::sample::select(vec!["", BEHIND]),
         ) {
-            let text = format!("{}{end}", words.concat().trim_start_matches([' ', '\t', '\x1a']));
+            let text = format!("{}{end}{behind}", words.concat().trim_start_matches([' ', '\t', '\x1a']));
             let mut op = another();
             if op.refill(SourceId(0), text.as_bytes(), 0) {
                 prop_assume!(op.span.end > 0);
@@ -78,9 +81,9 @@ mod tests {
 
     #[test]
     fn the_common_line_needs_no_tree() {
-        let text = b"N10 G1 X1.5 Y-.25 Z+3\r\nG0";
+        let text = format!("N10 G1 X1.5 Y-.25 Z+3\r\nG0{BEHIND}");
         let mut op = another();
-        assert!(op.refill(SourceId(0), text, 0));
+        assert!(op.refill(SourceId(0), text.as_bytes(), 0));
         assert_eq!((op.number, op.span.end), (Some(10), 21));
         assert!(matches!(op.kind, OpKind::Words(words) if words.list.len() == 4));
     }
@@ -90,6 +93,7 @@ mod tests {
         for text in
             ["G1 X#1", "G1 (A)", "g1", "G65 P1", "M98 P1", "M99", "X1 O2", "G5.55", "/G1", "X1.2.", "X 1"]
         {
+            let text = format!("{text}{BEHIND}");
             assert!(!another().refill(SourceId(0), text.as_bytes(), 0), "{text}");
         }
     }

@@ -2,19 +2,19 @@
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
-use super::blocks::{Blocks, Entry, Text};
+use super::blocks::{Blocks, Text};
 use super::loops::{Loops, Part};
 use super::lower::Lowering;
 use super::{OpIndex, OpKind, Program, Statement};
 use crate::source::{SourceId, Span};
 use crate::syntax::ast::{self, ProgramName};
-use crate::syntax::{Outlined, Parts, outline, sequence_number_at, written};
+use crate::syntax::{Outlined, Parts, end_without_spaces, outline, sequence_number_at, written};
 
 /// What grows while a program is outlined.
 #[derive(Default)]
 struct Growing {
     blocks: u32,
-    /// Where the last block ends.
+    /// Where the last block ends, perhaps with spaces behind it.
     end: u32,
     first_number: Option<u32>,
     loops: Vec<(OpIndex, Part, u8)>,
@@ -30,12 +30,22 @@ pub(super) fn programs(source: SourceId, bytes: &Arc<[u8]>) -> Vec<Program> {
 
 impl Growing {
     /// Notes a block.
-    #[inline]
-    fn block(&mut self, block: Outlined, text: &Text) -> Entry {
-        let place = self.blocks;
+    #[inline(always)]
+    fn block(&mut self, block: Outlined, text: &Text) -> u32 {
         let span = block.span();
+        if !matches!(block, Outlined::Words(_)) || self.first_number.is_none() {
+            self.look_into(block, text);
+        }
+        self.blocks += 1;
+        self.end = span.end;
+        span.start
+    }
+
+    /// Notes what is in a block besides words.
+    #[inline(never)]
+    fn look_into(&mut self, block: Outlined, text: &Text) {
+        let place = self.blocks;
         match block {
-            Outlined::Words(_) if self.first_number.is_some() => {}
             Outlined::Words(span) => {
                 self.number(sequence_number_at(text.source, text.written(), span.start));
             }
@@ -45,9 +55,6 @@ impl Growing {
                 self.apart.insert(place, *block);
             }
         }
-        self.blocks += 1;
-        self.end = span.end;
-        Entry::new(span.start)
     }
 
     /// Notes the sequence number of a block.
@@ -78,8 +85,9 @@ fn is_of_loop(item: &ast::Item) -> bool {
     matches!(item, ast::Item::Statement(found) if matches!(found.node, While { .. } | Do(_) | End(_)))
 }
 
-fn finish(Parts { name, span, context, blocks, closed }: Parts<Growing, Entry>, text: Text) -> Program {
+fn finish(Parts { name, span, context, blocks, closed }: Parts<Growing, u32>, text: Text) -> Program {
     let Growing { end, first_number, loops, apart, .. } = context;
+    let end = end_without_spaces(text.written(), end);
     let number = match name {
         ProgramName::Number(number) => Some(number),
         ProgramName::Name(_) => None,

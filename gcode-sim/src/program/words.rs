@@ -90,13 +90,12 @@ impl Words {
         Self { list, call: call.map(Box::new), short: None, punched: None }
     }
 
-    /// Takes the words of another block, which `fill` writes into an empty list; whether it could.
+    /// Its list, emptied for the words of another block.
     #[inline]
-    pub(super) fn refill(&mut self, fill: impl FnOnce(&mut Vec<Coded>) -> bool) -> bool {
-        let Self { list, call, short, punched } = self;
-        (*call, *short, *punched) = (None, None, None);
-        list.clear();
-        fill(list)
+    pub(super) fn emptied(&mut self) -> &mut Vec<Coded> {
+        (self.call, self.short, self.punched) = (None, None, None);
+        self.list.clear();
+        &mut self.list
     }
 }
 

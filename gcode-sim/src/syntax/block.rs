@@ -2,6 +2,7 @@
 use nom::Err;
 
 use super::ast::{Address, Block, Item, Unreadable, Word, WordValue};
+use super::digits::window;
 use super::number::integer;
 use super::numbers::{goes_on, number_word};
 use super::statement::{assignment, keyword, statement};
@@ -90,9 +91,9 @@ fn item<'a>(line: Line, at: Input<'a>, block: &mut Block) -> Read<'a, ()> {
             (rest, Item::Word(word))
         }
         [b'O' | b'o' | b':', ..] if beginning && begins_program(at) => return fail(at, Alarm::ProgramNumber),
-        [b',' | b'A'..=b'Z' | b'a'..=b'z', ..] => match (number_word(at, 0), keyword(at)) {
-            (Some((letter, number, end)), _) if !goes_on(at, end) => {
-                let rest = &at[end..];
+        [b',' | b'A'..=b'Z' | b'a'..=b'z', ..] => match (number_word(&window(at)), keyword(at)) {
+            (Some((letter, number, length)), _) if !goes_on(&at[length..]) => {
+                let rest = &at[length..];
                 let (address, value) = (Address { letter, comma: false }, WordValue::Literal(number));
                 (rest, Item::Word(Word { address, axis: None, value, span: line.span(at, rest) }))
             }

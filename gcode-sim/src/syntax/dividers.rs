@@ -2,14 +2,14 @@
 
 /// Whether a line with this byte may be more than one block without comments: it may begin a comment or a remark, end a
 /// block before its line does (`%`, `O`, `:`, `<`), or be of DO, END or EN, or of a folder line (`&`). Written so that many
-/// bytes are looked at together.
+/// bytes are looked at together, and so shortly that a few others count as such.
 const fn divides(byte: u8) -> bool {
-    const fn within(byte: u8, first: u8, last: u8) -> bool {
-        byte.wrapping_sub(first) <= last - first
-    }
-    let small = byte | 0x20;
-    let letter = (small == b'o') | within(small, b'd', b'e');
-    letter | within(byte, b'%', b'(') | (byte == b'/') | within(byte, b':', b'<')
+    let of_words = byte & 0xde == b'D';
+    let slash_or_o = byte & 0x9f == b'/' & 0x9f;
+    of_words
+        | slash_or_o
+        | (byte.wrapping_sub(b'%') <= b'(' - b'%')
+        | (byte.wrapping_sub(b':') <= b'<' - b':')
 }
 
 /// The same for single bytes, looked up.

@@ -1,5 +1,5 @@
 //! A whole file: the programs in it.
-use super::ast::{Program, ProgramName};
+use super::ast::{Block, Program, ProgramName};
 use super::pieces::{Piece, Pieces, says_nothing};
 use crate::source::{SourceId, Span};
 
@@ -14,62 +14,72 @@ pub struct Parts<C, B> {
     pub closed: bool,
 }
 
-/// All programs of a file. Blocks before the first O word of a section are a program without a name; where nothing in
-/// it can be read and the file has other programs, it is the text around a tape and left out.
+/// All programs of a file.
 pub fn parse(source: SourceId, bytes: &[u8]) -> Vec<Program> {
-    let programs = programs(Pieces::new(source, bytes), says_nothing, |block| block.span, |(), block| block);
-    programs.into_iter().map(|Parts { name, span, blocks, .. }| Program { name, span, blocks }).collect()
-}
-
-/// The programs that pieces make up. Each block becomes at once what `each` makes of it, so that the tree of a long
-/// file is never held. Every program has a context of its own.
-pub(super) fn programs<C: Default, P, B>(
-    pieces: impl Iterator<Item = Piece<P>>,
-    is_silent: impl Fn(&P) -> bool,
-    span_of: impl Fn(&P) -> Span,
-    mut each: impl FnMut(&mut C, P) -> B,
-) -> Vec<Parts<C, B>> {
-    let mut programs: Vec<(Parts<C, B>, bool)> = Vec::new();
-    let mut open = false;
-    for piece in pieces {
-        let block = match piece {
-            Piece::Section => {
-                close(&mut programs);
-                open = false;
-                continue;
+    let mut programs = Programs::<(), Block>::default();
+    for piece in Pieces::new(source, bytes) {
+        match piece {
+            Piece::Section => programs.close(),
+            Piece::Program { name, span } => programs.begin(name, span),
+            Piece::Block(block) => {
+                let (span, silent) = (block.span, says_nothing(&block));
+                programs.open(span, silent).blocks.push(block);
             }
-            Piece::Program { name, span } => {
-                begin(&mut programs, name, span);
-                open = true;
-                continue;
-            }
-            Piece::Block(block) => block,
-        };
-        if !open {
-            begin(&mut programs, ProgramName::Unnamed, span_of(&block));
-            open = true;
-        }
-        if let Some((program, silent)) = programs.last_mut() {
-            *silent &= is_silent(&block);
-            program.blocks.push(each(&mut program.context, block));
         }
     }
-    let alone = programs.len() == 1;
-    programs.into_iter().filter(|(_, silent)| alone || !silent).map(|(program, _)| program).collect()
+    let parts = programs.done().into_iter();
+    parts.map(|Parts { name, span, blocks, .. }| Program { name, span, blocks }).collect()
 }
 
-/// Another program follows.
-fn begin<C: Default, B>(programs: &mut Vec<(Parts<C, B>, bool)>, name: ProgramName, span: Span) {
-    close(programs);
-    let silent = name == ProgramName::Unnamed;
-    let (context, blocks) = (C::default(), Vec::new());
-    programs.push((Parts { name, span, context, blocks, closed: false }, silent));
+/// The programs that pieces make up. Each has a context of its own.
+#[derive(Debug)]
+pub(super) struct Programs<C, B> {
+    /// Each with whether nothing in it can be read.
+    list: Vec<(Parts<C, B>, bool)>,
+    /// Whether a block that comes now belongs to the last one.
+    is_open: bool,
 }
 
-/// Something follows the last program.
-fn close<C, B>(programs: &mut [(Parts<C, B>, bool)]) {
-    if let Some((program, _)) = programs.last_mut() {
-        program.closed = true;
+impl<C, B> Default for Programs<C, B> {
+    fn default() -> Self {
+        Self { list: Vec::new(), is_open: false }
+    }
+}
+
+impl<C: Default, B> Programs<C, B> {
+    /// Another program follows.
+    pub(super) fn begin(&mut self, name: ProgramName, span: Span) {
+        self.close();
+        let silent = name == ProgramName::Unnamed;
+        let (context, blocks) = (C::default(), Vec::new());
+        self.list.push((Parts { name, span, context, blocks, closed: false }, silent));
+        self.is_open = true;
+    }
+
+    /// Something follows the last program.
+    pub(super) fn close(&mut self) {
+        if let Some((program, _)) = self.list.last_mut() {
+            program.closed = true;
+        }
+        self.is_open = false;
+    }
+
+    /// The program that a block belongs to, `silent` if nothing in it can be read. Blocks before the first O word of a
+    /// section are a program without a name.
+    pub(super) fn open(&mut self, span: Span, silent: bool) -> &mut Parts<C, B> {
+        if !self.is_open {
+            self.begin(ProgramName::Unnamed, span);
+        }
+        let last = self.list.len() - 1;
+        let (program, all_silent) = &mut self.list[last];
+        *all_silent &= silent;
+        program
+    }
+
+    /// All of them. One in which nothing can be read is the text around a tape and left out where the file has others.
+    pub(super) fn done(self) -> Vec<Parts<C, B>> {
+        let alone = self.list.len() == 1;
+        self.list.into_iter().filter(|(_, silent)| alone || !silent).map(|(program, _)| program).collect()
     }
 }
 

@@ -6,6 +6,7 @@
 pub mod ast;
 mod block;
 mod comment;
+mod digits;
 mod dividers;
 mod expr;
 mod file;
@@ -25,5 +26,5 @@ mod word;
 pub use file::{Parts, parse};
 pub use numbers::{NumberWord, Numbers};
 pub use outline::{Outlined, block_at, outline, sequence_number_at};
-pub use pieces::{Piece, Pieces, written};
+pub use pieces::{Piece, Pieces, end_without_spaces, written};
 pub use print::print;

@@ -3,7 +3,7 @@
 //! Most lines of long files are one block of words. That much is seen without reading them; the others are read, so that
 //! an outline has the same programs and blocks as the tree.
 use super::ast::Block;
-use super::file::{Parts, programs};
+use super::file::{Parts, Programs};
 use super::numbers::Numbers;
 use super::pieces::{Piece, Pieces, says_nothing};
 use crate::source::{SourceId, Span};
@@ -11,7 +11,7 @@ use crate::source::{SourceId, Span};
 /// A block as its outline has it.
 #[derive(Debug)]
 pub enum Outlined {
-    /// Not looked at: neither DO nor END.
+    /// Not looked at: neither DO nor END. Spaces behind it belong to its place.
     Words(Span),
     Read(Box<Block>),
     /// Something else stands before it in its line: it can't be read from its own beginning on.
@@ -27,14 +27,47 @@ impl Outlined {
     }
 }
 
-/// The programs of a file as [`super::parse`] finds them; each block becomes at once what `each` makes of it.
+/// The programs of a file as [`super::parse`] finds them; each block becomes at once what `each` makes of it, so that
+/// neither the trees of a long file are ever held nor its lines.
 pub fn outline<C: Default, B>(
     source: SourceId,
     bytes: &[u8],
-    each: impl FnMut(&mut C, Outlined) -> B,
+    mut each: impl FnMut(&mut C, Outlined) -> B,
 ) -> Vec<Parts<C, B>> {
-    let silent = |block: &Outlined| matches!(block, Outlined::Read(block) | Outlined::Apart(block) if says_nothing(block));
-    programs(Outlines { pieces: Pieces::new(source, bytes), told: false }, silent, Outlined::span, each)
+    let mut programs = Programs::default();
+    let mut pieces = Pieces::new(source, bytes);
+    // Whether it is known that the program at hand is one: it has a name, or a block that says something.
+    let mut told = false;
+    loop {
+        let begins_line = pieces.begins_line();
+        match pieces.piece() {
+            Some(Piece::Section) => {
+                told = false;
+                programs.close();
+            }
+            Some(Piece::Program { name, span }) => {
+                told = true;
+                programs.begin(name, span);
+            }
+            Some(Piece::Block(block)) => {
+                let silent = says_nothing(&block);
+                told |= !silent;
+                let Parts { context, blocks, .. } = programs.open(block.span, silent);
+                let block = Box::new(block);
+                let outlined = if begins_line { Outlined::Read(block) } else { Outlined::Apart(block) };
+                blocks.push(each(context, outlined));
+            }
+            None => {
+                if told {
+                    let Parts { context, blocks, .. } = programs.open(Span::default(), false);
+                    pieces.plain_lines(|span| blocks.push(each(context, Outlined::Words(span))));
+                }
+                if pieces.next_line().is_none() {
+                    return programs.done();
+                }
+            }
+        }
+    }
 }
 
 /// The block at the beginning of a line, from where an outline has it, of a text as [`super::written`].
@@ -60,55 +93,4 @@ pub fn sequence_number_at(source: SourceId, bytes: &[u8], start: u32) -> Option<
         _ => {}
     }
     block_at(source, bytes, start)?.number.map(|number| number.node)
-}
-
-/// The pieces of a file, most blocks unread.
-struct Outlines<'a> {
-    pieces: Pieces<'a>,
-    /// Whether it is known that the program at hand is one: it has a name, or a block that says something.
-    told: bool,
-}
-
-impl Iterator for Outlines<'_> {
-    type Item = Piece<Outlined>;
-
-    #[inline]
-    fn next(&mut self) -> Option<Piece<Outlined>> {
-        loop {
-            let begins = self.pieces.begins_line();
-            if let Some(piece) = self.pieces.piece() {
-                return Some(self.read(piece, begins));
-            }
-            if self.told
-                && let Some(span) = self.pieces.plain_line()
-            {
-                if span.start == span.end {
-                    continue;
-                }
-                return Some(Piece::Block(Outlined::Words(span)));
-            }
-            self.pieces.next_line()?;
-        }
-    }
-}
-
-impl Outlines<'_> {
-    /// A piece that had to be read; `begins` where it begins its line.
-    fn read(&mut self, piece: Piece, begins: bool) -> Piece<Outlined> {
-        match piece {
-            Piece::Section => {
-                self.told = false;
-                Piece::Section
-            }
-            Piece::Program { name, span } => {
-                self.told = true;
-                Piece::Program { name, span }
-            }
-            Piece::Block(block) => {
-                self.told |= !says_nothing(&block);
-                let block = Box::new(block);
-                Piece::Block(if begins { Outlined::Read(block) } else { Outlined::Apart(block) })
-            }
-        }
-    }
 }

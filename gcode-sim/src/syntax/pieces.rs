@@ -124,7 +124,6 @@ impl<'a> Pieces<'a> {
     }
 
     /// Reads the next piece of the line in hand; `None` at its end.
-    #[inline]
     pub(super) fn piece(&mut self) -> Option<Piece> {
         if self.at == self.code_end && self.comments.is_empty() {
             return None;
@@ -168,22 +167,28 @@ impl<'a> Pieces<'a> {
         Some(Piece::Block(block))
     }
 
-    /// The line behind the one in hand without spaces around it, where it is one block whatever stands in it: nothing
-    /// divides it and nothing in it is a remark. It counts as read then.
+    /// The lines behind the one in hand without spaces before them, as long as each is one block whatever stands in it:
+    /// nothing divides it and nothing in it is a remark. They count as read then.
     #[inline]
-    pub(super) fn plain_line(&mut self) -> Option<Span> {
-        let text = self.bytes.get(self.next..).filter(|text| !text.is_empty())?;
-        let length = line_length(text);
-        let end = self.next + length;
-        if self.undivided <= self.next {
-            self.undivided = undivided(self.bytes, self.next);
+    pub(super) fn plain_lines(&mut self, mut each: impl FnMut(Span)) {
+        let Self { source, bytes, next, undivided: plain, .. } = self;
+        loop {
+            let text = &bytes[*next..];
+            let length = line_length(text);
+            let end = *next + length;
+            if *plain <= *next {
+                *plain = undivided(bytes, *next);
+            }
+            if *plain < end || text.is_empty() {
+                return;
+            }
+            let (line, behind) = text.split_at(length);
+            let line = if let [0x21..=0x7e, ..] = line { line } else { unspaced(line) };
+            *next = end + end_of_line(behind);
+            if !line.is_empty() {
+                each(Span { source: *source, start: (end - line.len()) as u32, end: end as u32 });
+            }
         }
-        if self.undivided < end {
-            return None;
-        }
-        let span = trimmed(self.source, self.bytes, self.next, end);
-        self.next = end + end_of_line(&text[length..]);
-        Some(span)
     }
 
     /// Whether nothing of the line in hand has been read.
@@ -235,12 +240,17 @@ fn byte_order_marks(bytes: &[u8]) -> usize {
 }
 
 /// The place of what stands between two offsets, spaces around it left out.
-#[inline]
 fn trimmed(source: SourceId, bytes: &[u8], from: usize, to: usize) -> Span {
     let text = &bytes[from..to];
     let start = from + text.len() - unspaced(text).len();
     let end = text.iter().rposition(|b| !is_space(*b)).map_or(start, |last| from + last + 1);
     Span { source, start: start as u32, end: end as u32 }
+}
+
+/// Where what stands before a place ends, spaces left out.
+pub fn end_without_spaces(bytes: &[u8], place: u32) -> u32 {
+    let text = &bytes[..place as usize];
+    text.iter().rposition(|b| !is_space(*b)).map_or(0, |last| last as u32 + 1)
 }
 
 /// Fills in what is shown of a text that can't be read.

@@ -159,7 +159,7 @@ impl Core {
 
     /// G39: a cutting feed round the corner.
     fn corner_arc(&self, given: &Given, plan: &Plan, span: Span) -> Checked<CornerArc> {
-        let timed = self.time_along(&plan.state, 1.0, 1.0, 0.0, given.has(b'F'));
+        let timed = self.time_along(&plan.state, 1.0, given.has(b'F'));
         let (rate, _) = timed.map_err(|_| Alarm::ArcFeedZero.at(span))?;
         Ok(CornerArc { towards: self.vector(given, &plan.state, span)?, rate })
     }

@@ -1,0 +1,164 @@
+//! A plain move: a block of axis words, G00 or G01 and F while nothing is in force that makes more of them. Most steps
+//! of a block have nothing to do for it, and of the state it changes little.
+use super::Core;
+use super::eval::{Checked, at};
+use super::travel::Goal;
+use super::words::{Given, letters};
+use crate::motion::{EventKind, Sink};
+use crate::program::Words;
+use crate::program::modes::{CutterSide, Motion, Polar};
+use crate::units::MmPerMin;
+
+impl Core {
+    /// Does a block that is a plain move; whether it is one. All checks come first.
+    #[inline(always)]
+    pub(super) fn step<S: Sink>(
+        &mut self,
+        words: &Words,
+        given: &Given,
+        number: Option<u32>,
+        sink: &mut S,
+    ) -> Checked<bool> {
+        let state = &*self.state;
+        let Some(zero) = &self.plain_zero else { return Ok(false) };
+        let Some(motion @ (Motion::Rapid | Motion::Linear)) = self.plain_motion(words, given) else {
+            return Ok(false);
+        };
+        let f = if given.has(b'F') { self.feed_word(given, state)? } else { None };
+        let f = f.unwrap_or(state.codes.f);
+        let mut goal = Goal::here(state);
+        let led = self.lead(given, state, zero, &mut goal)?;
+        if led.reach > self.farthest() {
+            self.beyond_range(given, &goal.machine)?;
+        }
+        let (rate, seconds) = match motion {
+            Motion::Rapid => (MmPerMin::ZERO, self.rapid_seconds(&state.machine, &goal.machine)),
+            _ => at(self.time_of(state, f, led.way, given.has(b'F')), self.block)?,
+        };
+
+        let Goal { programmed, machine, unplaced } = goal;
+        let before = state.unplaced;
+        let state = &mut *self.state;
+        (state.programmed, state.machine, state.unplaced) = (programmed, machine, unplaced);
+        (state.modal.motion, state.codes.f) = (motion, f);
+        state.codes.n = number.unwrap_or(state.codes.n);
+        self.note_work(self.state.modal.work, true);
+        if unplaced != before {
+            self.tell(&EventKind::Unplaced { axes: unplaced }, 0.0, sink);
+        }
+        match motion {
+            _ if !led.way.is_some() => {}
+            Motion::Rapid => self.tell(&EventKind::Rapid { to: machine }, seconds, sink),
+            _ => self.tell(&EventKind::Feed { to: machine, rate }, seconds, sink),
+        }
+        Ok(true)
+    }
+
+    /// The code of group 01 by which a block moves that has nothing but axis words, F and such codes, while no modal call
+    /// waits for it.
+    #[inline(always)]
+    fn plain_motion(&self, words: &Words, given: &Given) -> Option<Motion> {
+        let axes = self.settings.axes.mask();
+        let alone = given.has_of(axes)
+            && !given.has_of(!(axes | letters(b"F")))
+            && !given.has_more_than_moves()
+            && !given.has_corner()
+            && given.m_count == 0
+            && words.call.is_none()
+            && !self.waits_for_moves();
+        alone.then(|| given.motion.unwrap_or(self.state.modal.motion))
+    }
+
+    /// Finds out, behind everything that could change it, whether the next block can be a plain move, and what its axes
+    /// count from.
+    pub(super) fn see_if_plain(&mut self) {
+        self.plain_zero = self.is_plain().then(|| self.zeros(&self.state));
+    }
+
+    /// Whether nothing is in force between two blocks that could make more of axis words than a move of those axes.
+    fn is_plain(&self) -> bool {
+        let modal = &self.state.modal;
+        modal.cycle.is_none()
+            && modal.cutter == CutterSide::Off
+            && modal.polar == Polar::Off
+            && self.state.ended.is_none()
+            && self.ahead.is_idle()
+            && self.settings.code_calls.is_empty()
+            && self.settings.stroke.is_none()
+            && self.is_placed()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::collection::vec;
+    use proptest::prelude::*;
+
+    use crate::control::{Settings, Stroke};
+    use crate::exec::{Control, Limits};
+    use crate::motion::{Event, MAX_AXES, Sink};
+    use crate::program::{Memory, NoLibrary};
+
+    /// All that the machine is told.
+    struct Told(Vec<String>);
+
+    impl Sink for Told {
+        fn event(&mut self, event: &Event<'_>) {
+            self.0.push(format!("{:?} {:?} {:?}", event.kind, event.seconds, event.block));
+        }
+    }
+
+    fn run(text: &str, settings: Settings) -> (Vec<String>, bool) {
+        let mut memory = Memory::default();
+        memory.load("O1.nc", text.as_bytes().to_vec());
+        let mut control = Control::new(memory, settings);
+        let mut told = Told(Vec::new());
+        let outcome = control.run(Limits { blocks: 500 }, &mut NoLibrary, &mut told);
+        told.0.push(format!("{outcome:?} {:?} {:?}", control.core.state, control.core.notes));
+        (told.0, control.core.plain_zero.is_some())
+    }
+
+    fn settings() -> Settings {
+        let mut settings = Settings::default();
+        settings.roll_over[4] = false;
+        settings
+    }
+
+    /// A control that looks at strokes without an end, for which no move is plain.
+    fn never_plain() -> Settings {
+        let no = [None; MAX_AXES];
+        Settings { stroke: Some(Stroke { most: no, least: no }), ..settings() }
+    }
+
+    fn block() -> impl Strategy<Value = String> {
+        let number = "-?[0-9]{1,2}(\\.[0-9]{0,5})?|#[1-3]|#500[13]";
+        let axes = format!("(X({number}))?(Y({number}))?(Z({number}))?(A({number}))?(B({number}))?");
+        let moves = format!("(N[0-9]{{1,3}} )?(G0?[01]|G9[01]|G0|G1)?{axes}(F[1-9][0-9]{{1,2}})?");
+        let others = "G9[01]|G2[01]|G5[45]|G52X[1-9]Y2\\.|G92X[0-9]\\.|G43H1|G49|G28Z0|G53X[0-9]|G10L2P1X0\\.[1-9]5|G10L10P1R1\\.5\
+            |G81X1\\.Z-2\\.R1\\.F50|G80|G15|G16|G68X0Y0R30\\.|G69|G51X0Y0P2000|G50|G51\\.1X0|G50\\.1X0|G41D1|G40|G31Z-1\\.F50\
+            |G0[23]X[1-9]\\.R20\\.|G9[345]|G17|G18|M3S900|M5|S500|#[1-3]=[0-9]\\.[0-9]{1,6}|#5221=[0-9]\\.5|#5203=1\\.5|G1X9\\.,R1\\.";
+        let of = |pattern: &str| proptest::string::string_regex(pattern).unwrap();
+        prop_oneof![4 => of(&moves), 1 => of(others)]
+    }
+
+    proptest! {
+        #[test]
+        fn a_plain_move_is_what_the_steps_of_a_block_make_of_it(blocks in vec(block(), 1..40)) {
+            let text = format!("O1\nG21 G90 G94 F100.\n{}\nM30\n", blocks.join("\n"));
+            prop_assert_eq!(run(&text, settings()).0, run(&text, never_plain()).0, "{}", text);
+        }
+    }
+
+    #[test]
+    fn what_makes_more_of_axis_words_than_a_move_is_seen() {
+        let is_plain = |text: &str| run(text, settings()).1;
+        assert!(is_plain("G90 G0 X1.\n"));
+        for more in
+            ["G81 Z-1. R1. F50", "G16", "G68 X0 Y0 R30.", "G51 X0 Y0 P2000", "G51.1 X0", "G41 D1 G1 X5. F50"]
+        {
+            assert!(!is_plain(&format!("G90 G0 X1.\n{more}\n")), "{more}");
+        }
+        assert!(is_plain("G81 Z-1. R1. F50\nG80\n"), "over again");
+        assert!(!run("G90 G0 X1.\n", never_plain()).1);
+    }
+}

@@ -1,0 +1,116 @@
+//! Digits that stand in a row, four looked at together.
+
+/// What is looked at of a text for one word. Longer ones, with more than eight digits before the point or behind it, are
+/// left to `number`.
+pub(super) type Window = [u8; 24];
+
+/// The window at the beginning of a text that ends somewhere; behind its end it has what no number has.
+pub(super) fn window(text: &[u8]) -> Window {
+    let mut window = Window::default();
+    let length = text.len().min(window.len());
+    window[..length].copy_from_slice(&text[..length]);
+    window
+}
+
+/// An unsigned number that stands at a place: its digits as if it had no point, how many of them stand behind one, and
+/// where it ends. Behind spaces it may go on.
+#[inline(always)]
+pub(super) fn number(window: &Window, first: usize) -> Option<(u64, Option<u8>, usize)> {
+    let (whole, point) = digits(0, window, first)?;
+    let (digits, places, end) = match window.get(point) {
+        Some(b'.') => {
+            let (digits, end) = digits(whole, window, point + 1)?;
+            (digits, Some((end - point - 1) as u8), end)
+        }
+        _ => (whole, None, point),
+    };
+    (end > first + usize::from(places.is_some())).then_some((digits, places, end))
+}
+
+/// A number that goes on with the digits at a place, and where they end; `None` where they are more than eight.
+#[inline(always)]
+fn digits(number: u64, window: &Window, place: usize) -> Option<(u64, usize)> {
+    let (number, end) = four(number, window, place)?;
+    if end < place + 4 { Some((number, end)) } else { four_more(number, window, end) }
+}
+
+#[inline(never)]
+fn four_more(number: u64, window: &Window, place: usize) -> Option<(u64, usize)> {
+    let (number, end) = four(number, window, place)?;
+    window.get(end).is_some_and(|byte| !byte.is_ascii_digit()).then_some((number, end))
+}
+
+/// The same of four digits at most.
+#[inline(always)]
+fn four(number: u64, window: &Window, place: usize) -> Option<(u64, usize)> {
+    let bytes = u32::from_le_bytes(*window.get(place..)?.first_chunk()?);
+    // Each digit is its value; the top bit tells a byte that is none. Behind the first of those it may be wrong.
+    let values = bytes ^ 0x3030_3030;
+    let others = (values.wrapping_add(0x7676_7676) | bytes) & 0x8080_8080;
+    // The digits end where the four bytes do, zeros before them.
+    let (digits, count) = match others.trailing_zeros() {
+        32 => (values, 4),
+        top => (values << (31 - top) << 8, top / 8),
+    };
+    let pairs = digits.wrapping_mul(10 << 8 | 1) >> 8 & 0x00ff_00ff;
+    let value = pairs.wrapping_mul(100 << 16 | 1) >> 16;
+    Some((number * POWERS[count as usize] + u64::from(value), place + count as usize))
+}
+
+const POWERS: [u64; 5] = [1, 10, 100, 1_000, 10_000];
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn a_number_is_what_its_digits_spell(
+            before in "[XN][-+]?", whole in "[0-9]{0,9}", point in any::<bool>(), fraction in "[0-9]{0,9}", behind in "[ A-Z.:/\r\né]{0,9}",
+        ) {
+            let written = if point { format!("{whole}.{fraction}") } else { whole.clone() };
+            let text = format!("{before}{written}{behind}");
+            let found = number(&window(text.as_bytes()), before.len());
+            let fraction = if point { fraction } else { String::new() };
+            prop_assume!(point || !behind.starts_with('.'));
+            let wanted = (1..=8).contains(&whole.len().max(fraction.len())).then(|| {
+                let digits = format!("{whole}{fraction}").parse().unwrap();
+                (digits, point.then_some(fraction.len() as u8), before.len() + written.len())
+            });
+            prop_assert_eq!(found, wanted, "{:?}", text);
+        }
+    }
+
+    #[test]
+    fn digits_end_at_the_first_byte_that_is_none() {
+        for behind in 0..=u8::MAX {
+            for length in 1..=8 {
+                let mut text = b"X98765432?1234567890".to_vec();
+                text[1 + length] = behind;
+                let read = number(&window(&text), 1);
+                match behind {
+                    b'0'..=b'9' | b'.' => {}
+                    _ => {
+                        assert_eq!(read, Some((98_765_432 / 10_u64.pow(8 - length as u32), None, 1 + length)))
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn points_and_what_stands_behind() {
+        let read = |text: &str| number(&window(text.as_bytes()), 1);
+        assert_eq!(read("X12.345 Y1"), Some((12_345, Some(3), 7)));
+        assert_eq!(read("X1234.5678"), Some((12_345_678, Some(4), 10)));
+        assert_eq!(read("X12345678.00000001Z"), Some((1_234_567_800_000_001, Some(8), 18)));
+        assert_eq!(read("X5."), Some((5, Some(0), 3)));
+        assert_eq!(read("X.5.5"), Some((5, Some(1), 3)));
+        assert_eq!(read("X007\0"), Some((7, None, 4)));
+        for none in ["X", "X.", "X-1", "X .5", "X123456789", "X1.123456789", "X#1"] {
+            assert_eq!(read(none), None, "{none}");
+        }
+    }
+}
