@@ -154,7 +154,7 @@ mod tests {
         assert_eq!(said("G91 G28 Z0").0.axes, ['Z']);
         assert_eq!(said("G10 L2 P1 X0 Y0").0.offsets, ["G10 L2 P1 X", "G10 L2 P1 Y"]);
         assert_eq!(said("G1 X1. F100 S500 M3").0.values, ['F', 'S']);
-        assert!(said("G1 X1.").0.values.is_empty(), "F is as it was");
+        assert!(said("G0 X1.").0.values.is_empty(), "F is as it was");
         assert_eq!([modal_code(0), modal_code(541)], ["G00", "G54.1"]);
     }
 
