@@ -14,8 +14,10 @@ pub type Axis = usize;
 /// The letters of a control's axes, axis 1 first: `#5001` is the first, `#5002` the second.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Axes {
-    letters: Vec<u8>,
-    /// The same as bits, A the lowest.
+    letters: [u8; MAX_AXES],
+    count: usize,
+    /// The same as bits, A the lowest: each of them, 0 where there is no axis, and all.
+    bits: [u32; MAX_AXES],
     mask: u32,
     /// The axes that turn as bits, axis 1 the lowest.
     rotary: u32,
@@ -30,19 +32,22 @@ impl Axes {
         (fits && once).then(|| Self::of(bytes))
     }
 
-    fn of(letters: &[u8]) -> Self {
-        let mask = letters.iter().fold(0, |mask, letter| mask | 1 << (letter - b'A'));
+    fn of(some: &[u8]) -> Self {
+        let (mut letters, mut bits) = ([0; MAX_AXES], [0; MAX_AXES]);
+        for (axis, letter) in some.iter().enumerate() {
+            (letters[axis], bits[axis]) = (*letter, 1 << (letter - b'A'));
+        }
         let turns = |(axis, letter): (Axis, &u8)| u32::from(matches!(letter, b'A' | b'B' | b'C')) << axis;
-        let rotary = letters.iter().enumerate().map(turns).sum();
-        Self { letters: letters.to_vec(), mask, rotary }
+        let rotary = some.iter().enumerate().map(turns).sum();
+        Self { letters, count: some.len(), bits, mask: bits.iter().fold(0, |mask, bit| mask | bit), rotary }
     }
 
     pub fn find(&self, letter: u8) -> Option<Axis> {
-        self.letters.iter().position(|l| *l == letter)
+        self.letters().position(|(_, l)| l == letter)
     }
 
     pub fn letter(&self, axis: Axis) -> char {
-        self.letters.get(axis).map_or('?', |l| char::from(*l))
+        self.letters[..self.count].get(axis).map_or('?', |l| char::from(*l))
     }
 
     /// A B C turn; all others slide.
@@ -51,11 +56,11 @@ impl Axes {
     }
 
     pub fn len(&self) -> usize {
-        self.letters.len()
+        self.count
     }
 
     pub fn is_empty(&self) -> bool {
-        self.letters.is_empty()
+        self.count == 0
     }
 
     /// The letters as bits, A the lowest.
@@ -69,7 +74,12 @@ impl Axes {
 
     /// The axes with the letters of their addresses.
     pub fn letters(&self) -> impl Iterator<Item = (Axis, u8)> + '_ {
-        self.letters.iter().copied().enumerate()
+        self.letters[..self.count].iter().copied().enumerate()
+    }
+
+    /// The letters and their [`Axes::mask`] bits in places of their own; 0 where there is no axis.
+    pub fn places(&self) -> (&[u8; MAX_AXES], &[u32; MAX_AXES]) {
+        (&self.letters, &self.bits)
     }
 }
 

@@ -156,7 +156,16 @@ fn gap((old, range_i): Side<'_>, (new, range_j): Side<'_>, tolerance: f64, links
     let (mut i, mut j) = (first_i, first_j);
     let ends = [(range_i.len(), range_j.len())];
     for (to_i, to_j) in parallel.into_iter().chain(ends).map(|(i, j)| (first_i + i, first_j + j)) {
+        let first = links.len();
         nearest((old, i..to_i), (new, j..to_j), links);
+        // Where too much is different for the search, what is the same comes here as well.
+        for link in &mut links[first..] {
+            if let Link::Changed(i, j) = *link
+                && old[i].is_same(&new[j], tolerance)
+            {
+                *link = Link::Same(i, j);
+            }
+        }
         if to_i < range_i.end {
             links.push(Link::Changed(to_i, to_j));
         }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::record::Where;
 
 /// What a change can be called, in the order of their sections in docs/changes.md.
-pub const CODES: [&str; 40] = [
+pub const CODES: [&str; 41] = [
     "outcome",
     "program",
     "start",
@@ -16,6 +16,7 @@ pub const CODES: [&str; 40] = [
     "hole-depth",
     "hole-diameter",
     "hole-tool",
+    "hole-pass",
     "hole-order",
     "hole-lost",
     "hole-added",

@@ -16,9 +16,11 @@ struct Group {
     text: String,
     /// What it is that is different, "move", "dwell", and how often; of moves that go elsewhere each kind.
     counts: Vec<(&'static str, usize)>,
-    /// How many times as fast a move is; of moves that end elsewhere nothing.
-    factor: Option<f64>,
-    /// Those behind the first say other numbers: of a feed with the same factor, of moves with one cause or from one block.
+    /// How many times as fast a move is, at least and at most; of moves that end elsewhere nothing.
+    factors: Option<(f64, f64)>,
+    /// Of a spindle that turns as fast as that, before and now.
+    speeds: Option<(f64, f64)>,
+    /// Those behind the first say other numbers: of moves with one cause or from one block.
     varies: bool,
     /// The next program finds it so.
     stays: bool,
@@ -63,7 +65,8 @@ impl<'a> Groups<'a> {
     }
 
     /// A move that ends elsewhere by `shift`. One that is there once only has no cause of its own.
-    pub(super) fn tell_shift(&mut self, what: &'static str, shift: &Position, sides: Sides<'_>) {
+    /// Gives the group's number for what is carried on from there.
+    pub(super) fn tell_shift(&mut self, what: &'static str, shift: &Position, sides: Sides<'_>) -> usize {
         let text = coordinates(shift, &self.old.axes, self.tolerance, true);
         let places = sides.0.zip(sides.1).map(|(old, new)| (old.place, new.place));
         let cause = places.map(|(old, new)| cause(&self.old.places[old], &self.new.places[new]));
@@ -85,23 +88,54 @@ impl<'a> Groups<'a> {
         for axis in 0..MAX_AXES {
             group.most[axis] = group.most[axis].max(shift[axis].abs());
         }
+        place
     }
 
-    /// A move at another feed. In one block feeds that are all so many times as fast say the same: of G93 each is another.
+    /// A move that ends elsewhere because one of a group does, and no axis of its own.
+    pub(super) fn carry(&mut self, group: usize, what: &'static str, shift: &Position) {
+        let text = coordinates(shift, &self.old.axes, self.tolerance, true);
+        let group = &mut self.all[group];
+        group.varies |= group.text != text;
+        group.count(what);
+    }
+
+    /// The spindle at another speed, whichever way it turns: a tapping cycle turns it back.
+    pub(super) fn tell_speed(&mut self, was: f64, is: f64, text: String, (old, new): (&Step, &Step)) {
+        let places = (Some(old.said_at()), Some(new.said_at()));
+        let is_alike = |group: &&mut Group| {
+            group.speeds == Some((was, is)) && (group.text == text || (group.old, group.new) == places)
+        };
+        match self.all.iter_mut().find(is_alike) {
+            Some(group) => {
+                if group.text != text {
+                    group.text = format!("S{is} instead of S{was}");
+                }
+                group.count(old.kind.name());
+            }
+            None => {
+                self.begin("spindle", old.kind.name(), text, (Some(old), Some(new)), None);
+                self.all.last_mut().into_iter().for_each(|group| {
+                    (group.speeds, group.old, group.new) = (Some((was, is)), places.0, places.1);
+                });
+            }
+        }
+    }
+
+    /// A move at another feed. Those of one block say the same: of G93 each is another.
     pub(super) fn tell_feed(&mut self, was: f64, is: f64, (old, new): (&Step, &Step)) {
         let text = format!("feed F{} instead of F{}", short(is), short(was));
         let factor = is / was;
         let is_alike = |group: &&mut Group| {
-            let is_place = group.old == Some(old.place) && group.new == Some(new.place);
-            let is_factor = group.factor.is_some_and(|known| (known - factor).abs() <= 1e-6 * known.abs());
-            group.code == "feed" && (group.text == text || is_place && is_factor)
+            let is_place = group.old == Some(old.said_at()) && group.new == Some(new.said_at());
+            group.code == "feed" && (group.text == text || is_place)
         };
         match self.all.iter_mut().find(is_alike) {
             Some(group) => {
                 group.varies |= group.text != text;
+                group.factors = group.factors.map(|(least, most)| (least.min(factor), most.max(factor)));
                 group.count("move");
             }
-            None => self.begin("feed", "move", text, (Some(old), Some(new)), Some(factor)),
+            None => self.begin("feed", "move", text, (Some(old), Some(new)), Some((factor, factor))),
         }
     }
 
@@ -111,16 +145,19 @@ impl<'a> Groups<'a> {
         what: &'static str,
         text: String,
         (old, new): Sides<'_>,
-        factor: Option<f64>,
+        factors: Option<(f64, f64)>,
     ) {
-        let place = |step: Option<&Step>| step.map(|step| step.place);
+        // What is there once only stands in its own block.
+        let is_said = code == "feed" || code == "tool" && old.is_some() && new.is_some();
+        let place = |step: Option<&Step>| step.map(|step| if is_said { step.said_at() } else { step.place });
         let counts = vec![(what, 1)];
         let (old, new) = (place(old), place(new));
         self.all.push(Group {
             code,
             text,
             counts,
-            factor,
+            factors,
+            speeds: None,
             varies: false,
             stays: false,
             most: Position::default(),
@@ -136,6 +173,24 @@ impl<'a> Groups<'a> {
         found.map(|group| group.stays = true).is_some()
     }
 
+    /// All moves that end elsewhere in one, for they have one cause.
+    pub(super) fn join_shifts(&mut self) {
+        let mut others = Vec::with_capacity(self.all.len());
+        let mut first: Option<usize> = None;
+        for group in std::mem::take(&mut self.all) {
+            match first.filter(|_| group.code == "move-shifted") {
+                Some(place) => Group::join(&mut others[place], group),
+                None => {
+                    if group.code == "move-shifted" {
+                        first = Some(others.len());
+                    }
+                    others.push(group);
+                }
+            }
+        }
+        self.all = others;
+    }
+
     pub(super) fn changes(self) -> Vec<Change> {
         let (old, new, tolerance) = (self.old, self.new, self.tolerance);
         self.all.into_iter().map(|group| group.change(old, new, tolerance)).collect()
@@ -143,6 +198,16 @@ impl<'a> Groups<'a> {
 }
 
 impl Group {
+    fn join(&mut self, other: Self) {
+        self.varies |= other.varies || other.text != self.text;
+        for axis in 0..MAX_AXES {
+            self.most[axis] = self.most[axis].max(other.most[axis]);
+        }
+        for (what, times) in other.counts {
+            (0..times).for_each(|_| self.count(what));
+        }
+    }
+
     fn count(&mut self, what: &'static str) {
         match self.counts.iter_mut().find(|(known, _)| *known == what) {
             Some((_, count)) => *count += 1,
@@ -166,8 +231,14 @@ impl Group {
     fn counted(&self) -> String {
         let counted: Vec<String> = self.counts.iter().map(|(what, n)| format!("{n} {what}s")).collect();
         match (self.varies, &self.counts[..]) {
-            (true, _) if self.code == "feed" => {
-                format!("{} ({}, all by the same factor)", self.text, counted.join(", "))
+            (true, _) if let Some((least, most)) = self.factors => {
+                let is_one = (most - least).abs() <= 1e-6 * most.abs();
+                let by = if is_one {
+                    "the same factor".to_owned()
+                } else {
+                    format!("factors of {least:.4} to {most:.4}")
+                };
+                format!("{} ({}, all by {by})", self.text, counted.join(", "))
             }
             (true, _) => format!("{} ({} of its block)", self.text, counted.join(", ")),
             (false, [(_, 1)]) => self.text.clone(),

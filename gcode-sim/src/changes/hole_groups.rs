@@ -6,6 +6,7 @@ use nalgebra::Vector3;
 use super::cause::Cause;
 use super::change::listed;
 use super::steps::near;
+use super::strayed::Strayed;
 use super::words::coordinates;
 use crate::motion::{Axes, Position};
 
@@ -20,6 +21,8 @@ pub(super) struct Aspects {
     pub deeper: Option<f64>,
     /// Its diameter and its tools: what they are called, and in words.
     pub others: Vec<(&'static str, String)>,
+    /// Its passes that end elsewhere and not as the hole does.
+    pub strayed: Vec<Strayed>,
 }
 
 impl Aspects {
@@ -27,7 +30,8 @@ impl Aspects {
     pub(super) fn code(&self) -> Option<&'static str> {
         let place = self.moved.map(|_| "hole-moved").or(self.tilted.map(|_| "hole-tilted"));
         let place = place.or(self.deeper.map(|_| "hole-depth"));
-        place.or(self.others.first().map(|(code, _)| *code))
+        let other = place.or(self.others.first().map(|(code, _)| *code));
+        other.or(self.strayed.first().map(|_| "hole-pass"))
     }
 
     /// It begins or ends elsewhere.
@@ -35,12 +39,13 @@ impl Aspects {
         self.moved.is_some() || self.tilted.is_some() || self.deeper.is_some()
     }
 
-    fn text(&self) -> String {
+    fn text(&self, axes: &Axes, tolerance: f64) -> String {
         let mut parts = Vec::new();
         parts.extend(self.moved.map(|way| format!("moved by {}", shown(&way))));
         parts.extend(self.tilted.map(|angle| format!("tilted by {angle:.4}°")));
         parts.extend(self.deeper.map(|mm| format!("{:.4} mm {}", mm.abs(), deeper(mm))));
         parts.extend(self.others.iter().map(|(_, text)| text.clone()));
+        parts.extend(self.strayed.iter().map(|pass| pass.text(axes, tolerance)));
         parts.join(", ")
     }
 }
@@ -49,7 +54,9 @@ impl Aspects {
 pub(super) struct Changed {
     pub hole: usize,
     pub aspects: Aspects,
-    /// How far its finishing feed ends from where it ended, in machine coordinates.
+    /// The feed that makes the difference, before and now: the finishing one, where that isn't as it was.
+    pub feeds: (usize, usize),
+    /// How far that feed ends from where it ended, in machine coordinates.
     pub shift: Position,
     pub cause: Cause,
 }
@@ -62,10 +69,10 @@ pub(super) struct Group {
 }
 
 /// Holes that changed by the same numbers, that the machine makes elsewhere by the same, or that have one cause.
-pub(super) fn groups(changed: Vec<Changed>, tolerance: f64) -> Vec<Group> {
+pub(super) fn groups(changed: Vec<Changed>, axes: &Axes, tolerance: f64) -> Vec<Group> {
     let mut groups: Vec<Group> = Vec::new();
     for one in changed {
-        let text = one.aspects.text();
+        let text = one.aspects.text(axes, tolerance);
         let alike = groups.iter().position(|group| group.text == text);
         let found = alike.or_else(|| groups.iter().position(|group| group.is_with(&one, tolerance)));
         match found {
@@ -79,10 +86,13 @@ pub(super) fn groups(changed: Vec<Changed>, tolerance: f64) -> Vec<Group> {
 impl Group {
     fn is_with(&self, other: &Changed, tolerance: f64) -> bool {
         let first = &self.all[0];
-        let by_the_same = other.aspects.is_elsewhere()
+        let is_strayed = !other.aspects.strayed.is_empty();
+        let by_the_same = (other.aspects.is_elsewhere() || is_strayed)
             && !near(&other.shift, &Position::default(), tolerance)
             && near(&first.shift, &other.shift, tolerance);
-        first.aspects.others == other.aspects.others && (by_the_same || first.cause == other.cause)
+        let numbers = |one: &Changed| one.aspects.strayed.iter().map(Strayed::pass).collect::<Vec<_>>();
+        let is_alike = first.aspects.others == other.aspects.others && numbers(first) == numbers(other);
+        is_alike && (by_the_same || first.cause == other.cause)
     }
 
     /// The change's name: of all that is different about its holes the first.
@@ -96,7 +106,7 @@ impl Group {
     /// With all their numbers where these are the same, else the largest of each.
     pub(super) fn message(&self, axes: &Axes, tolerance: f64) -> String {
         let holes: Vec<usize> = self.all.iter().map(|one| one.hole).collect();
-        let is_alike = self.all.iter().all(|one| one.aspects.text() == self.text);
+        let is_alike = self.all.iter().all(|one| one.aspects.text(axes, tolerance) == self.text);
         let text = if is_alike { self.text.clone() } else { self.ranges(axes, tolerance) };
         format!("{}: {text}", named(&holes))
     }
@@ -121,6 +131,11 @@ impl Group {
             parts.extend(most.map(|mm| format!("up to {:.4} mm {}", mm.abs(), deeper(mm))));
         }
         parts.extend(self.all[0].aspects.others.iter().map(|(_, text)| text.clone()));
+        // The same passes have strayed in every hole.
+        for (place, first) in self.all[0].aspects.strayed.iter().enumerate() {
+            let alike = self.all.iter().filter_map(|one| one.aspects.strayed.get(place));
+            parts.push(first.up_to(alike, axes, tolerance));
+        }
         parts.join(", ")
     }
 }
@@ -130,7 +145,7 @@ fn shown(way: &Vector3<f64>) -> String {
     format!("{x:+.4} {y:+.4} {z:+.4} mm")
 }
 
-fn deeper(mm: f64) -> &'static str {
+pub(super) fn deeper(mm: f64) -> &'static str {
     if mm > 0.0 { "deeper" } else { "less deep" }
 }
 

@@ -10,7 +10,9 @@ use super::hole_groups::{Aspects, Changed, Group, groups, named, plain, runs};
 use super::passes::{Passes, in_words, more_or_fewer};
 use super::record::{Record, Where};
 use super::steps::{Step, difference, near};
+use super::strayed::strayed;
 use crate::holes::Found;
+use crate::motion::Position;
 use crate::part::hole::Hole;
 use crate::source::Span;
 use crate::units::Deg;
@@ -126,20 +128,28 @@ impl Told<'_> {
                 self.moved.shifted.0.extend(self.passes.0.steps[hole].iter().map(with));
                 self.moved.shifted.1.extend(self.passes.1.steps[other].iter().map(with));
             }
-            let Some((was, is)) = last_step(self.old, hole).zip(last_step(self.new, other)) else { continue };
-            let cause = cause(&self.old.places[was.place], &self.new.places[is.place]);
-            changed.push(Changed { hole, aspects, shift: difference(&is.to, &was.to), cause });
+            for pass in &aspects.strayed {
+                self.moved.shifted.0.insert(pass.steps.0, pass.deeper);
+                self.moved.shifted.1.insert(pass.steps.1, pass.deeper);
+            }
+            let Some(feeds) = last(self.old, hole).zip(last(self.new, other)) else { continue };
+            let way = |(i, j): (usize, usize)| difference(&self.new.steps[j].to, &self.old.steps[i].to);
+            let is_finish = !near(&way(feeds), &Position::default(), self.tolerance);
+            let feeds = aspects.strayed.first().filter(|_| !is_finish).map_or(feeds, |pass| pass.steps);
+            let [was, is] = self.blocks(feeds);
+            changed.push(Changed { hole, aspects, feeds, shift: way(feeds), cause: cause(was, is) });
         }
         let change = |group: Group| {
-            let first = group.all[0].hole;
             let message = group.message(&self.old.axes, self.tolerance);
-            let change = Change::new(group.code(), message).once_at(place(self.old, first));
-            match partner[first] {
-                Some(other) => change.now_at(place(self.new, other)),
-                None => change,
-            }
+            let [was, is] = self.blocks(group.all[0].feeds);
+            Change::new(group.code(), message).once_at(Some(was)).now_at(Some(is))
         };
-        groups(changed, self.tolerance).into_iter().map(change).collect()
+        groups(changed, &self.old.axes, self.tolerance).into_iter().map(change).collect()
+    }
+
+    /// The blocks of two steps, before and now.
+    fn blocks(&self, (i, j): (usize, usize)) -> [&Where; 2] {
+        [&self.old.places[self.old.steps[i].place], &self.new.places[self.new.steps[j].place]]
     }
 
     /// Every hole with its partner; those that are there before first.
@@ -204,7 +214,8 @@ impl Told<'_> {
                 others.extend(text.map(|text| ("hole-tool", text)));
                 self.moved.tools.extend(swapped);
             }
-            Some(text) => {
+            Some((text, swapped)) => {
+                self.moved.tools.extend(swapped);
                 self.moved.elsewhen.0.extend(&self.passes.0.steps[hole]);
                 self.moved.elsewhen.1.extend(&self.passes.1.steps[other]);
                 others.push(("hole-tool", text));
@@ -215,6 +226,7 @@ impl Told<'_> {
             tilted: far((apart.bottom - apart.entry).norm()).then(|| tilt(old, new).0),
             deeper: far(apart.deeper).then_some(apart.deeper),
             others,
+            strayed: strayed(self.old, self.new, (hole, other), &self.passes, apart.deeper, self.tolerance),
         }
     }
 
@@ -283,9 +295,13 @@ impl Told<'_> {
     }
 }
 
-/// The step that finishes a hole.
+/// The step that finishes a hole, by its number.
+fn last(record: &Record, hole: usize) -> Option<usize> {
+    record.feeds[hole].last().copied()
+}
+
 fn last_step(record: &Record, hole: usize) -> Option<&Step> {
-    record.steps.get(*record.feeds[hole].last()?)
+    record.steps.get(last(record, hole)?)
 }
 
 /// The block that finishes a hole.

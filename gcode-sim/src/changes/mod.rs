@@ -16,12 +16,15 @@ mod left;
 mod motion;
 mod near;
 mod older;
+mod one_cause;
 mod passes;
 mod path;
 mod record;
 mod recorder;
+mod returns;
 mod steps;
 mod store;
+mod strayed;
 mod together;
 mod words;
 
@@ -73,8 +76,15 @@ impl Compared {
         changes.extend(left::program(old, new));
         changes.extend(begin::compare(old, new, &links));
         changes.extend(holes.changes);
-        let (motion, modes) = motion::compare(old, new, &links, &holes.moved, tolerance);
+        let is_all_same = links.iter().all(|link| matches!(link, Link::Same(..)));
+        let edit = if is_all_same { None } else { one_cause::edit(old, new) };
+        let (motion, modes) = motion::compare(old, new, &links, &holes.moved, tolerance, edit.is_some());
         changes.extend(motion);
+        if changes.len() > 1
+            && let Some(edit) = edit
+        {
+            changes = one_cause::joined(changes, &edit);
+        }
         if !is_to_the_end && [old, new].iter().any(|record| record.outcome() == "limit") {
             // Which round of a program without an end the other one is held against, nobody knows.
             changes.truncate(1);

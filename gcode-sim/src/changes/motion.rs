@@ -9,7 +9,8 @@ use super::groups::{Groups, Sides};
 use super::holes::Explained;
 use super::left::mode;
 use super::record::Record;
-use super::steps::{Category, Kind, Quiet, Step, difference, is_same_arc, near};
+use super::returns::returns;
+use super::steps::{Category, Kind, Quiet, Step, difference, goes_with, is_same_arc, near};
 use super::together::{with_code, with_moves};
 use super::words::{code, described, point};
 use crate::motion::{Axes, MAX_AXES, Position};
@@ -20,6 +21,7 @@ pub(super) fn compare(
     links: &[Link],
     explained: &Explained,
     tolerance: f64,
+    is_one_edit: bool,
 ) -> (Vec<Change>, BTreeSet<u32>) {
     let conditions = Conditions::new(old, new);
     let strokes = conditions.strokes(links);
@@ -31,10 +33,11 @@ pub(super) fn compare(
         tolerance,
         groups: Groups::new(old, new, tolerance),
         strokes,
+        elsewhere: elsewhere(links, &old.steps, &new.steps, tolerance),
         records,
     };
     for region in regions(links, &old.steps, &new.steps) {
-        motion.region(&region, explained);
+        motion.region(&region, links, explained);
     }
     let shifted = shifted(links, &old.steps, &new.steps, tolerance);
     let mut set_up = set_up(links, explained, (&old.steps, &new.steps));
@@ -59,6 +62,9 @@ pub(super) fn compare(
     if kind.is_some_and(|(_, _, text)| motion.groups.stays("move-kind", text)) {
         modes.insert(1);
     }
+    if is_one_edit {
+        motion.groups.join_shifts();
+    }
     changes.extend(motion.groups.changes());
     (changes, modes)
 }
@@ -66,20 +72,40 @@ pub(super) fn compare(
 /// What is said of G01 where G00 was, and of G00 where G01 was.
 const KINDS: [&str; 2] = ["a feed where a rapid was", "a rapid where a feed was"];
 
-/// Moves next to one another that are all different; other steps between them don't part them.
-fn regions(links: &[Link], old: &[Step], new: &[Step]) -> Vec<Vec<Link>> {
+/// Moves next to one another that are all different, each with its place among the links; other steps between them don't part them.
+fn regions(links: &[Link], old: &[Step], new: &[Step]) -> Vec<Vec<(usize, Link)>> {
     let mut regions = vec![Vec::new()];
-    for link in links {
+    for (k, link) in links.iter().enumerate() {
         let (i, j) = link.sides();
         let is_move = i.map(|i| &old[i]).or(j.map(|j| &new[j])).is_some_and(Step::is_move);
         match (is_move, link) {
             (false, _) => {}
             (true, Link::Same(..)) => regions.push(Vec::new()),
-            (true, _) => regions.last_mut().into_iter().for_each(|region| region.push(*link)),
+            (true, _) => regions.last_mut().into_iter().for_each(|region| region.push((k, *link))),
         }
     }
     regions.retain(|region| !region.is_empty());
     regions
+}
+
+/// More ways than these aren't kept: a new move is looked for among them.
+const MOST_WAYS: usize = 64;
+
+/// By how much moves end elsewhere.
+fn elsewhere(links: &[Link], old: &[Step], new: &[Step], tolerance: f64) -> Vec<Position> {
+    let mut ways: Vec<Position> = Vec::new();
+    for link in links {
+        let Link::Changed(i, j) = *link else { continue };
+        let way = difference(&new[j].to, &old[i].to);
+        let is_known = |known: &Position| near(known, &way, tolerance);
+        if old[i].is_move() && !is_known(&Position::default()) && !ways.iter().any(is_known) {
+            ways.push(way);
+        }
+        if ways.len() == MOST_WAYS {
+            break;
+        }
+    }
+    ways
 }
 
 /// The lost and the added step of what comes at another time, and whether that is `earlier` or `later`.
@@ -174,28 +200,6 @@ fn nearest<'a>(
         .collect()
 }
 
-/// How far rounded end points of moves that go together may be apart, mm or degrees.
-const ROUNDED: f64 = 0.0025;
-
-/// A move of a hole's old and new revision, each with the hole's feed: it has moved as the hole has, in every axis or in
-/// none, or stands as far above the hole's bottom on its line as before.
-fn goes_with(
-    (old, feed_old): (&Step, &Step),
-    (new, feed_new): (&Step, &Step),
-    deeper: f64,
-    tolerance: f64,
-) -> bool {
-    if std::mem::discriminant(&old.kind) != std::mem::discriminant(&new.kind) {
-        return false;
-    }
-    let (shift, hole) = (difference(&new.to, &old.to), difference(&feed_new.to, &feed_old.to));
-    let with = |axis: usize| shift[axis].abs() <= tolerance || (shift[axis] - hole[axis]).abs() <= tolerance;
-    let is_on_line = old.is_on_line_of(feed_old) && new.is_on_line_of(feed_new);
-    let above = new.distance(feed_new) - old.distance(feed_old) - deeper;
-    let moved_alike = (0..MAX_AXES).all(with) && (is_on_line || old.kind == Kind::Rapid);
-    moved_alike || is_on_line && above.abs() <= ROUNDED
-}
-
 struct Motion<'a> {
     old: &'a [Step],
     new: &'a [Step],
@@ -203,12 +207,36 @@ struct Motion<'a> {
     tolerance: f64,
     groups: Groups<'a>,
     strokes: Strokes,
+    /// By how much moves of all regions end elsewhere, the first of these ways.
+    elsewhere: Vec<Position>,
     records: (&'a Record, &'a Record),
+}
+
+/// A move that ends elsewhere by as much as the one before it, in axes that it doesn't move itself.
+fn is_carried(old: &Step, new: &Step, before: &Position, tolerance: f64) -> bool {
+    let shift = difference(&new.to, &old.to);
+    let (was, is) = (old.way(), new.way());
+    let is_from_before = |axis: usize| {
+        shift[axis].abs() <= tolerance
+            || was[axis].abs() <= tolerance
+                && is[axis].abs() <= tolerance
+                && (shift[axis] - before[axis]).abs() <= tolerance
+    };
+    std::mem::discriminant(&old.kind) == std::mem::discriminant(&new.kind)
+        && !matches!(old.kind, Kind::Arc(..))
+        && (0..MAX_AXES).all(is_from_before)
+}
+
+/// The old revision's last move before a link.
+fn moves_before(links: &[Link], at: usize, old: &[Step]) -> Option<usize> {
+    links[..at].iter().rev().filter_map(|link| link.sides().0).find(|i| old[*i].is_move())
 }
 
 impl<'a> Motion<'a> {
     /// Moves that are different, but for those of changed holes: the way there and back is part of the change.
-    fn region(&mut self, region: &[Link], explained: &Explained) {
+    fn region(&mut self, placed: &[(usize, Link)], links: &[Link], explained: &Explained) {
+        let region: Vec<Link> = placed.iter().map(|(_, link)| *link).collect();
+        let region = &region[..];
         // For every move the nearest feed of a changed hole before and behind it.
         let before = nearest(region.iter(), |link| feed_of(link, explained));
         let mut behind = nearest(region.iter().rev(), |link| feed_of(link, explained));
@@ -226,22 +254,43 @@ impl<'a> Motion<'a> {
         };
         let parts: Vec<bool> = (0..region.len()).map(is_part).collect();
         let shifts = self.shifts(region, &parts);
-        for ((link, is_part), is_peck) in region.iter().zip(parts).zip(pecks) {
-            if is_peck || self.strokes.explain(link, self.records.0, self.records.1) {
+        let ways: Vec<Position> = shifts.iter().map(|(way, _)| *way).collect();
+        let returns = returns(placed, links, (self.old, self.new), &ways, self.tolerance);
+        // The last move that ends elsewhere: by how much, and where it is told; nowhere if it goes with its hole.
+        let mut last: Option<(Position, Option<usize>)> = None;
+        for (k, (link, is_back)) in region.iter().zip(returns).enumerate() {
+            let is_part = parts[k];
+            if pecks[k] || is_back || self.strokes.explain(link, self.records.0, self.records.1) {
                 continue;
             }
             match *link {
-                Link::Changed(i, j) if !is_part => self.changed(&self.old[i], &self.new[j]),
+                Link::Changed(i, j) => {
+                    let (old, new) = (&self.old[i], &self.new[j]);
+                    let shift = difference(&new.to, &old.to);
+                    let carried = last.filter(|(way, _)| is_carried(old, new, way, self.tolerance));
+                    let told = match carried {
+                        _ if is_part => None,
+                        None => self.changed(old, new),
+                        Some((_, None)) => None,
+                        Some((_, Some(group))) => {
+                            self.groups.carry(group, new.kind.name(), &shift);
+                            Some(group)
+                        }
+                    };
+                    last = Some((shift, told));
+                }
                 Link::Lost(i) if !(is_part && gone) => {
                     let step = &self.old[i];
                     let text =
                         format!("{} to {} is no longer there", step.kind.one(), point(step, self.axes));
-                    self.alone(&shifts, "move-lost", text, (Some(step), None));
+                    self.alone(&shifts, "move-lost", text, (Some(step), None), false);
                 }
                 Link::Added(j) if !(is_part && gone) => {
                     let step = &self.new[j];
                     let text = format!("{} to {} is new", step.kind.one(), point(step, self.axes));
-                    self.alone(&shifts, "move-added", text, (None, Some(step)));
+                    let stand = moves_before(links, placed[k].0, self.old).map(|i| &self.old[i]);
+                    let begins = stand.is_some_and(|stand| self.near(&stand.to, &step.from));
+                    self.alone(&shifts, "move-added", text, (None, Some(step)), begins);
                 }
                 _ => {}
             }
@@ -249,8 +298,16 @@ impl<'a> Motion<'a> {
     }
 
     /// A move that is there once only. One that goes the way by which those next to it end elsewhere, where none was
-    /// needed before, is one of these; one that makes up for that way is no difference of its own.
-    fn alone(&mut self, shifts: &[(Position, bool)], code: &'static str, text: String, sides: Sides<'a>) {
+    /// needed before, is one of these; one that makes up for that way is no difference of its own. One that begins where the
+    /// old revision stands may also go the way by which moves of other regions end elsewhere.
+    fn alone(
+        &mut self,
+        shifts: &[(Position, bool)],
+        code: &'static str,
+        text: String,
+        sides: Sides<'a>,
+        begins: bool,
+    ) {
         let (Some(step), is_new) = (sides.0.or(sides.1), sides.1.is_some()) else { return };
         let way = if is_new { step.way() } else { opposite(&step.way()) };
         let with = shifts.iter().find(|(shift, _)| self.near(&way, shift));
@@ -258,6 +315,9 @@ impl<'a> Motion<'a> {
         match with {
             Some((shift, false)) => {
                 self.groups.tell_shift(step.kind.name(), shift, sides);
+            }
+            None if begins && self.elsewhere.iter().any(|shift| self.near(shift, &way)) => {
+                self.groups.tell_shift(step.kind.name(), &way, sides);
             }
             None if !back => self.groups.tell(code, "move", text, sides),
             _ => {}
@@ -324,8 +384,8 @@ impl<'a> Motion<'a> {
         [i.map(|i| &self.old[i]), j.map(|j| &self.new[j])]
     }
 
-    /// A move that goes elsewhere or in another way.
-    fn changed(&mut self, old: &'a Step, new: &'a Step) {
+    /// A move that goes elsewhere or in another way; gives the group that says where.
+    fn changed(&mut self, old: &'a Step, new: &'a Step) -> Option<usize> {
         let sides = (Some(old), Some(new));
         let (was, is) = (old.kind.one(), new.kind.one());
         if was != is {
@@ -333,7 +393,7 @@ impl<'a> Motion<'a> {
         }
         let way = difference(&new.to, &old.to);
         if !self.near(&way, &Position::default()) {
-            self.groups.tell_shift(new.kind.name(), &way, sides);
+            return Some(self.groups.tell_shift(new.kind.name(), &way, sides));
         } else if let (Kind::Arc(a, _), Kind::Arc(b, _)) = (&old.kind, &new.kind)
             && !is_same_arc(a, b, self.tolerance)
         {
@@ -348,7 +408,7 @@ impl<'a> Motion<'a> {
                 || is_with(a.plane.0, a.centre.0, b.centre.0)
                 || is_with(a.plane.1, a.centre.1, b.centre.1)
             {
-                return;
+                return None;
             }
             let text = format!(
                 "an arc sweeps {:+.3}° about {:.4} {:.4} instead of {:+.3}° about {:.4} {:.4}",
@@ -356,6 +416,7 @@ impl<'a> Motion<'a> {
             );
             self.groups.tell("move-arc", "arc", text, sides);
         }
+        None
     }
 
     /// Feeds, and everything that is no move.
@@ -410,7 +471,12 @@ impl<'a> Motion<'a> {
         if !old.is_move() && !is_told_of_holes((Some(&old.kind), Some(&new.kind)), explained) {
             let text =
                 format!("{} instead of {}", described(&new.kind, self.axes), described(&old.kind, self.axes));
-            self.groups.tell(code(&old.kind), old.kind.name(), text, (Some(old), Some(new)));
+            match (&old.kind, &new.kind) {
+                (Kind::Spindle(was, a), Kind::Spindle(is, b)) if was == is => {
+                    self.groups.tell_speed(*a, *b, text, (old, new));
+                }
+                _ => self.groups.tell(code(&old.kind), old.kind.name(), text, (Some(old), Some(new))),
+            }
         }
     }
 }

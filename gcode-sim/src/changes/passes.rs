@@ -1,4 +1,6 @@
 //! How often and by which tools a hole is made: all passes on its line, those as well that a tool makes again for nothing.
+use std::collections::BTreeSet;
+
 use super::align::common;
 use super::record::Record;
 use super::steps::Kind;
@@ -53,8 +55,8 @@ impl Record {
     }
 }
 
-/// Which passes are gone and which are new; `None` where as many are made.
-pub(super) fn more_or_fewer(was: &[u32], is: &[u32]) -> Option<String> {
+/// Which passes are gone and which are new, and the tools that are gone, each with those there now; `None` where as many are made.
+pub(super) fn more_or_fewer(was: &[u32], is: &[u32]) -> Option<(String, BTreeSet<(u32, u32)>)> {
     if was.len() == is.len() || was.is_empty() || is.is_empty() {
         return None;
     }
@@ -80,7 +82,8 @@ pub(super) fn more_or_fewer(was: &[u32], is: &[u32]) -> Option<String> {
         });
     }
     words.push(format!("in all by {}", in_words(is)));
-    Some(words.join(", "))
+    let swapped = gone.iter().flat_map(|gone| is.iter().map(|tool| (*gone, *tool))).collect();
+    Some((words.join(", "), swapped))
 }
 
 /// `T1`, `T1 and T2`, `T1, T2 and T1`; a tool that follows itself is counted, `T1 and T2 (3 times)`.

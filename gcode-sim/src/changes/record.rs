@@ -17,7 +17,7 @@ use crate::motion::{Axes, Calls, MAX_AXES, Place, Position};
 use crate::part::surface::Surface;
 use crate::program::{Library, Program};
 use crate::session::{self, Request, Run, SessionError, Simulation};
-use crate::source::Span;
+use crate::source::{Sources, Span};
 
 /// What one revision does.
 #[derive(Clone, Debug)]
@@ -39,6 +39,8 @@ pub struct Record {
     /// The main program's name as a control shows it.
     pub(super) program: Option<String>,
     pub(super) ending: Ending,
+    /// What was read; nothing of what was read from a file.
+    pub(super) sources: Option<Sources>,
     pub totals: Totals,
 }
 
@@ -183,7 +185,8 @@ fn record(simulation: &Simulation, mut recorder: Recorder) -> Record {
     let words = conditions.iter_mut().flat_map(|condition| &mut condition.0);
     let named = words.filter_map(|word| word.place.as_mut()).chain(set.values_mut());
     let named = named.chain(begun.iter_mut().map(|begun| &mut begun.place));
-    let places = resolve(run, &places, steps.iter_mut().map(|step| &mut step.place).chain(named));
+    let of_steps = steps.iter_mut().flat_map(|step| std::iter::once(&mut step.place).chain(&mut step.said));
+    let places = resolve(run, &places, of_steps.chain(named));
     let modes = set.iter().map(|(group, place)| (mode_name(*group), places[*place].clone()));
     let at = |place: &Place| Where::of(run, place);
     let variables = assigned.iter().map(|(number, place)| (format!("#{number}"), at(place)));
@@ -198,6 +201,7 @@ fn record(simulation: &Simulation, mut recorder: Recorder) -> Record {
             seconds: run.control.seconds().0,
         },
         ending: ending(run, &by, (last.as_ref(), end)),
+        sources: Some(run.control.memory().sources().clone()),
         begun: Some(begun),
         program: run.control.memory().programs().first().map(Program::label),
         conditions,

@@ -53,6 +53,8 @@ pub(super) struct Recorder {
     pub end: End,
     /// The last T and S.
     called: (u32, f64),
+    /// The block that has said F, S and T last, and the numbers of these blocks.
+    said: BTreeMap<char, (Span, usize)>,
     /// What the conditions were read from.
     seen: Option<Seen>,
     /// The last blocks and what was in force in them: a move may be held back until the blocks behind it are read.
@@ -129,7 +131,11 @@ impl Recorder {
 
     /// A block is about to command this.
     fn begin(&mut self, commanded: Commanded, place: &Place) {
-        let Commanded { modes, axes, offsets } = commanded;
+        let Commanded { modes, axes, offsets, values } = commanded;
+        for letter in values {
+            let number = self.place(place.clone());
+            self.said.insert(letter, (place.block, number));
+        }
         let modes =
             modes.into_iter().map(|(group, code)| (What::Mode, format!("{group:02}"), modal_code(code)));
         let axes = axes.into_iter().map(|letter| (What::Axis, letter.to_string(), letter.to_string()));
@@ -192,7 +198,7 @@ impl Recorder {
         for (what, text) in called.into_iter().chain(set) {
             let place = self.place(place.clone());
             let kind = Kind::Silent(what, text);
-            self.steps.insert(self.settled, Step { kind, from: to, to, at, place, under: 0 });
+            self.steps.insert(self.settled, Step { kind, from: to, to, at, place, said: None, under: 0 });
         }
     }
 
@@ -247,10 +253,24 @@ impl Recorder {
     fn push(&mut self, kind: Kind, from: Position, place: Place) {
         self.too_many |= self.steps.len() >= MOST_STEPS;
         if !self.too_many {
+            let said = self.said(&kind, &place);
             let place = self.place(place);
             let (from, to) = (difference(&from, &self.length), difference(&self.at, &self.length));
-            self.steps.push(Step { kind, from, to, at: self.at, place, under: 0 });
+            self.steps.push(Step { kind, from, to, at: self.at, place, said, under: 0 });
         }
+    }
+
+    /// The block that has said what a step takes up, if that is another than its own. A feed that was held back doesn't know.
+    fn said(&self, kind: &Kind, place: &Place) -> Option<usize> {
+        let letter = match kind {
+            Kind::Tool(_) => 'T',
+            Kind::Spindle(turning, _) if *turning != Spindle::Off => 'S',
+            Kind::Feed(_) | Kind::Arc(..) | Kind::Probe(_) => 'F',
+            _ => return None,
+        };
+        let is_held_back = self.block.as_ref().is_some_and(|block| block.place.block != place.block);
+        let said = self.said.get(&letter).filter(|(block, _)| *block != place.block && !is_held_back);
+        said.map(|(_, number)| *number)
     }
 
     fn go(&mut self, kind: Kind, to: Position, event: &Event<'_>) {

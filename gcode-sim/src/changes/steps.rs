@@ -16,6 +16,9 @@ pub(super) struct Step {
     pub at: Position,
     /// The block it comes from, by its number in the record.
     pub place: usize,
+    /// The block that has said the T, the S or the feed that is taken up here, where that is another; nothing of what was read
+    /// from a file.
+    pub said: Option<usize>,
     /// What is in force, by its number in the record.
     pub under: usize,
 }
@@ -92,6 +95,7 @@ impl Kind {
             Self::Stop(..) => Category::Stop,
             Self::Silent(Quiet::Tool, _) => Category::Tool,
             Self::Silent(Quiet::Speed, _) => Category::Spindle,
+            Self::Silent(Quiet::MCode, _) => Category::Auxiliary,
             Self::Silent(what, _) => Category::Silent(*what),
         }
     }
@@ -136,6 +140,11 @@ impl Kind {
 }
 
 impl Step {
+    /// The block that a reader changes for another tool, speed or feed.
+    pub(super) fn said_at(&self) -> usize {
+        self.said.unwrap_or(self.place)
+    }
+
     pub(super) fn is_move(&self) -> bool {
         self.kind.category() == Category::Move
     }
@@ -194,6 +203,30 @@ impl Step {
     pub(super) fn length(&self) -> f64 {
         norm(&self.way())
     }
+}
+
+/// How far rounded end points of moves that go together may be apart, mm or degrees.
+const ROUNDED: f64 = 0.0025;
+
+/// A move of a hole's old and new revision, each with the hole's feed: it has moved as the hole has, in every axis or in
+/// none, or stands as far above the hole's bottom on its line as before.
+pub(super) fn goes_with(
+    (old, feed_old): (&Step, &Step),
+    (new, feed_new): (&Step, &Step),
+    deeper: f64,
+    tolerance: f64,
+) -> bool {
+    if std::mem::discriminant(&old.kind) != std::mem::discriminant(&new.kind) {
+        return false;
+    }
+    let (shift, hole) = (difference(&new.to, &old.to), difference(&feed_new.to, &feed_old.to));
+    // A hole that is moved: the ends of its other moves are rounded each for itself.
+    let rounded = if near(&hole, &Position::default(), tolerance) { tolerance } else { ROUNDED };
+    let with = |axis: usize| shift[axis].abs() <= tolerance || (shift[axis] - hole[axis]).abs() <= rounded;
+    let is_on_line = old.is_on_line_of(feed_old) && new.is_on_line_of(feed_new);
+    let above = new.distance(feed_new) - old.distance(feed_old) - deeper;
+    let moved_alike = (0..MAX_AXES).all(with) && (is_on_line || old.kind == Kind::Rapid);
+    moved_alike || is_on_line && above.abs() <= ROUNDED
 }
 
 /// The same curve about the same centre.

@@ -234,7 +234,20 @@ impl Record {
         let (places, ending, totals) = (file.places, file.ending, file.totals);
         let unfinished = BTreeSet::new();
         let (begun, program) = (file.begun, file.program);
-        Ok(Self { axes, steps, holes, feeds, unfinished, places, conditions, begun, program, ending, totals })
+        Ok(Self {
+            axes,
+            steps,
+            holes,
+            feeds,
+            unfinished,
+            places,
+            conditions,
+            begun,
+            program,
+            ending,
+            sources: None,
+            totals,
+        })
     }
 
     fn line(&self, step: &Step, before: &Position) -> Line {
@@ -350,7 +363,7 @@ impl Steps<'_> {
             }
         };
         let (from, to) = (difference(&before, &self.length), difference(&self.at, &self.length));
-        Ok(Some(Step { kind, from, to, at: self.at, place, under: self.conditions.len() - 1 }))
+        Ok(Some(Step { kind, from, to, at: self.at, place, said: None, under: self.conditions.len() - 1 }))
     }
 
     fn go(&mut self, to: &BTreeMap<char, f64>, kind: Kind) -> Result<Kind, StoreError> {

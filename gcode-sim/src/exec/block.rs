@@ -9,6 +9,8 @@
 //!  5. spindle and coolant off;
 //!  6. stop, end;
 //!  7. call or return.
+//!
+//! Most blocks of long programs are plain moves, for which six of these have nothing to do: see [`super::step`].
 use super::Core;
 use super::code_calls::CallingWord;
 use super::eval::Checked;

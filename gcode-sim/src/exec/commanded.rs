@@ -14,6 +14,8 @@ pub struct Commanded {
     pub axes: Vec<char>,
     /// Offsets that get a value by G10: `G10 L2 P1 X`.
     pub offsets: Vec<String>,
+    /// Those of the letters F, S and T that it gives a value.
+    pub values: Vec<char>,
 }
 
 impl Control {
@@ -70,6 +72,9 @@ impl Core {
             }
             commanded.modes.extend(row.effect.group().map(|group| (group, row.code)));
         }
+        let values = words.list.iter().filter(|word| b"FST".contains(&word.letter) && !word.comma);
+        let values = values.filter(|word| matches!(self.raw(program, word), Ok(Some(_))));
+        commanded.values.extend(values.map(|word| char::from(word.letter)));
         if act == Some(OneShot::DataInput) {
             self.offsets_written(program, words, commanded);
         } else if is_sent(act, distance) {
@@ -148,6 +153,8 @@ mod tests {
         assert!(said("G92 X5.").0.axes.is_empty(), "no axis moves");
         assert_eq!(said("G91 G28 Z0").0.axes, ['Z']);
         assert_eq!(said("G10 L2 P1 X0 Y0").0.offsets, ["G10 L2 P1 X", "G10 L2 P1 Y"]);
+        assert_eq!(said("G1 X1. F100 S500 M3").0.values, ['F', 'S']);
+        assert!(said("G0 X1.").0.values.is_empty(), "F is as it was");
         assert_eq!([modal_code(0), modal_code(541)], ["G00", "G54.1"]);
     }
 

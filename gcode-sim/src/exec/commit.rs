@@ -75,7 +75,7 @@ impl Core {
     }
 
     /// Tells the machine one thing and counts it.
-    #[inline]
+    #[inline(always)]
     pub(super) fn tell<S: Sink>(&mut self, kind: &EventKind, seconds: f64, sink: &mut S) {
         self.count(kind, seconds);
         let block = self.block;
@@ -83,7 +83,7 @@ impl Core {
     }
 
     /// Counts what is told.
-    #[inline]
+    #[inline(always)]
     pub(super) fn count(&mut self, kind: &EventKind, seconds: f64) {
         self.seconds += seconds;
         self.moves += u64::from(kind.end().is_some());

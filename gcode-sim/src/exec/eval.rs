@@ -80,7 +80,7 @@ impl Core {
     fn fetch(&self, source: &Source, last: Value) -> Value {
         match source {
             Source::Number(number) => Value::Number(*number),
-            Source::Free(place) => self.vars.get(usize::from(*place)),
+            Source::Free(place) => self.vars.free(*place),
             Source::Computed(Computed::Last) => last,
             Source::Computed(Computed::Waiting) => self.waiting.pop(),
         }
@@ -91,7 +91,7 @@ impl Core {
     fn number(&self, source: &Source, last: Value) -> f64 {
         match source {
             Source::Number(number) => *number,
-            Source::Free(place) => self.vars.number(usize::from(*place)),
+            Source::Free(place) => self.vars.number(*place),
             Source::Computed(Computed::Last) => last.number(),
             Source::Computed(Computed::Waiting) => self.waiting.pop().number(),
         }
@@ -100,7 +100,7 @@ impl Core {
     #[inline]
     fn load(&self, slot: Slot) -> Result<Value, Alarm> {
         match slot {
-            Slot::Free(place) => Ok(self.vars.get(usize::from(place))),
+            Slot::Free(place) => Ok(self.vars.free(place)),
             Slot::Other(number) => self.read(number),
         }
     }

@@ -62,10 +62,19 @@ impl Core {
         if number.abs() > 999_999_999.0 { Err(Alarm::TooManyDigits) } else { Ok(number + 0.0) }
     }
 
-    /// Digits without the last ones, which are less than an increment.
-    #[inline(never)]
+    /// Digits without some of the last, which are less than an increment.
+    #[inline(always)]
     fn cut(&self, digits: u64, places: usize) -> f64 {
-        let unit = 10_u64.saturating_pow(places as u32);
+        const UNITS: [u64; 20] = {
+            let mut units = [1; 20];
+            let mut places = 1;
+            while places < units.len() {
+                units[places] = 10 * units[places - 1];
+                places += 1;
+            }
+            units
+        };
+        let unit = UNITS[places.min(UNITS.len() - 1)];
         let half = if self.settings.unsure.round_literals { unit / 2 } else { 0 };
         (digits.saturating_add(half) / unit) as f64
     }

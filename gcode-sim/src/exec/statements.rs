@@ -24,7 +24,7 @@ impl Core {
         match statement {
             Statement::Assign { target: Target::Slot(Slot::Free(place)), value, .. } => {
                 let value = self.assigned(program, value)?;
-                self.vars.set(usize::from(*place), value);
+                self.vars.set_free(*place, value);
                 Ok(())
             }
             Statement::While { condition, number, end } => {
@@ -184,7 +184,7 @@ impl Core {
         sink: &mut S,
     ) -> Checked<()> {
         match slot {
-            Slot::Free(place) => self.vars.set(usize::from(place), value),
+            Slot::Free(place) => self.vars.set_free(place, value),
             Slot::Other(number) => self.write_other(number, value, text, span, sink)?,
         }
         Ok(())

@@ -28,7 +28,7 @@ impl Core {
         let f = f.unwrap_or(state.codes.f);
         let mut goal = Goal::here(state);
         let led = self.lead(given, state, zero, &mut goal)?;
-        if led.reach > self.farthest() {
+        if led.beyond {
             self.beyond_range(given, &goal.machine)?;
         }
         let (rate, seconds) = match motion {

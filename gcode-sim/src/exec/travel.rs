@@ -1,4 +1,6 @@
 //! Straight moves: where a block's axis words lead, and how long the way takes.
+use std::hint::cold_path;
+
 use super::Core;
 use super::eval::Checked;
 use super::notes::Note;
@@ -6,7 +8,7 @@ use super::plan::Plan;
 use super::state::{PolarPoint, State};
 use super::words::Given;
 use crate::alarm::Alarm;
-use crate::motion::{Axis, EventKind, Position};
+use crate::motion::{Axis, EventKind, MAX_AXES, Position};
 use crate::program::modes::{Distance, FeedMode, Plane, Polar, Unit};
 use crate::units::{Deg, MmPerMin};
 
@@ -23,8 +25,8 @@ pub(super) struct Goal {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Led {
     pub(super) way: Way,
-    /// The largest machine coordinate that one of them gets to, its sign left out.
-    pub(super) reach: f64,
+    /// One of them gets beyond the largest coordinate.
+    pub(super) beyond: bool,
 }
 
 /// How far axes move: the sums of the squares of those that slide, in mm, and of those that turn, in degrees.
@@ -37,7 +39,11 @@ pub(super) struct Way {
 impl Way {
     #[inline(always)]
     fn add(&mut self, way: f64, turns: bool) {
-        *if turns { &mut self.turning } else { &mut self.sliding } += way * way;
+        if turns {
+            self.turning += way * way;
+        } else {
+            self.sliding += way * way;
+        }
     }
 
     /// Whether one of the axes moves; the increments are far too large for squares that vanish.
@@ -96,9 +102,8 @@ impl Core {
         Ok(goal)
     }
 
-    /// Takes a goal from where `state` stands to where the block's axis words lead, on the axes that are named. On the
-    /// machine, which has `zero` as [`Core::zeros`], that is right as long as the others stand [where they
-    /// should](Core::is_placed).
+    /// Takes a goal from where `state` stands to where the block's axis words lead, on the axes that are named; `zero` is
+    /// [`Core::zeros`]. On the machine that is right as long as the others [stand where they should](Core::is_placed).
     #[inline(always)]
     pub(super) fn lead(
         &self,
@@ -113,11 +118,14 @@ impl Core {
         let places = *unplaced != 0 && !incremental;
         let polar = state.modal.polar == Polar::On;
         let measure = self.measure(state.modal.unit);
+        let most = self.farthest();
         given.ask(self.settings.axes.mask());
-        for (axis, letter) in self.settings.axes.letters() {
-            if !given.has(letter) || polar && self.in_plane(state, axis) {
+        let (letters, bits) = self.settings.axes.places();
+        for axis in 0..MAX_AXES {
+            if !given.has_of(bits[axis]) || polar && self.in_plane(state, axis) {
                 continue;
             }
+            let letter = letters[axis];
             let value = match self.dimension_of(given.raw(letter), letter, measure) {
                 Ok(value) => value,
                 Err(alarm) => return Err(alarm.at(given.span(letter))),
@@ -131,11 +139,17 @@ impl Core {
                 programmed[axis] = self.rolled(axis, from + way);
                 self.clean(machine[axis] + way)
             } else {
-                programmed[axis] = if incremental { self.clean(from + value) } else { value };
+                programmed[axis] = if incremental {
+                    // Else the compiler computes it in G90 too, for nothing.
+                    cold_path();
+                    self.clean(from + value)
+                } else {
+                    value
+                };
                 self.clean(programmed[axis] + zero[axis] + state.length[axis])
             };
             led.way.add(to - machine[axis], self.settings.axes.is_rotary(axis));
-            led.reach = led.reach.max(to.abs());
+            led.beyond |= to.abs() > most;
             machine[axis] = to;
         }
         Ok(led)
@@ -154,7 +168,7 @@ impl Core {
 
     /// The largest coordinate: nine digits in increments, as a word has.
     #[inline]
-    pub(super) fn farthest(&self) -> f64 {
+    fn farthest(&self) -> f64 {
         999_999_999.0 / self.settings.increment.per_unit()
     }
 

@@ -67,6 +67,8 @@ impl From<Held> for Value {
 const LOCALS: usize = 34;
 /// The numbers up to the last common of every control.
 const ORDINARY: usize = 1000;
+/// Places for them, so many that the low bits of any number are one: nothing needs to ask whether it is there.
+const PLACES: usize = ORDINARY.next_power_of_two();
 
 /// #1 to #33 of one macro level, by number; #0 stays vacant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -98,9 +100,9 @@ pub(super) enum Kind {
 /// All variables that a program may use freely.
 #[derive(Clone, Debug)]
 pub struct Vars {
-    /// By number the locals of the current level and the commons, behind them the further commons. What has no number of
-    /// these is never written.
-    values: Vec<Held>,
+    /// By number the locals of the current level and the commons. What has no number of these is never written.
+    ordinary: Box<[Held; PLACES]>,
+    further: Vec<Held>,
     /// The locals of the levels that wait for the current one, the main program's first.
     outer: Vec<Locals>,
     /// The numbers of further commons.
@@ -114,7 +116,8 @@ impl Vars {
     pub(super) fn new(more: Option<(u32, u32)>, aliased: bool) -> Self {
         let count = more.map_or(0, |(from, to)| (to - from + 1) as usize);
         Self {
-            values: vec![Held::VACANT; ORDINARY + count],
+            ordinary: Box::new([Held::VACANT; PLACES]),
+            further: vec![Held::VACANT; count],
             outer: Vec::new(),
             more: more.unwrap_or((1, 0)),
             aliased,
@@ -143,37 +146,63 @@ impl Vars {
         }
     }
 
-    /// The value at a place that [`Vars::kind`] or [`Slot::Free`] tells.
+    /// The value of a variable of [`Slot::Free`].
     #[inline(always)]
+    pub(super) fn free(&self, number: u16) -> Value {
+        self.ordinary[usize::from(number) % PLACES].into()
+    }
+
+    /// Its number; 0 where it is vacant.
+    #[inline(always)]
+    pub(super) fn number(&self, number: u16) -> f64 {
+        self.ordinary[usize::from(number) % PLACES].number
+    }
+
+    /// Writes such a variable.
+    #[inline(always)]
+    pub(super) fn set_free(&mut self, number: u16, value: Value) {
+        self.ordinary[usize::from(number) % PLACES] = value.into();
+    }
+
+    /// The value at a place that [`Vars::kind`] tells.
     pub(super) fn get(&self, place: usize) -> Value {
-        self.values[place].into()
+        self.held(place).into()
     }
 
-    /// The number at such a place; 0 where it is vacant.
-    #[inline(always)]
-    pub(super) fn number(&self, place: usize) -> f64 {
-        self.values[place].number
-    }
-
-    /// Writes a value at a place that [`Vars::kind`] or [`Slot::Free`] tells.
-    #[inline(always)]
+    /// Writes a value at such a place.
     pub(super) fn set(&mut self, place: usize, value: Value) {
-        self.values[place] = value.into();
+        match place.checked_sub(ORDINARY) {
+            None => self.ordinary[place] = value.into(),
+            Some(place) => self.further[place] = value.into(),
+        }
+    }
+
+    #[inline]
+    fn held(&self, place: usize) -> Held {
+        match place.checked_sub(ORDINARY) {
+            None => self.ordinary[place],
+            Some(place) => self.further[place],
+        }
+    }
+
+    /// How many places there are.
+    fn places(&self) -> usize {
+        ORDINARY + self.further.len()
     }
 
     /// ADP: a local's value as if it had been passed with a point.
     pub(super) fn with_point(&self, local: usize) -> f64 {
-        let Held { number, decimals, .. } = self.values[local];
+        let Held { number, decimals, .. } = self.ordinary[local];
         number * 10_f64.powi(i32::from(decimals))
     }
 
     /// The locals of the current level.
     pub fn locals(&self) -> Locals {
-        Locals(std::array::from_fn(|local| self.values[local]))
+        Locals(std::array::from_fn(|local| self.ordinary[local]))
     }
 
     pub(super) fn set_locals(&mut self, locals: &Locals) {
-        self.values[..LOCALS].copy_from_slice(&locals.0);
+        self.ordinary[..LOCALS].copy_from_slice(&locals.0);
     }
 
     pub fn level(&self) -> usize {
@@ -195,18 +224,18 @@ impl Vars {
 
     /// Whether all values in force are the same.
     pub(super) fn same(&self, other: &Self) -> bool {
-        self.values == other.values && self.outer == other.outer
+        self.ordinary == other.ordinary && self.further == other.further && self.outer == other.outer
     }
 
     /// Whether the values at a place differ, be it in one bit.
     #[inline]
     pub(super) fn differ_at(&self, place: usize, other: &Self) -> bool {
-        self.values[place].bits() != other.values[place].bits()
+        self.held(place).bits() != other.held(place).bits()
     }
 
     /// A place where the values differ; that of #0 where only callers' locals do.
     pub(super) fn difference(&self, other: &Self) -> Option<usize> {
-        let found = (0..self.values.len()).find(|place| self.differ_at(*place, other));
+        let found = (0..self.places()).find(|place| self.differ_at(*place, other));
         found.or_else(|| self.outer_bits().ne(other.outer_bits()).then_some(0))
     }
 
@@ -218,7 +247,7 @@ impl Vars {
     pub fn known(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
         let local = |local| self.outer.first().map_or_else(|| self.get(local), |level| level.get(local));
         let locals = (0..LOCALS).map(move |place| (place, local(place)));
-        let commons = (LOCALS..self.values.len()).map(|place| (place, self.get(place)));
+        let commons = (LOCALS..self.places()).map(|place| (place, self.get(place)));
         locals.chain(commons).filter_map(|(place, value)| {
             let number = place.checked_sub(ORDINARY).map_or(place as u32, |more| self.more.0 + more as u32);
             Some((number, value.given()?))

@@ -79,21 +79,14 @@ impl Blocks {
     }
 
     /// The operation of a block, if it is lowered.
+    #[inline(always)]
     pub(super) fn op(&self, place: OpIndex) -> Option<&Op> {
-        self.op_at(self.found(place)?)
+        if self.holds(place) { self.ops.get(place & self.bits) } else { None }
     }
 
-    /// Where the operation of a block is, if it is lowered.
-    #[inline]
-    fn found(&self, place: OpIndex) -> Option<u32> {
-        let at = place & self.bits;
-        self.held.get(at).is_some_and(|held| *held as usize == place).then_some(at as u32)
-    }
-
-    /// An operation by the place that [`Blocks::ready`] tells.
-    #[inline]
-    pub(super) fn op_at(&self, place: u32) -> Option<&Op> {
-        self.ops.get(place as usize)
+    #[inline(always)]
+    fn holds(&self, place: OpIndex) -> bool {
+        self.held.get(place & self.bits).is_some_and(|held| *held as usize == place)
     }
 
     /// All operations; to ask before all are lowered, in order, is a mistake of ours.
@@ -117,13 +110,22 @@ impl Blocks {
 
     /// The place of a block's operation, which is lowered where it isn't; `None` behind the last block. Another that had the
     /// place is forgotten, and where too many trees have been lowered, all are.
-    #[inline]
-    pub(super) fn ready(&mut self, place: OpIndex, loops: &Loops) -> Option<u32> {
-        self.found(place).or_else(|| self.make_ready(place, loops))
+    #[inline(always)]
+    pub(super) fn ready(&mut self, place: OpIndex, loops: &Loops) -> Option<usize> {
+        if !self.holds(place) {
+            self.make_ready(place, loops)?;
+        }
+        Some(place & self.bits)
+    }
+
+    /// An operation by the place that [`Blocks::ready`] tells.
+    #[inline(always)]
+    pub(super) fn op_at(&self, place: usize) -> Option<&Op> {
+        self.ops.get(place)
     }
 
     #[inline(never)]
-    fn make_ready(&mut self, place: OpIndex, loops: &Loops) -> Option<u32> {
+    fn make_ready(&mut self, place: OpIndex, loops: &Loops) -> Option<()> {
         if self.trees >= KEPT {
             self.forget();
         }
@@ -145,7 +147,7 @@ impl Blocks {
         self.trees = 0;
     }
 
-    fn lower(&mut self, place: OpIndex, loops: &Loops) -> Option<u32> {
+    fn lower(&mut self, place: OpIndex, loops: &Loops) -> Option<()> {
         let start = *self.starts.get(place)?;
         let at = place & self.bits;
         if at >= self.ops.len() {
@@ -157,7 +159,7 @@ impl Blocks {
             self.lower_tree(place, at, loops)?;
         }
         self.held[at] = place as u32;
-        Some(at as u32)
+        Some(())
     }
 
     /// Lowers a block that is more than numbers into a place.

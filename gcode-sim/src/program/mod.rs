@@ -159,11 +159,7 @@ impl Program {
 
     /// The name as a control shows it: `O8101`, `<BRACKET-OP1>`; `MAIN` where there is none.
     pub fn label(&self) -> String {
-        match &self.name {
-            ProgramName::Number(number) => format!("O{number:04}"),
-            ProgramName::Name(name) => format!("<{name}>"),
-            ProgramName::Unnamed => "MAIN".into(),
-        }
+        self.name.label()
     }
 
     /// Its operations in order, of a program that `Memory::lowered` gave.

@@ -26,6 +26,17 @@ pub enum ProgramName {
 }
 
 impl ProgramName {
+    /// As a control shows it: `O8101`, `<BRACKET-OP1>`; `MAIN` where there is none.
+    pub fn label(&self) -> String {
+        match self {
+            Self::Number(number) => format!("O{number:04}"),
+            Self::Name(name) => format!("<{name}>"),
+            Self::Unnamed => "MAIN".into(),
+        }
+    }
+}
+
+impl ProgramName {
     /// The program that `<text>` names: O and a number is that number.
     pub(crate) fn of(text: String) -> Self {
         let digits = text.strip_prefix('O').filter(|digits| digits.bytes().all(|b| b.is_ascii_digit()));
