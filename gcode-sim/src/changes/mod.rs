@@ -80,8 +80,9 @@ impl Compared {
         let edit = if is_all_same { None } else { one_cause::edit(old, new) };
         let (motion, modes) = motion::compare(old, new, &links, &holes.moved, tolerance, edit.is_some());
         changes.extend(motion);
+        // Where all moves go where they went, they may be made otherwise.
         if changes.len() > 1
-            && let Some(edit) = edit
+            && let Some(edit) = edit.or_else(|| one_cause::edit(old, new))
         {
             changes = one_cause::joined(changes, &edit);
         }
