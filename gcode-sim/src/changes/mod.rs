@@ -3,6 +3,7 @@
 //! Nothing of the text is compared: sequence numbers, spaces, comments, names of locals and the way a number is written
 //! make no difference unless the control does something else because of them.
 mod align;
+mod arcs;
 mod begin;
 mod cause;
 mod change;

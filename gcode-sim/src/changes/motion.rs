@@ -2,6 +2,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::align::Link;
+use super::arcs::reshaped;
 use super::cause::is_same_block;
 use super::change::Change;
 use super::conditions::{Conditions, Strokes};
@@ -10,7 +11,7 @@ use super::holes::Explained;
 use super::left::mode;
 use super::record::Record;
 use super::returns::returns;
-use super::steps::{Category, Kind, Quiet, Step, difference, goes_with, is_same_arc, near};
+use super::steps::{Category, Kind, Quiet, Step, difference, goes_with, near};
 use super::together::{with_code, with_moves};
 use super::words::{code, described, point};
 use crate::motion::{Axes, MAX_AXES, Position};
@@ -392,31 +393,14 @@ impl<'a> Motion<'a> {
             self.groups.tell("move-kind", "move", format!("{is} where {was} was"), sides);
         }
         let way = difference(&new.to, &old.to);
-        if !self.near(&way, &Position::default()) {
-            return Some(self.groups.tell_shift(new.kind.name(), &way, sides));
-        } else if let (Kind::Arc(a, _), Kind::Arc(b, _)) = (&old.kind, &new.kind)
-            && !is_same_arc(a, b, self.tolerance)
-        {
-            let begins = difference(&new.from, &old.from);
-            let is_with = |axis: usize, was: f64, is: f64| {
-                begins[axis].abs() > 0.0 && (is - was - begins[axis]).abs() <= self.tolerance
-            };
-            let (was, is) = (&self.records.0.places[old.place], &self.records.1.places[new.place]);
-            let by_radius = !self.near(&begins, &Position::default()) && is_same_block(was, is);
-            // I, J and K count from where the arc begins: its centre goes with that; R puts it at the same distance.
-            if by_radius
-                || is_with(a.plane.0, a.centre.0, b.centre.0)
-                || is_with(a.plane.1, a.centre.1, b.centre.1)
-            {
-                return None;
+        let is_moved = !self.near(&way, &Position::default());
+        if let (Kind::Arc(a, _), Kind::Arc(b, _)) = (&old.kind, &new.kind) {
+            let is_moved = is_moved || !self.near(&new.from, &old.from);
+            if let Some(text) = reshaped((old, a), (new, b), is_moved, self.tolerance) {
+                self.groups.tell("move-arc", "arc", text, sides);
             }
-            let text = format!(
-                "an arc sweeps {:+.3}° about {:.4} {:.4} instead of {:+.3}° about {:.4} {:.4}",
-                b.sweep.0, b.centre.0, b.centre.1, a.sweep.0, a.centre.0, a.centre.1
-            );
-            self.groups.tell("move-arc", "arc", text, sides);
         }
-        None
+        is_moved.then(|| self.groups.tell_shift(new.kind.name(), &way, sides))
     }
 
     /// Feeds, and everything that is no move.
