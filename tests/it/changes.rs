@@ -253,7 +253,10 @@ fn one_shifted_word_is_one_entry() {
         ["move-shifted: moves end elsewhere, by X +0.0100 (2 rapids, a feed, the first of them new)"]
     );
     let of_arc = told(old, &old.replace("X30. I5.", "X30.02 I5.01"));
-    assert_eq!(of_arc, ["move-shifted: moves end elsewhere, by X +0.0200 (an arc, a feed, a rapid)"]);
+    // Its radius is another too, which where it ends doesn't say.
+    let shape = "an arc of radius 5.0100 sweeps -180.000° about 25.0100 0.0000 instead of one of 5.0000 -180.000° about 25.0000 0.0000";
+    let shifted = "move-shifted: moves end elsewhere, by X +0.0200 (an arc, a feed, a rapid)";
+    assert_eq!(of_arc, [format!("move-arc: {shape}"), shifted.to_owned()]);
 }
 
 /// In G93 a way that is longer takes the same time.

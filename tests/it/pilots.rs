@@ -34,10 +34,10 @@ fn a_pilot_elsewhere_is_told_at_its_hole() {
         changed("Z-4. R2. F100", "Z-4.01 R2. F100"),
         ["hole-pass: hole 1: pass 1 of 2, by T1, 0.0100 mm deeper"]
     );
-    // The last pass alone: that is the hole.
+    // The last pass alone: that is the hole, and it is off its pilot now.
     assert_eq!(
         changed("G83 X10. Y0", "G83 X10.01 Y0"),
-        ["hole-moved: hole 1: moved by +0.0100 +0.0000 +0.0000 mm"]
+        ["hole-moved: hole 1: moved by +0.0100 +0.0000 +0.0000 mm, pass 1 of 2, by T1, stays where it was"]
     );
     // Deeper than the hole is finished: both are told, in one entry.
     assert_eq!(
@@ -85,4 +85,70 @@ fn of_two_words_each_effect_is_an_entry() {
     assert!(found.len() > 1, "{found:?}");
     let one = changed("G81 X10. Y0 Z-4. R2.", "G81 X10. Y0 Z-4. R-2.");
     assert_eq!(one.len(), 1, "{one:?}");
+}
+
+/// T1 drills 25 mm deep, T2 taps 18 mm of it: what the tap does is told whatever else happens to the hole.
+const TAPPED: &str = "O1\nG90 G54 G0 X0 Y0\nT1 M6\nG43 H1 Z50.\nS900 M3\nG98 G83 X10. Y0 Z-25. R2. Q5. F100\nG80\n\
+    T2 M6\nG43 H2 Z50.\nS300 M3\nG98 G84 X10. Y0 Z-18. R5. F300\nG80\nG0 Z50.\nM30\n";
+
+#[test]
+fn a_pass_above_the_holes_bottom_is_told_whatever_else_is_different() {
+    let told = |edits: &[(&str, &str)]| {
+        let new = edits.iter().fold(TAPPED.to_owned(), |text, (from, to)| text.replace(from, to));
+        told(TAPPED, &new)
+    };
+    let shorter = ("Z-18.", "Z-12.");
+    assert_eq!(told(&[shorter]), ["hole-pass: hole 1: pass 2 of 2, by T2, 6.0000 mm less deep"]);
+    assert_eq!(
+        told(&[shorter, ("X10.", "X10.01")]),
+        [
+            "hole-moved: hole 1: moved by +0.0100 +0.0000 +0.0000 mm, pass 2 of 2, by T2, ends elsewhere, by X +0.0100 Z +6.0000"
+        ]
+    );
+    assert_eq!(
+        told(&[shorter, ("Z-25.", "Z-25.5")]),
+        ["hole-depth: hole 1: 0.5000 mm deeper, pass 2 of 2, by T2, 6.0000 mm less deep"]
+    );
+    assert_eq!(
+        told(&[("Z-18.", "Z-18.5"), ("Z-25.", "Z-25.5")]),
+        ["hole-depth: hole 1: 0.5000 mm deeper"],
+        "both by the same"
+    );
+}
+
+/// What each pass does is told: which ones a moved hole has left behind, and by how much each of them is elsewhere.
+#[test]
+fn passes_that_stay_and_passes_that_go_elsewhere_are_told_apart() {
+    let told = |drill: &str, tap: &str| {
+        let new =
+            TAPPED.replace("G83 X10.", &format!("G83 {drill}")).replace("G84 X10.", &format!("G84 {tap}"));
+        told(TAPPED, &new).concat()
+    };
+    let moved = |mm: &str| format!("hole-moved: hole 1: moved by +{mm} +0.0000 +0.0000 mm");
+    let goes = |pass: u32, mm: &str| format!(", pass {pass} of 2, by T{pass}, ends elsewhere, by X +{mm}");
+    assert_eq!(told("X10.01", "X10.01"), moved("0.0100"));
+    assert_eq!(told("X10.", "X10.01"), moved("0.0100") + &goes(2, "0.0100"));
+    assert_eq!(
+        told("X10.01", "X10."),
+        "hole-pass: hole 1".to_owned() + &goes(1, "0.0100").replacen(',', ":", 1)
+    );
+    assert_eq!(told("X10.01", "X10.02"), moved("0.0200") + &goes(1, "0.0100") + &goes(2, "0.0200"));
+}
+
+/// An arc's end moves with its contour; its sense, radius and centre are told beside that.
+#[test]
+fn an_arc_that_is_reshaped_is_told_whatever_its_ends_do() {
+    let old = "O1\nG90 G54 G0 X0 Y0\nZ5.\nG1 Z-1. F100\nG1 X20.\nG2 X30. Y10. R10.\nG1 Y19.\nG0 Z5.\nM30\n";
+    let codes = |edits: &[(&str, &str)]| {
+        let new = edits.iter().fold(old.to_owned(), |text, (from, to)| text.replace(from, to));
+        let of = |text: String| text.split(':').next().unwrap().to_owned();
+        told(old, &new).into_iter().map(of).collect::<Vec<_>>()
+    };
+    let deeper = ("Z-1.", "Z-1.01");
+    assert_eq!(codes(&[deeper]), ["move-shifted"]);
+    for shape in [("R10.", "R12."), ("R10.", "R-10."), ("G2", "G3")] {
+        assert_eq!(codes(&[shape]), ["move-arc"], "{shape:?}");
+        assert_eq!(codes(&[shape, deeper]), ["move-shifted", "move-arc"], "{shape:?}");
+        assert_eq!(codes(&[shape, ("G54", "G54 G52 X1. Y2.")]).last().unwrap(), "move-arc", "{shape:?}");
+    }
 }
