@@ -152,3 +152,12 @@ fn an_arc_that_is_reshaped_is_told_whatever_its_ends_do() {
         assert_eq!(codes(&[shape, ("G54", "G54 G52 X1. Y2.")]).last().unwrap(), "move-arc", "{shape:?}");
     }
 }
+
+/// Two holes are pecked by one cycle, and one of them by shorter pecks now.
+#[test]
+fn a_cycle_that_is_another_one_at_some_holes_names_them() {
+    let old = "O1\nG90 G54 G0 X0 Y0 Z50.\nG98 G83 X10. Y0 Z-25. R2. Q5. F100\nX20.\nX30.\nG80\nM30\n";
+    let new = old.replace("X20.\nX30.", "X20. Q4.\nX30. Q5.");
+    assert_eq!(told(old, &new), ["cycle: cycle G83 Q4 instead of G83 Q5 (hole 2)"]);
+    assert_eq!(told(old, &old.replace("Q5.", "Q4.")), ["cycle: cycle G83 Q4 instead of G83 Q5 (3 holes)"]);
+}

@@ -15,7 +15,7 @@ pub(super) fn reshaped(
     let near = |a: f64, b: f64| (a - b).abs() <= tolerance;
     let (ends, ends_now) = (seen_from_centre(old, a), seen_from_centre(new, b));
     let alike = |end: usize| near(ends[end].0, ends_now[end].0) && near(ends[end].1, ends_now[end].1);
-    let radius = |ends: [(f64, f64); 2]| ends[1].0.hypot(ends[1].1);
+    let radius = |ends: [(f64, f64); 2]| libm::hypot(ends[1].0, ends[1].1);
     let is_long = |arc: &Arc2| arc.sweep.0.abs() > 180.0;
     let same_sweep = (a.sweep.0 - b.sweep.0).abs() <= 1e-3;
     let same_centre = near(a.centre.0, b.centre.0) && near(a.centre.1, b.centre.1);

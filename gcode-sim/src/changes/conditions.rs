@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use super::align::Link;
 use super::change::Change;
 use super::groups::STAYS;
+use super::hole_groups::named;
 use super::in_force::{Aspect, Word};
 use super::left::mode;
 use super::record::Record;
@@ -22,7 +23,8 @@ struct Group<'a> {
     aspect: Aspect,
     was: &'a Word,
     is: &'a Word,
-    moves: usize,
+    /// By their numbers in the old run.
+    moves: Vec<usize>,
     /// The first of them.
     first: (usize, usize),
 }
@@ -64,8 +66,8 @@ impl<'a> Conditions<'a> {
                 let alike =
                     |g: &&mut Group<'_>| g.aspect == aspect && g.was.text == was.text && g.is.text == is.text;
                 match groups.iter_mut().find(alike) {
-                    Some(group) => group.moves += 1,
-                    None => groups.push(Group { aspect, was, is, moves: 1, first: (i, j) }),
+                    Some(group) => group.moves.push(i),
+                    None => groups.push(Group { aspect, was, is, moves: vec![i], first: (i, j) }),
                 }
             }
         }
@@ -88,7 +90,7 @@ impl<'a> Conditions<'a> {
 
     fn change(&self, group: &Group<'_>) -> Change {
         let Group { aspect, was, is, moves, first: (i, j) } = group;
-        let counted = if *moves == 1 { "1 move".to_owned() } else { format!("{moves} moves") };
+        let counted = if moves.len() == 1 { "1 move".to_owned() } else { format!("{} moves", moves.len()) };
         let alike = || {
             let (before, now) = (length(&self.old.steps[*i]), length(&self.new.steps[*j]));
             let far = |values: &[f64]| values.iter().any(|value| value.abs() > 1e-9);
@@ -105,10 +107,7 @@ impl<'a> Conditions<'a> {
                 format!(": the rapids from hole to hole run at the R level ({counted})")
             }
             Aspect::Level => format!(": the rapids from hole to hole run at the initial level ({counted})"),
-            Aspect::Cycle => match self.holes(&was.text) {
-                1 => " (1 hole)".to_owned(),
-                n => format!(" ({n} holes)"),
-            },
+            Aspect::Cycle => format!(" ({})", self.holes(&was.text, moves)),
             Aspect::System | Aspect::Cutter | Aspect::Path => format!(" ({counted})"),
         };
         let what = match aspect {
@@ -121,10 +120,20 @@ impl<'a> Conditions<'a> {
         Change::new(aspect.code(), message).once_at(at(self.old, was)).now_at(at(self.new, is))
     }
 
-    /// How many holes of the old revision a cycle makes.
-    fn holes(&self, cycle: &str) -> usize {
+    /// The holes of the old revision that some moves of a cycle make: how many, where they are all that the cycle makes.
+    fn holes(&self, cycle: &str, moves: &[usize]) -> String {
         let is_of = |step: &usize| self.old.under(*step).word(Aspect::Cycle).text == cycle;
-        self.old.feeds.iter().filter(|feeds| feeds.iter().any(is_of)).count()
+        let with = |is_it: &dyn Fn(&usize) -> bool| -> Vec<usize> {
+            let feeds = self.old.feeds.iter().enumerate();
+            feeds.filter(|(_, feeds)| feeds.iter().any(is_it)).map(|(hole, _)| hole).collect()
+        };
+        let all = with(&is_of);
+        let these = with(&|step| moves.binary_search(step).is_ok());
+        match all.len() {
+            _ if !these.is_empty() && these != all => named(&these),
+            1 => "1 hole".to_owned(),
+            n => format!("{n} holes"),
+        }
     }
 }
 
