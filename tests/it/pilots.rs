@@ -161,3 +161,127 @@ fn a_cycle_that_is_another_one_at_some_holes_names_them() {
     assert_eq!(told(old, &new), ["cycle: cycle G83 Q4 instead of G83 Q5 (hole 2)"]);
     assert_eq!(told(old, &old.replace("Q5.", "Q4.")), ["cycle: cycle G83 Q4 instead of G83 Q5 (3 holes)"]);
 }
+
+/// What is told of spindle and coolant.
+fn state_told(old: &str, new: &str) -> Vec<String> {
+    let mut all = told(old, new);
+    all.retain(|entry| entry.starts_with("spindle: ") || entry.starts_with("coolant: "));
+    all
+}
+
+/// T1 spots two holes with S1500 M3 and M8; T2 drills them with what it says itself.
+const SPOT: &str = "T1 M6\nS1500 M3\nG43 H1 Z50.\nM8\nG81 X10. Y0 Z-4. R2. F100\nX20.\nG80\n";
+
+fn spot_and_drill(spindle: &str, coolant: &str) -> String {
+    format!(
+        "O1\nG90 G54 G98 G0 X0 Y0\n{SPOT}T2 M6\n{spindle}G43 H2 Z50.\n{coolant}G81 X10. Y0 Z-12. R2. F80\nX20.\nG80\n\
+        G0 Z50.\nM9\nM5\nM30\n"
+    )
+}
+
+fn without_spot(spindle: &str, coolant: &str) -> (Vec<String>, Vec<String>) {
+    let old = spot_and_drill(spindle, coolant);
+    let new = old.replace(SPOT, "");
+    (state_told(&old, &new), state_told(&new, &old))
+}
+
+/// A tool that relied on the section that is deleted is told, and one that relies on a section that is new.
+#[test]
+fn spindle_and_coolant_that_a_later_tool_relied_on_are_told() {
+    // T2 has its own: what goes with the spot drilling isn't told again, whatever is in force behind it.
+    assert_eq!(without_spot("S900 M3\n", "M8\n"), (vec![], vec![]));
+    assert_eq!(without_spot("S1500 M3\n", "M8\n"), (vec![], vec![]));
+    // M06 stops the spindle in this run: T2's drill stands in both. A machine whose M06 doesn't would have drilled.
+    let (lost, added) = without_spot("", "M8\n");
+    assert_eq!(
+        lost,
+        [
+            "spindle: M03 S1500 is no longer there: where M06 leaves the spindle turning, O0001:6 is cut with the spindle \
+            stopped instead of M03 S1500 (2 moves)"
+        ]
+    );
+    assert_eq!(
+        added,
+        [
+            "spindle: M03 S1500 is new: where M06 leaves the spindle turning, O0001:13 is cut with M03 S1500 instead of \
+            the spindle stopped (2 moves)"
+        ]
+    );
+    let coolant = "coolant: M08 is no longer there: O0001:6 is cut with coolant off instead of M08 (2 moves)";
+    let (lost, added) = without_spot("S900 M3\n", "");
+    assert_eq!(lost, [coolant]);
+    assert_eq!(added, ["coolant: M08 is new: O0001:13 is cut with M08 instead of coolant off (2 moves)"]);
+    let (both, _) = without_spot("", "");
+    assert_eq!(
+        both,
+        [
+            "spindle: M03 S1500 is no longer there: where M06 leaves the spindle turning, O0001:5 is cut with the \
+                spindle stopped instead of M03 S1500 (2 moves)",
+            "coolant: M08 is no longer there: O0001:5 is cut with coolant off instead of M08 (2 moves)",
+        ]
+    );
+}
+
+/// Of one tool: no M06 lies between what is lost and the hole that relied on it.
+#[test]
+fn spindle_and_coolant_that_the_next_hole_of_the_same_tool_relied_on_are_told() {
+    let program = |before: &str| {
+        format!("O1\nG90 G54 G98 G0 X0 Y0 Z50.\nS800 M3\nG81 X10. Z-4. R2. F100\n{before}N9 X30.\nG80\nM30\n")
+    };
+    let old = program("S1500\nM7\nX20.\n");
+    assert_eq!(
+        state_told(&old, &program("")),
+        [
+            "spindle: M03 S1500 is no longer there: O0001:5 N9 is cut with M03 S800 instead of M03 S1500",
+            "coolant: M07 is no longer there: O0001:5 N9 is cut with coolant off instead of M07",
+        ]
+    );
+    // Switched back before it: nothing relied on them.
+    let old = program("S1500\nM7\nX20.\nS800\nM9\n");
+    assert_eq!(state_told(&old, &program("")), [""; 0]);
+    // A hole is new, and the spindle stands behind it.
+    assert_eq!(
+        state_told(&program(""), &program("X20.\nM5\n")),
+        ["spindle: spindle stop is new: O0001:7 N9 is cut with the spindle stopped instead of M03 S800"]
+    );
+}
+
+/// The same G43 H1 with another value: what is lost has written it, and it is written back at the end.
+#[test]
+fn a_tool_length_that_a_later_hole_relied_on_is_told() {
+    let program = |between: &str, value: &str| {
+        format!(
+            "O1\nG90 G54 G98 G0 X0 Y0\nG10 L10 P1 R20.\nG43 H1 Z50.\nG81 X10. Z-4. R2. F100\n{between}X30.\nG80\n\
+            G10 L10 P1 R{value}\nG49\nM30\n"
+        )
+    };
+    let lost = "G80\nG10 L10 P1 R21.\nG43 H1\nG81 X20. Z-4. R2. F100\n";
+    let found = told(&program(lost, "20."), &program("", "20."));
+    let found: Vec<_> = found.iter().filter(|entry| entry.starts_with("tool-length: ")).collect();
+    assert_eq!(
+        found,
+        [
+            "tool-length: tool length offset Z 21.0000 is no longer there: O0001:6 is cut with tool length offset Z 20.0000 \
+            instead of tool length offset Z 21.0000"
+        ]
+    );
+}
+
+/// A tool's section is new, and the tool that is put back behind it isn't started again.
+#[test]
+fn a_spindle_that_a_new_tool_change_stops_is_told() {
+    let program = |between: &str| {
+        format!(
+            "O1\nG90 G54 G98 G0 X0 Y0 Z50.\nT1 M6\nS800 M3\nG81 X10. Z-4. R2. F100\n{between}G81 X30. Z-4. R2. F100\nG80\nM30\n"
+        )
+    };
+    let section = "G80\nT2 M6\nS800 M3\nG81 X20. Z-4. R2. F100\nG80\nT1 M6\n";
+    assert_eq!(
+        state_told(&program(""), &program(section)),
+        [
+            "spindle: tool T1 is new: where M06 stops the spindle, O0001:12 is cut with the spindle stopped instead of \
+            M03 S800"
+        ]
+    );
+    assert_eq!(state_told(&program(""), &program(&format!("{section}M3\n"))), [""; 0]);
+}

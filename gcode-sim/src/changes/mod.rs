@@ -23,6 +23,7 @@ mod path;
 mod record;
 mod recorder;
 mod returns;
+mod set_up;
 mod steps;
 mod store;
 mod strayed;

@@ -11,7 +11,8 @@ use super::holes::Explained;
 use super::left::mode;
 use super::record::Record;
 use super::returns::returns;
-use super::steps::{Category, Kind, Quiet, Step, difference, goes_with, near};
+use super::set_up::{relied_on, set_up};
+use super::steps::{Kind, Quiet, Step, difference, goes_with, near};
 use super::together::{with_code, with_moves};
 use super::words::{code, described, point};
 use crate::motion::{Axes, MAX_AXES, Position};
@@ -42,6 +43,8 @@ pub(super) fn compare(
     }
     let shifted = shifted(links, &old.steps, &new.steps, tolerance);
     let mut set_up = set_up(links, explained, (&old.steps, &new.steps));
+    let untold = |k| set_up.contains(&k) && !shifted.contains_key(&k);
+    let relied = relied_on(links, untold, records, tolerance);
     set_up.extend(with_code(links, &old.steps, &new.steps));
     set_up.extend(with_moves(links, &old.steps, &new.steps));
     for (k, link) in links.iter().enumerate() {
@@ -67,6 +70,7 @@ pub(super) fn compare(
         motion.groups.join_shifts();
     }
     changes.extend(motion.groups.changes());
+    changes.extend(relied);
     (changes, modes)
 }
 
@@ -143,38 +147,15 @@ fn shifted(links: &[Link], old: &[Step], new: &[Step], tolerance: f64) -> BTreeM
     known
 }
 
-/// Tool changes, lengths, spindle and coolant that come or go together with a pass of a hole.
-fn set_up(links: &[Link], explained: &Explained, (old, new): (&[Step], &[Step])) -> BTreeSet<usize> {
-    let mut known = BTreeSet::new();
-    let runs = (0..links.len()).collect::<Vec<_>>();
-    let side = |k: &usize| match links[*k] {
-        Link::Lost(i) => (Some(false), Some(&old[i])),
-        Link::Added(j) => (Some(true), Some(&new[j])),
-        Link::Same(..) | Link::Changed(..) => (None, None),
-    };
-    for run in runs.chunk_by(|a, b| side(a).0.is_some() && side(a).0 == side(b).0) {
-        if !run.iter().any(|k| feed_of(&links[*k], explained).is_some_and(|feed| feed.deeper.is_none())) {
-            continue;
-        }
-        let is_set_up = |k: &&usize| {
-            let category = side(k).1.map(|step| step.kind.category());
-            use Category::{Coolant, Length, Spindle, Tool};
-            category.is_some_and(|category| [Coolant, Length, Spindle, Tool].contains(&category))
-        };
-        known.extend(run.iter().filter(is_set_up));
-    }
-    known
-}
-
 /// A feed of a changed hole.
 #[derive(Clone, Copy)]
-struct Feed {
+pub(super) struct Feed {
     link: Link,
     /// How much deeper the hole is, mm; `None` for one that is lost, added or made at another time.
-    deeper: Option<f64>,
+    pub deeper: Option<f64>,
 }
 
-fn feed_of(link: &Link, explained: &Explained) -> Option<Feed> {
+pub(super) fn feed_of(link: &Link, explained: &Explained) -> Option<Feed> {
     let (old, new) = link.sides();
     let (shifted, elsewhen) = (&explained.shifted, &explained.elsewhen);
     let deeper = old.and_then(|i| shifted.0.get(&i)).or_else(|| new.and_then(|j| shifted.1.get(&j)));
