@@ -285,3 +285,27 @@ fn a_spindle_that_a_new_tool_change_stops_is_told() {
     );
     assert_eq!(state_told(&program(""), &program(&format!("{section}M3\n"))), [""; 0]);
 }
+
+/// The pilot's tool is 80 mm long. Set 0.01 mm shorter and programmed 0.01 mm less deep, its tip ends where it did.
+#[test]
+fn a_pass_that_another_length_makes_up_for_says_so() {
+    let machine = "[head]\nkind = \"fixed\"\ndirection = [0.0, 0.0, 1.0]\n[[tool]]\nnumber = 1\nlength = 80.0\n[[tool]]\nnumber = 2\nlength = 90.0\n";
+    let old = format!("O1\nG10 L10 P1 R80.\nG10 L10 P2 R90.\n{}", PART.strip_prefix("O1\n").unwrap());
+    let told = |edits: &[(&str, &str)]| {
+        let new = edits.iter().fold(old.clone(), |text, (from, to)| text.replacen(from, to, 1));
+        let record = |text: &str| {
+            let machine = Machine::parse(machine).unwrap();
+            let request = Request::new("O1.nc", text.as_bytes().to_vec(), machine);
+            Revision::of(&request, &mut NoLibrary, None).unwrap().record
+        };
+        let found = changes(&record(&old), &record(&new), 0.0001);
+        let passes = found.into_iter().filter(|change| change.code == "hole-pass");
+        passes.map(|change| change.message).collect::<Vec<_>>()
+    };
+    let less = "hole 1: pass 1 of 2, by T1, 0.0100 mm less deep";
+    assert_eq!(told(&[("Z-4. R2.", "Z-3.99 R2.")]), [less]);
+    assert_eq!(
+        told(&[("Z-4. R2.", "Z-3.99 R2."), ("R80.", "R79.99")]),
+        [format!("{less} as programmed, its tip where it was by another length")]
+    );
+}

@@ -1,4 +1,6 @@
 //! Passes of a hole that end elsewhere though the hole is finished as before, or otherwise than it: a pilot's, a spot drilling's.
+use nalgebra::Point3;
+
 use super::align::common;
 use super::hole_groups::deeper;
 use super::passes::Passes;
@@ -18,6 +20,8 @@ pub(super) struct Strayed {
     pub deeper: f64,
     /// Nothing of it is aside.
     is_along: bool,
+    /// The tool's tip ends where it ended: another length makes up for it.
+    is_made_up: bool,
     /// Of how many passes which it is, counted from 1, and its tool now.
     number: (usize, usize),
     tool: Option<u32>,
@@ -75,6 +79,9 @@ pub(super) fn strayed(
             shift,
             deeper: along,
             is_along: aside <= tolerance,
+            is_made_up: tip(old, hole, was[*i])
+                .zip(tip(new, other, is[*j]))
+                .is_some_and(|(was, is)| !stays && (is - was).norm() <= tolerance),
             number: (*i + 1, was.len()),
             tool: passes.1.tools[other].get(*j).copied(),
         });
@@ -104,6 +111,13 @@ fn deepest(record: &Record, hole: usize, tolerance: f64) -> Option<usize> {
     deeper.map(|(_, step)| step).find(|step| depth(step) > tolerance).copied().or(Some(finish))
 }
 
+/// Where a pass of a hole ends on the part, as far as that is known.
+fn tip(record: &Record, hole: usize, step: usize) -> Option<Point3<f64>> {
+    let (others, feeds) = (&record.holes[hole].others, &record.feeds[hole]);
+    let place = feeds.iter().position(|feed| *feed == step)?;
+    others.get(place).filter(|_| feeds.len() == others.len() + 1).map(|cut| cut.bottom)
+}
+
 /// How much of a way is along a feed, and how much aside.
 fn parts(way: &Position, feed: &Step) -> (f64, f64) {
     let dot = |a: &Position, b: &Position| (0..MAX_AXES).map(|axis| a[axis] * b[axis]).sum::<f64>();
@@ -128,7 +142,9 @@ impl Strayed {
             return format!("{} stays where it was", self.name());
         }
         if self.is_along {
-            return format!("{} {:.4} mm {}", self.name(), self.deeper.abs(), deeper(self.deeper));
+            let tip =
+                if self.is_made_up { " as programmed, its tip where it was by another length" } else { "" };
+            return format!("{} {:.4} mm {}{tip}", self.name(), self.deeper.abs(), deeper(self.deeper));
         }
         format!("{} ends elsewhere, by {}", self.name(), coordinates(&self.shift, axes, tolerance, true))
     }
