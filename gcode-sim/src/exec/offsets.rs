@@ -117,7 +117,7 @@ impl Core {
         let zero = self.zeros(state);
         let mut machine = Position::default();
         for axis in 0..MAX_AXES {
-            machine[axis] = self.clean(work[axis] + zero[axis] + state.length[axis]);
+            machine[axis] = self.on_machine(work[axis], zero[axis], state.length[axis]);
         }
         for axis in self.settings.rolling() {
             // From where the axis stands, the shorter way: turns already made stay made.
@@ -125,6 +125,12 @@ impl Core {
             machine[axis] = self.clean(state.machine[axis] + shorter_way(from, work[axis]));
         }
         machine
+    }
+
+    /// A work coordinate in machine coordinates. Which of them is computed may depend on the block, the result must not.
+    #[inline(always)]
+    pub(super) fn on_machine(&self, work: f64, zero: f64, length: f64) -> f64 {
+        self.clean(work + zero + length)
     }
 
     /// Whether every axis stands where the programmed point is on the machine, so that one which isn't named stays there.

@@ -65,16 +65,7 @@ impl Core {
     /// Digits without some of the last, which are less than an increment.
     #[inline(always)]
     fn cut(&self, digits: u64, places: usize) -> f64 {
-        const UNITS: [u64; 20] = {
-            let mut units = [1; 20];
-            let mut places = 1;
-            while places < units.len() {
-                units[places] = 10 * units[places - 1];
-                places += 1;
-            }
-            units
-        };
-        let unit = UNITS[places.min(UNITS.len() - 1)];
+        let unit = 10_u64.saturating_pow(places as u32);
         let half = if self.settings.unsure.round_literals { unit / 2 } else { 0 };
         (digits.saturating_add(half) / unit) as f64
     }

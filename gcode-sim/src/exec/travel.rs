@@ -146,7 +146,7 @@ impl Core {
                 } else {
                     value
                 };
-                self.clean(programmed[axis] + zero[axis] + state.length[axis])
+                self.on_machine(programmed[axis], zero[axis], state.length[axis])
             };
             led.way.add(to - machine[axis], self.settings.axes.is_rotary(axis));
             led.beyond |= to.abs() > most;
