@@ -183,7 +183,6 @@ impl Step {
     /// It ends on the line that `feed` runs along.
     pub(super) fn is_on_line_of(&self, feed: &Self) -> bool {
         let (along, aside) = (feed.way(), difference(&self.to, &feed.to));
-        let dot = |a: &Position, b: &Position| (0..MAX_AXES).map(|axis| a[axis] * b[axis]).sum::<f64>();
         let part = dot(&aside, &along) / dot(&along, &along).max(f64::MIN_POSITIVE);
         // Rounded end points stand this far beside a slanting line.
         (0..MAX_AXES).all(|axis| (aside[axis] - part * along[axis]).abs() <= 0.002)
@@ -255,7 +254,12 @@ pub(super) fn difference(to: &Position, from: &Position) -> Position {
 }
 
 fn norm(way: &Position) -> f64 {
-    (0..MAX_AXES).map(|axis| way[axis] * way[axis]).sum::<f64>().sqrt()
+    dot(way, way).sqrt()
+}
+
+/// All axes as equal numbers.
+pub(super) fn dot(a: &Position, b: &Position) -> f64 {
+    (0..MAX_AXES).map(|axis| a[axis] * b[axis]).sum()
 }
 
 pub(super) fn near(a: &Position, b: &Position, tolerance: f64) -> bool {

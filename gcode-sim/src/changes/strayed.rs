@@ -5,7 +5,7 @@ use super::align::common;
 use super::hole_groups::deeper;
 use super::passes::Passes;
 use super::record::Record;
-use super::steps::{Step, difference, is_as_far_above, near};
+use super::steps::{Step, difference, dot, is_as_far_above, near};
 use super::words::coordinates;
 use crate::motion::{Axes, MAX_AXES, Position};
 
@@ -39,54 +39,74 @@ pub(super) fn strayed(
 ) -> Vec<Strayed> {
     let (was, is) = (&passes.0.steps[hole], &passes.1.steps[other]);
     let pairs = paired((was, &passes.0.tools[hole]), (is, &passes.1.tools[other]));
-    let steps = |(i, j): &(usize, usize)| (&old.steps[was[*i]], &new.steps[is[*j]]);
-    let find = |step: Option<usize>| pairs.iter().find(|(i, _)| Some(was[*i]) == step).map(steps);
+    let pass = |(i, j): &(usize, usize)| Pass { before: &old.steps[was[*i]], now: &new.steps[is[*j]] };
+    let find = |step: Option<usize>| pairs.iter().find(|(i, _)| Some(was[*i]) == step).map(pass);
     let finish = find(old.feeds[hole].last().copied());
-    let stays = |(before, now): &(&Step, &Step)| near(&before.to, &now.to, tolerance);
-    let aside = |(before, now): &(&Step, &Step)| parts(&difference(&now.to, &before.to), before).1;
-    let deepest = find(deepest(old, hole, tolerance)).or(pairs.last().map(steps));
+    let deepest = find(deepest(old, hole, tolerance)).or(pairs.last().map(pass));
     // A hole that is finished where it was isn't moved, wherever its deepest pass is now.
-    let is_aside = deepest.is_some_and(|deepest| aside(&deepest) > tolerance);
-    let lead = finish.filter(|finish| is_aside && stays(finish)).or(deepest);
-    let Some((lead, lead_now)) = lead else { return Vec::new() };
-    let lead_shift = difference(&lead_now.to, &lead.to);
-    let (lead_along, lead_aside) = parts(&lead_shift, lead);
+    let is_aside = deepest.is_some_and(|deepest| deepest.parts(&deepest.shift()).1 > tolerance);
+    let lead = finish.filter(|finish| is_aside && finish.stays(tolerance)).or(deepest);
+    let Some(lead) = lead else { return Vec::new() };
+    let lead_shift = lead.shift();
+    let (lead_along, lead_aside) = lead.parts(&lead_shift);
     let is_moved = lead_aside > tolerance;
     // A hole is moved as the pass that finishes it.
-    let apart = |(before, now): (&Step, &Step)| {
-        let shift = difference(&now.to, &before.to);
-        parts(&difference(&shift, &lead_shift), before).1 > tolerance
-    };
-    let is_told = !is_moved || !finish.is_some_and(apart);
+    let is_apart = |finish: Pass<'_>| finish.parts(&difference(&finish.shift(), &lead_shift)).1 > tolerance;
+    let is_lead_told = !is_moved || !finish.is_some_and(is_apart);
     let mut all = Vec::new();
     for (i, j) in &pairs {
-        let (before, now) = steps(&(*i, *j));
-        let shift = difference(&now.to, &before.to);
-        let stays = near(&shift, &Position::default(), tolerance);
+        let pass = pass(&(*i, *j));
+        let shift = pass.shift();
         let is_with_hole = || {
             near(&shift, &lead_shift, tolerance)
                 || (is_moved || lead_along.abs() > tolerance)
-                    && is_as_far_above((before, lead), (now, lead_now), hole_deeper)
+                    && is_as_far_above((pass.before, lead.before), (pass.now, lead.now), hole_deeper)
         };
-        // A pass on the line of a hole that is deeper now needn't be.
-        let is_lead = std::ptr::eq(before, lead);
-        if is_lead && is_told || stays && !is_moved || !is_lead && is_with_hole() {
+        let is_told = if std::ptr::eq(pass.before, lead.before) {
+            is_lead_told
+        } else {
+            // A pass on the line of a hole that is deeper now needn't be.
+            !is_moved && pass.stays(tolerance) || is_with_hole()
+        };
+        if is_told {
             continue;
         }
-        let (along, aside) = parts(&shift, before);
+        let (along, aside) = pass.parts(&shift);
+        let tips = tip(old, hole, was[*i]).zip(tip(new, other, is[*j]));
         all.push(Strayed {
             steps: (was[*i], is[*j]),
             shift,
             deeper: along,
             is_along: aside <= tolerance,
-            is_made_up: tip(old, hole, was[*i])
-                .zip(tip(new, other, is[*j]))
-                .is_some_and(|(was, is)| !stays && (is - was).norm() <= tolerance),
+            is_made_up: tips.is_some_and(|(was, is)| (is - was).norm() <= tolerance),
             number: (*i + 1, was.len()),
             tool: passes.1.tools[other].get(*j).copied(),
         });
     }
     all
+}
+
+/// A pass before and now.
+#[derive(Clone, Copy)]
+struct Pass<'a> {
+    before: &'a Step,
+    now: &'a Step,
+}
+
+impl Pass<'_> {
+    /// How far it ends from where it ended.
+    fn shift(self) -> Position {
+        difference(&self.now.to, &self.before.to)
+    }
+
+    fn stays(self, tolerance: f64) -> bool {
+        near(&self.shift(), &Position::default(), tolerance)
+    }
+
+    /// How much of a way is along its feed, and how much aside.
+    fn parts(self, way: &Position) -> (f64, f64) {
+        parts(way, self.before)
+    }
 }
 
 /// Which pass is which, by their places: in their order, or, where there are more or fewer, those of the same tools.
@@ -101,9 +121,8 @@ fn paired((was, tools): (&[usize], &[u32]), (is, tools_now): (&[usize], &[u32]))
 fn deepest(record: &Record, hole: usize, tolerance: f64) -> Option<usize> {
     let (found, feeds) = (&record.holes[hole], &record.feeds[hole]);
     let finish = *feeds.last()?;
-    let depth = |step: &usize| {
-        parts(&difference(&record.steps[*step].to, &record.steps[finish].to), &record.steps[finish]).0
-    };
+    let feed = &record.steps[finish];
+    let depth = |step: &usize| parts(&difference(&record.steps[*step].to, &feed.to), feed).0;
     let bottom = found.bottom();
     let lowest = |height: f64| height.abs() <= tolerance;
     let others = found.others.iter().zip(feeds).take(feeds.len() - 1);
@@ -120,7 +139,6 @@ fn tip(record: &Record, hole: usize, step: usize) -> Option<Point3<f64>> {
 
 /// How much of a way is along a feed, and how much aside.
 fn parts(way: &Position, feed: &Step) -> (f64, f64) {
-    let dot = |a: &Position, b: &Position| (0..MAX_AXES).map(|axis| a[axis] * b[axis]).sum::<f64>();
     let along = dot(way, &feed.way()) / feed.length().max(f64::MIN_POSITIVE);
     (along, (dot(way, way) - along * along).max(0.0).sqrt())
 }
