@@ -16,14 +16,17 @@ pub type Axis = usize;
 pub struct Axes {
     letters: [u8; MAX_AXES],
     count: usize,
-    /// The same as bits, A the lowest: each of them, 0 where there is no axis, and all.
-    bits: [u32; MAX_AXES],
+    /// The axis of each letter by the letter's low five bits, [`Axes::NONE`] where it is none's.
+    places: [u8; 32],
+    /// The letters as bits, A the lowest.
     mask: u32,
     /// The axes that turn as bits, axis 1 the lowest.
     rotary: u32,
 }
 
 impl Axes {
+    const NONE: u8 = MAX_AXES as u8;
+
     /// At most [`MAX_AXES`] letters; more are an error of the machine file and refused there.
     pub fn new(letters: &str) -> Option<Self> {
         let bytes = letters.as_bytes();
@@ -33,17 +36,21 @@ impl Axes {
     }
 
     fn of(some: &[u8]) -> Self {
-        let (mut letters, mut bits) = ([0; MAX_AXES], [0; MAX_AXES]);
+        let (mut letters, mut places, mut mask, mut rotary) = ([0; MAX_AXES], [Self::NONE; 32], 0, 0);
         for (axis, letter) in some.iter().enumerate() {
-            (letters[axis], bits[axis]) = (*letter, 1 << (letter - b'A'));
+            letters[axis] = *letter;
+            places[usize::from(letter % 32)] = axis as u8;
+            mask |= 1 << (letter - b'A');
+            rotary |= u32::from(matches!(letter, b'A' | b'B' | b'C')) << axis;
         }
-        let turns = |(axis, letter): (Axis, &u8)| u32::from(matches!(letter, b'A' | b'B' | b'C')) << axis;
-        let rotary = some.iter().enumerate().map(turns).sum();
-        Self { letters, count: some.len(), bits, mask: bits.iter().fold(0, |mask, bit| mask | bit), rotary }
+        Self { letters, count: some.len(), places, mask, rotary }
     }
 
+    /// The axis of an address from `A` to `Z`.
+    #[inline]
     pub fn find(&self, letter: u8) -> Option<Axis> {
-        self.letters().position(|(_, l)| l == letter)
+        let axis = usize::from(self.places[usize::from(letter % 32)]);
+        (axis < MAX_AXES).then_some(axis)
     }
 
     pub fn letter(&self, axis: Axis) -> char {
@@ -75,11 +82,6 @@ impl Axes {
     /// The axes with the letters of their addresses.
     pub fn letters(&self) -> impl Iterator<Item = (Axis, u8)> + '_ {
         self.letters[..self.count].iter().copied().enumerate()
-    }
-
-    /// The letters and their [`Axes::mask`] bits in places of their own; 0 where there is no axis.
-    pub fn places(&self) -> (&[u8; MAX_AXES], &[u32; MAX_AXES]) {
-        (&self.letters, &self.bits)
     }
 }
 

@@ -35,24 +35,19 @@ impl Core {
         plan: &mut Plan,
         sink: &mut S,
     ) -> Checked<bool> {
-        let words = self.unskipped(words);
-        let mut calling = None;
-        if self.plain_zero.is_some() {
-            self.collect(program, words, None, given)?;
-            if self.step(words, given, op.number, sink)? {
-                return Ok(false);
-            }
-            plan.begin(&self.state);
-        } else {
-            plan.begin(&self.state);
-            if !self.settings.code_calls.is_empty() {
-                if self.macro_by_code(program, words, plan)? {
-                    return Ok(true);
-                }
-                calling = self.subprogram_by_code(program, words)?;
-            }
-            self.collect(program, words, calling.as_ref(), given)?;
+        if self.step(program, op, words, sink) {
+            return Ok(false);
         }
+        let words = self.unskipped(words);
+        plan.begin(&self.state);
+        let mut calling = None;
+        if !self.settings.code_calls.is_empty() {
+            if self.macro_by_code(program, words, plan)? {
+                return Ok(true);
+            }
+            calling = self.subprogram_by_code(program, words)?;
+        }
+        self.collect(program, words, calling.as_ref(), given)?;
         self.prepare(program, words, calling, given, plan)?;
         Ok(true)
     }

@@ -76,11 +76,11 @@ use self::modal_calls::ModalCall;
 use self::offsets::Offsets;
 use self::plan::Plan;
 use self::run::Over;
+use self::travel::Counting;
 use self::words::Given;
 use self::work_use::WorkUse;
 use crate::alarm::Alarm;
 use crate::control::{ParameterPlace, Settings};
-use crate::motion::Position;
 use crate::program::{Memory, ProgramId, Slot};
 use crate::source::Span;
 
@@ -105,8 +105,8 @@ pub struct Control {
 pub(crate) struct Core {
     settings: Settings,
     state: Box<State>,
-    /// While a block can be a plain move: where its axes count from.
-    plain_zero: Option<Position>,
+    /// While a block can be a plain move: what its axis words count from.
+    plain: Option<Counting>,
     vars: Vars,
     offsets: Offsets,
     /// What has been read and waits for the next move.
@@ -159,7 +159,7 @@ impl Control {
         let core = Core {
             settings,
             state: Box::default(),
-            plain_zero: None,
+            plain: None,
             vars,
             offsets,
             ahead: Ahead::default(),

@@ -1,4 +1,6 @@
 //! What the number of a word is at its address: a length, an angle, a time, a feed.
+use std::hint::cold_path;
+
 use super::Core;
 use super::eval::{Checked, at};
 use super::state::State;
@@ -20,8 +22,22 @@ pub(super) struct Measure {
     inch: bool,
 }
 
+/// Nine digits in increments (8.1, PS0003).
+const MOST: u64 = 999_999_999;
+
 /// Powers of ten by their exponent.
 pub(super) const POWERS: [f64; 8] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7];
+
+/// The same as integers; the last is more than any literal's digits are.
+const UNITS: [u64; 20] = {
+    let mut units = [1; 20];
+    let mut place = 1;
+    while place < units.len() {
+        units[place] = units[place - 1] * 10;
+        place += 1;
+    }
+    units
+};
 
 impl Core {
     /// How many decimals the least increment of an address has in the unit in force.
@@ -38,36 +54,41 @@ impl Core {
     /// Whole increments: literals are cut off (or rounded, by setting), computed values rounded half away from 0.
     #[inline(always)]
     fn increments(&self, raw: &Raw, decimals: usize) -> Result<f64, Alarm> {
-        let number = match raw {
-            Raw::Computed(value) => nearest(*value, POWERS[decimals]),
+        match raw {
+            Raw::Computed(value) => {
+                let number = nearest(*value, POWERS[decimals]);
+                if number.abs() > MOST as f64 { Err(Alarm::TooManyDigits) } else { Ok(number + 0.0) }
+            }
             Raw::Literal(Decimal { digits, places, negative }) => {
                 let places = match places {
-                    // Without a point the digits count increments, or whole units in calculator notation.
-                    None if self.settings.calculator_input => 0,
-                    None => decimals,
                     Some(places) => usize::from(*places),
+                    // Without a point the digits count increments, or whole units in calculator notation.
+                    None => {
+                        cold_path();
+                        if self.settings.calculator_input { 0 } else { decimals }
+                    }
                 };
-                // Signed numbers become doubles in one step; no literal has as many digits.
-                let magnitude = if places == decimals {
-                    *digits as i64 as f64
-                } else if places < decimals {
-                    *digits as i64 as f64 * POWERS[decimals - places]
-                } else {
-                    self.cut(*digits, places - decimals)
-                };
-                if *negative { -magnitude } else { magnitude }
+                let number =
+                    if places == decimals { *digits } else { self.shifted(*digits, places, decimals) };
+                if number > MOST {
+                    return Err(Alarm::TooManyDigits);
+                }
+                // Signed numbers become doubles in one step.
+                let number = number as i64;
+                Ok(if *negative { -number } else { number } as f64)
             }
-        };
-        // Nine digits in increments (8.1, PS0003).
-        if number.abs() > 999_999_999.0 { Err(Alarm::TooManyDigits) } else { Ok(number + 0.0) }
+        }
     }
 
-    /// Digits without some of the last, which are less than an increment.
-    #[inline(always)]
-    fn cut(&self, digits: u64, places: usize) -> f64 {
-        let unit = 10_u64.saturating_pow(places as u32);
+    /// Digits as increments that have some decimals. What is less than an increment is cut off, or rounded, by setting.
+    #[inline]
+    fn shifted(&self, digits: u64, places: usize, decimals: usize) -> u64 {
+        let unit = UNITS[places.abs_diff(decimals).min(UNITS.len() - 1)];
+        if places < decimals {
+            return digits.saturating_mul(unit);
+        }
         let half = if self.settings.unsure.round_literals { unit / 2 } else { 0 };
-        (digits.saturating_add(half) / unit) as f64
+        digits.saturating_add(half) / unit
     }
 
     /// A length in mm or an angle in degrees, a multiple of the increment of its address.
@@ -157,15 +178,17 @@ impl Core {
     /// F in the unit of the feed mode.
     pub(super) fn feed_word(&self, given: &Given, state: &State) -> Checked<Option<f64>> {
         let Some((raw, span)) = given.get(b'F') else { return Ok(None) };
+        at(self.feed_of(&raw, state), span).map(Some)
+    }
+
+    /// The same of the value of the word.
+    pub(super) fn feed_of(&self, raw: &Raw, state: &State) -> Result<f64, Alarm> {
         let value = match raw {
             Raw::Literal(number) if number.places.is_some() => number.value(),
             Raw::Literal(number) => number.value() / POWERS[self.feed_decimals(state)],
-            Raw::Computed(value) => value,
+            Raw::Computed(value) => *value,
         };
-        if value < 0.0 {
-            return Err(Alarm::IllegalMinus { letter: 'F' }.at(span));
-        }
-        Ok(Some(value))
+        if value < 0.0 { Err(Alarm::IllegalMinus { letter: 'F' }) } else { Ok(value) }
     }
 
     /// How many decimals F has where it is written without a point.

@@ -1,78 +1,116 @@
 //! A plain move: a block of axis words, G00 or G01 and F while nothing is in force that makes more of them. Most steps
 //! of a block have nothing to do for it, and of the state it changes little.
+use std::hint::cold_path;
+
 use super::Core;
-use super::eval::{Checked, at};
-use super::travel::Goal;
-use super::words::{Given, letters};
-use crate::motion::{EventKind, Sink};
-use crate::program::Words;
+use super::travel::Way;
+use super::vars::Value;
+use super::words::{G_CODES, Raw};
+use crate::motion::{EventKind, MAX_AXES, Position, Sink};
+use crate::program::codes::Effect;
 use crate::program::modes::{CutterSide, Motion, Polar};
+use crate::program::{Input, Op, Program, Words};
 use crate::units::MmPerMin;
 
 impl Core {
-    /// Does a block that is a plain move; whether it is one. All checks come first.
+    /// Does a block that is a plain move; whether it is one. A block that alarms is none: the steps of a block know where
+    /// and why.
+    #[inline(never)]
+    pub(super) fn step<S: Sink>(&mut self, program: &Program, op: &Op, words: &Words, sink: &mut S) -> bool {
+        self.plain_move(program, op, words, sink).is_some()
+    }
+
+    /// As [`Core::step`]. Until the move is known to be a plain one nothing changes.
     #[inline(always)]
-    pub(super) fn step<S: Sink>(
-        &mut self,
-        words: &Words,
-        given: &Given,
-        number: Option<u32>,
-        sink: &mut S,
-    ) -> Checked<bool> {
-        let state = &*self.state;
-        let Some(zero) = &self.plain_zero else { return Ok(false) };
-        let Some(motion @ (Motion::Rapid | Motion::Linear)) = self.plain_motion(words, given) else {
-            return Ok(false);
-        };
-        let f = if given.has(b'F') { self.feed_word(given, state)? } else { None };
-        let f = f.unwrap_or(state.codes.f);
-        let mut goal = Goal::here(state);
-        let led = self.lead(given, state, zero, &mut goal)?;
-        if led.beyond {
-            self.beyond_range(given, &goal.machine)?;
+    fn plain_move<S: Sink>(&mut self, program: &Program, op: &Op, words: &Words, sink: &mut S) -> Option<()> {
+        let counting = self.plain.as_ref()?;
+        let other = words.call.is_some() || words.short.is_some() || words.list.len() > G_CODES;
+        if other || !self.modal_calls.is_empty() {
+            return None;
         }
+        let state = &*self.state;
+        let (mut motion, mut f) = (state.modal.motion, None);
+        let (mut programmed, mut machine) = (Position::default(), Position::default());
+        let (mut named, mut way, mut ascend) = (0_u8, Way::default(), true);
+        for word in &words.list {
+            if word.comma {
+                return None;
+            }
+            let raw = match word.value {
+                Input::Literal(number) => Raw::Literal(number),
+                Input::Operand(operand) => match self.operand(program, operand).ok()? {
+                    Value::Number(value) => Raw::Computed(value),
+                    Value::Vacant => continue,
+                },
+                Input::G(_, found) => {
+                    let Effect::Motion(code) = found.on(self.settings.codes)?.effect else { return None };
+                    motion = code;
+                    continue;
+                }
+            };
+            let Some(axis) = self.settings.axes.find(word.letter) else {
+                if word.letter != b'F' || f.is_some() {
+                    return None;
+                }
+                f = Some(self.feed_of(&raw, state).ok()?);
+                continue;
+            };
+            if named >> axis != 0 {
+                cold_path();
+                if named >> axis & 1 == 1 {
+                    return None;
+                }
+                ascend = false;
+            }
+            named |= 1 << axis;
+            let value = self.dimension_of(&raw, word.letter, counting.measure).ok()?;
+            let (from, to) = (state.machine[axis], &mut machine[axis]);
+            (programmed[axis], *to) = self.end_of(axis, value, state, counting);
+            if to.abs() > counting.most {
+                return None;
+            }
+            way.add(*to - from, self.settings.axes.is_rotary(axis));
+        }
+        if named == 0 {
+            return None;
+        }
+        let axes = (0..MAX_AXES).filter(|axis| named >> axis & 1 == 1);
+        if !ascend {
+            // A sum depends on its order, a way must not on that of the words.
+            way = self.way(axes.clone(), &state.machine, &machine);
+        }
+        let in_force = f.unwrap_or(state.codes.f);
         let (rate, seconds) = match motion {
-            Motion::Rapid => (MmPerMin::ZERO, self.rapid_seconds(&state.machine, &goal.machine)),
-            _ => at(self.time_of(state, f, led.way, given.has(b'F')), self.block)?,
+            Motion::Rapid => (MmPerMin::ZERO, self.rapid_seconds_of(axes.clone(), &state.machine, &machine)),
+            Motion::Linear => self.time_of(state, in_force, way, f.is_some()).ok()?,
+            _ => return None,
         };
 
-        let Goal { programmed, machine, unplaced } = goal;
-        let before = state.unplaced;
+        let (before, unplaced) = (state.unplaced, counting.placed(state.unplaced, named));
         let state = &mut *self.state;
-        (state.programmed, state.machine, state.unplaced) = (programmed, machine, unplaced);
-        (state.modal.motion, state.codes.f) = (motion, f);
-        state.codes.n = number.unwrap_or(state.codes.n);
+        for axis in axes {
+            (state.programmed[axis], state.machine[axis]) = (programmed[axis], machine[axis]);
+        }
+        state.unplaced = unplaced;
+        (state.modal.motion, state.codes.f) = (motion, in_force);
+        state.codes.n = op.number.unwrap_or(state.codes.n);
+        let to = state.machine;
         self.note_work(self.state.modal.work, true);
         if unplaced != before {
             self.tell(&EventKind::Unplaced { axes: unplaced }, 0.0, sink);
         }
         match motion {
-            _ if !led.way.is_some() => {}
-            Motion::Rapid => self.tell(&EventKind::Rapid { to: machine }, seconds, sink),
-            _ => self.tell(&EventKind::Feed { to: machine, rate }, seconds, sink),
+            _ if !way.is_some() => {}
+            Motion::Rapid => self.tell(&EventKind::Rapid { to }, seconds, sink),
+            _ => self.tell(&EventKind::Feed { to, rate }, seconds, sink),
         }
-        Ok(true)
-    }
-
-    /// The code of group 01 by which a block moves that has nothing but axis words, F and such codes, while no modal call
-    /// waits for it.
-    #[inline(always)]
-    fn plain_motion(&self, words: &Words, given: &Given) -> Option<Motion> {
-        let axes = self.settings.axes.mask();
-        let alone = given.has_of(axes)
-            && !given.has_of(!(axes | letters(b"F")))
-            && !given.has_more_than_moves()
-            && !given.has_corner()
-            && given.m_count == 0
-            && words.call.is_none()
-            && !self.waits_for_moves();
-        alone.then(|| given.motion.unwrap_or(self.state.modal.motion))
+        Some(())
     }
 
     /// Finds out, behind everything that could change it, whether the next block can be a plain move, and what its axes
     /// count from.
     pub(super) fn see_if_plain(&mut self) {
-        self.plain_zero = self.is_plain().then(|| self.zeros(&self.state));
+        self.plain = self.is_plain().then(|| self.counting(&self.state));
     }
 
     /// Whether nothing is in force between two blocks that could make more of axis words than a move of those axes.
@@ -115,7 +153,7 @@ mod tests {
         let mut told = Told(Vec::new());
         let outcome = control.run(Limits { blocks: 500 }, &mut NoLibrary, &mut told);
         told.0.push(format!("{outcome:?} {:?} {:?}", control.core.state, control.core.notes));
-        (told.0, control.core.plain_zero.is_some())
+        (told.0, control.core.plain.is_some())
     }
 
     fn settings() -> Settings {

@@ -33,7 +33,7 @@ pub(super) const fn letters(some: &[u8]) -> u32 {
     bits
 }
 
-const G_CODES: usize = 12;
+pub(super) const G_CODES: usize = 12;
 const M_CODES: usize = 3;
 
 /// The words of a block by letter. Kept between blocks and cleared by its mask, so that it costs nothing.
@@ -176,17 +176,6 @@ impl Given {
     pub(super) fn unread(&self) -> Option<(char, Span)> {
         let letter = self.first_of(!self.read.get())?;
         Some((char::from(letter), self.span(letter)))
-    }
-
-    /// The value, before anything is made of it, of a word that it [has](Self::has). Who takes it [asks](Self::ask) for it.
-    #[inline(always)]
-    pub(super) fn raw(&self, letter: u8) -> &Raw {
-        &self.values[usize::from(letter - b'A')].0
-    }
-
-    /// Asks for the words of some [`letters`].
-    pub(super) fn ask(&self, letters: u32) {
-        self.read.set(self.read.get() | letters);
     }
 
     /// Whether it has `,R` or `,C`.
