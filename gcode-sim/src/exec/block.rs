@@ -21,7 +21,7 @@ use super::words::Given;
 use crate::alarm::Alarm;
 use crate::motion::Sink;
 use crate::program::modes::CutterSide;
-use crate::program::{Calling, Op, Program, Words};
+use crate::program::{Calling, Op, Words};
 use crate::source::Span;
 
 impl Core {
@@ -29,26 +29,26 @@ impl Core {
     /// carried out. An alarm leaves no trace.
     pub(super) fn words<S: Sink>(
         &mut self,
-        (program, op): (&Program, &Op),
+        op: &Op,
         words: &Words,
         given: &mut Given,
         plan: &mut Plan,
         sink: &mut S,
     ) -> Checked<bool> {
-        if self.step(program, op, words, sink) {
+        if self.step(op, words, sink) {
             return Ok(false);
         }
         let words = self.unskipped(words);
         plan.begin(&self.state);
         let mut calling = None;
         if !self.settings.code_calls.is_empty() {
-            if self.macro_by_code(program, words, plan)? {
+            if self.macro_by_code(words, plan)? {
                 return Ok(true);
             }
-            calling = self.subprogram_by_code(program, words)?;
+            calling = self.subprogram_by_code(words)?;
         }
-        self.collect(program, words, calling.as_ref(), given)?;
-        self.prepare(program, words, calling, given, plan)?;
+        self.collect(words, calling.as_ref(), given)?;
+        self.prepare(words, calling, given, plan)?;
         Ok(true)
     }
 
@@ -64,7 +64,6 @@ impl Core {
     /// Makes the plan of a block of words that are collected. Nothing changes.
     fn prepare(
         &self,
-        program: &Program,
         words: &Words,
         calling: Option<CallingWord>,
         given: &Given,
@@ -88,10 +87,10 @@ impl Core {
             None => self.motion(given, plan, lengthened, span)?,
         }
         if let Some(call) = &words.call {
-            self.prepare_call(program, call, plan)?;
+            self.prepare_call(call, plan)?;
         }
         if let Some(calling) = calling {
-            self.plan_calling_word(program, words, &calling, plan)?;
+            self.plan_calling_word(words, &calling, plan)?;
         }
         if plan.moved {
             plan.state.ended = None;

@@ -6,7 +6,7 @@ use super::functions::{atan2, binary, compare, function, power};
 use super::notes::Note;
 use super::vars::{Kind, Value};
 use crate::alarm::{Alarm, Placed};
-use crate::program::{Code, Computed, Instruction, Operand, Operation, Program, STACK, Slot, Source};
+use crate::program::{Code, Computed, Instruction, Operand, Operation, STACK, Slot, Source};
 use crate::source::Span;
 use crate::syntax::ast::{BinaryOp, Function};
 use crate::units::round;
@@ -52,27 +52,27 @@ pub(super) enum RoundsTo {
 
 impl Core {
     #[inline]
-    pub(super) fn operand(&self, program: &Program, operand: Operand) -> Checked<Value> {
-        self.value(program, operand, RoundsTo::Increment)
+    pub(super) fn operand(&self, operand: &Operand) -> Checked<Value> {
+        self.value(operand, RoundsTo::Increment)
     }
 
     /// The value of an argument of a macro call, where ROUND gives whole numbers as in any macro statement.
-    pub(super) fn argument_operand(&self, program: &Program, operand: Operand) -> Checked<Value> {
-        self.value(program, operand, RoundsTo::Whole)
+    pub(super) fn argument_operand(&self, operand: &Operand) -> Checked<Value> {
+        self.value(operand, RoundsTo::Whole)
     }
 
     #[inline]
-    fn value(&self, program: &Program, operand: Operand, rounds: RoundsTo) -> Checked<Value> {
+    fn value(&self, operand: &Operand, rounds: RoundsTo) -> Checked<Value> {
         match operand {
-            Operand::Number(number) => Ok(Value::Number(number)),
-            Operand::Variable { slot, span } => self.load(slot).map_err(|alarm| alarm.at(span)),
-            Operand::Code(code) => self.run_code(program, code, rounds),
+            Operand::Number(number) => Ok(Value::Number(*number)),
+            Operand::Variable { slot, span } => self.load(*slot).map_err(|alarm| alarm.at(*span)),
+            Operand::Code(code) => self.run_code(code, rounds),
         }
     }
 
     /// Whether a condition holds.
-    pub(super) fn holds(&self, program: &Program, condition: Code) -> Checked<bool> {
-        self.run_code(program, condition, RoundsTo::Whole).map(is_true)
+    pub(super) fn holds(&self, condition: &Code) -> Checked<bool> {
+        self.run_code(condition, RoundsTo::Whole).map(is_true)
     }
 
     /// A value that an operator needs; `last` is what the instruction before has given.
@@ -115,15 +115,15 @@ impl Core {
     }
 
     #[inline(never)]
-    fn run_code(&self, program: &Program, code: Code, rounds: RoundsTo) -> Checked<Value> {
-        self.evaluate(program, code, rounds)
+    fn run_code(&self, code: &Code, rounds: RoundsTo) -> Checked<Value> {
+        self.evaluate(code, rounds)
     }
 
     /// As [`Core::run_code`], in the loop over the blocks itself: most expressions are those of assignments.
     #[inline(always)]
-    pub(super) fn evaluate(&self, program: &Program, code: Code, rounds: RoundsTo) -> Checked<Value> {
+    pub(super) fn evaluate(&self, code: &[Instruction], rounds: RoundsTo) -> Checked<Value> {
         let mut last = Value::Vacant;
-        for Instruction { operation, span } in program.code(code) {
+        for Instruction { operation, span } in code {
             last = Value::Number(match operation {
                 Operation::Add(values) => at(self.binary(BinaryOp::Add, values, last), *span)?,
                 Operation::Subtract(values) => at(self.binary(BinaryOp::Sub, values, last), *span)?,
@@ -141,7 +141,7 @@ impl Core {
                     at(self.atan(y, self.number(x, last)), *span)?
                 }
                 _ => {
-                    last = at(self.other(program, operation, last, rounds), *span)?;
+                    last = at(self.other(operation, last, rounds), *span)?;
                     continue;
                 }
             });
@@ -177,7 +177,6 @@ impl Core {
     #[inline(never)]
     fn other(
         &self,
-        program: &Program,
         operation: &Operation,
         last: Value,
         rounds: RoundsTo,
@@ -247,7 +246,7 @@ impl Core {
                     _ => return Err(Alarm::ArgumentFormat { function: "ADP".into() }),
                 }
             }
-            Operation::NameNumber(name) => Value::Number(f64::from(self.named(program.variable_name(name))?)),
+            Operation::NameNumber(ref name) => Value::Number(f64::from(self.named(name)?)),
             Operation::SystemNumber(row) => {
                 let number = if self.settings.series_15_offsets { row.series_15 } else { row.number };
                 let place = match row.suffix {

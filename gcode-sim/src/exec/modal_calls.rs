@@ -5,7 +5,7 @@ use super::frames::{ByCodes, Frame, FrameKind};
 use super::plan::Flow;
 use super::vars::{Locals, Value};
 use crate::alarm::Alarm;
-use crate::program::{Calling, Program, ProgramId, Words};
+use crate::program::{Calling, ProgramId, Words};
 use crate::source::Span;
 
 /// G66: waits for moves.
@@ -76,7 +76,6 @@ impl Core {
     #[inline]
     pub(super) fn call_by_block(
         &mut self,
-        program: &Program,
         words: &Words,
         number: Option<u32>,
         block: Span,
@@ -84,13 +83,12 @@ impl Core {
         if !self.waiting_call().is_some_and(|i| self.modal_calls[i].every) {
             return Ok(false);
         }
-        self.call_by_words(program, words, number, block)
+        self.call_by_words(words, number, block)
     }
 
     #[inline(never)]
     fn call_by_words(
         &mut self,
-        program: &Program,
         words: &Words,
         number: Option<u32>,
         block: Span,
@@ -102,7 +100,7 @@ impl Core {
             }
             None => {}
         }
-        let mut locals = self.arguments(program, &words.list, true)?;
+        let mut locals = self.arguments(&words.list, true)?;
         if let Some(number) = number {
             locals.set(14, Value::Number(f64::from(number)), 0);
         }

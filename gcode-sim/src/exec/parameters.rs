@@ -8,7 +8,7 @@ use crate::alarm::Alarm;
 use crate::control::{ParameterError, ParameterPlace, Settings, is_without_effect};
 use crate::motion::Axis;
 use crate::program::codes::{Effect, OneShot};
-use crate::program::{Program, Words};
+use crate::program::{Words};
 use crate::source::Span;
 
 impl Core {
@@ -45,7 +45,6 @@ impl Core {
     /// A block between G10 L52 and G11: `N_ R_`, with P for an axis and Q for a bit.
     pub(super) fn prepare_parameter(
         &self,
-        program: &Program,
         (words, number): (&Words, Option<u32>),
         given: &mut Given,
         plan: &mut Plan,
@@ -53,7 +52,7 @@ impl Core {
     ) -> Checked<()> {
         plan.begin(&self.state);
         let wrong = |what: &str| Alarm::ParameterFormat { what: what.to_owned() }.at(span);
-        self.collect(program, words, None, given)?;
+        self.collect(words, None, given)?;
         let mut codes = given.g_codes();
         match (codes.next(), codes.next()) {
             (None, _) => {}

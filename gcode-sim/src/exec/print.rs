@@ -4,7 +4,7 @@ use super::eval::Checked;
 use super::notes::Note;
 use crate::alarm::Alarm;
 use crate::control::Settings;
-use crate::program::{PrintPart, Program};
+use crate::program::{PrintPart};
 use crate::source::Span;
 use crate::syntax::ast::PrintKind;
 use crate::units::nearest;
@@ -29,7 +29,6 @@ impl Core {
     /// DPRNT and BPRNT: one line.
     pub(super) fn print(
         &mut self,
-        program: &Program,
         kind: PrintKind,
         parts: &[PrintPart],
         span: Span,
@@ -46,7 +45,7 @@ impl Core {
                     line.extend(text.bytes().map(|b| if b == b'*' { b' ' } else { b }));
                 }
                 PrintPart::Value { value, whole, decimals } => {
-                    let number = self.operand(program, *value)?.number();
+                    let number = self.operand(value)?.number();
                     let printed = match kind {
                         PrintKind::Decimal => decimal(number, *whole, *decimals, &self.settings, &mut line),
                         PrintKind::Binary => binary(number, *decimals, &mut line).map(|()| true),

@@ -8,7 +8,7 @@ use super::plan::Flow;
 use super::{Control, Core, Limits, Outcome, Stopped, Watcher};
 use crate::alarm::Alarm;
 use crate::motion::{Place, Sink};
-use crate::program::{Form, Library, Memory, Op, OpKind};
+use crate::program::{Aside, Form, Library, Memory, OpKind};
 use crate::source::Span;
 
 /// A run ends after so many moves, and so many for every block that it may execute: a cycle with K or with small
@@ -132,15 +132,10 @@ impl Control {
         core.block = op.span;
         core.blocks += 1;
         core.frame.next = place + 1;
-        if let Some(switch) = op.skip {
-            let is_on = core.skips(switch);
-            core.notes.entry(Note::BlockSkip { switch: switch.max(1), is_on }).or_insert(core.block);
-            if is_on {
-                return Ok(());
-            }
-        }
-        if !op.forms.is_empty() {
-            core.take_forms(op)?;
+        if let Some(aside) = &op.aside
+            && core.passes_over(aside)?
+        {
+            return Ok(());
         }
         // In a loop most blocks are statements.
         if let OpKind::Statement(statement) = &op.kind {
@@ -150,7 +145,7 @@ impl Control {
         }
         let mut kind = &op.kind;
         if let OpKind::If { condition, then } = kind
-            && core.holds(program, *condition)?
+            && core.holds(condition)?
         {
             kind = then;
         }
@@ -167,15 +162,15 @@ impl Control {
             OpKind::Empty | OpKind::If { .. } => {}
             OpKind::Alarm(alarm) => return Err(alarm.clone()),
             OpKind::Words(words) if core.state.parameter_input => {
-                core.prepare_parameter(program, (words, op.number), given, plan, core.block)?;
+                core.prepare_parameter((words, op.number), given, plan, core.block)?;
                 return self.finish(library, sink);
             }
             OpKind::Words(words) => {
-                if core.call_by_block(program, words, op.number, core.block)? {
+                if core.call_by_block(words, op.number, core.block)? {
                     core.state.codes.o = memory.get(core.frame.program).shown_number();
                     return Ok(());
                 }
-                if !core.words((program, op), words, given, plan, sink)? {
+                if !core.words(op, words, given, plan, sink)? {
                     return Ok(());
                 }
                 if let Some(number) = op.number {
@@ -255,17 +250,24 @@ impl Core {
         Err(Alarm::EndOfRecord.at(self.block))
     }
 
-    /// Ways of writing that not every control reads.
+    /// Block skip, and ways of writing that not every control reads; whether the block isn't done.
     #[inline(never)]
-    fn take_forms(&mut self, op: &Op) -> Checked<()> {
-        for form in &op.forms {
+    fn passes_over(&mut self, aside: &Aside) -> Checked<bool> {
+        if let Some(switch) = aside.skip {
+            let is_on = self.skips(switch);
+            self.notes.entry(Note::BlockSkip { switch: switch.max(1), is_on }).or_insert(self.block);
+            if is_on {
+                return Ok(true);
+            }
+        }
+        for form in &aside.forms {
             if !form.node.is_taken(&self.settings) {
                 return Err(form.node.alarm().at(form.span));
             }
             if form.node == Form::LowerCase {
-                self.notes.entry(Note::LowerCase).or_insert(op.span);
+                self.notes.entry(Note::LowerCase).or_insert(self.block);
             }
         }
-        Ok(())
+        Ok(false)
     }
 }

@@ -23,12 +23,12 @@ impl Core {
     ) -> Checked<()> {
         match statement {
             Statement::Assign { target: Target::Slot(Slot::Free(place)), value, .. } => {
-                let value = self.assigned(program, value)?;
+                let value = self.assigned(value)?;
                 self.vars.set_free(*place, value);
                 Ok(())
             }
             Statement::While { condition, number, end } => {
-                let holds = is_true(self.evaluate(program, *condition, RoundsTo::Whole)?);
+                let holds = is_true(self.evaluate(condition, RoundsTo::Whole)?);
                 self.begin_turn(*number, *end, holds);
                 Ok(())
             }
@@ -47,8 +47,8 @@ impl Core {
     ) -> Checked<()> {
         match statement {
             Statement::Assign { target, target_span, value, text } => {
-                let slot = at(self.target(program, *target), *target_span)?;
-                let value = self.operand(program, *value)?;
+                let slot = at(self.target(target), *target_span)?;
+                let value = self.operand(value)?;
                 self.write(slot, value, text.as_deref(), *target_span, sink)?;
             }
             Statement::Several(assignments) => {
@@ -58,24 +58,24 @@ impl Core {
             }
             Statement::Goto(to) => self.goto(program, to)?,
             Statement::IfGoto { condition, to } => {
-                if self.holds(program, *condition)? {
+                if self.holds(condition)? {
                     self.goto(program, to)?;
                 }
             }
             Statement::IfThen { condition, then } => {
-                if self.holds(program, *condition)? {
+                if self.holds(condition)? {
                     // An assignment or a GOTO: lowering lets nothing else stand here.
                     return self.any_statement(program, then, sink);
                 }
             }
             Statement::While { condition, number, end } => {
-                let holds = self.holds(program, *condition)?;
+                let holds = self.holds(condition)?;
                 self.begin_turn(*number, *end, holds);
             }
             Statement::Do { number, end } => self.begin_turn(*number, *end, true),
             Statement::End { number, start } => self.end_turn(*number, *start)?,
-            Statement::SetNames { first, names } => self.name_variables(program, *first, names)?,
-            Statement::Print { kind, parts } => self.print(program, *kind, parts, self.block)?,
+            Statement::SetNames { first, names } => self.name_variables(first, names)?,
+            Statement::Print { kind, parts } => self.print(*kind, parts, self.block)?,
             Statement::OpenOutput => self.open_output(true),
             Statement::CloseOutput => self.open_output(false),
             Statement::Alarm(alarm) => return Err(alarm.clone()),
@@ -85,10 +85,10 @@ impl Core {
 
     /// The value of an assignment.
     #[inline(always)]
-    fn assigned(&self, program: &Program, value: &Operand) -> Checked<Value> {
+    fn assigned(&self, value: &Operand) -> Checked<Value> {
         match value {
-            Operand::Code(code) => self.evaluate(program, *code, RoundsTo::Increment),
-            value => self.operand(program, *value),
+            Operand::Code(code) => self.evaluate(code, RoundsTo::Increment),
+            value => self.operand(value),
         }
     }
 
@@ -117,16 +117,16 @@ impl Core {
     }
 
     #[inline(never)]
-    fn name_variables(&mut self, program: &Program, first: Operand, names: &[String]) -> Checked<()> {
-        let first = at(index(self.operand(program, first)?), self.block)?;
+    fn name_variables(&mut self, first: &Operand, names: &[String]) -> Checked<()> {
+        let first = at(index(self.operand(first)?), self.block)?;
         at(self.set_names(first, names), self.block)
     }
 
-    pub(super) fn target(&self, program: &Program, target: Target) -> Result<Slot, Alarm> {
+    pub(super) fn target(&self, target: &Target) -> Result<Slot, Alarm> {
         match target {
-            Target::Slot(slot) => Ok(slot),
+            Target::Slot(slot) => Ok(*slot),
             Target::Computed(number) => {
-                let value = self.operand(program, number).map_err(|alarm| alarm.node)?;
+                let value = self.operand(number).map_err(|alarm| alarm.node)?;
                 index(value).map(Slot::of)
             }
         }
@@ -134,7 +134,7 @@ impl Core {
 
     #[inline(never)]
     fn goto(&mut self, program: &Program, to: &Spanned<Operand>) -> Checked<()> {
-        let value = self.operand(program, to.node)?.number();
+        let value = self.operand(&to.node)?.number();
         let number = integer(value).map_err(|alarm| alarm.at(to.span))?;
         if self.settings.unsure.minus_searches_up && (-99_999_999..0).contains(&number) {
             let target = program.find_number_above(number.unsigned_abs() as u32, self.frame.next);

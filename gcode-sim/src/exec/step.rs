@@ -9,20 +9,20 @@ use super::words::{G_CODES, Raw};
 use crate::motion::{EventKind, MAX_AXES, Position, Sink};
 use crate::program::codes::Effect;
 use crate::program::modes::{CutterSide, Motion, Polar};
-use crate::program::{Input, Op, Program, Words};
+use crate::program::{Input, Op, Words};
 use crate::units::MmPerMin;
 
 impl Core {
     /// Does a block that is a plain move; whether it is one. A block that alarms is none: the steps of a block know where
     /// and why.
     #[inline(never)]
-    pub(super) fn step<S: Sink>(&mut self, program: &Program, op: &Op, words: &Words, sink: &mut S) -> bool {
-        self.plain_move(program, op, words, sink).is_some()
+    pub(super) fn step<S: Sink>(&mut self, op: &Op, words: &Words, sink: &mut S) -> bool {
+        self.plain_move(op, words, sink).is_some()
     }
 
     /// As [`Core::step`]. Until the move is known to be a plain one nothing changes.
     #[inline(always)]
-    fn plain_move<S: Sink>(&mut self, program: &Program, op: &Op, words: &Words, sink: &mut S) -> Option<()> {
+    fn plain_move<S: Sink>(&mut self, op: &Op, words: &Words, sink: &mut S) -> Option<()> {
         let counting = self.plain.as_ref()?;
         let other = words.call.is_some() || words.short.is_some() || words.list.len() > G_CODES;
         if other || !self.modal_calls.is_empty() {
@@ -36,9 +36,9 @@ impl Core {
             if word.comma {
                 return None;
             }
-            let raw = match word.value {
-                Input::Literal(number) => Raw::Literal(number),
-                Input::Operand(operand) => match self.operand(program, operand).ok()? {
+            let raw = match &word.value {
+                Input::Literal(number) => Raw::Literal(*number),
+                Input::Operand(operand) => match self.operand(operand).ok()? {
                     Value::Number(value) => Raw::Computed(value),
                     Value::Vacant => continue,
                 },
@@ -94,15 +94,16 @@ impl Core {
         state.unplaced = unplaced;
         (state.modal.motion, state.codes.f) = (motion, in_force);
         state.codes.n = op.number.unwrap_or(state.codes.n);
-        let to = state.machine;
+        let moves = way.is_some().then(|| match motion {
+            Motion::Rapid => EventKind::Rapid { to: state.machine },
+            _ => EventKind::Feed { to: state.machine, rate },
+        });
         self.note_work(self.state.modal.work, true);
         if unplaced != before {
             self.tell(&EventKind::Unplaced { axes: unplaced }, 0.0, sink);
         }
-        match motion {
-            _ if !way.is_some() => {}
-            Motion::Rapid => self.tell(&EventKind::Rapid { to }, seconds, sink),
-            _ => self.tell(&EventKind::Feed { to, rate }, seconds, sink),
+        if let Some(kind) = &moves {
+            self.tell(kind, seconds, sink);
         }
         Some(())
     }

@@ -9,7 +9,7 @@ use super::quantities::Measure;
 use super::state::{PolarPoint, State};
 use super::words::Given;
 use crate::alarm::Alarm;
-use crate::motion::{Axis, EventKind, MAX_AXES, Position};
+use crate::motion::{Axis, EventKind, Position};
 use crate::program::modes::{Distance, FeedMode, Plane, Polar, Unit};
 use crate::units::{Deg, MmPerMin};
 

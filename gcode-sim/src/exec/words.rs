@@ -11,7 +11,7 @@ use crate::control::{CodeSet, Settings};
 use crate::program::codes::{self, Effect, Row};
 use crate::program::m_codes;
 use crate::program::modes::Motion;
-use crate::program::{Coded, Input, Program, Words};
+use crate::program::{Coded, Input, Words};
 use crate::source::Span;
 use crate::syntax::ast::Decimal;
 use crate::units::round;
@@ -229,7 +229,6 @@ impl Core {
     /// Evaluates every word of a block into `given`, but for those that belong to a call.
     pub(super) fn collect(
         &self,
-        program: &Program,
         words: &Words,
         calling: Option<&CallingWord>,
         given: &mut Given,
@@ -237,46 +236,46 @@ impl Core {
         given.clear();
         given.punched = words.punched;
         match calling {
-            None => words.list.iter().try_for_each(|word| self.take(program, word, given)),
+            None => words.list.iter().try_for_each(|word| self.take(word, given)),
             Some(calling) => {
                 let mut others =
                     words.list.iter().enumerate().filter(|(place, word)| !calling.takes(*place, word));
-                others.try_for_each(|(_, word)| self.take(program, word, given))
+                others.try_for_each(|(_, word)| self.take(word, given))
             }
         }
     }
 
     /// Evaluates a word and puts it to those of its block.
     #[inline(always)]
-    fn take(&self, program: &Program, word: &Coded, given: &mut Given) -> Checked<()> {
-        let raw = match word.value {
-            Input::Literal(number) => Raw::Literal(number),
+    fn take(&self, word: &Coded, given: &mut Given) -> Checked<()> {
+        let raw = match &word.value {
+            Input::Literal(number) => Raw::Literal(*number),
             Input::G(code, found) if !word.comma => {
                 let row = found.on(self.settings.codes);
-                let improper = || Alarm::ImproperGCode { code: codes::spelled(code) }.at(word.span);
+                let improper = || Alarm::ImproperGCode { code: codes::spelled(*code) }.at(word.span);
                 return at(given.put_g(row.ok_or_else(improper)?), word.span);
             }
-            Input::G(code, _) => Raw::Computed(f64::from(code) / 10.0),
-            Input::Operand(operand) => match self.operand(program, operand)? {
+            Input::G(code, _) => Raw::Computed(f64::from(*code) / 10.0),
+            Input::Operand(operand) => match self.operand(operand)? {
                 Value::Number(value) => Raw::Computed(value),
                 Value::Vacant => return Ok(()),
             },
         };
         if word.comma || word.axis.is_some() || matches!(word.letter, b'G' | b'M') {
-            return self.put(program, word, raw, given);
+            return self.put(word, raw, given);
         }
         self.put_value(word.letter, word.span, raw, given)
     }
 
     /// Puts a word that is more than a value at an address to those of its block.
     #[inline(never)]
-    fn put(&self, program: &Program, word: &Coded, raw: Raw, given: &mut Given) -> Checked<()> {
+    fn put(&self, word: &Coded, raw: Raw, given: &mut Given) -> Checked<()> {
         if word.comma {
             return at(given.put_corner(word, raw), word.span);
         }
-        let letter = match word.axis {
+        let letter = match &word.axis {
             Some(axis) => {
-                let number = self.operand(program, program.axis(axis))?.number();
+                let number = self.operand(axis)?.number();
                 self.settings.axes.letter(at(self.axis_of(number), word.span)?) as u8
             }
             None => word.letter,
@@ -306,11 +305,11 @@ impl Core {
 
     /// The value of a word, or `None` where it is vacant and the word therefore not there.
     #[inline]
-    pub(super) fn raw(&self, program: &Program, word: &Coded) -> Checked<Option<Raw>> {
-        Ok(match word.value {
-            Input::Literal(number) => Some(Raw::Literal(number)),
-            Input::G(code, _) => Some(Raw::Computed(f64::from(code) / 10.0)),
-            Input::Operand(operand) => self.operand(program, operand)?.given().map(Raw::Computed),
+    pub(super) fn raw(&self, word: &Coded) -> Checked<Option<Raw>> {
+        Ok(match &word.value {
+            Input::Literal(number) => Some(Raw::Literal(*number)),
+            Input::G(code, _) => Some(Raw::Computed(f64::from(*code) / 10.0)),
+            Input::Operand(operand) => self.operand(operand)?.given().map(Raw::Computed),
         })
     }
 }

@@ -4,7 +4,7 @@ use crate::source::Span;
 use crate::syntax::ast::{BinaryOp, Function, Relation};
 
 /// A value: known, one variable, or code to evaluate. The first two are most of what programs contain.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Operand {
     Number(f64),
     /// `#n` with a literal n.
@@ -41,7 +41,7 @@ impl Slot {
 }
 
 /// The variable that an assignment writes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Target {
     Slot(Slot),
     /// Its number is computed, or no variable's.
@@ -50,20 +50,15 @@ pub enum Target {
 
 impl Target {
     /// Whether it is the variable of this number, written out.
-    pub fn is(self, number: u32) -> bool {
-        self == Self::Slot(Slot::of(number))
+    pub fn is(&self, number: u32) -> bool {
+        *self == Self::Slot(Slot::of(number))
     }
 }
 
-/// A range of a program's instructions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Code {
-    pub start: u32,
-    pub end: u32,
-    pub span: Span,
-}
+/// What computes a value: the last of its instructions gives it.
+pub type Code = Box<[Instruction]>;
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Instruction {
     pub operation: Operation,
     pub span: Span,
@@ -88,7 +83,7 @@ pub enum Computed {
 
 /// Gives a value, mostly of the one that the instruction before has given; where that is needed later it waits on a stack.
 /// Conditions are numbers here, 0 or 1; the tree keeps them apart.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Operation {
     Add([Source; 2]),
     Subtract([Source; 2]),
@@ -126,8 +121,8 @@ pub enum Operation {
     AxisNumber(u8),
     /// ADP: takes a variable's number, gives its value as if it had been passed with a point.
     AddPoint,
-    /// The number of a variable named by SETVN: an index into the program's names.
-    NameNumber(u32),
+    /// The number of a variable named by SETVN.
+    NameNumber(Box<str>),
     /// Takes a suffix, gives the number of the system variable; of `[#_NAME]` without a suffix it takes nothing.
     SystemNumber(NameRow),
 }

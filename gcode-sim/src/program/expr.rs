@@ -53,14 +53,9 @@ impl Lowering {
     }
 
     fn code(&mut self, span: Span, write: impl FnOnce(&mut Self) -> Lowered<usize>) -> Lowered<Code> {
-        let start = self.instructions.len();
-        let written = write(self)
-            .and_then(|depth| if depth > STACK { Err(Alarm::TooManyBrackets.at(span)) } else { Ok(()) });
-        if let Err(alarm) = written {
-            self.instructions.truncate(start);
-            return Err(alarm);
-        }
-        Ok(Code { start: start as u32, end: self.instructions.len() as u32, span })
+        self.instructions.clear();
+        let depth = write(self)?;
+        if depth > STACK { Err(Alarm::TooManyBrackets.at(span)) } else { Ok(self.instructions.drain(..).collect()) }
     }
 
     fn emit(&mut self, operation: Operation, span: Span) {
@@ -251,8 +246,7 @@ impl Lowering {
             if name.index.is_some() {
                 return Err(Alarm::Suffix { name: text() }.at(span));
             }
-            let place = self.name(&name.text);
-            self.emit(Operation::NameNumber(place), span);
+            self.emit(Operation::NameNumber(name.text.as_str().into()), span);
             return Ok(1);
         }
         if OTHER_MEMORIES.contains(&name.text.as_str()) {

@@ -1,9 +1,7 @@
 //! Lowers a tree to operations, block by block; what can't run becomes the alarm it raises when it is reached.
-use std::collections::BTreeMap;
-
 use super::code::Instruction;
 use super::expr::Context;
-use super::{Form, Op, OpKind, Operand, PrintPart, Statement};
+use super::{Aside, Form, Op, OpKind, Operand, PrintPart, Statement};
 use crate::alarm::{Alarm, Placed};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast;
@@ -11,17 +9,11 @@ use crate::syntax::ast;
 /// Skips inside one block: as many as there are switches.
 const MOST_SKIPS: usize = 9;
 
-/// What grows while blocks are lowered.
+/// What is at hand while blocks are lowered.
 #[derive(Debug, Default)]
 pub(super) struct Lowering {
-    /// The postfix code of all expressions; a [`super::Code`] is a range of it.
+    /// The code of the expression at hand.
     pub(super) instructions: Vec<Instruction>,
-    /// The names that [`super::Operation::NameNumber`] counts: of variables that SETVN names.
-    pub(super) names: Vec<String>,
-    /// The numbers of axes that [`super::AxisPlace`] counts.
-    pub(super) axes: Vec<Operand>,
-    /// The places of the names.
-    named: BTreeMap<String, u32>,
     /// What the block at hand has that not every control takes.
     forms: Vec<Spanned<Form>>,
 }
@@ -29,25 +21,6 @@ pub(super) struct Lowering {
 type Lowered<T> = Result<T, Placed>;
 
 impl Lowering {
-    /// Gives up what was written for the blocks so far.
-    pub(super) fn forget(&mut self) {
-        self.instructions.clear();
-        self.names.clear();
-        self.axes.clear();
-        self.named.clear();
-    }
-
-    /// The place of a name.
-    pub(super) fn name(&mut self, text: &str) -> u32 {
-        if let Some(place) = self.named.get(text) {
-            return *place;
-        }
-        let place = self.names.len() as u32;
-        self.names.push(text.to_owned());
-        self.named.insert(text.to_owned(), place);
-        place
-    }
-
     /// Notes a way of writing for the block at hand.
     pub(super) fn note(&mut self, form: Form, span: Span) {
         self.forms.push(Spanned::new(form, span));
@@ -62,11 +35,13 @@ impl Lowering {
             self.note(Form::ShortWord, span);
         }
         let kind = self.kind(block).unwrap_or_else(OpKind::Alarm);
+        let skip = block.skip.as_ref().map(|s| s.node);
+        let aside = skip.is_some() || !self.forms.is_empty();
         Op {
+            nth: 0,
             span: block.span,
-            skip: block.skip.as_ref().map(|s| s.node),
             number: block.number.as_ref().map(|n| n.node),
-            forms: if self.forms.is_empty() { Box::default() } else { self.forms.drain(..).collect() },
+            aside: aside.then(|| Box::new(Aside { skip, forms: self.forms.drain(..).collect() })),
             kind,
         }
     }

@@ -112,10 +112,11 @@ impl Memory {
     #[inline]
     pub(crate) fn ready(&mut self, id: ProgramId, place: OpIndex) -> Option<(&Program, &Op)> {
         let program = self.programs.get_mut(id.0 as usize)?;
-        let Program { blocks, loops, .. } = program;
-        let place = blocks.ready(place, loops)?;
+        if program.blocks.op(place).is_none() {
+            program.blocks.lower(place, &program.loops)?;
+        }
         let program = &*program;
-        program.blocks.op_at(place).map(|op| (program, op))
+        program.blocks.op(place).map(|op| (program, op))
     }
 
     /// A program with all of its blocks lowered: [`Program::ops`].

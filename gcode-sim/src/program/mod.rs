@@ -24,7 +24,7 @@ pub use arguments::{ArgumentLocals, argument_letter};
 pub use code::{Code, Computed, Instruction, Operand, Operation, STACK, Slot, Source, Target};
 pub use forms::Form;
 pub use memory::{Library, Memory, NoLibrary, ProgramId};
-pub use words::{AxisPlace, CallOp, CallTarget, Calling, Coded, Input, Words};
+pub use words::{CallOp, CallTarget, Calling, Coded, Input, Words};
 
 use std::sync::OnceLock;
 
@@ -57,13 +57,34 @@ pub struct Program {
 /// One block.
 #[derive(Debug, Default)]
 pub struct Op {
+    /// Which of its program's blocks it is, counted from 1; 0 while it is none.
+    nth: u32,
     pub span: Span,
+    pub number: Option<u32>,
+    /// What few blocks have.
+    pub aside: Option<Box<Aside>>,
+    pub kind: OpKind,
+}
+
+/// What stands in a block beside what it does.
+#[derive(Debug, Default)]
+pub struct Aside {
     /// The block skip switch at its start.
     pub skip: Option<u8>,
-    pub number: Option<u32>,
     /// What is written in it that not every control takes, in the order it is held against the settings.
     pub forms: Box<[Spanned<Form>]>,
-    pub kind: OpKind,
+}
+
+impl Op {
+    /// The block skip switch at its start.
+    pub fn skip(&self) -> Option<u8> {
+        self.aside.as_ref()?.skip
+    }
+
+    /// What is written in it that not every control takes.
+    pub fn forms(&self) -> &[Spanned<Form>] {
+        self.aside.as_ref().map_or(&[], |aside| &aside.forms)
+    }
 }
 
 /// What a block does. Which of these it is stands in a byte of its own, for it is asked at every block.
@@ -170,20 +191,6 @@ impl Program {
     /// An operation that was made ready: see [`Memory::ready`].
     pub(crate) fn op(&self, place: OpIndex) -> Option<&Op> {
         self.blocks.op(place)
-    }
-
-    #[inline(always)]
-    pub fn code(&self, code: Code) -> &[Instruction] {
-        self.blocks.code(code)
-    }
-
-    /// The number of the axis that a word is for.
-    pub fn axis(&self, axis: AxisPlace) -> Operand {
-        self.blocks.axis(axis)
-    }
-
-    pub(crate) fn variable_name(&self, index: u32) -> &str {
-        self.blocks.variable_name(index)
     }
 
     fn numbers(&self) -> &[(u32, u32)] {

@@ -10,6 +10,7 @@ impl Op {
     /// become anything, and its tree must be lowered.
     #[inline]
     pub(super) fn refill(&mut self, source: SourceId, text: &[u8], start: u32) -> bool {
+        self.nth = 0;
         let Some(numbers) = Numbers::new(source, text, start) else { return false };
         let number = numbers.sequence_number;
         if !matches!(self.kind, OpKind::Words(_)) {
@@ -21,8 +22,7 @@ impl Op {
             self.kind = OpKind::Empty;
         }
         self.span = Span { source, start, end };
-        (self.skip, self.number) = (None, number);
-        self.forms = Box::default();
+        (self.number, self.aside) = (number, None);
         true
     }
 }

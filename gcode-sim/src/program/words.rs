@@ -20,22 +20,18 @@ pub struct Words {
 }
 
 /// A word ready to be evaluated.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Coded {
     pub letter: u8,
-    /// `AX[…]`: the number of the axis that the word is for, see [`super::Program::axis`].
-    pub axis: Option<AxisPlace>,
+    /// `AX[…]`: the number of the axis that the word is for.
+    pub axis: Option<Box<Operand>>,
     /// `,R` and `,C`.
     pub comma: bool,
     pub value: Input,
     pub span: Span,
 }
 
-/// Where a program keeps the number of an axis: few words have one.
-#[derive(Clone, Copy, Debug)]
-pub struct AxisPlace(pub(super) u32);
-
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub enum Input {
     /// Its meaning depends on the increment and on units: decided when it runs.
     Literal(Decimal),
@@ -165,11 +161,7 @@ impl Lowering {
             }
         };
         let axis = match &word.axis {
-            Some(axis) => {
-                let axis = self.operand(axis, Context::Macro)?;
-                self.axes.push(axis);
-                Some(AxisPlace(self.axes.len() as u32 - 1))
-            }
+            Some(axis) => Some(Box::new(self.operand(axis, Context::Macro)?)),
             None => None,
         };
         Ok(Coded { letter, axis, comma: word.address.comma, value, span: word.span })
