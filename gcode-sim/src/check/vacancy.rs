@@ -145,7 +145,7 @@ pub(super) fn steps(unit: &Unit<'_>, block: OpIndex, state: &Locals) -> Vec<(OpI
         }
         _ => both(after),
     };
-    if op.skip.is_some() {
+    if op.skip().is_some() {
         steps.push((block + 1, *state));
     }
     steps

@@ -55,7 +55,7 @@ impl Core {
     /// The words of a block but for those behind a block skip that is on.
     #[inline(always)]
     fn unskipped<'a>(&self, words: &'a Words) -> &'a Words {
-        let Some((switch, short)) = &words.short else { return words };
+        let Some((switch, short)) = words.short() else { return words };
         let is_on = self.skips(*switch);
         self.told.set(Some(Note::BlockSkip { switch: (*switch).max(1), is_on }));
         if is_on { short } else { words }
@@ -86,8 +86,8 @@ impl Core {
             }
             None => self.motion(given, plan, lengthened, span)?,
         }
-        if let Some(call) = &words.call {
-            self.prepare_call(call, plan)?;
+        if let Some(call) = words.call() {
+            self.prepare_call(words, call, plan)?;
         }
         if let Some(calling) = calling {
             self.plan_calling_word(words, &calling, plan)?;
@@ -138,7 +138,7 @@ impl Core {
 
     /// Only N, P and L may stand beside M99 while G66 is on.
     fn beside_return(&self, words: &Words) -> Checked<()> {
-        let returns = words.call.as_ref().is_some_and(|call| call.kind == Calling::Return);
+        let returns = words.call().is_some_and(|call| call.kind == Calling::Return);
         if !returns || self.modal_calls.is_empty() {
             return Ok(());
         }

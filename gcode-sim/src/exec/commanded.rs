@@ -1,5 +1,5 @@
 //! What a block commands that would otherwise be as it was left: modal codes, the places of axes, offsets.
-use super::words::{Raw, computed_row};
+use super::words::computed_row;
 use super::{Control, Core};
 use crate::program::codes::{Effect, OneShot, spelled};
 use crate::program::modes::Distance;
@@ -53,17 +53,17 @@ impl Control {
 impl Core {
     fn commanded(&self, words: &Words, commanded: &mut Commanded) {
         // Behind G65 and M98 letters are arguments.
-        if words.call.is_some() {
+        if words.call().is_some() {
             return;
         }
-        let words = match &words.short {
+        let words = match words.short() {
             Some((switch, short)) if self.skips(*switch) => short,
             _ => words,
         };
         let mut distance = self.state.modal.distance;
         let mut act = None;
         for word in words.list.iter().filter(|word| word.letter == b'G') {
-            let Ok(Some(raw)) = self.raw(word) else { continue };
+            let Ok(Some(raw)) = self.raw(words, word) else { continue };
             let Ok(row) = computed_row(raw, self.settings.codes) else { continue };
             match row.effect {
                 Effect::OneShot(one) => act = Some(one),
@@ -73,13 +73,13 @@ impl Core {
             commanded.modes.extend(row.effect.group().map(|group| (group, row.code)));
         }
         let values = words.list.iter().filter(|word| b"FST".contains(&word.letter) && !word.comma);
-        let values = values.filter(|word| matches!(self.raw(word), Ok(Some(_))));
+        let values = values.filter(|word| matches!(self.raw(words, word), Ok(Some(_))));
         commanded.values.extend(values.map(|word| char::from(word.letter)));
         if act == Some(OneShot::DataInput) {
             self.offsets_written(words, commanded);
         } else if is_sent(act, distance) {
             let letters = words.list.iter().filter(|word| !word.comma && word.axis.is_none());
-            let given = letters.filter(|word| matches!(self.raw(word), Ok(Some(_))));
+            let given = letters.filter(|word| matches!(self.raw(words, word), Ok(Some(_))));
             let axes = given.filter(|word| self.settings.axes.find(word.letter).is_some());
             commanded.axes.extend(axes.map(|word| char::from(word.letter)));
         }
@@ -90,13 +90,9 @@ impl Core {
         let mut table = "G10".to_owned();
         for letter in *b"LP" {
             let word = words.list.iter().find(|word| word.letter == letter && !word.comma);
-            let raw = word.and_then(|word| self.raw(word).ok().flatten());
+            let raw = word.and_then(|word| self.raw(words, word).ok().flatten());
             if let Some(raw) = raw {
-                let number = match raw {
-                    Raw::Literal(number) => number.value(),
-                    Raw::Computed(value) => value,
-                };
-                table.push_str(&format!(" {}{number}", char::from(letter)));
+                table.push_str(&format!(" {}{}", char::from(letter), raw.value()));
             }
         }
         let values = words.list.iter().filter(|word| !b"GLPN".contains(&word.letter) && !word.comma);

@@ -6,7 +6,7 @@ use super::functions::{atan2, binary, compare, function, power};
 use super::notes::Note;
 use super::vars::{Kind, Value};
 use crate::alarm::{Alarm, Placed};
-use crate::program::{Code, Computed, Instruction, Operand, Operation, STACK, Slot, Source};
+use crate::program::{Computed, Instruction, Operand, Operation, STACK, Slot, Source};
 use crate::source::Span;
 use crate::syntax::ast::{BinaryOp, Function};
 use crate::units::round;
@@ -53,25 +53,15 @@ pub(super) enum RoundsTo {
 impl Core {
     #[inline]
     pub(super) fn operand(&self, operand: &Operand) -> Checked<Value> {
-        self.value(operand, RoundsTo::Increment)
-    }
-
-    /// The value of an argument of a macro call, where ROUND gives whole numbers as in any macro statement.
-    pub(super) fn argument_operand(&self, operand: &Operand) -> Checked<Value> {
-        self.value(operand, RoundsTo::Whole)
-    }
-
-    #[inline]
-    fn value(&self, operand: &Operand, rounds: RoundsTo) -> Checked<Value> {
         match operand {
             Operand::Number(number) => Ok(Value::Number(*number)),
             Operand::Variable { slot, span } => self.load(*slot).map_err(|alarm| alarm.at(*span)),
-            Operand::Code(code) => self.run_code(code, rounds),
+            Operand::Code(code) => self.run_code(code, RoundsTo::Increment),
         }
     }
 
     /// Whether a condition holds.
-    pub(super) fn holds(&self, condition: &Code) -> Checked<bool> {
+    pub(super) fn holds(&self, condition: &[Instruction]) -> Checked<bool> {
         self.run_code(condition, RoundsTo::Whole).map(is_true)
     }
 
@@ -98,7 +88,7 @@ impl Core {
     }
 
     #[inline]
-    fn load(&self, slot: Slot) -> Result<Value, Alarm> {
+    pub(super) fn load(&self, slot: Slot) -> Result<Value, Alarm> {
         match slot {
             Slot::Free(place) => Ok(self.vars.free(place)),
             Slot::Other(number) => self.read(number),
@@ -114,8 +104,10 @@ impl Core {
         }
     }
 
+    /// What code gives; `rounds` is what ROUND in it rounds to: in a word to the increment of its address, in statements and
+    /// arguments to whole numbers.
     #[inline(never)]
-    fn run_code(&self, code: &Code, rounds: RoundsTo) -> Checked<Value> {
+    pub(super) fn run_code(&self, code: &[Instruction], rounds: RoundsTo) -> Checked<Value> {
         self.evaluate(code, rounds)
     }
 
@@ -175,12 +167,7 @@ impl Core {
 
     /// What only some expressions contain. It stands apart so that the others needn't carry it.
     #[inline(never)]
-    fn other(
-        &self,
-        operation: &Operation,
-        last: Value,
-        rounds: RoundsTo,
-    ) -> Result<Value, Alarm> {
+    fn other(&self, operation: &Operation, last: Value, rounds: RoundsTo) -> Result<Value, Alarm> {
         let unsure = &self.settings.unsure;
         Ok(match *operation {
             Operation::Load(ref source) => self.fetch(source, last),

@@ -74,12 +74,7 @@ impl Core {
     /// Under G66.1 a block of words is not executed: its words, G L N P among them, are the macro's arguments.
     /// M99 and G67 stay what they are.
     #[inline]
-    pub(super) fn call_by_block(
-        &mut self,
-        words: &Words,
-        number: Option<u32>,
-        block: Span,
-    ) -> Checked<bool> {
+    pub(super) fn call_by_block(&mut self, words: &Words, number: Option<u32>, block: Span) -> Checked<bool> {
         if !self.waiting_call().is_some_and(|i| self.modal_calls[i].every) {
             return Ok(false);
         }
@@ -87,20 +82,15 @@ impl Core {
     }
 
     #[inline(never)]
-    fn call_by_words(
-        &mut self,
-        words: &Words,
-        number: Option<u32>,
-        block: Span,
-    ) -> Checked<bool> {
-        match &words.call {
+    fn call_by_words(&mut self, words: &Words, number: Option<u32>, block: Span) -> Checked<bool> {
+        match words.call() {
             Some(call) if matches!(call.kind, Calling::Cancel | Calling::Return) => return Ok(false),
             Some(call) => {
                 return Err(Alarm::NotSimulated { what: "a call while G66.1 is on".into() }.at(call.span));
             }
             None => {}
         }
-        let mut locals = self.arguments(&words.list, true)?;
+        let mut locals = self.arguments(words, &words.list, true)?;
         if let Some(number) = number {
             locals.set(14, Value::Number(f64::from(number)), 0);
         }

@@ -7,8 +7,8 @@ use super::words::{Given, Raw};
 use crate::alarm::Alarm;
 use crate::control::{ParameterError, ParameterPlace, Settings, is_without_effect};
 use crate::motion::Axis;
+use crate::program::Words;
 use crate::program::codes::{Effect, OneShot};
-use crate::program::{Words};
 use crate::source::Span;
 
 impl Core {
@@ -59,13 +59,13 @@ impl Core {
             (Some(code), None) if code.effect == Effect::OneShot(OneShot::DataInputEnd) => {
                 plan.state.parameter_input = false;
                 return match given.unread() {
-                    None if words.call.is_none() => Ok(()),
+                    None if words.call().is_none() => Ok(()),
                     _ => Err(wrong("words beside G11")),
                 };
             }
             _ => return Err(wrong("another G code before G11")),
         }
-        if given.m_count > 0 || words.call.is_some() {
+        if given.m_count > 0 || words.call().is_some() {
             return Err(wrong("an M code before G11"));
         }
         let number = number.and_then(|number| u16::try_from(number).ok());

@@ -4,7 +4,7 @@ use super::eval::Checked;
 use super::notes::Note;
 use crate::alarm::Alarm;
 use crate::control::Settings;
-use crate::program::{PrintPart};
+use crate::program::PrintPart;
 use crate::source::Span;
 use crate::syntax::ast::PrintKind;
 use crate::units::nearest;
@@ -27,12 +27,7 @@ impl Core {
     }
 
     /// DPRNT and BPRNT: one line.
-    pub(super) fn print(
-        &mut self,
-        kind: PrintKind,
-        parts: &[PrintPart],
-        span: Span,
-    ) -> Checked<()> {
+    pub(super) fn print(&mut self, kind: PrintKind, parts: &[PrintPart], span: Span) -> Checked<()> {
         if self.settings.print_needs_open && !self.printed.open {
             let what = "DPRNT without POPEN before it".into();
             return Err(Alarm::MacroFormat { what }.at(span));

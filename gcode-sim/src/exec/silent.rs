@@ -51,7 +51,7 @@ fn skip(switch: u8) -> String {
 impl Core {
     fn silent(&self, words: &Words, silent: &mut Silent) {
         silent.writes |= self.state.parameter_input;
-        let words = match &words.short {
+        let words = match words.short() {
             Some((switch, short)) if self.skips(*switch) => short,
             Some((switch, _)) => {
                 silent.skips.push(skip(*switch));
@@ -60,7 +60,7 @@ impl Core {
             None => words,
         };
         for word in words.list.iter().filter(|word| matches!(word.letter, b'G' | b'M')) {
-            let Ok(Some(raw)) = self.raw(word) else { continue };
+            let Ok(Some(raw)) = self.raw(words, word) else { continue };
             if word.letter == b'M' {
                 let Ok(code) = count(raw, b'M') else { continue };
                 match m_codes::find(code, self.settings.codes) {
@@ -105,11 +105,10 @@ impl Core {
         let of_code = |letter: u8| letters.contains(&letter);
         let values = words.list.iter().filter(|word| of_code(word.letter) && !word.comma);
         let shown = values.filter_map(|word| {
-            let value = match &word.value {
-                Input::Literal(number) => number.value(),
-                Input::Operand(operand) => self.operand(operand).ok()?.given()?,
-                Input::G(..) => return None,
-            };
+            if matches!(word.value, Input::G(..)) {
+                return None;
+            }
+            let value = self.raw(words, word).ok()??.value();
             Some(format!(" {}{value}", char::from(word.letter)))
         });
         name + &shown.collect::<String>()

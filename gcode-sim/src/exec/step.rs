@@ -24,8 +24,7 @@ impl Core {
     #[inline(always)]
     fn plain_move<S: Sink>(&mut self, op: &Op, words: &Words, sink: &mut S) -> Option<()> {
         let counting = self.plain.as_ref()?;
-        let other = words.call.is_some() || words.short.is_some() || words.list.len() > G_CODES;
-        if other || !self.modal_calls.is_empty() {
+        if !words.is_plain() || words.list.len() > G_CODES || !self.modal_calls.is_empty() {
             return None;
         }
         let state = &*self.state;
@@ -38,15 +37,15 @@ impl Core {
             }
             let raw = match &word.value {
                 Input::Literal(number) => Raw::Literal(*number),
-                Input::Operand(operand) => match self.operand(operand).ok()? {
-                    Value::Number(value) => Raw::Computed(value),
-                    Value::Vacant => continue,
-                },
                 Input::G(_, found) => {
                     let Effect::Motion(code) = found.on(self.settings.codes)?.effect else { return None };
                     motion = code;
                     continue;
                 }
+                value => match self.computed(words, value).ok()? {
+                    Value::Number(value) => Raw::Computed(value),
+                    Value::Vacant => continue,
+                },
             };
             let Some(axis) = self.settings.axes.find(word.letter) else {
                 if word.letter != b'F' || f.is_some() {

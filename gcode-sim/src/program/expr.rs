@@ -55,7 +55,11 @@ impl Lowering {
     fn code(&mut self, span: Span, write: impl FnOnce(&mut Self) -> Lowered<usize>) -> Lowered<Code> {
         self.instructions.clear();
         let depth = write(self)?;
-        if depth > STACK { Err(Alarm::TooManyBrackets.at(span)) } else { Ok(self.instructions.drain(..).collect()) }
+        if depth > STACK {
+            Err(Alarm::TooManyBrackets.at(span))
+        } else {
+            Ok(self.instructions.drain(..).collect())
+        }
     }
 
     fn emit(&mut self, operation: Operation, span: Span) {

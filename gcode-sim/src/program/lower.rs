@@ -1,5 +1,5 @@
 //! Lowers a tree to operations, block by block; what can't run becomes the alarm it raises when it is reached.
-use super::code::Instruction;
+use super::code::{Code, Instruction};
 use super::expr::Context;
 use super::{Aside, Form, Op, OpKind, Operand, PrintPart, Statement};
 use crate::alarm::{Alarm, Placed};
@@ -14,6 +14,9 @@ const MOST_SKIPS: usize = 9;
 pub(super) struct Lowering {
     /// The code of the expression at hand.
     pub(super) instructions: Vec<Instruction>,
+    /// What the words of the block at hand compute, and the numbers of their axes.
+    pub(super) codes: Vec<Code>,
+    pub(super) axes: Vec<Operand>,
     /// What the block at hand has that not every control takes.
     forms: Vec<Spanned<Form>>,
 }
@@ -89,7 +92,10 @@ impl Lowering {
             }
             (None, false) => {
                 let mut lowered = self.words(&block.items, &skips)?;
-                lowered.punched = block.comments.first().and_then(|comment| sixteen_digits(&comment.text));
+                if let Some(value) = block.comments.first().and_then(|comment| sixteen_digits(&comment.text))
+                {
+                    lowered.punch(value);
+                }
                 Ok(OpKind::Words(lowered))
             }
         }

@@ -66,7 +66,7 @@ fn moving(settings: &Settings, unit: &Unit<'_>) -> Vec<Option<OpIndex>> {
             Some(false) => None,
             None => moving[block],
         };
-        let skipped = op.and_then(|op| op.skip).map(|_| (block + 1, moving[block]));
+        let skipped = op.and_then(|op| op.skip()).map(|_| (block + 1, moving[block]));
         open.extend(unit.flow.after(block).map(|to| (to, after)).chain(skipped));
     }
     moving.truncate(unit.flow.ways.len());

@@ -82,7 +82,7 @@ fn feeds(subject: &Subject<'_>, words: &Words) -> bool {
             Some(_) => {}
         }
     }
-    feeds && axis && words.call.is_none()
+    feeds && axis && words.call().is_none()
 }
 
 #[cfg(test)]

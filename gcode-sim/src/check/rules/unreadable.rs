@@ -22,7 +22,7 @@ pub(super) fn refused<'a>(
 ) -> impl Iterator<Item = (usize, Placed)> + 'a {
     let ops = unit.program.ops().iter().enumerate().filter(|(block, _)| unit.reached[*block]);
     ops.filter_map(|(block, op)| {
-        let form = op.forms.iter().find(|form| !form.node.is_taken(subject.settings))?;
+        let form = op.forms().iter().find(|form| !form.node.is_taken(subject.settings))?;
         Some((block, form.node.alarm().at(form.span)))
     })
 }
