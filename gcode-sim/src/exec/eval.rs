@@ -2,7 +2,7 @@
 use std::cell::Cell;
 
 use super::Core;
-use super::functions::{atan2, binary, compare, function, power};
+use super::functions::{angle, atan2, binary, compare, is_finite, no_value, power, value_of};
 use super::notes::Note;
 use super::vars::{Kind, Value};
 use crate::alarm::{Alarm, Placed};
@@ -55,7 +55,7 @@ impl Core {
     pub(super) fn operand(&self, operand: &Operand) -> Checked<Value> {
         match operand {
             Operand::Number(number) => Ok(Value::Number(*number)),
-            Operand::Variable { slot, span } => self.load(*slot).map_err(|alarm| alarm.at(*span)),
+            Operand::Variable { slot, span } => self.load(*slot, span),
             Operand::Code(code) => self.run_code(code, RoundsTo::Increment),
         }
     }
@@ -87,11 +87,11 @@ impl Core {
         }
     }
 
-    #[inline]
-    pub(super) fn load(&self, slot: Slot) -> Result<Value, Alarm> {
+    #[inline(always)]
+    pub(super) fn load(&self, slot: Slot, span: &Span) -> Checked<Value> {
         match slot {
             Slot::Free(place) => Ok(self.vars.free(place)),
-            Slot::Other(number) => self.read(number),
+            Slot::Other(number) => at(self.read(number), *span),
         }
     }
 
@@ -117,20 +117,20 @@ impl Core {
         let mut last = Value::Vacant;
         for Instruction { operation, span } in code {
             last = Value::Number(match operation {
-                Operation::Add(values) => at(self.binary(BinaryOp::Add, values, last), *span)?,
-                Operation::Subtract(values) => at(self.binary(BinaryOp::Sub, values, last), *span)?,
-                Operation::Multiply(values) => at(self.binary(BinaryOp::Mul, values, last), *span)?,
-                Operation::Divide(values) => at(self.binary(BinaryOp::Div, values, last), *span)?,
+                Operation::Add(values) => self.binary(BinaryOp::Add, values, last, span)?,
+                Operation::Subtract(values) => self.binary(BinaryOp::Sub, values, last, span)?,
+                Operation::Multiply(values) => self.binary(BinaryOp::Mul, values, last, span)?,
+                Operation::Divide(values) => self.binary(BinaryOp::Div, values, last, span)?,
                 Operation::Compare(relation, [left, right]) => {
                     let left = self.fetch(left, last);
                     truth(compare(*relation, left, self.fetch(right, last)))
                 }
                 Operation::Function(name, argument) => {
-                    at(self.function(*name, self.number(argument, last)), *span)?
+                    self.function(*name, self.number(argument, last), span)?
                 }
                 Operation::Atan2([y, x]) => {
                     let y = self.number(y, last);
-                    at(self.atan(y, self.number(x, last)), *span)?
+                    self.atan(y, self.number(x, last), span)?
                 }
                 _ => {
                     last = at(self.other(operation, last, rounds), *span)?;
@@ -141,28 +141,44 @@ impl Core {
         Ok(last)
     }
 
+    /// + − * /. Their alarms are worked out where there is no value.
     #[inline(always)]
-    fn binary(&self, op: BinaryOp, [left, right]: &[Source; 2], last: Value) -> Result<f64, Alarm> {
-        binary(op, self.number(left, last), self.number(right, last), &self.settings.unsure)
+    fn binary(&self, op: BinaryOp, [left, right]: &[Source; 2], last: Value, span: &Span) -> Checked<f64> {
+        let left = self.number(left, last);
+        let right = self.number(right, last);
+        let value = match op {
+            BinaryOp::Add => left + right,
+            BinaryOp::Sub => left - right,
+            BinaryOp::Mul => left * right,
+            _ => left / right,
+        };
+        let alarm = || binary(op, left, right, &self.settings.unsure).err().unwrap_or(Alarm::FloatOverflow);
+        if is_finite(value) { Ok(value) } else { Err(alarm().at(*span)) }
     }
 
     #[inline(always)]
-    fn function(&self, name: Function, argument: f64) -> Result<f64, Alarm> {
-        let value = function(name, argument, &self.settings);
-        if name == Function::Tan && (argument % 180.0).abs() == 90.0 && value.is_ok() {
+    fn function(&self, name: Function, argument: f64, span: &Span) -> Checked<f64> {
+        let value = value_of(name, argument, &self.settings);
+        if !is_finite(value) {
+            return Err(no_value(name, argument).at(*span));
+        }
+        if name == Function::Tan && (argument % 180.0).abs() == 90.0 {
             self.told.set(Some(Note::TangentOf90));
         }
-        value
+        Ok(value)
     }
 
     /// ATAN of two values.
     #[inline(always)]
-    fn atan(&self, y: f64, x: f64) -> Result<f64, Alarm> {
-        let value = atan2(y, x, &self.settings);
-        if y == 0.0 && x == 0.0 && value.is_ok() {
+    fn atan(&self, y: f64, x: f64, span: &Span) -> Checked<f64> {
+        let value = angle(y, x, &self.settings);
+        if !is_finite(value) {
+            return at(atan2(y, x, &self.settings), *span);
+        }
+        if y == 0.0 && x == 0.0 {
             self.told.set(Some(Note::AtanOf0));
         }
-        value
+        Ok(value)
     }
 
     /// What only some expressions contain. It stands apart so that the others needn't carry it.
@@ -197,7 +213,10 @@ impl Core {
                 Value::Vacant if !unsure.brackets_keep_vacancy => Value::Number(0.0),
                 value => value,
             },
-            Operation::Whole(op, ref values) => Value::Number(self.binary(op, values, last)?),
+            Operation::Whole(op, [ref left, ref right]) => {
+                let left = self.number(left, last);
+                Value::Number(binary(op, left, self.number(right, last), unsure)?)
+            }
             Operation::Power([ref base, ref exponent]) => {
                 let base = self.number(base, last);
                 Value::Number(power(base, self.number(exponent, last))?)

@@ -140,6 +140,8 @@ pub(crate) struct Core {
     over: Option<Over>,
     blocks: u64,
     moves: u64,
+    /// Beyond so many the run ends.
+    most_moves: u64,
     stops: Vec<Stop>,
     printed: print::Printed,
     /// M codes that went to the machine builder's logic, with the block of the first of each.
@@ -180,6 +182,7 @@ impl Control {
             over: None,
             blocks: 0,
             moves: 0,
+            most_moves: u64::MAX,
             stops: Vec::new(),
             printed: print::Printed::default(),
             passed_on: BTreeMap::new(),

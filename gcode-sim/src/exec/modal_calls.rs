@@ -59,12 +59,6 @@ impl Core {
         Err(Alarm::NotSimulated { what }.at(block))
     }
 
-    /// Whether a block that moves, or any block, is going to call.
-    #[inline]
-    pub(super) fn waits_for_moves(&self) -> bool {
-        self.waiting_call().is_some()
-    }
-
     /// The modal call that a block of this program can trigger.
     #[inline]
     fn waiting_call(&self) -> Option<usize> {

@@ -39,6 +39,25 @@ const UNITS: [u64; 20] = {
     units
 };
 
+impl Measure {
+    /// Whether an address counts in inches.
+    #[inline(always)]
+    fn is_inch(&self, letter: u8) -> bool {
+        if self.inch {
+            cold_path();
+            return !turns(letter);
+        }
+        false
+    }
+}
+
+/// The increments, `scale` in a unit, nearest to a computed value, half away from 0; `None` where they have too many digits.
+#[inline(always)]
+fn computed(value: f64, scale: f64) -> Option<f64> {
+    let number = nearest(value, scale);
+    (number.abs() <= MOST as f64).then_some(number + 0.0)
+}
+
 impl Core {
     /// How many decimals the least increment of an address has in the unit in force.
     #[inline]
@@ -51,33 +70,30 @@ impl Core {
         if unit == Unit::Inch && !turns(letter) { metric + 1 } else { metric }
     }
 
-    /// Whole increments: literals are cut off (or rounded, by setting), computed values rounded half away from 0.
-    #[inline(always)]
+    /// Whole increments.
     fn increments(&self, raw: &Raw, decimals: usize) -> Result<f64, Alarm> {
-        match raw {
-            Raw::Computed(value) => {
-                let number = nearest(*value, POWERS[decimals]);
-                if number.abs() > MOST as f64 { Err(Alarm::TooManyDigits) } else { Ok(number + 0.0) }
+        let number = match raw {
+            Raw::Computed(value) => computed(*value, POWERS[decimals]),
+            Raw::Literal(number) => self.literal(number, decimals),
+        };
+        number.ok_or(Alarm::TooManyDigits)
+    }
+
+    /// Increments of a literal: what is less than one is cut off, or rounded, by setting. `None` as of [`computed`].
+    #[inline(always)]
+    fn literal(&self, Decimal { digits, places, negative }: &Decimal, decimals: usize) -> Option<f64> {
+        let places = match places {
+            Some(places) => usize::from(*places),
+            // Without a point the digits count increments, or whole units in calculator notation.
+            None => {
+                cold_path();
+                if self.settings.calculator_input { 0 } else { decimals }
             }
-            Raw::Literal(Decimal { digits, places, negative }) => {
-                let places = match places {
-                    Some(places) => usize::from(*places),
-                    // Without a point the digits count increments, or whole units in calculator notation.
-                    None => {
-                        cold_path();
-                        if self.settings.calculator_input { 0 } else { decimals }
-                    }
-                };
-                let number =
-                    if places == decimals { *digits } else { self.shifted(*digits, places, decimals) };
-                if number > MOST {
-                    return Err(Alarm::TooManyDigits);
-                }
-                // Signed numbers become doubles in one step.
-                let number = number as i64;
-                Ok(if *negative { -number } else { number } as f64)
-            }
-        }
+        };
+        let number = if places == decimals { *digits } else { self.shifted(*digits, places, decimals) };
+        // Signed numbers become doubles in one step.
+        let signed = if *negative { -(number as i64) } else { number as i64 };
+        (number <= MOST).then_some(signed as f64)
     }
 
     /// Digits as increments that have some decimals. What is less than an increment is cut off, or rounded, by setting.
@@ -94,7 +110,7 @@ impl Core {
     /// A length in mm or an angle in degrees, a multiple of the increment of its address.
     pub(super) fn dimension(&self, given: &Given, letter: u8, state: &State) -> Checked<Option<f64>> {
         let Some((raw, span)) = given.get(letter) else { return Ok(None) };
-        at(self.dimension_of(&raw, letter, self.measure(state.modal.unit)), span).map(Some)
+        at(self.dimension_of(&raw, letter, &self.measure(state.modal.unit)), span).map(Some)
     }
 
     /// How the numbers of axis words are read while a unit is in force.
@@ -105,14 +121,32 @@ impl Core {
     }
 
     /// As [`Core::dimension`], of a word's value.
+    pub(super) fn dimension_of(&self, raw: &Raw, letter: u8, measure: &Measure) -> Result<f64, Alarm> {
+        let value = match raw {
+            Raw::Literal(number) => self.written(number, letter, measure),
+            Raw::Computed(value) => self.rounded(*value, letter, measure),
+        };
+        value.ok_or(Alarm::TooManyDigits)
+    }
+
+    /// As [`Core::dimension_of`], of a literal; `None` where it has too many digits.
     #[inline(always)]
-    pub(super) fn dimension_of(&self, raw: &Raw, letter: u8, measure: Measure) -> Result<f64, Alarm> {
-        let Measure { decimals, scale, inch } = measure;
-        if inch && !turns(letter) {
-            let inches = self.increments(raw, decimals + 1)? / POWERS[decimals + 1];
-            return Ok(self.clean(inches * 25.4));
+    pub(super) fn written(&self, number: &Decimal, letter: u8, measure: &Measure) -> Option<f64> {
+        if measure.is_inch(letter) {
+            let decimals = measure.decimals + 1;
+            return Some(self.clean(self.literal(number, decimals)? / POWERS[decimals] * 25.4));
         }
-        Ok(self.increments(raw, decimals)? / scale)
+        Some(self.literal(number, measure.decimals)? / measure.scale)
+    }
+
+    /// As [`Core::written`], of a computed value.
+    #[inline(always)]
+    pub(super) fn rounded(&self, value: f64, letter: u8, measure: &Measure) -> Option<f64> {
+        if measure.is_inch(letter) {
+            let scale = POWERS[measure.decimals + 1];
+            return Some(self.clean(computed(value, scale)? / scale * 25.4));
+        }
+        Some(computed(value, measure.scale)? / measure.scale)
     }
 
     /// An angle at an address that is a length elsewhere: R of G68.

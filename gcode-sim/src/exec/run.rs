@@ -24,6 +24,8 @@ pub(super) enum Over {
     End,
     /// It is in a loop that never ends.
     Never,
+    /// It has told as many moves as it may.
+    Moves,
 }
 
 impl Control {
@@ -40,16 +42,16 @@ impl Control {
         sink: &mut S,
         watcher: &mut impl Watcher,
     ) -> Outcome {
-        let moves = limits.blocks.saturating_mul(MOVES_PER_BLOCK).max(MOVES);
         if let Some(outcome) = self.over() {
             return outcome;
         }
-        while self.core.blocks < limits.blocks && self.core.moves <= moves {
+        self.core.most_moves = limits.blocks.saturating_mul(MOVES_PER_BLOCK).max(MOVES);
+        while self.core.blocks < limits.blocks && self.core.moves <= self.core.most_moves {
             if self.core.blocks.is_multiple_of(TOLD) && self.is_told_to_stop() {
                 break;
             }
             let until = limits.blocks.min((self.core.blocks / TOLD + 1) * TOLD);
-            while self.core.blocks < until && self.core.moves <= moves {
+            while self.core.blocks < until {
                 watcher.before(self);
                 let done = self.block(library, sink);
                 if !self.is_uneventful(&done)
@@ -78,6 +80,7 @@ impl Control {
         if let Some(outcome) = self.over() {
             return Some(outcome);
         }
+        self.core.most_moves = u64::MAX;
         let done = self.block(library, sink);
         self.conclude(done, sink).map(|outcome| *outcome)
     }
@@ -108,7 +111,7 @@ impl Control {
         let outcome = match done {
             Ok(()) => match over? {
                 Over::End => Outcome::End,
-                Over::Never => Outcome::Limit,
+                Over::Never | Over::Moves => Outcome::Limit,
             },
             Err(alarm) => {
                 self.core.complete(&alarm, sink);
@@ -139,8 +142,9 @@ impl Control {
         }
         // In a loop most blocks are statements.
         if let OpKind::Statement(statement) = &op.kind {
-            core.statement(program, statement, sink)?;
-            watch.look(place, core);
+            if core.statement(program, statement, sink)? {
+                watch.look(place, core);
+            }
             return Ok(());
         }
         let mut kind = &op.kind;
@@ -151,8 +155,9 @@ impl Control {
         }
         match kind {
             OpKind::Statement(statement) => {
-                core.any_statement(program, statement, sink)?;
-                watch.look(place, core);
+                if core.any_statement(program, statement, sink)? {
+                    watch.look(place, core);
+                }
                 return Ok(());
             }
             OpKind::Empty if core.state.parameter_input && op.number.is_some() => {

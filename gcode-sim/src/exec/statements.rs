@@ -12,29 +12,29 @@ use crate::source::{Span, Spanned};
 const MOST_RAISED: u16 = 4095;
 
 impl Core {
-    /// Does one statement. The frame already stands at the next block; jumps change that. What the turns of most loops
-    /// consist of is done in the loop over the blocks itself.
+    /// Does one statement; whether it may have jumped. The frame already stands at the next block; jumps change that. What the
+    /// turns of most loops consist of is done in the loop over the blocks itself.
     #[inline(always)]
     pub(super) fn statement<S: Sink>(
         &mut self,
         program: &Program,
         statement: &Statement,
         sink: &mut S,
-    ) -> Checked<()> {
+    ) -> Checked<bool> {
+        if let Statement::Assign { target: Target::Slot(Slot::Free(place)), value, .. } = statement {
+            let value = self.assigned(value)?;
+            self.vars.set_free(*place, value);
+            return Ok(false);
+        }
         match statement {
-            Statement::Assign { target: Target::Slot(Slot::Free(place)), value, .. } => {
-                let value = self.assigned(value)?;
-                self.vars.set_free(*place, value);
-                Ok(())
-            }
             Statement::While { condition, number, end } => {
                 let holds = is_true(self.evaluate(condition, RoundsTo::Whole)?);
                 self.begin_turn(*number, *end, holds);
-                Ok(())
             }
-            Statement::End { number, start } => self.end_turn(*number, *start),
-            _ => self.any_statement(program, statement, sink),
+            Statement::End { number, start } => self.end_turn(*number, *start)?,
+            _ => return self.any_statement(program, statement, sink),
         }
+        Ok(true)
     }
 
     /// As [`Core::statement`], away from the loop over the blocks.
@@ -44,7 +44,7 @@ impl Core {
         program: &Program,
         statement: &Statement,
         sink: &mut S,
-    ) -> Checked<()> {
+    ) -> Checked<bool> {
         match statement {
             Statement::Assign { target, target_span, value, text } => {
                 let slot = at(self.target(target), *target_span)?;
@@ -80,7 +80,7 @@ impl Core {
             Statement::CloseOutput => self.open_output(false),
             Statement::Alarm(alarm) => return Err(alarm.clone()),
         }
-        Ok(())
+        Ok(true)
     }
 
     /// The value of an assignment.

@@ -5,7 +5,7 @@ use std::hint::cold_path;
 use super::Core;
 use super::travel::Way;
 use super::vars::Value;
-use super::words::{G_CODES, Raw};
+use super::words::G_CODES;
 use crate::motion::{EventKind, MAX_AXES, Position, Sink};
 use crate::program::codes::Effect;
 use crate::program::modes::{CutterSide, Motion, Polar};
@@ -30,39 +30,47 @@ impl Core {
         let state = &*self.state;
         let (mut motion, mut f) = (state.modal.motion, None);
         let (mut programmed, mut machine) = (Position::default(), Position::default());
-        let (mut named, mut way, mut ascend) = (0_u8, Way::default(), true);
+        let (mut named, mut next, mut ascend) = (0_u8, 0, true);
+        let mut way = Way::default();
         for word in &words.list {
             if word.comma {
                 return None;
             }
-            let raw = match &word.value {
-                Input::Literal(number) => Raw::Literal(*number),
-                Input::G(_, found) => {
-                    let Effect::Motion(code) = found.on(self.settings.codes)?.effect else { return None };
-                    motion = code;
-                    continue;
+            let Some(axis) = self.settings.axes.find(word.letter) else {
+                match &word.value {
+                    Input::G(_, found) => match found.on(self.settings.codes)?.effect {
+                        Effect::Motion(code) => motion = code,
+                        _ => return None,
+                    },
+                    _ if word.letter != b'F' || f.is_some() => return None,
+                    _ => {
+                        f = self
+                            .raw(words, word)
+                            .ok()?
+                            .map(|raw| self.feed_of(&raw, state))
+                            .transpose()
+                            .ok()?
+                    }
                 }
+                continue;
+            };
+            let value = match &word.value {
+                Input::Literal(number) => self.written(number, word.letter, &counting.measure)?,
                 value => match self.computed(words, value).ok()? {
-                    Value::Number(value) => Raw::Computed(value),
+                    Value::Number(value) => self.rounded(value, word.letter, &counting.measure)?,
                     Value::Vacant => continue,
                 },
             };
-            let Some(axis) = self.settings.axes.find(word.letter) else {
-                if word.letter != b'F' || f.is_some() {
-                    return None;
-                }
-                f = Some(self.feed_of(&raw, state).ok()?);
-                continue;
-            };
-            if named >> axis != 0 {
+            if axis < next {
                 cold_path();
                 if named >> axis & 1 == 1 {
                     return None;
                 }
                 ascend = false;
+            } else {
+                next = axis + 1;
             }
             named |= 1 << axis;
-            let value = self.dimension_of(&raw, word.letter, counting.measure).ok()?;
             let (from, to) = (state.machine[axis], &mut machine[axis]);
             (programmed[axis], *to) = self.end_of(axis, value, state, counting);
             if to.abs() > counting.most {
@@ -93,16 +101,15 @@ impl Core {
         state.unplaced = unplaced;
         (state.modal.motion, state.codes.f) = (motion, in_force);
         state.codes.n = op.number.unwrap_or(state.codes.n);
-        let moves = way.is_some().then(|| match motion {
-            Motion::Rapid => EventKind::Rapid { to: state.machine },
-            _ => EventKind::Feed { to: state.machine, rate },
-        });
         self.note_work(self.state.modal.work, true);
         if unplaced != before {
             self.tell(&EventKind::Unplaced { axes: unplaced }, 0.0, sink);
         }
-        if let Some(kind) = &moves {
-            self.tell(kind, seconds, sink);
+        let to = &self.state.machine;
+        match motion {
+            _ if !way.is_some() => {}
+            Motion::Rapid => self.tell(&EventKind::Rapid { to: *to }, seconds, sink),
+            _ => self.tell(&EventKind::Feed { to: *to, rate }, seconds, sink),
         }
         Some(())
     }

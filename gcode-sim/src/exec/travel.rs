@@ -9,7 +9,7 @@ use super::quantities::Measure;
 use super::state::{PolarPoint, State};
 use super::words::Given;
 use crate::alarm::Alarm;
-use crate::motion::{Axis, EventKind, Position};
+use crate::motion::{Axis, EventKind, MAX_AXES, Position};
 use crate::program::modes::{Distance, FeedMode, Plane, Polar, Unit};
 use crate::units::{Deg, MmPerMin};
 
@@ -27,6 +27,8 @@ pub(super) struct Goal {
 pub(super) struct Counting {
     /// [`Core::zeros`].
     zero: Position,
+    /// The axes whose zero and tool length are none, as bits, axis 1 the lowest.
+    unshifted: u8,
     incremental: bool,
     pub(super) measure: Measure,
     /// The largest coordinate: nine digits in increments, as a word has.
@@ -117,8 +119,11 @@ impl Core {
 
     /// What axis words count from where `state` stands.
     pub(super) fn counting(&self, state: &State) -> Counting {
+        let zero = self.zeros(state);
+        let unshifted = |axis: &Axis| zero[*axis] == 0.0 && state.length[*axis] == 0.0;
         Counting {
-            zero: self.zeros(state),
+            zero,
+            unshifted: (0..MAX_AXES).filter(unshifted).fold(0, |axes, axis| axes | 1 << axis),
             incremental: state.modal.distance == Distance::Incremental,
             measure: self.measure(state.modal.unit),
             most: 999_999_999.0 / self.settings.increment.per_unit(),
@@ -133,7 +138,7 @@ impl Core {
                 continue;
             }
             let Some((raw, span)) = given.get(letter) else { continue };
-            let value = at(self.dimension_of(&raw, letter, counting.measure), span)?;
+            let value = at(self.dimension_of(&raw, letter, &counting.measure), span)?;
             (goal.programmed[axis], goal.machine[axis]) = match self.settings.roll_over[axis] {
                 true => self.rolled_end(axis, value, state, counting),
                 false => self.end_of(axis, value, state, counting),
@@ -154,7 +159,12 @@ impl Core {
         } else {
             value
         };
-        (programmed, self.on_machine(programmed, counting.zero[axis], state.length[axis]))
+        // What is clean needn't be cleaned where nothing is added to it.
+        let machine = match counting.unshifted >> axis & 1 == 1 {
+            true => programmed + 0.0,
+            false => self.on_machine(programmed, counting.zero[axis], state.length[axis]),
+        };
+        (programmed, machine)
     }
 
     /// The same of an axis that rolls over.

@@ -324,11 +324,11 @@ impl Core {
     /// What a value behind an address is that is more than a literal.
     #[inline(always)]
     pub(super) fn computed(&self, words: &Words, value: &Input) -> Checked<Value> {
-        match *value {
-            Input::Variable { slot, span } => self.load(slot).map_err(|alarm| alarm.at(span)),
-            Input::Code(place) => self.run_code(words.code(place), RoundsTo::Increment),
-            Input::Number(number) => Ok(Value::Number(number)),
-            Input::G(code, _) => Ok(Value::Number(f64::from(code) / 10.0)),
+        match value {
+            Input::Variable { slot, span } => self.load(*slot, span),
+            Input::Code(place) => self.run_code(words.code(*place), RoundsTo::Increment),
+            Input::Number(number) => Ok(Value::Number(*number)),
+            Input::G(code, _) => Ok(Value::Number(f64::from(*code) / 10.0)),
             Input::Literal(number) => Ok(Value::Number(number.value())),
         }
     }
