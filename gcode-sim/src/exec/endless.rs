@@ -93,14 +93,6 @@ impl Watch {
         self.found
     }
 
-    /// Told of every statement, with its place.
-    #[inline]
-    pub(super) fn look(&mut self, place: OpIndex, core: &mut Core) {
-        if core.frame.next <= place {
-            self.jumped(core);
-        }
-    }
-
     /// Told of every jump back; ends the run where the program is now known never to leave the loop.
     pub(super) fn jumped(&mut self, core: &mut Core) {
         self.wait(core);

@@ -79,11 +79,12 @@ impl Core {
     /// As [`Core::fetch`], where only the number is asked for.
     #[inline(always)]
     fn number(&self, source: &Source, last: Value) -> f64 {
+        if let Source::Free(place) = source {
+            return self.vars.number(*place);
+        }
         match source {
             Source::Number(number) => *number,
-            Source::Free(place) => self.vars.number(*place),
-            Source::Computed(Computed::Last) => last.number(),
-            Source::Computed(Computed::Waiting) => self.waiting.pop().number(),
+            source => self.fetch(source, last).number(),
         }
     }
 
@@ -141,7 +142,7 @@ impl Core {
         Ok(last)
     }
 
-    /// + − * /. Their alarms are worked out where there is no value.
+    /// + − * /. Where there is no value, it is worked out why.
     #[inline(always)]
     fn binary(&self, op: BinaryOp, [left, right]: &[Source; 2], last: Value, span: &Span) -> Checked<f64> {
         let left = self.number(left, last);
@@ -152,8 +153,10 @@ impl Core {
             BinaryOp::Mul => left * right,
             _ => left / right,
         };
-        let alarm = || binary(op, left, right, &self.settings.unsure).err().unwrap_or(Alarm::FloatOverflow);
-        if is_finite(value) { Ok(value) } else { Err(alarm().at(*span)) }
+        if !is_finite(value) {
+            return at(binary(op, left, right, &self.settings.unsure), *span);
+        }
+        Ok(value)
     }
 
     #[inline(always)]

@@ -16,6 +16,7 @@ fn finite(value: f64) -> Result<f64, Alarm> {
     if is_finite(value) { Ok(value) } else { Err(Alarm::FloatOverflow) }
 }
 
+#[inline(never)]
 pub(crate) fn binary(op: BinaryOp, left: f64, right: f64, unsure: &Unsure) -> Result<f64, Alarm> {
     finite(match op {
         BinaryOp::Add => left + right,

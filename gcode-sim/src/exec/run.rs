@@ -142,10 +142,7 @@ impl Control {
         }
         // In a loop most blocks are statements.
         if let OpKind::Statement(statement) = &op.kind {
-            if core.statement(program, statement, sink)? {
-                watch.look(place, core);
-            }
-            return Ok(());
+            return core.statement(program, statement, watch, sink);
         }
         let mut kind = &op.kind;
         if let OpKind::If { condition, then } = kind
@@ -155,10 +152,7 @@ impl Control {
         }
         match kind {
             OpKind::Statement(statement) => {
-                if core.any_statement(program, statement, sink)? {
-                    watch.look(place, core);
-                }
-                return Ok(());
+                return core.any_statement(program, statement, watch, sink);
             }
             OpKind::Empty if core.state.parameter_input && op.number.is_some() => {
                 return Err(Alarm::ParameterFormat { what: "R is missing".into() }.at(core.block));

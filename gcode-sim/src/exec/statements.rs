@@ -1,5 +1,6 @@
 //! Macro statements: assignments, branches and loops. They never tell the machine anything, but for #3000 and #3006.
 use super::Core;
+use super::endless::Watch;
 use super::eval::{Checked, RoundsTo, at, index, integer, is_true};
 use super::notes::Note;
 use super::vars::{Kind, Value};
@@ -12,29 +13,32 @@ use crate::source::{Span, Spanned};
 const MOST_RAISED: u16 = 4095;
 
 impl Core {
-    /// Does one statement; whether it may have jumped. The frame already stands at the next block; jumps change that. What the
-    /// turns of most loops consist of is done in the loop over the blocks itself.
+    /// Does one statement. The frame already stands at the next block; jumps change that. What the turns of most loops
+    /// consist of is done in the loop over the blocks itself.
     #[inline(always)]
     pub(super) fn statement<S: Sink>(
         &mut self,
         program: &Program,
         statement: &Statement,
+        watch: &mut Watch,
         sink: &mut S,
-    ) -> Checked<bool> {
-        if let Statement::Assign { target: Target::Slot(Slot::Free(place)), value, .. } = statement {
-            let value = self.assigned(value)?;
-            self.vars.set_free(*place, value);
-            return Ok(false);
-        }
+    ) -> Checked<()> {
         match statement {
+            Statement::Assign { target: Target::Slot(Slot::Free(place)), value, .. } => {
+                let value = self.assigned(value)?;
+                self.vars.set_free(*place, value);
+            }
             Statement::While { condition, number, end } => {
                 let holds = is_true(self.evaluate(condition, RoundsTo::Whole)?);
                 self.begin_turn(*number, *end, holds);
             }
-            Statement::End { number, start } => self.end_turn(*number, *start)?,
-            _ => return self.any_statement(program, statement, sink),
+            Statement::End { number, start } => {
+                self.end_turn(*number, *start)?;
+                watch.jumped(self);
+            }
+            _ => return self.any_statement(program, statement, watch, sink),
         }
-        Ok(true)
+        Ok(())
     }
 
     /// As [`Core::statement`], away from the loop over the blocks.
@@ -43,8 +47,10 @@ impl Core {
         &mut self,
         program: &Program,
         statement: &Statement,
+        watch: &mut Watch,
         sink: &mut S,
-    ) -> Checked<bool> {
+    ) -> Checked<()> {
+        let next = self.frame.next;
         match statement {
             Statement::Assign { target, target_span, value, text } => {
                 let slot = at(self.target(target), *target_span)?;
@@ -53,7 +59,7 @@ impl Core {
             }
             Statement::Several(assignments) => {
                 for one in assignments {
-                    self.any_statement(program, one, sink)?;
+                    self.any_statement(program, one, watch, sink)?;
                 }
             }
             Statement::Goto(to) => self.goto(program, to)?,
@@ -65,7 +71,7 @@ impl Core {
             Statement::IfThen { condition, then } => {
                 if self.holds(condition)? {
                     // An assignment or a GOTO: lowering lets nothing else stand here.
-                    return self.any_statement(program, then, sink);
+                    return self.any_statement(program, then, watch, sink);
                 }
             }
             Statement::While { condition, number, end } => {
@@ -80,7 +86,10 @@ impl Core {
             Statement::CloseOutput => self.open_output(false),
             Statement::Alarm(alarm) => return Err(alarm.clone()),
         }
-        Ok(true)
+        if self.frame.next < next {
+            watch.jumped(self);
+        }
+        Ok(())
     }
 
     /// The value of an assignment.
