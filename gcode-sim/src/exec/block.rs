@@ -57,7 +57,7 @@ impl Core {
     fn unskipped<'a>(&self, words: &'a Words) -> &'a Words {
         let Some((switch, short)) = words.short() else { return words };
         let is_on = self.skips(*switch);
-        self.told.set(Some(Note::BlockSkip { switch: (*switch).max(1), is_on }));
+        self.aftermath.tell(Note::BlockSkip { switch: (*switch).max(1), is_on });
         if is_on { short } else { words }
     }
 

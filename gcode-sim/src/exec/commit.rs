@@ -97,7 +97,7 @@ impl Core {
     fn count_moves(&mut self, moves: u64) {
         self.moves += moves;
         if self.moves > self.most_moves {
-            self.over.get_or_insert(Over::Moves);
+            self.aftermath.end(Over::Moves);
         }
     }
 

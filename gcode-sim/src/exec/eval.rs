@@ -166,7 +166,7 @@ impl Core {
             return Err(no_value(name, argument).at(*span));
         }
         if name == Function::Tan && (argument % 180.0).abs() == 90.0 {
-            self.told.set(Some(Note::TangentOf90));
+            self.aftermath.tell(Note::TangentOf90);
         }
         Ok(value)
     }
@@ -179,7 +179,7 @@ impl Core {
             return at(atan2(y, x, &self.settings), *span);
         }
         if y == 0.0 && x == 0.0 {
-            self.told.set(Some(Note::AtanOf0));
+            self.aftermath.tell(Note::AtanOf0);
         }
         Ok(value)
     }

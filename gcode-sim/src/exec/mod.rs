@@ -1,4 +1,5 @@
 //! Operations to events: a control that can be stepped block by block, held and looked at.
+mod aftermath;
 mod ahead;
 mod arcs;
 mod arguments;
@@ -68,6 +69,7 @@ pub use state::{Codes, State};
 pub use vars::{Value, Vars};
 pub use watch::Watcher;
 
+use self::aftermath::Aftermath;
 use self::ahead::Ahead;
 use self::endless::Watch;
 use self::eval::Waiting;
@@ -75,7 +77,6 @@ use self::frames::Frame;
 use self::modal_calls::ModalCall;
 use self::offsets::Offsets;
 use self::plan::Plan;
-use self::run::Over;
 use self::travel::Counting;
 use self::words::Given;
 use self::work_use::WorkUse;
@@ -134,10 +135,7 @@ pub(crate) struct Core {
     clock_read: Cell<bool>,
     /// For values that wait for their operators.
     waiting: Waiting,
-    /// What a function of the block at hand has to tell.
-    told: Cell<Option<Note>>,
-    /// How the block at hand has ended the run.
-    over: Option<Over>,
+    aftermath: Aftermath,
     blocks: u64,
     moves: u64,
     /// Beyond so many the run ends.
@@ -178,8 +176,7 @@ impl Control {
             idle: 0.0,
             clock_read: Cell::new(false),
             waiting: Waiting::default(),
-            told: Cell::new(None),
-            over: None,
+            aftermath: Aftermath::default(),
             blocks: 0,
             moves: 0,
             most_moves: u64::MAX,

@@ -46,7 +46,7 @@ impl Core {
                         PrintKind::Binary => binary(number, *decimals, &mut line).map(|()| true),
                     };
                     if !printed.map_err(|alarm| alarm.at(span))? {
-                        self.told.set(Some(Note::DigitsLost));
+                        self.aftermath.tell(Note::DigitsLost);
                     }
                 }
             }

@@ -93,19 +93,19 @@ impl Control {
     /// Whether a block has ended nothing and has nothing to tell, as most.
     #[inline(always)]
     fn is_uneventful(&self, done: &Checked<()>) -> bool {
-        done.is_ok() && self.core.over.is_none() && self.core.told.get().is_none()
+        done.is_ok() && self.core.aftermath.is_none()
     }
 
     /// Takes note of what a block has to tell, and of the end of the run.
     #[inline(never)]
     fn conclude<S: Sink>(&mut self, mut done: Checked<()>, sink: &mut S) -> Option<Box<Outcome>> {
-        let over = self.core.over.take();
+        let (note, over) = self.core.aftermath.take();
         if over == Some(Over::End)
             && let Err(alarm) = self.core.end_ahead(sink)
         {
             done = Err(alarm);
         }
-        if let Some(note) = self.core.told.take() {
+        if let Some(note) = note {
             self.core.notes.entry(note).or_insert(self.core.block);
         }
         let outcome = match done {
@@ -215,17 +215,19 @@ impl Control {
                 self.core.state.codes.o = self.memory.get(program).shown_number();
             }
             Flow::Return { number, target } => {
-                self.core.over = self.go_back(number.zip(target));
+                if let Some(over) = self.go_back(number.zip(target)) {
+                    self.core.aftermath.end(over);
+                }
                 let program = self.core.frame.program;
                 self.core.state.codes.o = self.memory.get(program).shown_number();
-                if self.core.over.is_none() {
+                if !self.core.aftermath.is_over() {
                     self.watch.jumped(&mut self.core);
                 }
             }
             Flow::CancelModal => self.core.cancel_modal(),
             Flow::End => {
                 self.core.parts[0] += 1.0;
-                self.core.over = Some(Over::End);
+                self.core.aftermath.end(Over::End);
             }
         }
         Ok(())
@@ -243,7 +245,7 @@ impl Core {
         };
         self.block = Span { start: program.span.end, ..program.span };
         if main && !program.closed {
-            self.over = Some(Over::End);
+            self.aftermath.end(Over::End);
             return Ok(());
         }
         Err(Alarm::EndOfRecord.at(self.block))

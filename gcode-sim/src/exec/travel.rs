@@ -181,7 +181,7 @@ impl Core {
             !given.has(letter as u8) && self.move_end(state)[axis] != state.programmed[axis]
         };
         if self.settings.axes.iter().any(stays) {
-            self.told.set(Some(Note::AxisLeftOut));
+            self.aftermath.tell(Note::AxisLeftOut);
         }
     }
 

@@ -63,11 +63,7 @@ impl Control {
     pub(super) fn look_at_next<T>(&self, look: impl FnOnce(&Core, &Op) -> T) -> Option<T> {
         let Frame { program, next, .. } = self.core.frame;
         let op = self.memory.get(program).op(next)?;
-        // To look is no part of the run: what a function has to tell is told when the block is done.
-        let told = self.core.told.take();
-        let seen = look(&self.core, op);
-        self.core.told.set(told);
-        Some(seen)
+        Some(self.core.aftermath.apart(|| look(&self.core, op)))
     }
 }
 
