@@ -53,7 +53,8 @@ impl Control {
             let until = limits.blocks.min((self.core.blocks / TOLD + 1) * TOLD);
             while self.core.blocks < until {
                 watcher.before(self);
-                let done = self.block(library, sink);
+                let until = if watcher.looks() { self.core.blocks + 1 } else { until };
+                let done = self.block(until, library, sink);
                 if !self.is_uneventful(&done)
                     && let Some(outcome) = self.conclude(done, sink)
                 {
@@ -81,7 +82,7 @@ impl Control {
             return Some(outcome);
         }
         self.core.most_moves = u64::MAX;
-        let done = self.block(library, sink);
+        let done = self.block(self.core.blocks + 1, library, sink);
         self.conclude(done, sink).map(|outcome| *outcome)
     }
 
@@ -124,26 +125,30 @@ impl Control {
         Some(Box::new(outcome))
     }
 
-    /// Reads the next block and does what it says.
+    /// Reads the next block and does what it says. A statement never leads into another program: behind one the next block
+    /// is done at once, as long as there are fewer than `until`.
     #[inline(always)]
-    fn block<S: Sink>(&mut self, library: &mut impl Library, sink: &mut S) -> Checked<()> {
+    fn block<S: Sink>(&mut self, until: u64, library: &mut impl Library, sink: &mut S) -> Checked<()> {
         let Self { memory, core, plan, given, watch, .. } = self;
-        let place = core.frame.next;
-        let Some((program, op)) = memory.ready(core.frame.program, place) else {
-            return core.behind_last(memory);
+        let Some(program) = memory.get_mut(core.frame.program) else { return core.behind_last(memory) };
+        let op = loop {
+            let place = core.frame.next;
+            let Some((program, op)) = program.ready(place) else { return core.behind_last(memory) };
+            core.block = op.span;
+            core.blocks += 1;
+            core.frame.next = place + 1;
+            if let Some(aside) = &op.aside
+                && core.passes_over(aside)?
+            {
+                return Ok(());
+            }
+            let OpKind::Statement(statement) = &op.kind else { break (program, op) };
+            core.statement(program, statement, watch, sink)?;
+            if core.blocks >= until || !core.aftermath.is_none() {
+                return Ok(());
+            }
         };
-        core.block = op.span;
-        core.blocks += 1;
-        core.frame.next = place + 1;
-        if let Some(aside) = &op.aside
-            && core.passes_over(aside)?
-        {
-            return Ok(());
-        }
-        // In a loop most blocks are statements.
-        if let OpKind::Statement(statement) = &op.kind {
-            return core.statement(program, statement, watch, sink);
-        }
+        let (program, op) = op;
         let mut kind = &op.kind;
         if let OpKind::If { condition, then } = kind
             && core.holds(condition)?

@@ -6,6 +6,11 @@ use crate::source::Span;
 
 /// Looks at a control between its blocks.
 pub trait Watcher {
+    /// Whether anybody looks.
+    fn looks(&self) -> bool {
+        true
+    }
+
     /// A block is about to be done: [`Control::next_block`], which makes it ready and changes nothing else.
     fn before(&mut self, control: &mut Control);
 
@@ -15,12 +20,20 @@ pub trait Watcher {
 
 /// Nobody looks on.
 impl Watcher for () {
+    fn looks(&self) -> bool {
+        false
+    }
+
     fn before(&mut self, _: &mut Control) {}
 
     fn after(&mut self, _: &Control) {}
 }
 
 impl<W: Watcher> Watcher for &mut W {
+    fn looks(&self) -> bool {
+        (**self).looks()
+    }
+
     fn before(&mut self, control: &mut Control) {
         (**self).before(control);
     }
@@ -32,6 +45,10 @@ impl<W: Watcher> Watcher for &mut W {
 
 /// Somebody who may be there.
 impl<W: Watcher> Watcher for Option<W> {
+    fn looks(&self) -> bool {
+        self.as_ref().is_some_and(W::looks)
+    }
+
     fn before(&mut self, control: &mut Control) {
         self.iter_mut().for_each(|watcher| watcher.before(control));
     }
@@ -45,7 +62,7 @@ impl Control {
     /// The block that a step would do now; `None` where the program has no more.
     pub fn next_block(&mut self) -> Option<Span> {
         let Frame { program, next, .. } = self.core.frame;
-        self.memory.ready(program, next).map(|(_, op)| op.span)
+        self.memory.ready(program, next).map(|op| op.span)
     }
 
     /// The variables that [`Control::next_block`] will assign as things stand; those whose numbers are computed as well.

@@ -163,7 +163,7 @@ mod tests {
         let id = memory.ids().next().unwrap();
         let near = (0..2 * KEPT).map(|step| step * KEPT % (LINES - 3));
         for place in (0..LINES).chain((0..2 * LINES).map(|step| step * 7919 % LINES)).chain(near) {
-            let (_, op) = memory.ready(id, place).unwrap();
+            let op = memory.ready(id, place).unwrap();
             let span = op.span;
             if let OpKind::Statement(Statement::Assign { value: Operand::Code(code), .. }) = &op.kind {
                 let wanted = Operation::Add([Source::Number(place as f64), Source::Free(2)]);
@@ -176,7 +176,7 @@ mod tests {
         }
         assert!(memory.ready(id, LINES).is_none());
         assert_eq!(memory.lowered(id).ops().len(), LINES);
-        assert_eq!(memory.ready(id, 2 * KEPT).unwrap().1.number, Some(2 * KEPT as u32));
+        assert_eq!(memory.ready(id, 2 * KEPT).unwrap().number, Some(2 * KEPT as u32));
     }
 
     #[test]

@@ -188,7 +188,17 @@ impl Program {
         self.blocks.all()
     }
 
-    /// An operation that was made ready: see [`Memory::ready`].
+    /// Lowers one block, so that it can be executed; `None` behind the last.
+    #[inline(always)]
+    pub(crate) fn ready(&mut self, place: OpIndex) -> Option<(&Self, &Op)> {
+        if self.blocks.op(place).is_none() {
+            self.blocks.lower(place, &self.loops)?;
+        }
+        let program = &*self;
+        program.blocks.op(place).map(|op| (program, op))
+    }
+
+    /// An operation that was made ready: see [`Program::ready`].
     pub(crate) fn op(&self, place: OpIndex) -> Option<&Op> {
         self.blocks.op(place)
     }
