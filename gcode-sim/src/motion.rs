@@ -16,8 +16,8 @@ pub type Axis = usize;
 pub struct Axes {
     letters: [u8; MAX_AXES],
     count: usize,
-    /// The axis of each letter by the letter's low five bits, [`Axes::NONE`] where it is none's.
-    places: [u8; 32],
+    /// The axis of each letter, [`Axes::NONE`] where it is none's.
+    places: [u8; 256],
     /// The letters as bits, A the lowest.
     mask: u32,
     /// The axes that turn as bits, axis 1 the lowest.
@@ -36,20 +36,20 @@ impl Axes {
     }
 
     fn of(some: &[u8]) -> Self {
-        let (mut letters, mut places, mut mask, mut rotary) = ([0; MAX_AXES], [Self::NONE; 32], 0, 0);
+        let (mut letters, mut places, mut mask, mut rotary) = ([0; MAX_AXES], [Self::NONE; 256], 0, 0);
         for (axis, letter) in some.iter().enumerate() {
             letters[axis] = *letter;
-            places[usize::from(letter % 32)] = axis as u8;
+            places[usize::from(*letter)] = axis as u8;
             mask |= 1 << (letter - b'A');
             rotary |= u32::from(matches!(letter, b'A' | b'B' | b'C')) << axis;
         }
         Self { letters, count: some.len(), places, mask, rotary }
     }
 
-    /// The axis of an address from `A` to `Z`.
+    /// The axis of an address.
     #[inline]
     pub fn find(&self, letter: u8) -> Option<Axis> {
-        let axis = usize::from(self.places[usize::from(letter % 32)]);
+        let axis = usize::from(self.places[usize::from(letter)]);
         (axis < MAX_AXES).then_some(axis)
     }
 

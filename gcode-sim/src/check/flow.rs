@@ -108,6 +108,7 @@ impl Flow {
             Statement::Assign { target, .. } if target.is(3000) => Ways { leaves: true, ..Ways::default() },
             Statement::Several(all) if all.iter().any(is_raise) => Ways { leaves: true, ..Ways::default() },
             Statement::Assign { .. }
+            | Statement::Compute { .. }
             | Statement::Several(_)
             | Statement::Do { .. }
             | Statement::SetNames { .. }

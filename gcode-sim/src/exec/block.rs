@@ -19,37 +19,24 @@ use super::plan::Plan;
 use super::state::State;
 use super::words::Given;
 use crate::alarm::Alarm;
-use crate::motion::Sink;
 use crate::program::modes::CutterSide;
-use crate::program::{Calling, Op, Words};
+use crate::program::{Calling, Words};
 use crate::source::Span;
 
 impl Core {
-    /// Checks a block of words; where it isn't a plain move, that is done already, makes the plan of it, which is to be
-    /// carried out. An alarm leaves no trace.
-    pub(super) fn words<S: Sink>(
-        &mut self,
-        op: &Op,
-        words: &Words,
-        given: &mut Given,
-        plan: &mut Plan,
-        sink: &mut S,
-    ) -> Checked<bool> {
-        if self.step(op, words, sink) {
-            return Ok(false);
-        }
+    /// Checks a block of words and makes the plan of it. An alarm leaves no trace.
+    pub(super) fn words(&self, words: &Words, given: &mut Given, plan: &mut Plan) -> Checked<()> {
         let words = self.unskipped(words);
         plan.begin(&self.state);
         let mut calling = None;
         if !self.settings.code_calls.is_empty() {
             if self.macro_by_code(words, plan)? {
-                return Ok(true);
+                return Ok(());
             }
             calling = self.subprogram_by_code(words)?;
         }
         self.collect(words, calling.as_ref(), given)?;
-        self.prepare(words, calling, given, plan)?;
-        Ok(true)
+        self.prepare(words, calling, given, plan)
     }
 
     /// The words of a block but for those behind a block skip that is on.

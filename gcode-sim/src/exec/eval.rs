@@ -6,7 +6,7 @@ use super::functions::{angle, atan2, binary, compare, is_finite, no_value, power
 use super::notes::Note;
 use super::vars::{Kind, Value};
 use crate::alarm::{Alarm, Placed};
-use crate::program::{Computed, Instruction, Operand, Operation, STACK, Slot, Source};
+use crate::program::{Computed, Instruction, Operand, Operation, Rare, STACK, Slot, Source};
 use crate::source::Span;
 use crate::syntax::ast::{BinaryOp, Function};
 use crate::units::round;
@@ -133,8 +133,8 @@ impl Core {
                     let y = self.number(y, last);
                     self.atan(y, self.number(x, last), span)?
                 }
-                _ => {
-                    last = at(self.other(operation, last, rounds), *span)?;
+                Operation::Rare(rare) => {
+                    last = at(self.rare(rare, last, rounds), *span)?;
                     continue;
                 }
             });
@@ -186,47 +186,40 @@ impl Core {
 
     /// What only some expressions contain. It stands apart so that the others needn't carry it.
     #[inline(never)]
-    fn other(&self, operation: &Operation, last: Value, rounds: RoundsTo) -> Result<Value, Alarm> {
+    fn rare(&self, operation: &Rare, last: Value, rounds: RoundsTo) -> Result<Value, Alarm> {
         let unsure = &self.settings.unsure;
         Ok(match *operation {
-            Operation::Load(ref source) => self.fetch(source, last),
-            Operation::Wait => {
+            Rare::Load(ref source) => self.fetch(source, last),
+            Rare::Wait => {
                 self.waiting.push(last);
                 last
             }
-            Operation::Add(_)
-            | Operation::Subtract(_)
-            | Operation::Multiply(_)
-            | Operation::Divide(_)
-            | Operation::Compare(..)
-            | Operation::Function(..)
-            | Operation::Atan2(_)
-            | Operation::Plus => last,
-            Operation::Read(number) => self.read(number)?,
-            Operation::LoadIndirect => self.read(index(last)?)?,
-            Operation::Negate => match last {
+            Rare::Plus => last,
+            Rare::Read(number) => self.read(number)?,
+            Rare::LoadIndirect => self.read(index(last)?)?,
+            Rare::Negate => match last {
                 Value::Vacant if unsure.minus_keeps_vacancy => Value::Vacant,
                 value => Value::Number(-value.number()),
             },
-            Operation::Reverse => match last {
+            Rare::Reverse => match last {
                 Value::Vacant => Value::Vacant,
                 Value::Number(number) => Value::Number(-number),
             },
-            Operation::Bracket => match last {
+            Rare::Bracket => match last {
                 Value::Vacant if !unsure.brackets_keep_vacancy => Value::Number(0.0),
                 value => value,
             },
-            Operation::Whole(op, [ref left, ref right]) => {
+            Rare::Whole(op, [ref left, ref right]) => {
                 let left = self.number(left, last);
                 Value::Number(binary(op, left, self.number(right, last), unsure)?)
             }
-            Operation::Power([ref base, ref exponent]) => {
+            Rare::Power([ref base, ref exponent]) => {
                 let base = self.number(base, last);
                 Value::Number(power(base, self.number(exponent, last))?)
             }
-            Operation::RoundTo(_) if rounds == RoundsTo::Whole => Value::Number(round(last.number())),
-            Operation::RoundTo(letter) => Value::Number(self.round_to(letter, last.number())),
-            Operation::Logic(op) => {
+            Rare::RoundTo(_) if rounds == RoundsTo::Whole => Value::Number(round(last.number())),
+            Rare::RoundTo(letter) => Value::Number(self.round_to(letter, last.number())),
+            Rare::Logic(op) => {
                 let (left, right) = (is_true(self.waiting.pop()), is_true(last));
                 let holds = match op {
                     BinaryOp::And => left && right,
@@ -235,7 +228,7 @@ impl Core {
                 };
                 Value::Number(truth(holds))
             }
-            Operation::Parameter { bit, axis } => {
+            Rare::Parameter { bit, axis } => {
                 let mut part = last;
                 let mut before = |is_there: bool| {
                     is_there.then(|| std::mem::replace(&mut part, self.waiting.pop()).number())
@@ -243,20 +236,20 @@ impl Core {
                 let (axis, bit) = (before(axis), before(bit));
                 Value::Number(self.parameter(part.number(), bit, axis)?)
             }
-            Operation::AxisNumber(letter) => {
+            Rare::AxisNumber(letter) => {
                 let axis = self.settings.axes.find(letter);
                 let unknown = || Alarm::AxisAddress { text: char::from(letter).into() };
                 Value::Number(axis.ok_or_else(unknown)? as f64 + 1.0)
             }
-            Operation::AddPoint => {
+            Rare::AddPoint => {
                 let number = index(last)?;
                 match self.vars.kind(number) {
                     Kind::Local(local) => Value::Number(self.vars.with_point(local)),
                     _ => return Err(Alarm::ArgumentFormat { function: "ADP".into() }),
                 }
             }
-            Operation::NameNumber(ref name) => Value::Number(f64::from(self.named(name)?)),
-            Operation::SystemNumber(row) => {
+            Rare::NameNumber(ref name) => Value::Number(f64::from(self.named(name)?)),
+            Rare::SystemNumber(row) => {
                 let number = if self.settings.series_15_offsets { row.series_15 } else { row.number };
                 let place = match row.suffix {
                     None => 0,

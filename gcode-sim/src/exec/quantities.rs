@@ -10,7 +10,7 @@ use crate::contour::Blend;
 use crate::control::Increment;
 use crate::program::modes::{FeedMode, Unit};
 use crate::syntax::ast::Decimal;
-use crate::units::nearest;
+use crate::units::{nearest, nearest_within};
 
 /// What [`Core::measure`] finds out once for all axes of a block.
 #[derive(Clone, Copy, Debug)]
@@ -54,8 +54,7 @@ impl Measure {
 /// The increments, `scale` in a unit, nearest to a computed value, half away from 0; `None` where they have too many digits.
 #[inline(always)]
 fn computed(value: f64, scale: f64) -> Option<f64> {
-    let number = nearest(value, scale);
-    (number.abs() <= MOST as f64).then_some(number + 0.0)
+    nearest_within(value, scale, MOST as f64).map(|number| number + 0.0)
 }
 
 impl Core {

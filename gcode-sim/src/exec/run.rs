@@ -131,7 +131,7 @@ impl Control {
     fn block<S: Sink>(&mut self, until: u64, library: &mut impl Library, sink: &mut S) -> Checked<()> {
         let Self { memory, core, plan, given, watch, .. } = self;
         let Some(program) = memory.get_mut(core.frame.program) else { return core.behind_last(memory) };
-        let op = loop {
+        let (program, op) = loop {
             let place = core.frame.next;
             let Some((program, op)) = program.ready(place) else { return core.behind_last(memory) };
             core.block = op.span;
@@ -148,7 +148,12 @@ impl Control {
                 return Ok(());
             }
         };
-        let (program, op) = op;
+        // In a long file most blocks are plain moves.
+        if let OpKind::Words(words) = &op.kind
+            && core.step(op, words, sink)
+        {
+            return Ok(());
+        }
         let mut kind = &op.kind;
         if let OpKind::If { condition, then } = kind
             && core.holds(condition)?
@@ -174,9 +179,7 @@ impl Control {
                     core.state.codes.o = memory.get(core.frame.program).shown_number();
                     return Ok(());
                 }
-                if !core.words(op, words, given, plan, sink)? {
-                    return Ok(());
-                }
+                core.words(words, given, plan)?;
                 if let Some(number) = op.number {
                     plan.state.codes.n = number;
                 }

@@ -24,8 +24,8 @@ impl Core {
         sink: &mut S,
     ) -> Checked<()> {
         match statement {
-            Statement::Assign { target: Target::Slot(Slot::Free(place)), value, .. } => {
-                let value = self.assigned(value)?;
+            Statement::Compute { place, code } => {
+                let value = self.evaluate(code, RoundsTo::Increment)?;
                 self.vars.set_free(*place, value);
             }
             Statement::While { condition, number, end } => {
@@ -52,6 +52,10 @@ impl Core {
     ) -> Checked<()> {
         let next = self.frame.next;
         match statement {
+            Statement::Compute { place, code } => {
+                let value = self.run_code(code, RoundsTo::Increment)?;
+                self.vars.set_free(*place, value);
+            }
             Statement::Assign { target, target_span, value, text } => {
                 let slot = at(self.target(target), *target_span)?;
                 let value = self.operand(value)?;
@@ -90,15 +94,6 @@ impl Core {
             watch.jumped(self);
         }
         Ok(())
-    }
-
-    /// The value of an assignment.
-    #[inline(always)]
-    fn assigned(&self, value: &Operand) -> Checked<Value> {
-        match value {
-            Operand::Code(code) => self.evaluate(code, RoundsTo::Increment),
-            value => self.operand(value),
-        }
     }
 
     /// The DO or WHILE of a loop, `end` the operation of its END.

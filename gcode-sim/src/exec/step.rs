@@ -124,6 +124,7 @@ impl Core {
     fn is_plain(&self) -> bool {
         let modal = &self.state.modal;
         modal.cycle.is_none()
+            && !self.state.parameter_input
             && modal.cutter == CutterSide::Off
             && modal.polar == Polar::Off
             && self.state.ended.is_none()

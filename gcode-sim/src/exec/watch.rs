@@ -110,6 +110,7 @@ impl Core {
 
     fn targets_of(&self, statement: &Statement, numbers: &mut Vec<u32>) {
         match statement {
+            Statement::Compute { place, .. } => numbers.push(u32::from(*place)),
             Statement::Assign { target, .. } => {
                 numbers.extend(self.target(target).map(Slot::number));
             }

@@ -82,19 +82,25 @@ pub enum Computed {
 }
 
 /// Gives a value, mostly of the one that the instruction before has given; where that is needed later it waits on a stack.
-/// Conditions are numbers here, 0 or 1; the tree keeps them apart.
+/// Conditions are numbers here, 0 or 1; the tree keeps them apart. Which one it is stands in a byte of its own, for it is
+/// asked at every step.
 #[derive(Clone, Debug, PartialEq)]
+#[repr(u8)]
 pub enum Operation {
     Add([Source; 2]),
     Subtract([Source; 2]),
     Multiply([Source; 2]),
     Divide([Source; 2]),
-    /// An operator on whole numbers.
-    Whole(BinaryOp, [Source; 2]),
     Compare(Relation, [Source; 2]),
     Function(Function, Source),
     /// ATAN of two values.
     Atan2([Source; 2]),
+    Rare(Rare),
+}
+
+/// What only some expressions contain.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Rare {
     Load(Source),
     /// Lets the last value wait for its operator.
     Wait,
@@ -107,6 +113,8 @@ pub enum Operation {
     Reverse,
     Plus,
     Bracket,
+    /// An operator on whole numbers.
+    Whole(BinaryOp, [Source; 2]),
     Power([Source; 2]),
     /// ROUND in a word: to the increment of that address.
     RoundTo(u8),
@@ -127,6 +135,12 @@ pub enum Operation {
     SystemNumber(NameRow),
 }
 
+impl From<Rare> for Operation {
+    fn from(rare: Rare) -> Self {
+        Self::Rare(rare)
+    }
+}
+
 impl Operation {
     pub(super) fn binary(op: BinaryOp, values: [Source; 2]) -> Self {
         match op {
@@ -134,7 +148,7 @@ impl Operation {
             BinaryOp::Sub => Self::Subtract(values),
             BinaryOp::Mul => Self::Multiply(values),
             BinaryOp::Div => Self::Divide(values),
-            BinaryOp::Mod | BinaryOp::And | BinaryOp::Or | BinaryOp::Xor => Self::Whole(op, values),
+            BinaryOp::Mod | BinaryOp::And | BinaryOp::Or | BinaryOp::Xor => Rare::Whole(op, values).into(),
         }
     }
 }

@@ -1,5 +1,5 @@
 //! Lowers a tree to operations, block by block; what can't run becomes the alarm it raises when it is reached.
-use super::code::{Code, Instruction};
+use super::code::{Code, Instruction, Slot, Target};
 use super::expr::Context;
 use super::{Aside, Form, Op, OpKind, Operand, PrintPart, Statement};
 use crate::alarm::{Alarm, Placed};
@@ -57,7 +57,8 @@ impl Lowering {
             let condition = self.condition(condition, first.span)?;
             let rest = ast::Block { items: block.items[1..].to_vec(), ..block.clone() };
             let then = match self.kind(&rest)? {
-                then @ (OpKind::Words(_) | OpKind::Statement(Statement::Assign { .. })) => Box::new(then),
+                then @ (OpKind::Words(_)
+                | OpKind::Statement(Statement::Assign { .. } | Statement::Compute { .. })) => Box::new(then),
                 _ => return Err(Alarm::IfFormat.at(first.span)),
             };
             return Ok(OpKind::If { condition, then });
@@ -164,12 +165,14 @@ impl Lowering {
         span: Span,
         block: &ast::Block,
     ) -> Lowered<Statement> {
-        let text = block.comments.iter().find(|c| c.span.start >= span.start);
-        Ok(Statement::Assign {
-            target: self.target(target)?,
-            target_span: target.span,
-            value: self.operand(value, Context::Macro)?,
-            text: text.map(|c| c.text.clone().into_boxed_slice()),
+        let (to, value) = (self.target(target)?, self.operand(value, Context::Macro)?);
+        Ok(match (to, value) {
+            (Target::Slot(Slot::Free(place)), Operand::Code(code)) => Statement::Compute { place, code },
+            (to, value) => {
+                let text = block.comments.iter().find(|c| c.span.start >= span.start);
+                let text = text.map(|c| c.text.clone().into_boxed_slice());
+                Statement::Assign { target: to, target_span: target.span, value, text }
+            }
         })
     }
 

@@ -21,7 +21,7 @@ mod outline;
 mod words;
 
 pub use arguments::{ArgumentLocals, argument_letter};
-pub use code::{Code, Computed, Instruction, Operand, Operation, STACK, Slot, Source, Target};
+pub use code::{Code, Computed, Instruction, Operand, Operation, Rare, STACK, Slot, Source, Target};
 pub use forms::Form;
 pub use memory::{Library, Memory, NoLibrary, ProgramId};
 pub use words::{CallOp, CallTarget, Calling, Coded, Input, Words};
@@ -109,6 +109,12 @@ pub enum OpKind {
 #[derive(Debug)]
 #[repr(u8)]
 pub enum Statement {
+    /// An assignment of what code gives to a variable of [`Slot::Free`], as most are.
+    Compute {
+        place: u16,
+        code: Code,
+    },
+    /// Any other assignment.
     Assign {
         target: Target,
         target_span: Span,
