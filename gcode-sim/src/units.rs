@@ -118,6 +118,7 @@ impl Deg {
     }
 
     /// The direction of the point (x, y): −180° … 180°.
+    #[inline]
     pub fn atan2(y: f64, x: f64) -> Self {
         Self::from_rad(libm::atan2(y, x))
     }

@@ -60,8 +60,13 @@ impl Core {
         }
     }
 
-    /// Whether a condition holds.
+    /// Whether a condition holds; most are one comparison.
+    #[inline]
     pub(super) fn holds(&self, condition: &[Instruction]) -> Checked<bool> {
+        if let [Instruction { operation: Operation::Compare(relation, [left, right]), .. }] = condition {
+            let left = self.fetch(left, Value::Vacant);
+            return Ok(compare(*relation, left, self.fetch(right, Value::Vacant)));
+        }
         self.run_code(condition, RoundsTo::Whole).map(is_true)
     }
 

@@ -23,13 +23,14 @@ impl Core {
         watch: &mut Watch,
         sink: &mut S,
     ) -> Checked<()> {
+        if let Statement::Compute { place, code } = statement {
+            let value = self.evaluate(code, RoundsTo::Increment)?;
+            self.vars.set_free(*place, value);
+            return Ok(());
+        }
         match statement {
-            Statement::Compute { place, code } => {
-                let value = self.evaluate(code, RoundsTo::Increment)?;
-                self.vars.set_free(*place, value);
-            }
             Statement::While { condition, number, end } => {
-                let holds = is_true(self.evaluate(condition, RoundsTo::Whole)?);
+                let holds = self.holds(condition)?;
                 self.begin_turn(*number, *end, holds);
             }
             Statement::End { number, start } => {

@@ -9,7 +9,7 @@ use super::words::G_CODES;
 use crate::motion::{EventKind, MAX_AXES, Position, Sink};
 use crate::program::codes::Effect;
 use crate::program::modes::{CutterSide, Motion, Polar};
-use crate::program::{Input, Op, Words};
+use crate::program::{Input, Op, Slot, Words};
 use crate::units::MmPerMin;
 
 impl Core {
@@ -56,10 +56,14 @@ impl Core {
             };
             let value = match &word.value {
                 Input::Literal(number) => self.written(number, word.letter, &counting.measure)?,
-                value => match self.computed(words, value).ok()? {
-                    Value::Number(value) => self.rounded(value, word.letter, &counting.measure)?,
-                    Value::Vacant => continue,
-                },
+                value => {
+                    let value = match value {
+                        Input::Variable { slot: Slot::Free(place), .. } => self.vars.free(*place),
+                        value => self.computed(words, value).ok()?,
+                    };
+                    let Value::Number(value) = value else { continue };
+                    self.rounded(value, word.letter, &counting.measure)?
+                }
             };
             if axis < next {
                 cold_path();
@@ -93,7 +97,8 @@ impl Core {
             _ => return None,
         };
 
-        let (before, unplaced) = (state.unplaced, counting.placed(state.unplaced, named));
+        let before = state.unplaced;
+        let unplaced = if before == 0 { 0 } else { counting.placed(before, named) };
         let state = &mut *self.state;
         for axis in axes {
             (state.programmed[axis], state.machine[axis]) = (programmed[axis], machine[axis]);
@@ -106,10 +111,14 @@ impl Core {
             self.tell(&EventKind::Unplaced { axes: unplaced }, 0.0, sink);
         }
         let to = &self.state.machine;
-        match motion {
-            _ if !way.is_some() => {}
-            Motion::Rapid => self.tell(&EventKind::Rapid { to: *to }, seconds, sink),
-            _ => self.tell(&EventKind::Feed { to: *to, rate }, seconds, sink),
+        if way.is_some() {
+            let kind = match motion {
+                Motion::Rapid => EventKind::Rapid { to: *to },
+                _ => EventKind::Feed { to: *to, rate },
+            };
+            self.tell(&kind, seconds, sink);
+            // There is nothing in it to drop, which needn't be found out.
+            std::mem::forget(kind);
         }
         Some(())
     }

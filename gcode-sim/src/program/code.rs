@@ -67,9 +67,9 @@ pub struct Instruction {
 /// Where an operator finds a value that it needs. Most are numbers and variables, which then needn't wait on the stack.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Source {
-    Number(f64),
     /// A variable of [`Slot::Free`].
     Free(u16),
+    Number(f64),
     Computed(Computed),
 }
 
