@@ -49,7 +49,7 @@ pub(crate) fn targets(program: &Program, settings: &Settings) -> Vec<CalledAs> {
 pub(super) fn sites(program: &Program, settings: &Settings) -> Vec<CallSite> {
     let mut found = Vec::new();
     for (block, op) in program.ops().iter().enumerate() {
-        if let OpKind::Words(words) = &op.kind {
+        if let OpKind::Words(words) = op.kind() {
             found.extend(site(block, words, settings));
         }
     }

@@ -41,7 +41,7 @@ impl Flow {
             if op.number.is_some() {
                 flow.numbered.push(block);
             }
-            let mut ways = flow.of_block(program, block, &op.kind);
+            let mut ways = flow.of_block(program, block, op.kind());
             if op.skip().is_some() {
                 ways.falls = true;
             }

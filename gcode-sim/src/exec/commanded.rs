@@ -26,7 +26,7 @@ impl Control {
             if core.is_skipped(op) {
                 return;
             }
-            if let OpKind::Words(words) = core.behind_if(&op.kind) {
+            if let OpKind::Words(words) = core.behind_if(op.kind()) {
                 core.commanded(words, &mut commanded);
             }
         });
@@ -36,7 +36,7 @@ impl Control {
     /// Whether [`Control::next_block`] will do all that it says: it isn't skipped, and no condition stands in the way.
     pub fn next_is_whole(&self) -> bool {
         let is_whole = self.look_at_next(|core, op| {
-            let condition = match &op.kind {
+            let condition = match op.kind() {
                 OpKind::If { condition, .. }
                 | OpKind::Statement(
                     Statement::IfGoto { condition, .. } | Statement::IfThen { condition, .. },

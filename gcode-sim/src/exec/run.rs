@@ -8,7 +8,7 @@ use super::plan::Flow;
 use super::{Control, Core, Limits, Outcome, Stopped, Watcher};
 use crate::alarm::Alarm;
 use crate::motion::{Place, Sink};
-use crate::program::{Aside, Form, Library, Memory, OpKind};
+use crate::program::{Act, Asked, Form, Library, Memory, OpKind};
 use crate::source::Span;
 
 /// A run ends after so many moves, and so many for every block that it may execute: a cycle with K or with small
@@ -137,24 +137,23 @@ impl Control {
             core.block = op.span;
             core.blocks += 1;
             core.frame.next = place + 1;
-            if let Some(aside) = &op.aside
-                && core.passes_over(aside)?
-            {
-                return Ok(());
-            }
-            let OpKind::Statement(statement) = &op.kind else { break (program, op) };
+            let Act::Plain(OpKind::Statement(statement)) = op.act() else { break (program, op) };
             core.statement(program, statement, watch, sink)?;
             if core.blocks >= until || !core.aftermath.is_none() {
                 return Ok(());
             }
         };
         // In a long file most blocks are plain moves.
-        if let OpKind::Words(words) = &op.kind
+        if let Act::Plain(OpKind::Words(words)) = op.act()
             && core.step(op, words, sink)
         {
             return Ok(());
         }
-        let mut kind = &op.kind;
+        let mut kind = match op.act() {
+            Act::Plain(kind) => kind,
+            Act::Asked(asked) if core.passes_over(asked)? => return Ok(()),
+            Act::Asked(asked) => &asked.kind,
+        };
         if let OpKind::If { condition, then } = kind
             && core.holds(condition)?
         {
@@ -261,15 +260,15 @@ impl Core {
 
     /// Block skip, and ways of writing that not every control reads; whether the block isn't done.
     #[inline(never)]
-    fn passes_over(&mut self, aside: &Aside) -> Checked<bool> {
-        if let Some(switch) = aside.skip {
+    fn passes_over(&mut self, asked: &Asked) -> Checked<bool> {
+        if let Some(switch) = asked.skip {
             let is_on = self.skips(switch);
             self.notes.entry(Note::BlockSkip { switch: switch.max(1), is_on }).or_insert(self.block);
             if is_on {
                 return Ok(true);
             }
         }
-        for form in &aside.forms {
+        for form in &asked.forms {
             if !form.node.is_taken(&self.settings) {
                 return Err(form.node.alarm().at(form.span));
             }

@@ -31,7 +31,7 @@ impl Control {
                 return;
             }
             silent.skips.extend(op.skip().map(skip));
-            match core.behind_if(&op.kind) {
+            match core.behind_if(op.kind()) {
                 OpKind::Words(words) => core.silent(words, &mut silent),
                 OpKind::Statement(_) => {
                     silent.writes = self.will_assign().iter().any(|number| *number >= 1000);

@@ -1,7 +1,7 @@
 //! Macro statements: assignments, branches and loops. They never tell the machine anything, but for #3000 and #3006.
 use super::Core;
 use super::endless::Watch;
-use super::eval::{Checked, RoundsTo, at, index, integer, is_true};
+use super::eval::{Checked, RoundsTo, at, index, integer};
 use super::notes::Note;
 use super::vars::{Kind, Value};
 use crate::alarm::Alarm;

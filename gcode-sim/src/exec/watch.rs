@@ -70,7 +70,7 @@ impl Control {
         let mut numbers = Vec::new();
         self.look_at_next(|core, op| {
             if !core.is_skipped(op) {
-                core.targets(&op.kind, &mut numbers);
+                core.targets(op.kind(), &mut numbers);
             }
         });
         numbers

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::loops::Loops;
 use super::lower::{Lowering, lower_case};
-use super::{Op, OpIndex, OpKind, Statement};
+use super::{Act, Op, OpIndex, OpKind, Statement};
 use crate::alarm::Alarm;
 use crate::source::{Bytes, SourceId};
 use crate::syntax::{ast, block_at, sequence_number_at};
@@ -123,7 +123,11 @@ impl Blocks {
 /// Writes into a WHILE, DO or END where its partner stands. What has none becomes the alarm that a control raises when
 /// it gets there.
 fn join(op: &mut Op, place: OpIndex, loops: &Loops) {
-    let OpKind::Statement(statement) = &mut op.kind else { return };
+    let kind = match &mut op.act {
+        Act::Plain(kind) => kind,
+        Act::Asked(asked) => &mut asked.kind,
+    };
+    let OpKind::Statement(statement) = kind else { return };
     let alarm = match statement {
         Statement::While { number, end, .. } | Statement::Do { number, end } => match loops.end_of(place) {
             Some(found) => {
@@ -141,7 +145,7 @@ fn join(op: &mut Op, place: OpIndex, loops: &Loops) {
         },
         _ => return,
     };
-    op.kind = OpKind::Alarm(alarm.at(op.span));
+    *kind = OpKind::Alarm(alarm.at(op.span));
 }
 
 #[cfg(test)]
@@ -165,7 +169,7 @@ mod tests {
         for place in (0..LINES).chain((0..2 * LINES).map(|step| step * 7919 % LINES)).chain(near) {
             let op = memory.ready(id, place).unwrap();
             let span = op.span;
-            if let OpKind::Statement(Statement::Compute { code, .. }) = &op.kind {
+            if let OpKind::Statement(Statement::Compute { code, .. }) = op.kind() {
                 let wanted = Operation::Add([Source::Number(place as f64), Source::Free(2)]);
                 assert_eq!(code[0].operation, wanted);
             } else {

@@ -1,7 +1,7 @@
 //! Lowers a tree to operations, block by block; what can't run becomes the alarm it raises when it is reached.
 use super::code::{Code, Instruction, Slot, Target};
 use super::expr::Context;
-use super::{Aside, Form, Op, OpKind, Operand, PrintPart, Statement};
+use super::{Act, Asked, Form, Op, OpKind, Operand, PrintPart, Statement};
 use crate::alarm::{Alarm, Placed};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast;
@@ -39,14 +39,11 @@ impl Lowering {
         }
         let kind = self.kind(block).unwrap_or_else(OpKind::Alarm);
         let skip = block.skip.as_ref().map(|s| s.node);
-        let aside = skip.is_some() || !self.forms.is_empty();
-        Op {
-            nth: 0,
-            span: block.span,
-            number: block.number.as_ref().map(|n| n.node),
-            aside: aside.then(|| Box::new(Aside { skip, forms: self.forms.drain(..).collect() })),
-            kind,
-        }
+        let act = match skip.is_some() || !self.forms.is_empty() {
+            true => Act::Asked(Box::new(Asked { skip, forms: self.forms.drain(..).collect(), kind })),
+            false => Act::Plain(kind),
+        };
+        Op { nth: 0, span: block.span, number: block.number.as_ref().map(|n| n.node), act }
     }
 
     fn kind(&mut self, block: &ast::Block) -> Lowered<OpKind> {

@@ -61,29 +61,59 @@ pub struct Op {
     nth: u32,
     pub span: Span,
     pub number: Option<u32>,
-    /// What few blocks have.
-    pub aside: Option<Box<Aside>>,
-    pub kind: OpKind,
+    act: Act,
 }
 
-/// What stands in a block beside what it does.
-#[derive(Debug, Default)]
-pub struct Aside {
+/// What a block does, and what is asked before.
+#[derive(Debug)]
+pub(crate) enum Act {
+    /// Nothing is, as of most.
+    Plain(OpKind),
+    Asked(Box<Asked>),
+}
+
+impl Default for Act {
+    fn default() -> Self {
+        Self::Plain(OpKind::Empty)
+    }
+}
+
+/// What a block does that is asked something first.
+#[derive(Debug)]
+pub(crate) struct Asked {
     /// The block skip switch at its start.
     pub skip: Option<u8>,
     /// What is written in it that not every control takes, in the order it is held against the settings.
     pub forms: Box<[Spanned<Form>]>,
+    pub kind: OpKind,
 }
 
 impl Op {
+    /// What the block does, once nothing is asked any more.
+    pub fn kind(&self) -> &OpKind {
+        match &self.act {
+            Act::Plain(kind) => kind,
+            Act::Asked(asked) => &asked.kind,
+        }
+    }
+
+    #[inline(always)]
+    pub(crate) fn act(&self) -> &Act {
+        &self.act
+    }
+
+    fn asked(&self) -> Option<&Asked> {
+        if let Act::Asked(asked) = &self.act { Some(asked) } else { None }
+    }
+
     /// The block skip switch at its start.
     pub fn skip(&self) -> Option<u8> {
-        self.aside.as_ref()?.skip
+        self.asked()?.skip
     }
 
     /// What is written in it that not every control takes.
     pub fn forms(&self) -> &[Spanned<Form>] {
-        self.aside.as_ref().map_or(&[], |aside| &aside.forms)
+        self.asked().map_or(&[], |asked| &asked.forms)
     }
 }
 

@@ -61,7 +61,7 @@ fn moving(settings: &Settings, unit: &Unit<'_>) -> Vec<Option<OpIndex>> {
         seen[block] = true;
         moving[block] = moving[block].or(motion);
         let op = unit.program.ops().get(block);
-        let after = match op.and_then(|op| effect(settings, &op.kind)) {
+        let after = match op.and_then(|op| effect(settings, op.kind())) {
             Some(true) => Some(block),
             Some(false) => None,
             None => moving[block],

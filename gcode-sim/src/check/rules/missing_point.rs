@@ -21,11 +21,11 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     if settings.calculator_input || in_increments(unit, settings) {
         return Vec::new();
     }
-    let inch = unit.program.ops().iter().any(|op| words(&op.kind).is_some_and(|words| has(words, &[200])));
+    let inch = unit.program.ops().iter().any(|op| words(op.kind()).is_some_and(|words| has(words, &[200])));
     let parameters = parameters::inside(unit.program);
     let mut found = Vec::new();
     for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.reached[*block]) {
-        let Some(words) = words(&op.kind).filter(|_| !parameters[block]) else { continue };
+        let Some(words) = words(op.kind()).filter(|_| !parameters[block]) else { continue };
         for word in measures(words, settings) {
             let Some(number) = without_point(word) else { continue };
             let counted = (word.letter == b'Q' && words.call().is_none()) || has(words, &[40]);
@@ -89,7 +89,7 @@ fn drills(words: &Words) -> bool {
 /// A program without any point whose numbers are of 1 mm and more counts in increments on purpose.
 fn in_increments(unit: &Unit<'_>, settings: &Settings) -> bool {
     let mut large = false;
-    for words in unit.program.ops().iter().filter_map(|op| words(&op.kind)) {
+    for words in unit.program.ops().iter().filter_map(|op| words(op.kind())) {
         for word in measures(words, settings) {
             match word.value {
                 Input::Literal(Decimal { places: Some(_), .. }) => return false,

@@ -30,7 +30,7 @@ pub(super) fn refused<'a>(
 /// The blocks that raise an alarm as they are read and that something reaches.
 pub(super) fn alarms<'a>(unit: &'a Unit<'_>) -> impl Iterator<Item = (usize, &'a Placed)> {
     unit.program.ops().iter().enumerate().filter(|(block, _)| unit.reached[*block]).filter_map(
-        |(block, op)| match &op.kind {
+        |(block, op)| match op.kind() {
             OpKind::Alarm(alarm) => Some((block, alarm)),
             OpKind::Statement(Statement::IfThen { then, .. }) => match &**then {
                 Statement::Alarm(alarm) => Some((block, alarm)),
