@@ -94,6 +94,7 @@ impl Watch {
     }
 
     /// Told of every jump back; ends the run where the program is now known never to leave the loop.
+    #[inline(always)]
     pub(super) fn jumped(&mut self, core: &mut Core) {
         if self.waiting || core.clock_read.get() {
             self.wait(core);
@@ -150,6 +151,7 @@ impl Watch {
         }
     }
 
+    #[cold]
     /// Takes note of a jump that leads further out, or further up, than those since the control was copied.
     fn widen(&mut self, core: &Core) {
         let Frame { program, next: to, .. } = core.frame;

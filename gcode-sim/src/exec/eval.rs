@@ -4,7 +4,7 @@ use std::cell::Cell;
 use super::Core;
 use super::functions::{angle, atan2, binary, compare, is_finite, no_value, power, value_of};
 use super::notes::Note;
-use super::vars::{Kind, Value};
+use super::vars::{Last, Kind, Value};
 use crate::alarm::{Alarm, Placed};
 use crate::program::{Computed, Instruction, Operand, Operation, Rare, STACK, Slot, Source};
 use crate::source::Span;
@@ -64,32 +64,31 @@ impl Core {
     #[inline]
     pub(super) fn holds(&self, condition: &[Instruction]) -> Checked<bool> {
         if let [Instruction { operation: Operation::Compare(relation, [left, right]), .. }] = condition {
-            let left = self.fetch(left, Value::Vacant);
-            return Ok(compare(*relation, left, self.fetch(right, Value::Vacant)));
+            let left = self.fetch(left, Last::VACANT);
+            return Ok(compare(*relation, left, self.fetch(right, Last::VACANT)));
         }
         self.run_code(condition, RoundsTo::Whole).map(is_true)
     }
 
     /// A value that an operator needs; `last` is what the instruction before has given.
     #[inline(always)]
-    fn fetch(&self, source: &Source, last: Value) -> Value {
+    fn fetch(&self, source: &Source, last: Last) -> Value {
         match source {
             Source::Number(number) => Value::Number(*number),
             Source::Free(place) => self.vars.free(*place),
-            Source::Computed(Computed::Last) => last,
+            Source::Computed(Computed::Last) => last.into(),
             Source::Computed(Computed::Waiting) => self.waiting.pop(),
         }
     }
 
     /// As [`Core::fetch`], where only the number is asked for.
     #[inline(always)]
-    fn number(&self, source: &Source, last: Value) -> f64 {
-        if let Source::Free(place) = source {
-            return self.vars.number(*place);
-        }
+    fn number(&self, source: &Source, last: Last) -> f64 {
         match source {
+            Source::Free(place) => self.vars.number(*place),
             Source::Number(number) => *number,
-            source => self.fetch(source, last).number(),
+            Source::Computed(Computed::Last) => last.number,
+            Source::Computed(Computed::Waiting) => self.waiting.pop().number(),
         }
     }
 
@@ -114,15 +113,15 @@ impl Core {
     /// arguments to whole numbers.
     #[inline(never)]
     pub(super) fn run_code(&self, code: &[Instruction], rounds: RoundsTo) -> Checked<Value> {
-        self.evaluate(code, rounds)
+        self.evaluate(code, rounds).map(Value::from)
     }
 
     /// As [`Core::run_code`], in the loop over the blocks itself: most expressions are those of assignments.
     #[inline(always)]
-    pub(super) fn evaluate(&self, code: &[Instruction], rounds: RoundsTo) -> Checked<Value> {
-        let mut last = Value::Vacant;
+    pub(super) fn evaluate(&self, code: &[Instruction], rounds: RoundsTo) -> Checked<Last> {
+        let mut last = Last::VACANT;
         for Instruction { operation, span } in code {
-            last = Value::Number(match operation {
+            last = Last::of(match operation {
                 Operation::Add(values) => self.binary(BinaryOp::Add, values, last, span)?,
                 Operation::Subtract(values) => self.binary(BinaryOp::Sub, values, last, span)?,
                 Operation::Multiply(values) => self.binary(BinaryOp::Mul, values, last, span)?,
@@ -139,7 +138,7 @@ impl Core {
                     self.atan(y, self.number(x, last), span)?
                 }
                 Operation::Rare(rare) => {
-                    last = at(self.rare(rare, last, rounds), *span)?;
+                    last = at(self.rare(rare, last, rounds), *span)?.into();
                     continue;
                 }
             });
@@ -149,7 +148,7 @@ impl Core {
 
     /// + − * /. Where there is no value, it is worked out why.
     #[inline(always)]
-    fn binary(&self, op: BinaryOp, [left, right]: &[Source; 2], last: Value, span: &Span) -> Checked<f64> {
+    fn binary(&self, op: BinaryOp, [left, right]: &[Source; 2], last: Last, span: &Span) -> Checked<f64> {
         let left = self.number(left, last);
         let right = self.number(right, last);
         let value = match op {
@@ -191,10 +190,10 @@ impl Core {
 
     /// What only some expressions contain. It stands apart so that the others needn't carry it.
     #[inline(never)]
-    fn rare(&self, operation: &Rare, last: Value, rounds: RoundsTo) -> Result<Value, Alarm> {
-        let unsure = &self.settings.unsure;
+    fn rare(&self, operation: &Rare, before: Last, rounds: RoundsTo) -> Result<Value, Alarm> {
+        let (last, unsure) = (Value::from(before), &self.settings.unsure);
         Ok(match *operation {
-            Rare::Load(ref source) => self.fetch(source, last),
+            Rare::Load(ref source) => self.fetch(source, before),
             Rare::Wait => {
                 self.waiting.push(last);
                 last
@@ -215,12 +214,12 @@ impl Core {
                 value => value,
             },
             Rare::Whole(op, [ref left, ref right]) => {
-                let left = self.number(left, last);
-                Value::Number(binary(op, left, self.number(right, last), unsure)?)
+                let left = self.number(left, before);
+                Value::Number(binary(op, left, self.number(right, before), unsure)?)
             }
             Rare::Power([ref base, ref exponent]) => {
-                let base = self.number(base, last);
-                Value::Number(power(base, self.number(exponent, last))?)
+                let base = self.number(base, before);
+                Value::Number(power(base, self.number(exponent, before))?)
             }
             Rare::RoundTo(_) if rounds == RoundsTo::Whole => Value::Number(round(last.number())),
             Rare::RoundTo(letter) => Value::Number(self.round_to(letter, last.number())),
@@ -235,10 +234,10 @@ impl Core {
             }
             Rare::Parameter { bit, axis } => {
                 let mut part = last;
-                let mut before = |is_there: bool| {
+                let mut wait = |is_there: bool| {
                     is_there.then(|| std::mem::replace(&mut part, self.waiting.pop()).number())
                 };
-                let (axis, bit) = (before(axis), before(bit));
+                let (axis, bit) = (wait(axis), wait(bit));
                 Value::Number(self.parameter(part.number(), bit, axis)?)
             }
             Rare::AxisNumber(letter) => {

@@ -55,7 +55,7 @@ impl Core {
         match statement {
             Statement::Compute { place, code } => {
                 let value = self.run_code(code, RoundsTo::Increment)?;
-                self.vars.set_free(*place, value);
+                self.vars.set_free(*place, value.into());
             }
             Statement::Assign { target, target_span, value, text } => {
                 let slot = at(self.target(target), *target_span)?;
@@ -189,7 +189,7 @@ impl Core {
         sink: &mut S,
     ) -> Checked<()> {
         match slot {
-            Slot::Free(place) => self.vars.set_free(place, value),
+            Slot::Free(place) => self.vars.set_free(place, value.into()),
             Slot::Other(number) => self.write_other(number, value, text, span, sink)?,
         }
         Ok(())
