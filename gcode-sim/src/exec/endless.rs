@@ -194,9 +194,9 @@ impl Seen {
     /// Whether nothing that is looked at first differs. What counts turns tells nearly all moments apart.
     #[inline]
     fn may_be_again(&self, core: &Core) -> bool {
-        self.next == core.frame.next
+        self.machine[0].to_bits() == core.state.machine[0].to_bits()
+            && self.next == core.frame.next
             && !self.vars.differ_at(self.differed, &core.vars)
-            && self.machine[0].to_bits() == core.state.machine[0].to_bits()
     }
 
     /// Whether the control has come to this moment again.

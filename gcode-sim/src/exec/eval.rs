@@ -4,7 +4,7 @@ use std::cell::Cell;
 use super::Core;
 use super::functions::{angle, atan2, binary, compare, is_finite, no_value, power, value_of};
 use super::notes::Note;
-use super::vars::{Last, Kind, Value};
+use super::vars::{Kind, Last, Value};
 use crate::alarm::{Alarm, Placed};
 use crate::program::{Computed, Instruction, Operand, Operation, Rare, STACK, Slot, Source};
 use crate::source::Span;
@@ -63,11 +63,20 @@ impl Core {
     /// Whether a condition holds; most are one comparison.
     #[inline]
     pub(super) fn holds(&self, condition: &[Instruction]) -> Checked<bool> {
-        if let [Instruction { operation: Operation::Compare(relation, [left, right]), .. }] = condition {
-            let left = self.fetch(left, Last::VACANT);
-            return Ok(compare(*relation, left, self.fetch(right, Last::VACANT)));
+        match self.compared(condition) {
+            Some(holds) => Ok(holds),
+            None => self.run_code(condition, RoundsTo::Whole).map(is_true),
         }
-        self.run_code(condition, RoundsTo::Whole).map(is_true)
+    }
+
+    /// Whether a condition of one comparison holds; `None` of others.
+    #[inline(never)]
+    fn compared(&self, condition: &[Instruction]) -> Option<bool> {
+        let [Instruction { operation: Operation::Compare(relation, [left, right]), .. }] = condition else {
+            return None;
+        };
+        let left = self.fetch(left, Last::VACANT);
+        Some(compare(*relation, left, self.fetch(right, Last::VACANT)))
     }
 
     /// A value that an operator needs; `last` is what the instruction before has given.
