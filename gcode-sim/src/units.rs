@@ -163,6 +163,29 @@ mod tests {
         }
     }
 
+    proptest! {
+        #[test]
+        fn what_is_nearest_is_the_same_within_a_size(value in any::<f64>(), near in -2e6..2e6, tenths in 0_i32..5) {
+            let (scale, most) = (10_f64.powi(tenths), 999_999_999.0);
+            for value in [value, near, near * 1e4, (near * 2.0).round() / 2.0 / scale] {
+                let wanted = Some(nearest(value, scale)).filter(|number| number.abs() <= most);
+                prop_assert_eq!(nearest_within(value, scale, most).map(f64::to_bits), wanted.map(f64::to_bits));
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_beyond_a_size_is_not_rounded() {
+        for value in [1e9, 4e15, 1e300, f64::MAX, f64::INFINITY, f64::NAN] {
+            assert_eq!(
+                [nearest_within(value, 1.0, 999_999_999.0), nearest_within(-value, 1.0, 999_999_999.0)],
+                [None; 2]
+            );
+        }
+        assert_eq!(nearest_within(999_999.9994, 1000.0, 999_999_999.0), Some(999_999_999.0));
+        assert_eq!(nearest_within(-0.5005, 1000.0, 999_999_999.0), Some(-501.0));
+    }
+
     #[test]
     fn rounding_is_that_of_the_standard_library_bit_for_bit() {
         let near =

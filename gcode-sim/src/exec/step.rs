@@ -187,7 +187,10 @@ mod tests {
 
     fn block() -> impl Strategy<Value = String> {
         let number = "-?[0-9]{1,2}(\\.[0-9]{0,5})?|#[1-3]|#500[13]";
-        let axes = format!("(X({number}))?(Y({number}))?(Z({number}))?(A({number}))?(B({number}))?");
+        // Mostly in their order and once each.
+        let axes = format!(
+            "(X({number}))?(Y({number}))?(Z({number}))?(A({number}))?(B({number}))?([XYZAB]({number}))?"
+        );
         let moves = format!("(N[0-9]{{1,3}} )?(G0?[01]|G9[01]|G0|G1)?{axes}(F[1-9][0-9]{{1,2}})?");
         let others = "G9[01]|G2[01]|G5[45]|G52X[1-9]Y2\\.|G92X[0-9]\\.|G43H1|G49|G28Z0|G53X[0-9]|G10L2P1X0\\.[1-9]5|G10L10P1R1\\.5\
             |G81X1\\.Z-2\\.R1\\.F50|G80|G15|G16|G68X0Y0R30\\.|G69|G51X0Y0P2000|G50|G51\\.1X0|G50\\.1X0|G41D1|G40|G31Z-1\\.F50\
