@@ -3,14 +3,65 @@
 use std::hint::cold_path;
 
 use super::Core;
-use super::travel::Way;
+use super::travel::{Counting, Way};
 use super::vars::Value;
 use super::words::G_CODES;
-use crate::motion::{EventKind, MAX_AXES, Position, Sink};
+use crate::motion::{Axis, EventKind, MAX_AXES, Position, Sink};
 use crate::program::codes::Effect;
 use crate::program::modes::{CutterSide, Motion, Polar};
 use crate::program::{Input, Op, Slot, Words};
 use crate::units::MmPerMin;
+
+/// The axes that a block names.
+#[derive(Clone, Copy)]
+struct Named {
+    /// As bits, axis 1 the lowest.
+    axes: u8,
+    /// Behind the last of them.
+    next: Axis,
+    /// They stand in their order.
+    ascend: bool,
+}
+
+impl Named {
+    const NONE: Self = Self { axes: 0, next: 0, ascend: true };
+
+    /// Notes an axis; `None` where it is named twice.
+    #[inline(always)]
+    fn add(&mut self, axis: Axis) -> Option<()> {
+        if axis < self.next {
+            cold_path();
+            if self.axes >> axis & 1 == 1 {
+                return None;
+            }
+            self.ascend = false;
+        } else {
+            self.next = axis + 1;
+        }
+        self.axes |= 1 << axis;
+        Some(())
+    }
+
+    fn iter(self) -> impl Iterator<Item = Axis> {
+        (0..MAX_AXES).filter(move |axis| self.axes >> axis & 1 == 1)
+    }
+}
+
+/// What the words of a plain move say.
+struct Led {
+    motion: Motion,
+    /// F, where it is commanded.
+    f: Option<f64>,
+    named: Named,
+    way: Way,
+}
+
+/// Where they lead the axes that they name. It stands apart, so that the compiler keeps the rest in registers.
+#[derive(Default)]
+struct Ends {
+    programmed: Position,
+    machine: Position,
+}
 
 impl Core {
     /// Does a block that is a plain move; whether it is one. A block that alarms is none: the steps of a block know where
@@ -28,10 +79,52 @@ impl Core {
             return None;
         }
         let state = &*self.state;
-        let (mut motion, mut f) = (state.modal.motion, None);
-        let (mut programmed, mut machine) = (Position::default(), Position::default());
-        let (mut named, mut next, mut ascend) = (0_u8, 0, true);
-        let mut way = Way::default();
+        let mut ends = Ends::default();
+        let mut led = Led { motion: state.modal.motion, f: None, named: Named::NONE, way: Way::default() };
+        self.lead_plain(words, counting, &mut led, &mut ends)?;
+        if !led.named.ascend {
+            // A sum depends on its order, a way must not on that of the words.
+            led.way = self.way(led.named.iter(), &state.machine, &ends.machine);
+        }
+        let f = led.f.unwrap_or(state.codes.f);
+        let (rate, seconds) = match led.motion {
+            Motion::Rapid => {
+                (MmPerMin::ZERO, self.rapid_seconds_of(led.named.iter(), &state.machine, &ends.machine))
+            }
+            Motion::Linear => self.time_of(state, f, led.way, led.f.is_some()).ok()?,
+            _ => return None,
+        };
+
+        let before = state.unplaced;
+        let unplaced = if before == 0 { 0 } else { counting.placed(before, led.named.axes) };
+        let state = &mut *self.state;
+        for axis in led.named.iter() {
+            (state.programmed[axis], state.machine[axis]) = (ends.programmed[axis], ends.machine[axis]);
+        }
+        state.unplaced = unplaced;
+        (state.modal.motion, state.codes.f) = (led.motion, f);
+        state.codes.n = op.number.unwrap_or(state.codes.n);
+        self.note_work(self.state.modal.work, true);
+        if unplaced != before {
+            self.tell(&EventKind::Unplaced { axes: unplaced }, 0.0, sink);
+        }
+        if led.way.is_some() {
+            let to = &self.state.machine;
+            let kind = match led.motion {
+                Motion::Rapid => EventKind::Rapid { to: *to },
+                _ => EventKind::Feed { to: *to, rate },
+            };
+            self.tell(&kind, seconds, sink);
+            // There is nothing in it to drop, which needn't be found out.
+            std::mem::forget(kind);
+        }
+        Some(())
+    }
+
+    /// Goes where the words of a block lead; `None` where it isn't a plain move, or alarms.
+    #[inline(always)]
+    fn lead_plain(&self, words: &Words, counting: &Counting, led: &mut Led, ends: &mut Ends) -> Option<()> {
+        let state = &*self.state;
         for word in &words.list {
             if word.comma {
                 return None;
@@ -39,17 +132,14 @@ impl Core {
             let Some(axis) = self.settings.axes.find(word.letter) else {
                 match &word.value {
                     Input::G(_, found) => match found.on(self.settings.codes)?.effect {
-                        Effect::Motion(code) => motion = code,
+                        Effect::Motion(code) => led.motion = code,
                         _ => return None,
                     },
-                    _ if word.letter != b'F' || f.is_some() => return None,
+                    _ if word.letter != b'F' || led.f.is_some() => return None,
                     _ => {
-                        f = self
-                            .raw(words, word)
-                            .ok()?
-                            .map(|raw| self.feed_of(&raw, state))
-                            .transpose()
-                            .ok()?
+                        if let Some(raw) = self.raw(words, word).ok()? {
+                            led.f = Some(self.feed_of(&raw, state).ok()?);
+                        }
                     }
                 }
                 continue;
@@ -65,62 +155,15 @@ impl Core {
                     self.rounded(value, word.letter, &counting.measure)?
                 }
             };
-            if axis < next {
-                cold_path();
-                if named >> axis & 1 == 1 {
-                    return None;
-                }
-                ascend = false;
-            } else {
-                next = axis + 1;
-            }
-            named |= 1 << axis;
-            let (from, to) = (state.machine[axis], &mut machine[axis]);
-            (programmed[axis], *to) = self.end_of(axis, value, state, counting);
+            led.named.add(axis)?;
+            let to = &mut ends.machine[axis];
+            (ends.programmed[axis], *to) = self.end_of(axis, value, state, counting);
             if to.abs() > counting.most {
                 return None;
             }
-            way.add(*to - from, self.settings.axes.is_rotary(axis));
+            led.way.add(*to - state.machine[axis], self.settings.axes.is_rotary(axis));
         }
-        if named == 0 {
-            return None;
-        }
-        let axes = (0..MAX_AXES).filter(|axis| named >> axis & 1 == 1);
-        if !ascend {
-            // A sum depends on its order, a way must not on that of the words.
-            way = self.way(axes.clone(), &state.machine, &machine);
-        }
-        let in_force = f.unwrap_or(state.codes.f);
-        let (rate, seconds) = match motion {
-            Motion::Rapid => (MmPerMin::ZERO, self.rapid_seconds_of(axes.clone(), &state.machine, &machine)),
-            Motion::Linear => self.time_of(state, in_force, way, f.is_some()).ok()?,
-            _ => return None,
-        };
-
-        let before = state.unplaced;
-        let unplaced = if before == 0 { 0 } else { counting.placed(before, named) };
-        let state = &mut *self.state;
-        for axis in axes {
-            (state.programmed[axis], state.machine[axis]) = (programmed[axis], machine[axis]);
-        }
-        state.unplaced = unplaced;
-        (state.modal.motion, state.codes.f) = (motion, in_force);
-        state.codes.n = op.number.unwrap_or(state.codes.n);
-        self.note_work(self.state.modal.work, true);
-        if unplaced != before {
-            self.tell(&EventKind::Unplaced { axes: unplaced }, 0.0, sink);
-        }
-        let to = &self.state.machine;
-        if way.is_some() {
-            let kind = match motion {
-                Motion::Rapid => EventKind::Rapid { to: *to },
-                _ => EventKind::Feed { to: *to, rate },
-            };
-            self.tell(&kind, seconds, sink);
-            // There is nothing in it to drop, which needn't be found out.
-            std::mem::forget(kind);
-        }
-        Some(())
+        (led.named.axes != 0).then_some(())
     }
 
     /// Finds out, behind everything that could change it, whether the next block can be a plain move, and what its axes
