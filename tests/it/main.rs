@@ -12,6 +12,7 @@ mod arithmetic;
 mod blocks;
 mod budget;
 mod burr;
+mod causes;
 mod changes;
 mod check;
 mod chord_limits;

@@ -22,6 +22,7 @@ mod passes;
 mod path;
 mod record;
 mod recorder;
+mod repeated;
 mod returns;
 mod set_up;
 mod steps;
@@ -83,7 +84,7 @@ impl Compared {
         let (motion, modes) = motion::compare(old, new, &links, &holes.moved, tolerance, edit.is_some());
         changes.extend(motion);
         // Where all moves go where they went, they may be made otherwise.
-        if changes.len() > 1
+        if !changes.is_empty()
             && let Some(edit) = edit.or_else(|| one_cause::edit(old, new))
         {
             changes = one_cause::joined(changes, &edit);

@@ -10,6 +10,7 @@ use super::groups::{Groups, Sides};
 use super::holes::Explained;
 use super::left::mode;
 use super::record::Record;
+use super::repeated::{is_speed_alone, repeated};
 use super::returns::returns;
 use super::set_up::{relied_on, set_up};
 use super::steps::{Kind, Quiet, Step, difference, goes_with, near};
@@ -25,8 +26,8 @@ pub(super) fn compare(
     tolerance: f64,
     is_one_edit: bool,
 ) -> (Vec<Change>, BTreeSet<u32>) {
-    let conditions = Conditions::new(old, new);
-    let strokes = conditions.strokes(links);
+    let conditions = Conditions::new(old, new, links);
+    let strokes = conditions.strokes();
     let (records, axes) = ((old, new), &old.axes);
     let mut motion = Motion {
         old: &old.steps,
@@ -41,23 +42,25 @@ pub(super) fn compare(
     for region in regions(links, &old.steps, &new.steps) {
         motion.region(&region, links, explained);
     }
-    let shifted = shifted(links, &old.steps, &new.steps, tolerance);
+    let repeated: BTreeSet<usize> = repeated(links, &old.steps, &new.steps).collect();
+    let shifted = shifted(links, &repeated, (&old.steps, &new.steps), tolerance);
     let mut set_up = set_up(links, explained, (&old.steps, &new.steps));
     let untold = |k| set_up.contains(&k) && !shifted.contains_key(&k);
     let relied = relied_on(links, untold, records, tolerance);
     set_up.extend(with_code(links, &old.steps, &new.steps));
     set_up.extend(with_moves(links, &old.steps, &new.steps));
+    set_up.extend(repeated);
     for (k, link) in links.iter().enumerate() {
         match shifted.get(&k) {
             None if set_up.contains(&k) => {}
             None => motion.step(*link, explained),
             Some(None) => {}
-            // Beside the rapids of another level the same block stands at another time.
-            Some(Some((i, j, _))) if motion.strokes.is_any() && motion.is_same_block(*i, *j) => {}
-            Some(Some((i, j, word))) => motion.shifted(&old.steps[*i], &new.steps[*j], word),
+            // Beside the rapids of another level the same block stands at another time, and so does the spindle's turn in another cycle.
+            Some(Some((i, j, _))) if motion.is_of_strokes(*i, *j) => {}
+            Some(Some((i, j, word))) => motion.shifted(*i, *j, word),
         }
     }
-    let (mut changes, mut modes) = conditions.changes(links);
+    let (mut changes, mut modes) = conditions.changes();
     let kinds = [("G00", "G01", KINDS[0]), ("G01", "G00", KINDS[1])];
     let left = (mode(old, 1), mode(new, 1));
     let kind = kinds
@@ -117,10 +120,16 @@ fn elsewhere(links: &[Link], old: &[Step], new: &[Step], tolerance: f64) -> Vec<
 type Shifted = (usize, usize, &'static str);
 
 /// Stops, M codes and the like that are lost in one place and added in another, by the first link of the two; with
-/// nothing at the second.
-fn shifted(links: &[Link], old: &[Step], new: &[Step], tolerance: f64) -> BTreeMap<usize, Option<Shifted>> {
+/// nothing at the second. Those of `idle` links are none.
+fn shifted(
+    links: &[Link],
+    idle: &BTreeSet<usize>,
+    (old, new): (&[Step], &[Step]),
+    tolerance: f64,
+) -> BTreeMap<usize, Option<Shifted>> {
     let mut known = BTreeMap::new();
-    let alone = |(_, link): &(usize, &Link)| match link {
+    let alone = |(k, link): &(usize, &Link)| match link {
+        _ if idle.contains(k) => false,
         Link::Lost(i) => !old[*i].is_move(),
         Link::Added(j) => !new[*j].is_move(),
         Link::Same(..) | Link::Changed(..) => false,
@@ -340,9 +349,12 @@ impl<'a> Motion<'a> {
         })
     }
 
-    fn is_same_block(&self, old: usize, new: usize) -> bool {
-        let (old, new) = (self.old[old].place, self.new[new].place);
-        is_same_block(&self.records.0.places[old], &self.records.1.places[new])
+    /// A step that comes at another time because its cycle is another one, or the level that its rapids run at.
+    fn is_of_strokes(&self, i: usize, j: usize) -> bool {
+        let (old, new) = (self.old[i].place, self.new[j].place);
+        let is_same_block = || is_same_block(&self.records.0.places[old], &self.records.1.places[new]);
+        self.strokes.is_any()
+            && (is_same_block() || self.strokes.explain(&Link::Changed(i, j), self.records.0, self.records.1))
     }
 
     /// Whether a move that is there once only is on the line of a hole that is deeper now or less deep, made by its block.
@@ -410,7 +422,7 @@ impl<'a> Motion<'a> {
                 if is_told_of_holes((Some(&step.kind), None), explained) {
                     return;
                 }
-                let text = format!("{} is no longer there", described(&step.kind, self.axes));
+                let text = format!("{} is no longer there", self.called(self.old, i));
                 self.groups.tell(code(&step.kind), step.kind.name(), text, (Some(step), None));
             }
             Link::Added(j) if !self.new[j].is_move() => {
@@ -418,16 +430,25 @@ impl<'a> Motion<'a> {
                 if is_told_of_holes((None, Some(&step.kind)), explained) {
                     return;
                 }
-                let text = format!("{} is new", described(&step.kind, self.axes));
+                let text = format!("{} is new", self.called(self.new, j));
                 self.groups.tell(code(&step.kind), step.kind.name(), text, (None, Some(step)));
             }
             Link::Lost(_) | Link::Added(_) => {}
         }
     }
 
+    /// What a step that is there once only says: where the spindle turns already, its speed.
+    fn called(&self, steps: &[Step], step: usize) -> String {
+        match steps[step].kind {
+            Kind::Spindle(_, speed) if is_speed_alone(steps, step) => format!("S{speed}"),
+            ref kind => described(kind, self.axes),
+        }
+    }
+
     /// A step that comes at another time.
-    fn shifted(&mut self, old: &'a Step, new: &'a Step, word: &str) {
-        let text = format!("{} comes {word} than before", described(&old.kind, self.axes));
+    fn shifted(&mut self, i: usize, j: usize, word: &str) {
+        let (old, new) = (&self.old[i], &self.new[j]);
+        let text = format!("{} comes {word} than before", self.called(self.old, i));
         self.groups.tell(code(&old.kind), old.kind.name(), text, (Some(old), Some(new)));
     }
 
