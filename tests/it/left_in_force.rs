@@ -9,11 +9,13 @@ use gcode_sim::motion::{Event, EventKind, Sink};
 use gcode_sim::session::{Request, Run, run};
 use gcode_tests::alignment::{alarm, value};
 
-/// A family's main program, its macros, and the first number of the two alarms of its main program.
-const FAMILIES: [(&str, u32, &[(u32, u16)], u16); 3] = [
-    ("pin-holes", 8100, &[(8101, 3017), (8102, 3030)], 3017),
-    ("honeycomb", 8300, &[(8301, 3051)], 3051),
-    ("burr", 8400, &[(8401, 3097)], 3097),
+/// A family with its main program, and its macros with their alarms; the main program has the first one's, and the next for shifts.
+type Family = (&'static str, u32, &'static [(u32, u16)]);
+
+const FAMILIES: [Family; 3] = [
+    ("pin-holes", 8100, &[(8101, 3017), (8102, 3030)]),
+    ("honeycomb", 8300, &[(8301, 3051)]),
+    ("burr", 8400, &[(8401, 3097)]),
 ];
 
 /// What changes coordinates, with what cancels it. Of a Haas the first alone is simulated.
@@ -72,7 +74,8 @@ fn shown(number: u16, dialect: &str) -> u16 {
 
 #[test]
 fn coordinates_that_are_changed_are_an_alarm_before_a_main_program_does_anything() {
-    for (family, main, _, number) in FAMILIES {
+    for (family, main, macros) in FAMILIES {
+        let number = macros[0].1;
         for (dialect, seen) in [("fanuc-31i", 4), ("fanuc-0i-f", 4), ("haas-ngc", 1)] {
             let package = on(family, dialect);
             let start = format!("M98 P{main}");
@@ -93,7 +96,7 @@ fn coordinates_that_are_changed_are_an_alarm_before_a_main_program_does_anything
 /// A tilted plane is of the group of G68, as 68.2.
 #[test]
 fn a_tilted_plane_is_one_of_them() {
-    for (family, main, ..) in &FAMILIES[..2] {
+    for (family, main, _) in &FAMILIES[..2] {
         let (refused, told) =
             behind(&on(family, "fanuc-31i"), "G68.2 X0 Y0 Z0 I0 J90. K0", &format!("M98 P{main}"));
         assert!(alarm(&refused).is_some() && told.is_empty(), "O{main}");
@@ -102,7 +105,7 @@ fn a_tilted_plane_is_one_of_them() {
 
 #[test]
 fn a_macro_called_by_hand_refuses_them_too() {
-    for (family, main, macros, _) in FAMILIES {
+    for (family, main, macros) in FAMILIES {
         for (dialect, seen) in [("fanuc-31i", 4), ("haas-ngc", 1)] {
             if (family, dialect) == ("burr", "haas-ngc") {
                 continue;
@@ -126,7 +129,8 @@ fn a_macro_called_by_hand_refuses_them_too() {
 /// A grinder has no Z. G43 leaves the tip elsewhere, and that is no shift.
 #[test]
 fn a_shift_of_the_work_zero_is_an_alarm_before_a_main_program_does_anything() {
-    for (family, main, _, number) in FAMILIES {
+    for (family, main, macros) in FAMILIES {
+        let number = macros[0].1;
         for dialect in ["fanuc-31i", "fanuc-0i-f", "haas-ngc"] {
             let package = on(family, dialect);
             let start = format!("M98 P{main}");
@@ -135,7 +139,11 @@ fn a_shift_of_the_work_zero_is_an_alarm_before_a_main_program_does_anything() {
             let shifts = ["G52 X0.001", "G52 Y-5.", "G52 X-300. Y300.", "G92 X1."];
             for shift in shifts.into_iter().chain(in_z.into_iter().filter(|_| family != "burr")) {
                 let (refused, told) = behind(&package, shift, &start);
-                assert_eq!(alarm(&refused), Some(shown(number + 1, dialect)), "O{main} behind {shift}, {dialect}");
+                assert_eq!(
+                    alarm(&refused),
+                    Some(shown(number + 1, dialect)),
+                    "O{main} behind {shift}, {dialect}"
+                );
                 assert_eq!(told, [], "O{main} behind {shift}, {dialect}");
             }
             // Cancelled, of a rotary that the program's own G52 cancels, or in a work offset that isn't the program's.
@@ -157,7 +165,7 @@ fn a_shift_of_the_work_zero_is_an_alarm_before_a_main_program_does_anything() {
 /// Whoever wants the holes 5 aside in X writes it to G54 or the external offset: by hand, the machine ends 5 farther.
 #[test]
 fn an_offset_that_is_set_is_no_shift() {
-    for (family, main, ..) in FAMILIES {
+    for (family, main, _) in FAMILIES {
         let package = on(family, "fanuc-31i");
         let start = format!("M98 P{main}");
         let plain = value(&behind(&package, "", &start).0, 5021);
@@ -173,7 +181,7 @@ fn an_offset_that_is_set_is_no_shift() {
 /// A macro works where its caller wants it: with G52 X5. it ends 5 farther.
 #[test]
 fn a_macro_called_by_hand_follows_a_shift() {
-    for (family, main, macros, _) in FAMILIES {
+    for (family, main, macros) in FAMILIES {
         let package = on(family, "fanuc-31i");
         let call = call(&package, main, macros[0].0);
         let [plain, shifted] = ["", "G52 X5."].map(|blocks| behind(&package, blocks, &call).0);

@@ -30,7 +30,8 @@ impl Start {
     /// What the head says of it: alarms of its own, shifts, coordinates.
     pub(super) fn remarks(&self) -> Vec<String> {
         let k = alarm_thousands(self.control.dialect);
-        let mut lines = vec![format!("ALARMS {k}{:03} {k}{:03} HERE BEFORE ANYTHING MOVES", self.changed, self.shifted)];
+        let mut lines =
+            vec![format!("ALARMS {k}{:03} {k}{:03} HERE BEFORE ANYTHING MOVES", self.changed, self.shifted)];
         lines.extend(remarks(self.axes, &self.cancelled));
         lines
     }
