@@ -34,6 +34,7 @@ mod honeycomb;
 mod limits;
 mod misplaced;
 mod mutations;
+mod order;
 mod packaging;
 mod page;
 mod pilots;
