@@ -23,7 +23,7 @@ fn lines(change: &Change) -> [Option<u32>; 2] {
     [&change.old, &change.new].map(|side| side.as_ref().map(|at| at.line))
 }
 
-/// T1 spots, T2 drills and T3 reams four holes, each of them by its own list of positions: X30 stands in lines 8, 15 and 22.
+/// T1 spots, T2 drills and T3 reams four holes, each of them by its own list of positions: X30 stands in lines 8, 16 and 24.
 fn reamed(lists: [&str; 3]) -> String {
     let tool = |number: usize, cycle: &str| {
         format!(
@@ -51,7 +51,7 @@ fn passes_in_another_order_are_one_entry_at_their_own_block() {
         let message = format!("hole 2: pass {number} of 3, by T{number}, made at another time, after hole 3");
         assert_eq!(found.len(), 1, "{found:#?}");
         assert_eq!((&*found[0].code, &found[0].message), ("hole-order", &message));
-        let line = 8 + 7 * tool as u32;
+        let line = 8 + 8 * tool as u32;
         assert_eq!(lines(&found[0]), [Some(line), Some(line + 1)]);
     }
     // The hole with all its passes.

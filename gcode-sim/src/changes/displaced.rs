@@ -1,6 +1,5 @@
 //! Cuts that are gone in one place and made in another: the same ways at another time.
 use std::collections::{BTreeMap, BTreeSet};
-use std::ops::Range;
 
 use super::align::Link;
 use super::change::Change;
@@ -16,8 +15,8 @@ pub(super) struct Run(Vec<(usize, usize)>);
 /// Of so many cuts that are alike the one is looked for with most moves before and behind it.
 const MOST_ALIKE: usize = 16;
 
-/// Runs of such moves with a cut in each that is of no hole: holes have an order of their own. Steps of them that were linked
-/// with others are linked no more.
+/// Runs of such moves with a cut in each that is of no hole, for holes have an order of their own, on the other side of cuts that
+/// both make. Steps of them that were linked with others are linked no more.
 pub(super) fn displaced(links: &mut Vec<Link>, old: &Record, new: &Record, tolerance: f64) -> Vec<Run> {
     let sides = (Side::new(old, links, |link| link.sides().0), Side::new(new, links, |link| link.sides().1));
     let runs = find(&sides, tolerance);
@@ -39,51 +38,52 @@ struct Side<'a> {
     moves: Vec<usize>,
     /// Whether the other revision doesn't make each of them at that time.
     is_free: Vec<bool>,
-    of_holes: BTreeSet<usize>,
+    /// How many cuts that both make at that time come before each.
+    before: Vec<usize>,
+    /// The places of the feeds of holes.
+    holes: Vec<usize>,
 }
 
 impl<'a> Side<'a> {
     fn new(record: &'a Record, links: &[Link], side: impl Fn(&Link) -> Option<usize>) -> Self {
         let moves = links.iter().filter_map(|link| Some((side(link)?, !matches!(link, Link::Same(..)))));
-        let (moves, is_free) = moves.filter(|(step, _)| record.steps[*step].is_move()).unzip();
-        let of_holes = record.feeds.iter().flatten().copied().collect();
-        Self { steps: &record.steps, moves, is_free, of_holes }
+        let (moves, is_free): (Vec<usize>, Vec<bool>) =
+            moves.filter(|(step, _)| record.steps[*step].is_move()).unzip();
+        let cuts = moves.iter().zip(&is_free).scan(0, |cuts, (step, is_free)| {
+            let before = *cuts;
+            *cuts += usize::from(!is_free && record.steps[*step].kind.rate().is_some());
+            Some(before)
+        });
+        let before = cuts.collect();
+        let feeds: BTreeSet<usize> = record.feeds.iter().flatten().copied().collect();
+        let holes = (0..moves.len()).filter(|place| feeds.contains(&moves[*place])).collect();
+        Self { steps: &record.steps, moves, is_free, before, holes }
     }
 
     fn step(&self, place: usize) -> &'a Step {
         &self.steps[self.moves[place]]
     }
 
-    /// The places of free cuts that aren't of holes.
-    fn cuts(&self) -> impl Iterator<Item = usize> {
-        let is_cut = |place: &usize| {
-            self.is_free[*place]
-                && self.step(*place).kind.rate().is_some()
-                && !self.of_holes.contains(&self.moves[*place])
-        };
-        (0..self.moves.len()).filter(is_cut)
+    /// A cut that is none of a hole, nor on the line of the nearest hole's: its pecks, its feed out.
+    fn is_cut(&self, place: usize) -> bool {
+        let next = self.holes.partition_point(|hole| *hole < place);
+        let near = [next.checked_sub(1), Some(next)].into_iter().flatten();
+        let mut near = near.filter_map(|hole| self.holes.get(hole));
+        let step = self.step(place);
+        step.kind.rate().is_some() && !near.any(|hole| step.is_on_line_of(self.step(*hole)))
     }
 
-    /// Whether all cuts are those of holes, or on the line of the nearest one: its pecks, its feed out.
-    fn is_all_of_holes(&self, places: Range<usize>) -> bool {
-        let holes = places.clone().filter(|place| self.of_holes.contains(&self.moves[*place]));
-        let holes: Vec<usize> = holes.collect();
-        let is_of_hole = |place: usize| {
-            let next = holes.partition_point(|hole| *hole < place);
-            let near = [next.checked_sub(1), Some(next)].into_iter().flatten();
-            let mut near = near.filter_map(|hole| holes.get(hole));
-            near.any(|hole| self.step(place).is_on_line_of(self.step(*hole)))
-        };
-        places.filter(|place| self.step(*place).kind.rate().is_some()).all(is_of_hole)
+    fn free_cuts(&self) -> impl Iterator<Item = usize> {
+        (0..self.moves.len()).filter(|place| self.is_free[*place] && self.is_cut(*place))
     }
 }
 
 fn find((old, new): &(Side<'_>, Side<'_>), tolerance: f64) -> Vec<Run> {
     let mut alike: BTreeMap<[i64; MAX_AXES], Vec<usize>> = BTreeMap::new();
-    new.cuts().for_each(|place| alike.entry(about(new.step(place))).or_default().push(place));
+    new.free_cuts().for_each(|place| alike.entry(about(new.step(place))).or_default().push(place));
     let (mut known, mut known_now) = (BTreeSet::new(), BTreeSet::new());
     let mut runs = Vec::new();
-    for p in old.cuts() {
+    for p in old.free_cuts() {
         if known.contains(&p) {
             continue;
         }
@@ -98,13 +98,12 @@ fn find((old, new): &(Side<'_>, Side<'_>), tolerance: f64) -> Vec<Run> {
             (on > 0).then(|| (p - back, q - back, back + on))
         };
         let places = alike.get(&about(old.step(p))).into_iter().flatten();
+        let places = places.filter(|q| old.before[p] != new.before[**q]);
         let longest = places.take(MOST_ALIKE).filter_map(run).max_by_key(|(_, _, moves)| *moves);
         let Some((from, from_now, moves)) = longest else { continue };
         known.extend(from..from + moves);
         known_now.extend(from_now..from_now + moves);
-        if !old.is_all_of_holes(from..from + moves) {
-            runs.push(Run((0..moves).map(|n| (old.moves[from + n], new.moves[from_now + n])).collect()));
-        }
+        runs.push(Run((0..moves).map(|n| (old.moves[from + n], new.moves[from_now + n])).collect()));
     }
     runs
 }

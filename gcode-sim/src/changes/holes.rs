@@ -52,18 +52,28 @@ pub(super) struct Explained {
     pub tools: BTreeSet<(u32, u32)>,
 }
 
-pub(super) fn compare(old: &Record, new: &Record, links: &[Link], tolerance: f64) -> Compared {
+/// With `by_motion` a hole is the one that the same feed makes, wherever it is; else the nearest comes first.
+pub(super) fn compare(
+    old: &Record,
+    new: &Record,
+    links: &[Link],
+    by_motion: bool,
+    tolerance: f64,
+) -> Compared {
     let passes = (Passes::of(old), Passes::of(new));
     let (was, is) = (passes.0.firsts(), passes.1.firsts());
-    let wanted: Vec<Hole> = was.iter().map(|hole| old.holes[*hole].hole(nowhere)).collect();
-    let found: Vec<Found> = is.iter().map(|hole| new.holes[*hole].clone()).collect();
-    let limits = Tolerances { position: 2.0 * tolerance, depth: tolerance, diameter: tolerance };
-    let comparison = Comparison::new(&wanted, &found, limits, None);
     let mut partner: Vec<Option<usize>> = vec![None; old.holes.len()];
-    for pair in &comparison.pairs {
-        partner[was[pair.wanted]] = Some(is[pair.found]);
+    let mut extra: BTreeSet<usize> = is.iter().copied().collect();
+    if !by_motion {
+        let wanted: Vec<Hole> = was.iter().map(|hole| old.holes[*hole].hole(nowhere)).collect();
+        let found: Vec<Found> = is.iter().map(|hole| new.holes[*hole].clone()).collect();
+        let limits = Tolerances { position: 2.0 * tolerance, depth: tolerance, diameter: tolerance };
+        let comparison = Comparison::new(&wanted, &found, limits, None);
+        for pair in &comparison.pairs {
+            partner[was[pair.wanted]] = Some(is[pair.found]);
+        }
+        extra = comparison.extra.iter().map(|hole| is[*hole]).collect();
     }
-    let extra = comparison.extra.iter().map(|hole| is[*hole]).collect();
     pair_by_motion(&mut partner, extra, links, &passes);
     let mut told = Told { old, new, tolerance, passes, moved: Explained::default() };
     let mut changes = told.pairs(&partner);
@@ -135,8 +145,14 @@ impl Told<'_> {
             }
             let Some(feeds) = last(self.old, hole).zip(last(self.new, other)) else { continue };
             let way = |(i, j): (usize, usize)| difference(&self.new.steps[j].to, &self.old.steps[i].to);
-            let is_finish = !near(&way(feeds), &Position::default(), self.tolerance);
-            let feeds = aspects.strayed.first().filter(|_| !is_finish).map_or(feeds, |pass| pass.steps);
+            let is_elsewhere = |feeds| !near(&way(feeds), &Position::default(), self.tolerance);
+            let (was, is) = (&self.passes.0.steps[hole], &self.passes.1.steps[other]);
+            let is_one_by_one = aspects.is_elsewhere() && was.len() == is.len();
+            let passes = was.iter().copied().zip(is.iter().copied()).filter(|_| is_one_by_one);
+            let strayed = aspects.strayed.first().map(|pass| pass.steps);
+            let others = strayed.into_iter().chain(passes).filter(|feeds| is_elsewhere(*feeds));
+            let feeds =
+                std::iter::once(feeds).chain(others).find(|feeds| is_elsewhere(*feeds)).unwrap_or(feeds);
             let [was, is] = self.blocks(feeds);
             changed.push(Changed { hole, aspects, feeds, shift: way(feeds), cause: cause(was, is) });
         }

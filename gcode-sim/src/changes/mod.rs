@@ -4,6 +4,7 @@
 //! make no difference unless the control does something else because of them.
 mod align;
 mod arcs;
+mod as_a_whole;
 mod begin;
 mod cause;
 mod change;
@@ -76,8 +77,11 @@ impl Compared {
         let mut links = align::up_to_the_end(&old.steps, &new.steps, (stops(old), stops(new)), tolerance);
         let [old_steps, new_steps] = up_to_the_stop(old, new, &mut links);
         let (old, new) = (&*old.up_to(old_steps), &*new.up_to(new_steps));
+        let whole = as_a_whole::as_a_whole(&links, old, new, tolerance);
+        let is_whole = whole.is_some();
+        links = whole.unwrap_or(links);
         let runs = displaced::displaced(&mut links, old, new, tolerance);
-        let holes = holes::compare(old, new, &links, tolerance);
+        let holes = holes::compare(old, new, &links, is_whole, tolerance);
         let is_by_other = outcome.is_some();
         let is_to_the_end = !is_by_other || [old, new].iter().all(|record| record.outcome() == "end");
         let mut changes: Vec<Change> = outcome.into_iter().collect();
