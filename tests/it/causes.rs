@@ -134,3 +134,71 @@ fn a_lone_entry_names_the_block_that_was_edited() {
     assert_eq!(texts(&more), ["hole-added: a hole added: at 20.000 0.000 2.000, fed 7.000 mm"]);
     assert_eq!(blocks(&more[0]), [Some("G65 P2 K2."), Some("G65 P2 K3.")]);
 }
+
+/// Holes 20 apart, each of them spotted and drilled; a shift by 20 leads each to the place of the next.
+#[test]
+fn a_shift_by_the_pitch_moves_all_holes() {
+    let program = |shift: &str, end: &str| {
+        let tool = |number: u32, z: u32| {
+            format!(
+                "T{number} M6\nG43 H{number} Z50.\nG98 G81 X10. Y0 Z-{z}. R2. F100\nX30.\nX50.\nX70.\nG80\n"
+            )
+        };
+        format!("O1\nG90 G54 G17\nG0 X0 Y0\n{shift}{}{}G0 Z50.\n{end}M30\n", tool(1, 1), tool(2, 9))
+    };
+    let (old, new) = (program("", ""), program("G52 X20.\n", "G52 X0\n"));
+    assert_eq!(told(&old, &new), ["hole-moved: holes 1, 2, 3, 4: moved by +20.0000 +0.0000 +0.0000 mm"]);
+    assert_eq!(told(&new, &old), ["hole-moved: holes 1, 2, 3, 4: moved by -20.0000 +0.0000 +0.0000 mm"]);
+    // Left in force, the next program finds it.
+    let left = told(&old, &program("G52 X20.\n", ""));
+    assert_eq!(left.len(), 2, "{left:#?}");
+    assert_eq!(left[1], "work-offset: G52 X is left 20 instead of 0");
+    // Positions that are written otherwise are holes lost and added: three stay where they were.
+    let row =
+        |positions: &str| format!("O1\nG90 G54 G0 X0 Y0 Z50.\nG81 Z-5. R2. F100 K0\n{positions}G80\nM30\n");
+    assert_eq!(
+        told(&row("X10.\nX30.\nX50.\nX70.\n"), &row("X30.\nX50.\nX70.\nX90.\n")),
+        [
+            "hole-lost: hole 1: lost, at 10.000 0.000 2.000, fed 7.000 mm",
+            "hole-added: a hole added: at 90.000 0.000 2.000, fed 7.000 mm"
+        ]
+    );
+}
+
+/// H3 holds 5 mm less than H2, all Z of the tool are 5 mm more: the machine does what it did. The pecks are 5 mm apart as well.
+#[test]
+fn another_length_that_all_moves_make_up_for_is_told_once_with_them() {
+    let program = |length: u32, up: i32| {
+        format!(
+            "O1\nG10 L10 P2 R90.\nG10 L10 P3 R85.\nG90 G54 G17\nG0 X0 Y0\nT2 M6\nG43 H{length} Z{}.\n\
+            G98 G83 X10. Y0 Z{}. R{}. Q5. F100\nX30.\nG80\nM30\n",
+            50 + up,
+            up - 25,
+            up + 2
+        )
+    };
+    let machine = format!("{FIXED}[[tool]]\nnumber = 2\nlength = 90.0\n");
+    let (old, new) = (program(2, 0), program(3, 5));
+    let found = texts(&found_by(&machine, &old, &new));
+    assert_eq!(found.len(), 2, "{found:#?}");
+    assert!(found[0].starts_with("tool-length: G43 H3 instead of G43 H2 ("), "{found:#?}");
+    let made_up = "move-shifted: moves end elsewhere, by Z +5.0000 as programmed, the machine where it was by another length (";
+    assert!(found[1].starts_with(made_up), "{found:#?}");
+    assert!(found[1].ends_with(" rapids, 12 feeds)"), "two holes of six pecks: {found:#?}");
+    let back = texts(&found_by(&machine, &new, &old));
+    assert_eq!(back.len(), 2, "{back:#?}");
+    assert!(back[1].contains("by Z -5.0000 as programmed"), "{back:#?}");
+}
+
+/// T2 has taken over the length that T3 puts in force again: T3's G43 does what it did.
+#[test]
+fn a_length_that_is_in_force_already_is_not_lost() {
+    let old = "O1\nG10 L10 P2 R90.\nG10 L10 P3 R85.\nG90 G54 G0 X0 Y0\nT2 M6\nG43 H2 Z50.\nG98 G81 X10. Y0 Z-9. R2. F100\nG80\n\
+        T3 M6\nG43 H3 Z50.\nG98 G81 X30. Y0 Z-9. R2. F100\nG80\nM30\n";
+    let entries = found(old, &old.replace("G43 H2", "G43 H3"));
+    assert!(
+        entries.iter().all(|one| !one.message.contains("tool length offset Z 85.0000 is")),
+        "{entries:#?}"
+    );
+    assert!(entries[0].message.contains("G43 H3 instead of G43 H2"), "{entries:#?}");
+}

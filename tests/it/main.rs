@@ -35,6 +35,7 @@ mod left_in_force;
 mod limits;
 mod misplaced;
 mod mutations;
+mod order;
 mod packaging;
 mod page;
 mod pilots;

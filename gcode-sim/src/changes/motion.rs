@@ -1,11 +1,13 @@
 //! Moves, feeds, tools, spindle and stops that are different and that no changed hole explains.
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use super::align::Link;
 use super::arcs::reshaped;
 use super::cause::is_same_block;
 use super::change::Change;
 use super::conditions::{Conditions, Strokes};
+use super::displaced::Displaced;
+use super::elsewhen::{shifted, with_runs};
 use super::groups::{Groups, Sides};
 use super::holes::Explained;
 use super::left::mode;
@@ -19,10 +21,9 @@ use super::words::{code, described, point};
 use crate::motion::{Axes, MAX_AXES, Position};
 
 pub(super) fn compare(
-    old: &Record,
-    new: &Record,
+    (old, new): (&Record, &Record),
     links: &[Link],
-    explained: &Explained,
+    (explained, displaced): (&Explained, &Displaced<'_>),
     tolerance: f64,
     is_one_edit: bool,
 ) -> (Vec<Change>, BTreeSet<u32>) {
@@ -39,17 +40,18 @@ pub(super) fn compare(
         elsewhere: elsewhere(links, &old.steps, &new.steps, tolerance),
         records,
     };
-    for region in regions(links, &old.steps, &new.steps) {
+    for mut region in regions(links, &old.steps, &new.steps) {
+        region.retain(|(_, link)| !displaced.has(link));
         motion.region(&region, links, explained);
     }
-    let repeated: BTreeSet<usize> = repeated(links, &old.steps, &new.steps).collect();
-    let shifted = shifted(links, &repeated, (&old.steps, &new.steps), tolerance);
+    let mut shifted = shifted(links, (&old.steps, &new.steps), tolerance);
     let mut set_up = set_up(links, explained, (&old.steps, &new.steps));
+    set_up.extend(with_runs(&mut shifted, links, displaced));
     let untold = |k| set_up.contains(&k) && !shifted.contains_key(&k);
     let relied = relied_on(links, untold, records, tolerance);
     set_up.extend(with_code(links, &old.steps, &new.steps));
     set_up.extend(with_moves(links, &old.steps, &new.steps));
-    set_up.extend(repeated);
+    set_up.extend(repeated(links, &old.steps, &new.steps));
     for (k, link) in links.iter().enumerate() {
         match shifted.get(&k) {
             None if set_up.contains(&k) => {}
@@ -73,6 +75,7 @@ pub(super) fn compare(
         motion.groups.join_shifts();
     }
     changes.extend(motion.groups.changes());
+    changes.extend(displaced.changes(links));
     changes.extend(relied);
     (changes, modes)
 }
@@ -114,46 +117,6 @@ fn elsewhere(links: &[Link], old: &[Step], new: &[Step], tolerance: f64) -> Vec<
         }
     }
     ways
-}
-
-/// The lost and the added step of what comes at another time, and whether that is `earlier` or `later`.
-type Shifted = (usize, usize, &'static str);
-
-/// Stops, M codes and the like that are lost in one place and added in another, by the first link of the two; with
-/// nothing at the second. Those of `idle` links are none.
-fn shifted(
-    links: &[Link],
-    idle: &BTreeSet<usize>,
-    (old, new): (&[Step], &[Step]),
-    tolerance: f64,
-) -> BTreeMap<usize, Option<Shifted>> {
-    let mut known = BTreeMap::new();
-    let alone = |(k, link): &(usize, &Link)| match link {
-        _ if idle.contains(k) => false,
-        Link::Lost(i) => !old[*i].is_move(),
-        Link::Added(j) => !new[*j].is_move(),
-        Link::Same(..) | Link::Changed(..) => false,
-    };
-    let alone: Vec<(usize, &Link)> = links.iter().enumerate().filter(alone).collect();
-    // Of more than these each is an entry of its own.
-    if alone.len() > 1000 {
-        return known;
-    }
-    for (place, (k, link)) in alone.iter().enumerate() {
-        if known.contains_key(k) {
-            continue;
-        }
-        let pair = |(l, other): &(usize, &Link)| match (link, other) {
-            (Link::Lost(i), Link::Added(j)) => Some((*l, (*i, *j, "later"))),
-            (Link::Added(j), Link::Lost(i)) => Some((*l, (*i, *j, "earlier"))),
-            _ => None,
-        };
-        let mut others = alone[place + 1..].iter().filter(|(l, _)| !known.contains_key(l)).filter_map(pair);
-        if let Some((l, found)) = others.find(|(_, (i, j, _))| old[*i].is_same(&new[*j], tolerance)) {
-            known.extend([(*k, Some(found)), (l, None)]);
-        }
-    }
-    known
 }
 
 /// A feed of a changed hole.

@@ -1,7 +1,7 @@
-//! Spindle and coolant commands that say what is in force already: one more or fewer does nothing.
+//! Spindle, coolant and tool length that are commanded where they are in force already: one command more or fewer does nothing.
 use super::align::Link;
 use super::steps::{Category, Kind, Step};
-use crate::motion::Spindle;
+use crate::motion::{Position, Spindle};
 
 /// Lost and new ones, where both revisions go on with what they say.
 pub(super) fn repeated<'a>(
@@ -40,6 +40,7 @@ pub(super) fn is_speed_alone(steps: &[Step], at: usize) -> bool {
 enum Command {
     Spindle(Spindle, f64),
     Coolant(bool, Option<u32>),
+    Length(Position),
 }
 
 impl Command {
@@ -47,6 +48,7 @@ impl Command {
         match *kind {
             Kind::Spindle(turning, speed) => Some(Self::Spindle(turning, speed)),
             Kind::Coolant(on, code) => Some(Self::Coolant(on, code)),
+            Kind::Length(offset) => Some(Self::Length(offset)),
             _ => None,
         }
     }
@@ -55,11 +57,10 @@ impl Command {
     fn is_in_force(self, steps: &[Step], at: usize) -> bool {
         let at_once = steps[at..].iter().take_while(|step| !interrupts(step) && !step.is_move());
         let at = at + at_once.count();
-        let before = steps[..at].iter().rev().take_while(|step| !interrupts(step));
-        let last = before
-            .filter_map(|step| Self::of(&step.kind))
-            .find(|other| std::mem::discriminant(other) == std::mem::discriminant(&self));
-        last == Some(self)
+        let is_length = matches!(self, Self::Length(_));
+        let before = steps[..at].iter().rev().take_while(|step| is_length || !interrupts(step));
+        let is_alike = |other: &Self| std::mem::discriminant(other) == std::mem::discriminant(&self);
+        before.filter_map(|step| Self::of(&step.kind)).find(is_alike) == Some(self)
     }
 }
 
