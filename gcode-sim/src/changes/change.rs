@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::record::Where;
 
 /// What a change can be called, in the order of their sections in docs/changes.md.
-pub const CODES: [&str; 41] = [
+pub const CODES: [&str; 42] = [
     "outcome",
     "program",
     "start",
@@ -25,6 +25,7 @@ pub const CODES: [&str; 41] = [
     "move-lost",
     "move-kind",
     "move-arc",
+    "move-order",
     "feed",
     "dwell",
     "tool",

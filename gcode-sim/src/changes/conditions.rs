@@ -12,10 +12,11 @@ use super::record::Record;
 use super::steps::{Kind, Step, difference};
 use crate::motion::MAX_AXES;
 
-/// What is in force at the steps of both records.
+/// What is in force at the steps of both records, and where it differs.
 pub(super) struct Conditions<'a> {
     old: &'a Record,
     new: &'a Record,
+    groups: Vec<Group<'a>>,
 }
 
 /// Moves of which one thing differs alike.
@@ -30,14 +31,14 @@ struct Group<'a> {
 }
 
 impl<'a> Conditions<'a> {
-    pub(super) fn new(old: &'a Record, new: &'a Record) -> Self {
-        Self { old, new }
+    pub(super) fn new(old: &'a Record, new: &'a Record, links: &[Link]) -> Self {
+        Self { old, new, groups: groups(old, new, links) }
     }
 
     /// One entry for each thing that moves of both are made under differently, and the groups of G codes of which these
     /// entries say what the next program finds.
-    pub(super) fn changes(&self, links: &[Link]) -> (Vec<Change>, BTreeSet<u32>) {
-        let groups = self.groups(links);
+    pub(super) fn changes(&self) -> (Vec<Change>, BTreeSet<u32>) {
+        let groups = &self.groups;
         let stay = groups.iter().filter(|group| self.stays(group)).map(|group| group.aspect.group());
         (groups.iter().map(|group| self.change(group)).collect(), stay.collect())
     }
@@ -50,38 +51,10 @@ impl<'a> Conditions<'a> {
         was != is && (left(self.old), left(self.new)) == (was, is)
     }
 
-    fn groups(&self, links: &[Link]) -> Vec<Group<'a>> {
-        let mut groups: Vec<Group<'a>> = Vec::new();
-        for link in links {
-            let (Some(i), Some(j)) = link.sides() else { continue };
-            if !self.old.steps[i].is_move() {
-                continue;
-            }
-            for aspect in Aspect::ALL {
-                let (was, is) = self.words(aspect, i, j);
-                // Where one of them isn't in a cycle, its holes are told.
-                if was.text == is.text || was.text.is_empty() || is.text.is_empty() {
-                    continue;
-                }
-                let alike =
-                    |g: &&mut Group<'_>| g.aspect == aspect && g.was.text == was.text && g.is.text == is.text;
-                match groups.iter_mut().find(alike) {
-                    Some(group) => group.moves.push(i),
-                    None => groups.push(Group { aspect, was, is, moves: vec![i], first: (i, j) }),
-                }
-            }
-        }
-        groups
-    }
-
-    fn words(&self, aspect: Aspect, i: usize, j: usize) -> (&'a Word, &'a Word) {
-        (self.old.under(i).word(aspect), self.new.under(j).word(aspect))
-    }
-
     /// What explains that a cycle's strokes and lengths that are put in force are others: the words before and now.
-    pub(super) fn strokes(&self, links: &[Link]) -> Strokes {
+    pub(super) fn strokes(&self) -> Strokes {
         let mut strokes = Strokes::default();
-        for group in self.groups(links).iter().filter(|group| is_told_once(group.aspect)) {
+        for group in self.groups.iter().filter(|group| is_told_once(group.aspect)) {
             strokes.old.insert((group.aspect, group.was.text.clone()));
             strokes.new.insert((group.aspect, group.is.text.clone()));
         }
@@ -135,6 +108,30 @@ impl<'a> Conditions<'a> {
             n => format!("{n} holes"),
         }
     }
+}
+
+fn groups<'a>(old: &'a Record, new: &'a Record, links: &[Link]) -> Vec<Group<'a>> {
+    let mut groups: Vec<Group<'a>> = Vec::new();
+    for link in links {
+        let (Some(i), Some(j)) = link.sides() else { continue };
+        if !old.steps[i].is_move() {
+            continue;
+        }
+        for aspect in Aspect::ALL {
+            let (was, is) = (old.under(i).word(aspect), new.under(j).word(aspect));
+            // Where one of them isn't in a cycle, its holes are told.
+            if was.text == is.text || was.text.is_empty() || is.text.is_empty() {
+                continue;
+            }
+            let alike =
+                |g: &&mut Group<'_>| g.aspect == aspect && g.was.text == was.text && g.is.text == is.text;
+            match groups.iter_mut().find(alike) {
+                Some(group) => group.moves.push(i),
+                None => groups.push(Group { aspect, was, is, moves: vec![i], first: (i, j) }),
+            }
+        }
+    }
+    groups
 }
 
 fn is_told_once(aspect: Aspect) -> bool {

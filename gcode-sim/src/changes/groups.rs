@@ -2,7 +2,7 @@
 use super::cause::{Cause, cause};
 use super::change::Change;
 use super::record::Record;
-use super::steps::Step;
+use super::steps::{Step, near};
 use super::words::{coordinates, short};
 use crate::motion::{MAX_AXES, Position};
 
@@ -24,6 +24,8 @@ struct Group {
     varies: bool,
     /// The next program finds it so.
     stays: bool,
+    /// Of moves that end elsewhere as programmed: the machine stands where it stood.
+    is_made_up: bool,
     /// By how much each axis ends elsewhere at most, without signs.
     most: Position,
     cause: Option<Cause>,
@@ -85,6 +87,8 @@ impl<'a> Groups<'a> {
             group.cause = cause;
         }
         group.varies |= group.text != text;
+        group.is_made_up &=
+            sides.0.zip(sides.1).is_some_and(|(old, new)| near(&old.at, &new.at, self.tolerance));
         for axis in 0..MAX_AXES {
             group.most[axis] = group.most[axis].max(shift[axis].abs());
         }
@@ -160,6 +164,7 @@ impl<'a> Groups<'a> {
             speeds: None,
             varies: false,
             stays: false,
+            is_made_up: true,
             most: Position::default(),
             cause: None,
             old,
@@ -200,6 +205,7 @@ impl<'a> Groups<'a> {
 impl Group {
     fn join(&mut self, other: Self) {
         self.varies |= other.varies || other.text != self.text;
+        self.is_made_up &= other.is_made_up;
         for axis in 0..MAX_AXES {
             self.most[axis] = self.most[axis].max(other.most[axis]);
         }
@@ -248,6 +254,9 @@ impl Group {
 
     /// Moves that end elsewhere, by `text`.
     fn shifted(&self, text: &str) -> String {
+        let made_up =
+            if self.is_made_up { " as programmed, the machine where it was by another length" } else { "" };
+        let text = format!("{text}{made_up}");
         let first = match (self.old, self.new) {
             (None, Some(_)) => ", the first of them new",
             (Some(_), None) => ", the first of them gone",

@@ -7,6 +7,7 @@ use super::align::Link;
 use super::cause::cause;
 use super::change::Change;
 use super::hole_groups::{Aspects, Changed, Group, groups, named, plain, runs};
+use super::order::order;
 use super::passes::{Passes, in_words, more_or_fewer};
 use super::record::{Record, Where};
 use super::steps::{Step, difference, near};
@@ -51,22 +52,32 @@ pub(super) struct Explained {
     pub tools: BTreeSet<(u32, u32)>,
 }
 
-pub(super) fn compare(old: &Record, new: &Record, links: &[Link], tolerance: f64) -> Compared {
+/// With `by_motion` a hole is the one that the same feed makes, wherever it is; else the nearest comes first.
+pub(super) fn compare(
+    old: &Record,
+    new: &Record,
+    links: &[Link],
+    by_motion: bool,
+    tolerance: f64,
+) -> Compared {
     let passes = (Passes::of(old), Passes::of(new));
     let (was, is) = (passes.0.firsts(), passes.1.firsts());
-    let wanted: Vec<Hole> = was.iter().map(|hole| old.holes[*hole].hole(nowhere)).collect();
-    let found: Vec<Found> = is.iter().map(|hole| new.holes[*hole].clone()).collect();
-    let limits = Tolerances { position: 2.0 * tolerance, depth: tolerance, diameter: tolerance };
-    let comparison = Comparison::new(&wanted, &found, limits, None);
     let mut partner: Vec<Option<usize>> = vec![None; old.holes.len()];
-    for pair in &comparison.pairs {
-        partner[was[pair.wanted]] = Some(is[pair.found]);
+    let mut extra: BTreeSet<usize> = is.iter().copied().collect();
+    if !by_motion {
+        let wanted: Vec<Hole> = was.iter().map(|hole| old.holes[*hole].hole(nowhere)).collect();
+        let found: Vec<Found> = is.iter().map(|hole| new.holes[*hole].clone()).collect();
+        let limits = Tolerances { position: 2.0 * tolerance, depth: tolerance, diameter: tolerance };
+        let comparison = Comparison::new(&wanted, &found, limits, None);
+        for pair in &comparison.pairs {
+            partner[was[pair.wanted]] = Some(is[pair.found]);
+        }
+        extra = comparison.extra.iter().map(|hole| is[*hole]).collect();
     }
-    let extra = comparison.extra.iter().map(|hole| is[*hole]).collect();
     pair_by_motion(&mut partner, extra, links, &passes);
     let mut told = Told { old, new, tolerance, passes, moved: Explained::default() };
     let mut changes = told.pairs(&partner);
-    changes.extend(told.order(&partner));
+    changes.extend(told.order(&partner, links));
     changes.extend(told.lost_and_added(&partner));
     Compared { changes, pairs: told.all(&partner), moved: told.moved }
 }
@@ -134,8 +145,14 @@ impl Told<'_> {
             }
             let Some(feeds) = last(self.old, hole).zip(last(self.new, other)) else { continue };
             let way = |(i, j): (usize, usize)| difference(&self.new.steps[j].to, &self.old.steps[i].to);
-            let is_finish = !near(&way(feeds), &Position::default(), self.tolerance);
-            let feeds = aspects.strayed.first().filter(|_| !is_finish).map_or(feeds, |pass| pass.steps);
+            let is_elsewhere = |feeds| !near(&way(feeds), &Position::default(), self.tolerance);
+            let (was, is) = (&self.passes.0.steps[hole], &self.passes.1.steps[other]);
+            let is_one_by_one = aspects.is_elsewhere() && was.len() == is.len();
+            let passes = was.iter().copied().zip(is.iter().copied()).filter(|_| is_one_by_one);
+            let strayed = aspects.strayed.first().map(|pass| pass.steps);
+            let others = strayed.into_iter().chain(passes).filter(|feeds| is_elsewhere(*feeds));
+            let feeds =
+                std::iter::once(feeds).chain(others).find(|feeds| is_elsewhere(*feeds)).unwrap_or(feeds);
             let [was, is] = self.blocks(feeds);
             changed.push(Changed { hole, aspects, feeds, shift: way(feeds), cause: cause(was, is) });
         }
@@ -230,34 +247,13 @@ impl Told<'_> {
         }
     }
 
-    /// Holes made in another order: the fewest that can be called moved.
-    fn order(&mut self, partner: &[Option<usize>]) -> Option<Change> {
-        let paired: Vec<(usize, usize)> =
-            partner.iter().enumerate().filter_map(|(old, new)| Some((old, (*new)?))).collect();
-        // A hole that is made by fewer passes or more is begun at another time because of that.
-        let as_often =
-            |(old, new): &(usize, usize)| self.passes.0.tools[*old].len() == self.passes.1.tools[*new].len();
-        let paired: Vec<(usize, usize)> = paired.into_iter().filter(as_often).collect();
-        let stays = rising(&paired.iter().map(|(_, new)| *new).collect::<Vec<_>>());
-        let late: Vec<_> = (0..paired.len()).filter(|k| !stays.contains(k)).map(|k| paired[k]).collect();
-        let (first, other) = *late.first()?;
-        for (old, new) in &late {
-            self.moved.elsewhen.0.extend(&self.passes.0.steps[*old]);
-            self.moved.elsewhen.1.extend(&self.passes.1.steps[*new]);
-        }
-        let holes: Vec<usize> = late.iter().map(|(old, _)| *old).collect();
-        let before = paired.iter().filter(|(_, new)| *new < other).max_by_key(|(_, new)| *new);
-        let after = match before {
-            Some((hole, _)) => format!("after hole {}", hole + 1),
-            None => "first of all".to_owned(),
-        };
-        let message = match holes.len() {
-            1 => format!("{}: made at another time, {after}", named(&holes)),
-            _ => format!("{}: made at other times, hole {} {after}", named(&holes), first + 1),
-        };
-        Some(
-            Change::new("hole-order", message).once_at(place(self.old, first)).now_at(place(self.new, other)),
-        )
+    /// Holes, or passes of them, made in another order.
+    fn order(&mut self, partner: &[Option<usize>], links: &[Link]) -> Vec<Change> {
+        let order = order((self.old, self.new), links, &self.passes, partner);
+        let (was, is): (Vec<usize>, Vec<usize>) = order.steps.into_iter().unzip();
+        self.moved.elsewhen.0.extend(was);
+        self.moved.elsewhen.1.extend(is);
+        order.changes
     }
 
     fn lost_and_added(&mut self, partner: &[Option<usize>]) -> Vec<Change> {
@@ -336,37 +332,8 @@ impl Apart {
     }
 }
 
-/// The places of a longest rising subsequence.
-fn rising(values: &[usize]) -> BTreeSet<usize> {
-    // The last place of the best sequence of each length, and what each place follows.
-    let mut ends: Vec<usize> = Vec::new();
-    let mut follows: Vec<Option<usize>> = Vec::with_capacity(values.len());
-    for (place, value) in values.iter().enumerate() {
-        let length = ends.partition_point(|end| values[*end] < *value);
-        follows.push(length.checked_sub(1).map(|shorter| ends[shorter]));
-        match ends.get_mut(length) {
-            Some(end) => *end = place,
-            None => ends.push(place),
-        }
-    }
-    std::iter::successors(ends.last().copied(), |place| follows[*place]).collect()
-}
-
 fn described(found: &Found) -> String {
     let [x, y, z] = [found.entry.x, found.entry.y, found.entry.z].map(plain);
     let diameter = found.diameter.map(|d| format!("Φ{d} ")).unwrap_or_default();
     format!("{diameter}at {x:.3} {y:.3} {z:.3}, fed {:.3} mm", found.depth)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_fewest_holes_are_called_moved() {
-        assert_eq!(rising(&[0, 1, 2, 3]), BTreeSet::from([0, 1, 2, 3]));
-        assert_eq!(rising(&[1, 2, 0, 3]), BTreeSet::from([0, 1, 3]));
-        assert_eq!(rising(&[3, 2, 1, 0]).len(), 1);
-        assert_eq!(rising(&[]), BTreeSet::new());
-    }
 }

@@ -4,24 +4,30 @@
 //! make no difference unless the control does something else because of them.
 mod align;
 mod arcs;
+mod as_a_whole;
 mod begin;
 mod cause;
 mod change;
 mod conditions;
+mod displaced;
+mod elsewhen;
 mod groups;
 mod hole_groups;
 mod holes;
 mod idle;
 mod in_force;
 mod left;
+mod made_with;
 mod motion;
 mod near;
 mod older;
 mod one_cause;
+mod order;
 mod passes;
 mod path;
 mod record;
 mod recorder;
+mod repeated;
 mod returns;
 mod set_up;
 mod steps;
@@ -71,7 +77,11 @@ impl Compared {
         let mut links = align::up_to_the_end(&old.steps, &new.steps, (stops(old), stops(new)), tolerance);
         let [old_steps, new_steps] = up_to_the_stop(old, new, &mut links);
         let (old, new) = (&*old.up_to(old_steps), &*new.up_to(new_steps));
-        let holes = holes::compare(old, new, &links, tolerance);
+        let whole = as_a_whole::as_a_whole(&links, old, new, tolerance);
+        let is_whole = whole.is_some();
+        links = whole.unwrap_or(links);
+        let runs = displaced::displaced(&mut links, old, new, tolerance);
+        let holes = holes::compare(old, new, &links, is_whole, tolerance);
         let is_by_other = outcome.is_some();
         let is_to_the_end = !is_by_other || [old, new].iter().all(|record| record.outcome() == "end");
         let mut changes: Vec<Change> = outcome.into_iter().collect();
@@ -80,10 +90,12 @@ impl Compared {
         changes.extend(holes.changes);
         let is_all_same = links.iter().all(|link| matches!(link, Link::Same(..)));
         let edit = if is_all_same { None } else { one_cause::edit(old, new) };
-        let (motion, modes) = motion::compare(old, new, &links, &holes.moved, tolerance, edit.is_some());
+        let displaced = displaced::Displaced::new(&runs, &links, (old, new), tolerance);
+        let explained = (&holes.moved, &displaced);
+        let (motion, modes) = motion::compare((old, new), &links, explained, tolerance, edit.is_some());
         changes.extend(motion);
         // Where all moves go where they went, they may be made otherwise.
-        if changes.len() > 1
+        if !changes.is_empty()
             && let Some(edit) = edit.or_else(|| one_cause::edit(old, new))
         {
             changes = one_cause::joined(changes, &edit);

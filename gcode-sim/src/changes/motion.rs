@@ -1,15 +1,18 @@
 //! Moves, feeds, tools, spindle and stops that are different and that no changed hole explains.
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use super::align::Link;
 use super::arcs::reshaped;
 use super::cause::is_same_block;
 use super::change::Change;
 use super::conditions::{Conditions, Strokes};
+use super::displaced::Displaced;
+use super::elsewhen::{shifted, with_runs};
 use super::groups::{Groups, Sides};
 use super::holes::Explained;
 use super::left::mode;
 use super::record::Record;
+use super::repeated::{is_speed_alone, repeated};
 use super::returns::returns;
 use super::set_up::{relied_on, set_up};
 use super::steps::{Kind, Quiet, Step, difference, goes_with, near};
@@ -18,15 +21,14 @@ use super::words::{code, described, point};
 use crate::motion::{Axes, MAX_AXES, Position};
 
 pub(super) fn compare(
-    old: &Record,
-    new: &Record,
+    (old, new): (&Record, &Record),
     links: &[Link],
-    explained: &Explained,
+    (explained, displaced): (&Explained, &Displaced<'_>),
     tolerance: f64,
     is_one_edit: bool,
 ) -> (Vec<Change>, BTreeSet<u32>) {
-    let conditions = Conditions::new(old, new);
-    let strokes = conditions.strokes(links);
+    let conditions = Conditions::new(old, new, links);
+    let strokes = conditions.strokes();
     let (records, axes) = ((old, new), &old.axes);
     let mut motion = Motion {
         old: &old.steps,
@@ -38,26 +40,29 @@ pub(super) fn compare(
         elsewhere: elsewhere(links, &old.steps, &new.steps, tolerance),
         records,
     };
-    for region in regions(links, &old.steps, &new.steps) {
+    for mut region in regions(links, &old.steps, &new.steps) {
+        region.retain(|(_, link)| !displaced.has(link));
         motion.region(&region, links, explained);
     }
-    let shifted = shifted(links, &old.steps, &new.steps, tolerance);
+    let mut shifted = shifted(links, (&old.steps, &new.steps), tolerance);
     let mut set_up = set_up(links, explained, (&old.steps, &new.steps));
+    set_up.extend(with_runs(&mut shifted, links, displaced));
     let untold = |k| set_up.contains(&k) && !shifted.contains_key(&k);
     let relied = relied_on(links, untold, records, tolerance);
     set_up.extend(with_code(links, &old.steps, &new.steps));
     set_up.extend(with_moves(links, &old.steps, &new.steps));
+    set_up.extend(repeated(links, &old.steps, &new.steps));
     for (k, link) in links.iter().enumerate() {
         match shifted.get(&k) {
             None if set_up.contains(&k) => {}
             None => motion.step(*link, explained),
             Some(None) => {}
-            // Beside the rapids of another level the same block stands at another time.
-            Some(Some((i, j, _))) if motion.strokes.is_any() && motion.is_same_block(*i, *j) => {}
-            Some(Some((i, j, word))) => motion.shifted(&old.steps[*i], &new.steps[*j], word),
+            // Beside the rapids of another level the same block stands at another time, and so does the spindle's turn in another cycle.
+            Some(Some((i, j, _))) if motion.is_of_strokes(*i, *j) => {}
+            Some(Some((i, j, word))) => motion.shifted(*i, *j, word),
         }
     }
-    let (mut changes, mut modes) = conditions.changes(links);
+    let (mut changes, mut modes) = conditions.changes();
     let kinds = [("G00", "G01", KINDS[0]), ("G01", "G00", KINDS[1])];
     let left = (mode(old, 1), mode(new, 1));
     let kind = kinds
@@ -70,6 +75,7 @@ pub(super) fn compare(
         motion.groups.join_shifts();
     }
     changes.extend(motion.groups.changes());
+    changes.extend(displaced.changes(links));
     changes.extend(relied);
     (changes, modes)
 }
@@ -111,40 +117,6 @@ fn elsewhere(links: &[Link], old: &[Step], new: &[Step], tolerance: f64) -> Vec<
         }
     }
     ways
-}
-
-/// The lost and the added step of what comes at another time, and whether that is `earlier` or `later`.
-type Shifted = (usize, usize, &'static str);
-
-/// Stops, M codes and the like that are lost in one place and added in another, by the first link of the two; with
-/// nothing at the second.
-fn shifted(links: &[Link], old: &[Step], new: &[Step], tolerance: f64) -> BTreeMap<usize, Option<Shifted>> {
-    let mut known = BTreeMap::new();
-    let alone = |(_, link): &(usize, &Link)| match link {
-        Link::Lost(i) => !old[*i].is_move(),
-        Link::Added(j) => !new[*j].is_move(),
-        Link::Same(..) | Link::Changed(..) => false,
-    };
-    let alone: Vec<(usize, &Link)> = links.iter().enumerate().filter(alone).collect();
-    // Of more than these each is an entry of its own.
-    if alone.len() > 1000 {
-        return known;
-    }
-    for (place, (k, link)) in alone.iter().enumerate() {
-        if known.contains_key(k) {
-            continue;
-        }
-        let pair = |(l, other): &(usize, &Link)| match (link, other) {
-            (Link::Lost(i), Link::Added(j)) => Some((*l, (*i, *j, "later"))),
-            (Link::Added(j), Link::Lost(i)) => Some((*l, (*i, *j, "earlier"))),
-            _ => None,
-        };
-        let mut others = alone[place + 1..].iter().filter(|(l, _)| !known.contains_key(l)).filter_map(pair);
-        if let Some((l, found)) = others.find(|(_, (i, j, _))| old[*i].is_same(&new[*j], tolerance)) {
-            known.extend([(*k, Some(found)), (l, None)]);
-        }
-    }
-    known
 }
 
 /// A feed of a changed hole.
@@ -340,9 +312,12 @@ impl<'a> Motion<'a> {
         })
     }
 
-    fn is_same_block(&self, old: usize, new: usize) -> bool {
-        let (old, new) = (self.old[old].place, self.new[new].place);
-        is_same_block(&self.records.0.places[old], &self.records.1.places[new])
+    /// A step that comes at another time because its cycle is another one, or the level that its rapids run at.
+    fn is_of_strokes(&self, i: usize, j: usize) -> bool {
+        let (old, new) = (self.old[i].place, self.new[j].place);
+        let is_same_block = || is_same_block(&self.records.0.places[old], &self.records.1.places[new]);
+        self.strokes.is_any()
+            && (is_same_block() || self.strokes.explain(&Link::Changed(i, j), self.records.0, self.records.1))
     }
 
     /// Whether a move that is there once only is on the line of a hole that is deeper now or less deep, made by its block.
@@ -410,7 +385,7 @@ impl<'a> Motion<'a> {
                 if is_told_of_holes((Some(&step.kind), None), explained) {
                     return;
                 }
-                let text = format!("{} is no longer there", described(&step.kind, self.axes));
+                let text = format!("{} is no longer there", self.called(self.old, i));
                 self.groups.tell(code(&step.kind), step.kind.name(), text, (Some(step), None));
             }
             Link::Added(j) if !self.new[j].is_move() => {
@@ -418,16 +393,25 @@ impl<'a> Motion<'a> {
                 if is_told_of_holes((None, Some(&step.kind)), explained) {
                     return;
                 }
-                let text = format!("{} is new", described(&step.kind, self.axes));
+                let text = format!("{} is new", self.called(self.new, j));
                 self.groups.tell(code(&step.kind), step.kind.name(), text, (None, Some(step)));
             }
             Link::Lost(_) | Link::Added(_) => {}
         }
     }
 
+    /// What a step that is there once only says: where the spindle turns already, its speed.
+    fn called(&self, steps: &[Step], step: usize) -> String {
+        match steps[step].kind {
+            Kind::Spindle(_, speed) if is_speed_alone(steps, step) => format!("S{speed}"),
+            ref kind => described(kind, self.axes),
+        }
+    }
+
     /// A step that comes at another time.
-    fn shifted(&mut self, old: &'a Step, new: &'a Step, word: &str) {
-        let text = format!("{} comes {word} than before", described(&old.kind, self.axes));
+    fn shifted(&mut self, i: usize, j: usize, word: &str) {
+        let (old, new) = (&self.old[i], &self.new[j]);
+        let text = format!("{} comes {word} than before", self.called(self.old, i));
         self.groups.tell(code(&old.kind), old.kind.name(), text, (Some(old), Some(new)));
     }
 

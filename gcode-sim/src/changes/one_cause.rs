@@ -52,14 +52,13 @@ impl Edit {
 }
 
 /// All entries about holes, moves, and what these are made under, are told with the first of them, each in its own words, at
-/// the block that is written otherwise.
+/// the block that is written otherwise; one alone as well, wherever the moves are that it is about.
 pub(super) fn joined(changes: Vec<Change>, edit: &Edit) -> Vec<Change> {
     let (motion, mut others): (Vec<Change>, Vec<Change>) = changes.into_iter().partition(is_motion);
-    let is_more = 1 < motion.len();
     let mut motion = motion.into_iter();
     let Some(mut first) = motion.next() else { return others };
     motion.for_each(|more| first.message.push_str(&format!("; {}", more.message)));
-    if is_more && !edit.is_named_by(&first) {
+    if !edit.is_named_by(&first) {
         (first.old, first.new) = (Some(edit.was.clone()), Some(edit.is.clone()));
     }
     let is_before = |other: &&Change| ["outcome", "program", "start"].contains(&&*other.code);

@@ -50,8 +50,7 @@ pub(super) fn relied_on(
     if !(0..links.len()).any(&untold) {
         return Vec::new();
     }
-    let is_named =
-        !old.steps.iter().chain(&new.steps).any(|step| matches!(step.kind, Kind::Coolant(_, None)));
+    let is_named = InForce::is_named(old, new);
     let (mut before, mut now) = (InForce::default(), InForce::default());
     let mut all: Vec<Relied> = Vec::new();
     for (k, link) in links.iter().enumerate() {
@@ -117,8 +116,8 @@ fn name(place: &Where) -> String {
 type By = (Option<usize>, Option<usize>);
 
 /// What a step is made with, each with the link of the step that has made it so.
-#[derive(Default)]
-struct InForce {
+#[derive(Clone, Default)]
+pub(super) struct InForce {
     /// Where M06 stops the spindle, and where it turns on: a record doesn't say which, and machines are not alike.
     turning: [Turning; 2],
     /// By M code; one for all where they aren't known.
@@ -165,7 +164,13 @@ impl Turning {
 }
 
 impl InForce {
-    fn follow(&mut self, kind: &Kind, link: usize, is_named: bool) {
+    /// Both revisions say by which M code coolant flows.
+    pub(super) fn is_named(old: &Record, new: &Record) -> bool {
+        let mut steps = old.steps.iter().chain(&new.steps);
+        !steps.any(|step| matches!(step.kind, Kind::Coolant(_, None)))
+    }
+
+    pub(super) fn follow(&mut self, kind: &Kind, link: usize, is_named: bool) {
         match kind {
             Kind::Tool(_) => self.turning[0].sense = (Spindle::Off, Some(link)),
             Kind::Spindle(turning, speed) => {
@@ -191,6 +196,13 @@ impl InForce {
             }
             _ => {}
         }
+    }
+
+    /// Spindle and coolant that are otherwise now: on which machines, and what was in force and is.
+    pub(super) fn others(&self, now: &Self) -> impl Iterator<Item = [String; 3]> + use<> {
+        let any = |(was, is): By| was.or(is).or(Some(0));
+        let found = [self.spindle(now, any), self.coolant(now, any)];
+        found.into_iter().flatten().map(|(_, _, text)| text)
     }
 
     fn length(

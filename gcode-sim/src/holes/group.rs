@@ -171,7 +171,8 @@ fn holes_of(passes: &Sorted<'_>, out: Unit<Vector3<f64>>, machine: &Machine, fou
 }
 
 /// The last pass of the largest tool that goes at least half as deep as the hole; where diameters aren't known, of
-/// the last tool. A countersink is large and shallow and doesn't make the hole.
+/// the last tool. A countersink is large and shallow and doesn't make the hole, nor does a spot drill, however deep: a tool behind
+/// it goes deeper.
 fn finishing<'p>(
     cutting: &[&'p Pass],
     lowest: f64,
@@ -180,10 +181,11 @@ fn finishing<'p>(
 ) -> &'p Pass {
     let longest = cutting.iter().map(|pass| height(&pass.start) - lowest).fold(0.0, f64::max);
     let diameter = |pass: &Pass| machine.diameter_of(pass.tool).unwrap_or(0.0);
+    let deep = |p: &Pass| height(&p.bottom) <= lowest + longest / 2.0;
     let mut best = cutting[0];
     for pass in &cutting[1..] {
-        let deep = |p: &Pass| height(&p.bottom) <= lowest + longest / 2.0;
-        if (deep(pass), diameter(pass)) >= (deep(best), diameter(best)) {
+        let goes_on = deep(pass) && height(&pass.bottom) < height(&best.bottom) - DEEPER;
+        if goes_on || (deep(pass), diameter(pass)) >= (deep(best), diameter(best)) {
             best = pass;
         }
     }
