@@ -182,7 +182,7 @@ mod tests {
                 [None; 2]
             );
         }
-        assert_eq!(nearest_within(999_999.9994, 1000.0, 999_999_999.0), Some(999_999_999.0));
+        assert_eq!(nearest_within(999_999.999_4, 1000.0, 999_999_999.0), Some(999_999_999.0));
         assert_eq!(nearest_within(-0.5005, 1000.0, 999_999_999.0), Some(-501.0));
     }
 
