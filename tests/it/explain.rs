@@ -1,6 +1,6 @@
 //! The pages of `explain`: one for every alarm and every finding, and every example does what its page says.
 use std::collections::BTreeSet;
-use std::path::Path;
+use std::path::PathBuf;
 
 use gcode_sim::changes::CODES;
 use gcode_sim::diag::{Diagnostic, Severity};
@@ -12,7 +12,9 @@ use gcode_sim::program::NoLibrary;
 use gcode_sim::report::explain::{self, PAGES, Page};
 use gcode_sim::session::{Request, follow, grind, simulate};
 use gcode_sim::verify::Tolerances;
-use gcode_tests::expect;
+use gcode_tests::{expect, workspace};
+
+use crate::tidy::below;
 
 /// The codes that the table of alarms can give; all that programs raise themselves are `MC3000`.
 fn alarms() -> BTreeSet<String> {
@@ -28,30 +30,32 @@ fn alarms() -> BTreeSet<String> {
     codes
 }
 
-/// The codes of findings: quoted, small letters with a hyphen between them.
+/// Modules that tell no finding of a run, or the rules of `check` and the entries of `diff`, which have their own pages.
+const OTHERS: [&str; 8] = ["changes", "check", "cli", "control", "gauge", "job", "report", "schema"];
+
+/// Words that look like a code.
+const WORDS: [&str; 2] = ["left-hand", "right-hand"];
+
+/// The codes of findings: quoted, small letters with a hyphen between them, in all modules that may tell one.
 fn findings() -> BTreeSet<String> {
-    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("../gcode-sim/src");
+    let source = workspace().join("gcode-sim/src");
+    let others = OTHERS.map(|module| source.join(module));
     let mut codes = BTreeSet::new();
-    for path in
-        ["holes", "stylus", "verify/checks", "verify/flutes/checks", "exec/notes.rs", "session/slips.rs"]
-            .map(|path| source.join(path))
-    {
-        let files = match path.is_dir() {
-            true => std::fs::read_dir(path).unwrap().map(|entry| entry.unwrap().path()).collect(),
-            false => vec![path],
-        };
-        for file in files {
-            let text = std::fs::read_to_string(file).unwrap();
-            let text = text.split("#[cfg(test)]").next().unwrap();
-            let quoted = text.split('"').skip(1).step_by(2);
-            let is_code = |text: &&str| {
-                text.contains('-')
-                    && text.split('-').all(|part| {
-                        !part.is_empty() && part.bytes().all(|b| b.is_ascii_lowercase() || b.is_ascii_digit())
-                    })
-            };
-            codes.extend(quoted.filter(is_code).map(str::to_owned));
+    for file in below(&source, "rs") {
+        let is_test = file.file_stem().is_some_and(|name| name == "tests");
+        if is_test || others.iter().any(|module| file.starts_with(module)) {
+            continue;
         }
+        let text = std::fs::read_to_string(file).unwrap();
+        let text = text.split("#[cfg(test)]").next().unwrap();
+        let quoted = text.split('"').skip(1).step_by(2);
+        let is_code = |text: &&str| {
+            text.contains('-')
+                && text.split('-').all(|part| {
+                    !part.is_empty() && part.bytes().all(|b| b.is_ascii_lowercase() || b.is_ascii_digit())
+                })
+        };
+        codes.extend(quoted.filter(is_code).filter(|text| !WORDS.contains(text)).map(str::to_owned));
     }
     // A run that was ended.
     codes.insert("limit".to_owned());
@@ -73,11 +77,9 @@ fn every_alarm_and_finding_has_its_page_and_every_page_its_code() {
     assert!(alarms.len() > 50 && findings.len() > 10, "the codes were found in the sources");
     let codes: BTreeSet<String> = alarms.union(&findings).cloned().collect();
     assert_eq!(listed, codes, "a page in docs/explain/ and a line in report/explain.rs for each code");
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/explain");
-    let files: BTreeSet<String> = std::fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().path().file_stem().unwrap().to_string_lossy().into_owned())
-        .collect();
+    let folder = workspace().join("docs/explain");
+    let page = |path: &PathBuf| path.strip_prefix(&folder).unwrap().with_extension("").display().to_string();
+    let files: BTreeSet<String> = below(&folder, "md").iter().map(page).collect();
     assert_eq!(files, listed, "a file that no one shows, or a page without its file");
 }
 

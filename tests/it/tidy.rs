@@ -3,19 +3,24 @@ use std::path::{Path, PathBuf};
 
 use gcode_tests::workspace;
 
-/// Every Rust file below `dir`.
-fn sources(dir: &Path) -> Vec<PathBuf> {
+/// Every file below `dir` whose name ends so.
+pub(crate) fn below(dir: &Path, extension: &str) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(dir).into_iter().flatten() {
         let path = entry.unwrap().path();
         if path.is_dir() && path.file_name().is_some_and(|n| n != "target") {
-            found.extend(sources(&path));
-        } else if path.extension().is_some_and(|e| e == "rs") {
+            found.extend(below(&path, extension));
+        } else if path.extension().is_some_and(|e| e == extension) {
             found.push(path);
         }
     }
     found.sort();
     found
+}
+
+/// Every Rust file below `dir`.
+fn sources(dir: &Path) -> Vec<PathBuf> {
+    below(dir, "rs")
 }
 
 fn all_sources() -> Vec<PathBuf> {
