@@ -309,6 +309,11 @@ pub enum Signal {
 pub trait Sink {
     fn event(&mut self, event: &Event<'_>);
 
+    /// Whether anybody listens.
+    fn listens(&self) -> bool {
+        true
+    }
+
     /// Where the skip signal comes on a way that is about to be gone. `None`: here nothing gives such a signal.
     fn signal(&mut self, _: &SkipFeed<'_>) -> Option<Signal> {
         None
@@ -318,6 +323,10 @@ pub trait Sink {
 /// Nobody listens: only the control's end state is asked for.
 impl Sink for () {
     fn event(&mut self, _: &Event<'_>) {}
+
+    fn listens(&self) -> bool {
+        false
+    }
 }
 
 /// Two listeners side by side; the first that can answer does.
@@ -325,6 +334,11 @@ impl<A: Sink, B: Sink> Sink for (A, B) {
     fn event(&mut self, event: &Event<'_>) {
         self.0.event(event);
         self.1.event(event);
+    }
+
+    #[inline]
+    fn listens(&self) -> bool {
+        self.0.listens() || self.1.listens()
     }
 
     fn signal(&mut self, feed: &SkipFeed<'_>) -> Option<Signal> {
@@ -340,12 +354,22 @@ impl<S: Sink> Sink for Option<S> {
         }
     }
 
+    #[inline]
+    fn listens(&self) -> bool {
+        self.as_ref().is_some_and(S::listens)
+    }
+
     fn signal(&mut self, feed: &SkipFeed<'_>) -> Option<Signal> {
         self.as_mut().and_then(|sink| sink.signal(feed))
     }
 }
 
 impl<S: Sink + ?Sized> Sink for &mut S {
+    #[inline]
+    fn listens(&self) -> bool {
+        (**self).listens()
+    }
+
     fn event(&mut self, event: &Event<'_>) {
         (**self).event(event);
     }

@@ -93,6 +93,13 @@ impl Core {
         }
     }
 
+    /// Counts a move that nobody is told of.
+    #[inline(always)]
+    pub(super) fn count_move(&mut self, seconds: f64) {
+        self.seconds += seconds;
+        self.count_moves(1);
+    }
+
     #[inline(always)]
     fn count_moves(&mut self, moves: u64) {
         self.moves += moves;

@@ -108,15 +108,12 @@ impl Core {
         if unplaced != before {
             self.tell(&EventKind::Unplaced { axes: unplaced }, 0.0, sink);
         }
-        if led.way.is_some() {
-            let to = &self.state.machine;
-            let kind = match led.motion {
-                Motion::Rapid => EventKind::Rapid { to: *to },
-                _ => EventKind::Feed { to: *to, rate },
-            };
-            self.tell(&kind, seconds, sink);
-            // There is nothing in it to drop, which needn't be found out.
-            std::mem::forget(kind);
+        let to = &self.state.machine;
+        match led.motion {
+            _ if !led.way.is_some() => {}
+            _ if !sink.listens() => self.count_move(seconds),
+            Motion::Rapid => self.tell(&EventKind::Rapid { to: *to }, seconds, sink),
+            _ => self.tell(&EventKind::Feed { to: *to, rate }, seconds, sink),
         }
         Some(())
     }
