@@ -351,7 +351,7 @@ pub const CODES: &[Row] = &[
     haas(2690, Effect::NotSimulated, "feature coordinate system off"),
 ];
 
-/// What a code × 10 is on each group of controls: the place of its row, [`Found::NONE`] where they don't have it.
+/// What a code × 10 is on each group of controls: the place of its row; 255 where they don't have it.
 #[derive(Clone, Copy, Debug)]
 pub struct Found([u8; CodeSet::EVERY.len()]);
 
