@@ -9,7 +9,7 @@ use super::words::G_CODES;
 use crate::motion::{Axis, EventKind, MAX_AXES, Position, Sink};
 use crate::program::codes::Effect;
 use crate::program::modes::{CutterSide, Motion, Polar};
-use crate::program::{Input, Op, Slot, Words};
+use crate::program::{Coded, Input, Op, Slot, Words};
 use crate::units::MmPerMin;
 
 /// The axes that a block names.
@@ -95,19 +95,13 @@ impl Core {
             _ => return None,
         };
 
-        let before = state.unplaced;
-        let unplaced = if before == 0 { 0 } else { counting.placed(before, led.named.axes) };
         let state = &mut *self.state;
         for axis in led.named.iter() {
             (state.programmed[axis], state.machine[axis]) = (ends.programmed[axis], ends.machine[axis]);
         }
-        state.unplaced = unplaced;
         (state.modal.motion, state.codes.f) = (led.motion, f);
         state.codes.n = op.number.unwrap_or(state.codes.n);
         self.note_work(self.state.modal.work, true);
-        if unplaced != before {
-            self.tell(&EventKind::Unplaced { axes: unplaced }, 0.0, sink);
-        }
         let to = &self.state.machine;
         match led.motion {
             _ if !led.way.is_some() => {}
@@ -133,11 +127,7 @@ impl Core {
                         _ => return None,
                     },
                     _ if word.letter != b'F' || led.f.is_some() => return None,
-                    _ => {
-                        if let Some(raw) = self.raw(words, word).ok()? {
-                            led.f = Some(self.feed_of(&raw, state).ok()?);
-                        }
-                    }
+                    _ => led.f = self.led_feed(words, word)?,
                 }
                 continue;
             };
@@ -146,7 +136,7 @@ impl Core {
                 value => {
                     let value = match value {
                         Input::Variable { slot: Slot::Free(place), .. } => self.vars.free(*place),
-                        value => self.computed(words, value).ok()?,
+                        value => self.led_value(words, value)?,
                     };
                     let Value::Number(value) = value else { continue };
                     self.rounded(value, word.letter, &counting.measure)?
@@ -163,6 +153,21 @@ impl Core {
         (led.named.axes != 0).then_some(())
     }
 
+    /// What is behind the address of an axis that is neither a literal nor any control's variable; `None` where it alarms.
+    #[inline(never)]
+    fn led_value(&self, words: &Words, value: &Input) -> Option<Value> {
+        self.computed(words, value).ok()
+    }
+
+    /// F, if it isn't vacant; `None` where it alarms.
+    #[inline(never)]
+    fn led_feed(&self, words: &Words, word: &Coded) -> Option<Option<f64>> {
+        match self.raw(words, word).ok()? {
+            Some(raw) => self.feed_of(&raw, &self.state).ok().map(Some),
+            None => Some(None),
+        }
+    }
+
     /// Finds out, behind everything that could change it, whether the next block can be a plain move, and what its axes
     /// count from.
     pub(super) fn see_if_plain(&mut self) {
@@ -174,6 +179,7 @@ impl Core {
         let modal = &self.state.modal;
         modal.cycle.is_none()
             && !self.state.parameter_input
+            && self.state.unplaced == 0
             && modal.cutter == CutterSide::Off
             && modal.polar == Polar::Off
             && self.state.ended.is_none()

@@ -361,7 +361,7 @@ impl Found {
 
     /// What the code is on a control.
     #[inline]
-    pub fn on(self, set: CodeSet) -> Option<&'static Row> {
+    pub fn on(&self, set: CodeSet) -> Option<&'static Row> {
         CODES.get(usize::from(self.0[set as usize]))
     }
 }

@@ -139,12 +139,7 @@ pub enum OpKind {
 #[derive(Debug)]
 #[repr(u8)]
 pub enum Statement {
-    /// An assignment of what code gives to a variable of [`Slot::Free`], as most are.
-    Compute {
-        place: u16,
-        code: Code,
-    },
-    /// Any other assignment.
+    /// Any assignment that is no [`Statement::Compute`].
     Assign {
         target: Target,
         target_span: Span,
@@ -190,6 +185,11 @@ pub enum Statement {
     CloseOutput,
     /// `IF[…]THEN` of something that must not stand there.
     Alarm(Placed),
+    /// An assignment of what code gives to a variable of [`Slot::Free`], as most are. It stands last: it is asked for first.
+    Compute {
+        place: u16,
+        code: Code,
+    },
 }
 
 #[derive(Debug)]
