@@ -53,7 +53,7 @@ impl Flow {
     fn of_block(&mut self, program: &Program, block: OpIndex, kind: &OpKind) -> Ways {
         match kind {
             // An alarm stops the control; what stands behind it is looked at as if it had been mended.
-            OpKind::Empty | OpKind::Alarm(_) => Ways { falls: true, ..Ways::default() },
+            OpKind::Empty | OpKind::Compute(_) | OpKind::Alarm(_) => Ways { falls: true, ..Ways::default() },
             OpKind::Words(words) => {
                 let mut ways = self.of_words(program, block, words);
                 if let Some((_, short)) = words.short() {
@@ -108,7 +108,7 @@ impl Flow {
             Statement::Assign { target, .. } if target.is(3000) => Ways { leaves: true, ..Ways::default() },
             Statement::Several(all) if all.iter().any(is_raise) => Ways { leaves: true, ..Ways::default() },
             Statement::Assign { .. }
-            | Statement::Compute { .. }
+            | Statement::Compute(_)
             | Statement::Several(_)
             | Statement::Do { .. }
             | Statement::SetNames { .. }

@@ -41,7 +41,11 @@ impl Control {
                 | OpKind::Statement(
                     Statement::IfGoto { condition, .. } | Statement::IfThen { condition, .. },
                 ) => Some(condition),
-                OpKind::Empty | OpKind::Words(_) | OpKind::Statement(_) | OpKind::Alarm(_) => None,
+                OpKind::Empty
+                | OpKind::Words(_)
+                | OpKind::Statement(_)
+                | OpKind::Compute(_)
+                | OpKind::Alarm(_) => None,
             };
             let holds = condition.is_none_or(|condition| core.holds(condition).unwrap_or(true));
             holds && !core.is_skipped(op)

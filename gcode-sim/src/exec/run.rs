@@ -137,8 +137,13 @@ impl Control {
             core.block = op.span;
             core.blocks += 1;
             core.frame.next = place + 1;
-            let Act::Plain(OpKind::Statement(statement)) = op.act() else { break (program, op) };
-            core.statement(program, statement, watch, sink)?;
+            match op.act() {
+                Act::Plain(OpKind::Compute(compute)) => core.compute(compute)?,
+                Act::Plain(OpKind::Statement(statement)) => {
+                    core.statement(program, statement, watch, sink)?;
+                }
+                _ => break (program, op),
+            }
             if core.blocks >= until || !core.aftermath.is_none() {
                 return Ok(());
             }
@@ -160,6 +165,7 @@ impl Control {
             kind = then;
         }
         match kind {
+            OpKind::Compute(compute) => return core.compute_apart(compute),
             OpKind::Statement(statement) => {
                 return core.any_statement(program, statement, watch, sink);
             }

@@ -36,7 +36,7 @@ impl Control {
                 OpKind::Statement(_) => {
                     silent.writes = self.will_assign().iter().any(|number| *number >= 1000);
                 }
-                OpKind::Empty | OpKind::If { .. } | OpKind::Alarm(_) => {}
+                OpKind::Empty | OpKind::Compute(_) | OpKind::If { .. } | OpKind::Alarm(_) => {}
             }
         });
         silent

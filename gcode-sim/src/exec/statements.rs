@@ -6,13 +6,27 @@ use super::notes::Note;
 use super::vars::{Kind, Value};
 use crate::alarm::Alarm;
 use crate::motion::{EventKind, Place, Sink, StopKind};
-use crate::program::{OpIndex, Operand, Program, Slot, Statement, Target};
+use crate::program::{Compute, OpIndex, Operand, Program, Slot, Statement, Target};
 use crate::source::{Span, Spanned};
 
 /// No control has numbers beyond this for alarms of its programs.
 const MOST_RAISED: u16 = 4095;
 
 impl Core {
+    /// An assignment of what code gives, in the loop over the blocks itself.
+    #[inline(always)]
+    pub(super) fn compute(&mut self, Compute { place, code }: &Compute) -> Checked<()> {
+        let value = self.evaluate(code, RoundsTo::Increment)?;
+        self.vars.set_free(*place, value);
+        Ok(())
+    }
+
+    /// As [`Core::compute`], elsewhere.
+    #[inline(never)]
+    pub(super) fn compute_apart(&mut self, compute: &Compute) -> Checked<()> {
+        self.compute(compute)
+    }
+
     /// Does one statement. The frame already stands at the next block; jumps change that. What the turns of most loops
     /// consist of is done in the loop over the blocks itself.
     #[inline(always)]
@@ -23,11 +37,6 @@ impl Core {
         watch: &mut Watch,
         sink: &mut S,
     ) -> Checked<()> {
-        if let Statement::Compute { place, code } = statement {
-            let value = self.evaluate(code, RoundsTo::Increment)?;
-            self.vars.set_free(*place, value);
-            return Ok(());
-        }
         match statement {
             Statement::While { condition, number, end } => {
                 let holds = self.holds(condition)?;
@@ -53,10 +62,7 @@ impl Core {
     ) -> Checked<()> {
         let next = self.frame.next;
         match statement {
-            Statement::Compute { place, code } => {
-                let value = self.run_code(code, RoundsTo::Increment)?;
-                self.vars.set_free(*place, value.into());
-            }
+            Statement::Compute(compute) => self.compute_apart(compute)?,
             Statement::Assign { target, target_span, value, text } => {
                 let slot = at(self.target(target), *target_span)?;
                 let value = self.operand(value)?;

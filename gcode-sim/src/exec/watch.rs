@@ -1,7 +1,7 @@
 //! Looking on while a control runs: at what stands in it before and after every block.
 use super::frames::Frame;
 use super::{Control, Core};
-use crate::program::{Op, OpKind, Slot, Statement};
+use crate::program::{Compute, Op, OpKind, Slot, Statement};
 use crate::source::Span;
 
 /// Looks at a control between its blocks.
@@ -103,6 +103,7 @@ impl Core {
             OpKind::If { condition, then } if self.holds(condition).unwrap_or(false) => {
                 self.targets(then, numbers);
             }
+            OpKind::Compute(Compute { place, .. }) => numbers.push(u32::from(*place)),
             OpKind::Statement(statement) => self.targets_of(statement, numbers),
             OpKind::Empty | OpKind::Words(_) | OpKind::If { .. } | OpKind::Alarm(_) => {}
         }
@@ -110,7 +111,7 @@ impl Core {
 
     fn targets_of(&self, statement: &Statement, numbers: &mut Vec<u32>) {
         match statement {
-            Statement::Compute { place, .. } => numbers.push(u32::from(*place)),
+            Statement::Compute(Compute { place, .. }) => numbers.push(u32::from(*place)),
             Statement::Assign { target, .. } => {
                 numbers.extend(self.target(target).map(Slot::number));
             }

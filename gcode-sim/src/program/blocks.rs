@@ -150,7 +150,7 @@ fn join(op: &mut Op, place: OpIndex, loops: &Loops) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Memory, Operation, Source};
+    use super::super::{Compute, Memory, Operation, Source};
     use super::*;
 
     /// Every third block is an assignment with code of its own.
@@ -169,7 +169,7 @@ mod tests {
         for place in (0..LINES).chain((0..2 * LINES).map(|step| step * 7919 % LINES)).chain(near) {
             let op = memory.ready(id, place).unwrap();
             let span = op.span;
-            if let OpKind::Statement(Statement::Compute { code, .. }) = op.kind() {
+            if let OpKind::Compute(Compute { code, .. }) = op.kind() {
                 let wanted = Operation::Add([Source::Number(place as f64), Source::Free(2)]);
                 assert_eq!(code[0].operation, wanted);
             } else {

@@ -1,7 +1,7 @@
 //! Lowers a tree to operations, block by block; what can't run becomes the alarm it raises when it is reached.
 use super::code::{Code, Instruction, Slot, Target};
 use super::expr::Context;
-use super::{Act, Asked, Form, Op, OpKind, Operand, PrintPart, Statement};
+use super::{Act, Asked, Compute, Form, Op, OpKind, Operand, PrintPart, Statement};
 use crate::alarm::{Alarm, Placed};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast;
@@ -55,7 +55,8 @@ impl Lowering {
             let rest = ast::Block { items: block.items[1..].to_vec(), ..block.clone() };
             let then = match self.kind(&rest)? {
                 then @ (OpKind::Words(_)
-                | OpKind::Statement(Statement::Assign { .. } | Statement::Compute { .. })) => Box::new(then),
+                | OpKind::Compute(_)
+                | OpKind::Statement(Statement::Assign { .. })) => Box::new(then),
                 _ => return Err(Alarm::IfFormat.at(first.span)),
             };
             return Ok(OpKind::If { condition, then });
@@ -82,7 +83,10 @@ impl Lowering {
             (Some(_), false) => Err(Alarm::MixedStatements.at(block.span)),
             // What a control does with a /n behind a statement is not known; it must not be read over.
             (Some(_), true) if !skips.is_empty() => Err(Alarm::MixedStatements.at(block.span)),
-            (Some(found), true) => self.statement(&found.node, found.span, block).map(OpKind::Statement),
+            (Some(found), true) => match self.statement(&found.node, found.span, block)? {
+                Statement::Compute(compute) => Ok(OpKind::Compute(compute)),
+                statement => Ok(OpKind::Statement(statement)),
+            },
             (None, true) => Ok(OpKind::Empty),
             (None, false) if skips.len() > MOST_SKIPS => {
                 let what = format!("a block with more than {MOST_SKIPS} skips inside");
@@ -164,7 +168,9 @@ impl Lowering {
     ) -> Lowered<Statement> {
         let (to, value) = (self.target(target)?, self.operand(value, Context::Macro)?);
         Ok(match (to, value) {
-            (Target::Slot(Slot::Free(place)), Operand::Code(code)) => Statement::Compute { place, code },
+            (Target::Slot(Slot::Free(place)), Operand::Code(code)) => {
+                Statement::Compute(Compute { place, code })
+            }
             (to, value) => {
                 let text = block.comments.iter().find(|c| c.span.start >= span.start);
                 let text = text.map(|c| c.text.clone().into_boxed_slice());

@@ -126,6 +126,8 @@ pub enum OpKind {
     Empty,
     Words(Words),
     Statement(Statement),
+    /// A block of one [`Statement::Compute`].
+    Compute(Compute),
     /// `IF[…]` before words or a statement, with THEN or without.
     If {
         condition: Code,
@@ -185,11 +187,14 @@ pub enum Statement {
     CloseOutput,
     /// `IF[…]THEN` of something that must not stand there.
     Alarm(Placed),
-    /// An assignment of what code gives to a variable of [`Slot::Free`], as most are. It stands last: it is asked for first.
-    Compute {
-        place: u16,
-        code: Code,
-    },
+    Compute(Compute),
+}
+
+/// An assignment of what code gives to a variable of [`Slot::Free`], as most are.
+#[derive(Debug)]
+pub struct Compute {
+    pub place: u16,
+    pub code: Code,
 }
 
 #[derive(Debug)]
