@@ -102,10 +102,11 @@ impl Watch {
         if self.copy.is_some() {
             self.widen(core);
         }
-        if self.left == 0 || self.seen.as_ref().is_some_and(|seen| seen.may_be_again(core)) {
+        if self.left > 0 && self.seen.as_ref().is_some_and(|seen| !seen.may_be_again(core)) {
+            self.left -= 1;
+        } else {
             self.look(core);
         }
-        self.left = self.left.saturating_sub(1);
     }
 
     /// Looks closely whether the control has come back, and keeps this moment when it is time.
@@ -122,6 +123,7 @@ impl Watch {
         if self.left == 0 {
             self.keep(core);
         }
+        self.left -= 1;
     }
 
     /// Keeps this moment instead of an earlier one, for longer.
