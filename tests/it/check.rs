@@ -67,7 +67,7 @@ fn a_fault_put_into_an_example_is_found() {
             "Y(724.3+0.+50.)",
             "round-brackets: PS0005: address Y has no number: round brackets are a comment",
         ),
-        ("N330 M30", "N320 M30", "doubled-n: N320 stands in line 56 already: a search finds one of the two"),
+        ("N380 M30", "N370 M30", "doubled-n: N370 stands in line 64 already: a search finds one of the two"),
     ];
     for (right, wrong, told) in faults {
         let spoilt = text.replacen(right, wrong, 1);

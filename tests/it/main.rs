@@ -31,6 +31,7 @@ mod explain;
 mod flute_sites;
 mod formats;
 mod honeycomb;
+mod left_in_force;
 mod limits;
 mod misplaced;
 mod mutations;

@@ -117,7 +117,7 @@ fn a_person_sorts_the_holes_and_goes_to_a_block() {
     let caller = browser.run("return document.querySelector('.half.from code').textContent");
     assert!(caller.as_str().unwrap().contains("W15.2385"), "{caller}");
     assert!(
-        picked(&browser).contains("hole 5") && picked(&browser).contains("O8100:52"),
+        picked(&browser).contains("hole 5") && picked(&browser).contains("O8100:60"),
         "{}",
         picked(&browser)
     );

@@ -5,6 +5,7 @@ pub(crate) mod control;
 pub mod honeycomb;
 pub mod pin_holes;
 mod resident;
+mod start;
 
 use gcode_sim::job::Job;
 

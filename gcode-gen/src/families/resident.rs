@@ -1,11 +1,15 @@
 //! What all resident macros share: marks filled in, and what has to be true of the text for any control.
+use gcode_sim::control::Dialect;
 
+use super::control::alarm_thousands;
+use super::start::changed;
 #[cfg(test)]
 use crate::nc::program::REMARK;
 
-/// A macro's text with every `{mark}` replaced by what it stands for.
-pub(super) fn fill(text: &str, marks: &[(&str, String)]) -> String {
-    marks.iter().fold(text.to_owned(), |text, (mark, value)| text.replace(mark, value))
+/// A macro's text with every `{mark}` replaced by what it stands for; `{k}` and `{changed}` are known of the control.
+pub(super) fn fill(text: &str, dialect: Dialect, marks: &[(&str, String)]) -> String {
+    let text = text.replace("{k}", alarm_thousands(dialect)).replace("{changed}", changed(dialect));
+    marks.iter().fold(text, |text, (mark, value)| text.replace(mark, value))
 }
 
 /// Fails where a mark is left, a control can't show a character, a remark is longer than those of main programs, or a message
@@ -36,8 +40,8 @@ mod tests {
 
     #[test]
     fn marks_are_filled_wherever_they_stand() {
-        let filled = fill("{a}{b}-{a}", &[("{a}", "1.".to_owned()), ("{b}", String::new())]);
-        assert_eq!(filled, "1.-1.");
+        let marks = [("{a}", "1.".to_owned()), ("{b}", String::new())];
+        assert_eq!(fill("{a}{b}-{a} {k}016", Dialect::HaasNgc, &marks), "1.-1. 1016");
         hold("#3000=1(26 CHARACTERS ARE NOT MORE)\n#3006=1(SO)\n");
     }
 

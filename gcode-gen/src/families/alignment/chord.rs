@@ -3,7 +3,7 @@
 use gcode_sim::job::Alignment;
 
 use super::writes::Writes;
-use super::{Macro, Measurement, common_remarks, start};
+use super::{Macro, Measurement, begin, common_remarks};
 use crate::families::control;
 use crate::nc::block::Block;
 use crate::nc::number::number;
@@ -69,7 +69,7 @@ fn write(job: &Alignment, text: &mut Text) {
     ] {
         text.remark(line);
     }
-    start(job, text);
+    begin(job, text);
     for ((name, first, turn), x) in POINTS.into_iter().zip([&e, &f]) {
         text.block(touch(job, first, turn, x).comment(name));
     }

@@ -2,7 +2,7 @@
 use gcode_sim::job::Alignment;
 
 use super::writes::Writes;
-use super::{Macro, Measurement, common_remarks, start};
+use super::{Macro, Measurement, begin, common_remarks};
 use crate::families::control;
 use crate::nc::block::Block;
 use crate::nc::number::number;
@@ -42,7 +42,7 @@ fn write(job: &Alignment, text: &mut Text) {
     ] {
         text.remark(line);
     }
-    start(job, text);
+    begin(job, text);
     text.block(Block::of("M05"));
     text.block(Block::of(format!("{rotary}0.")));
     text.block(

@@ -16,8 +16,7 @@ use gcode_sim::job::Alignment;
 
 use self::resident::{Macro, Resident};
 use self::writes::Writes;
-use super::{Family, control};
-use crate::nc::block::Block;
+use super::{Family, control, start};
 use crate::nc::program::Program as Text;
 use crate::package::{Package, Program};
 
@@ -78,10 +77,9 @@ pub fn overwritten() -> impl Iterator<Item = (u32, String)> {
 
 /// The modes that all measurements begin in. A local shift of the rotary is cancelled, for its axis has another number on every
 /// machine, so that no macro can look for it; the macros refuse those in X, Y and Z.
-fn start(job: &Alignment, text: &mut Text) {
-    text.block(Block::of("G21"));
-    text.block(Block::of("G00 G17 G40 G49 G54 G80 G90 G94"));
-    text.block(Block::of(format!("G52 {}0.", job.machine.rotary.letter)));
+fn begin(job: &Alignment, text: &mut Text) {
+    start::modes(text);
+    start::cancel(&job.machine.rotary.letter.to_string(), text);
 }
 
 /// What the heads of all main programs say.
@@ -94,9 +92,8 @@ fn common_remarks(job: &Alignment, text: &mut Text) {
         format!("WORK ZERO G54 X Z ON THE AXIS OF {}, Y AT THE CENTRE OF THE", rotary.letter),
         "ELLIPSOID, FOR THE CENTRE OF THE STYLUS BALL. THE HEAD DOES NOT TURN".to_owned(),
         format!("ROTARY {} = {sign}AZIMUTH, FROM X TOWARDS Z", rotary.letter),
-        format!("G52 OF {} IS CANCELLED, A SHIFT OF X Y Z BY G52 OR G92 IS AN ALARM", rotary.letter),
-        "AND SO IS A SCALING, A MIRROR IMAGE, A TURN OR G16 LEFT IN FORCE".to_owned(),
     ] {
         text.remark(line);
     }
+    start::remarks("XYZ", &rotary.letter.to_string()).iter().for_each(|line| text.remark(line));
 }

@@ -4,8 +4,8 @@ use gcode_sim::job::Alignment;
 
 use super::ALL;
 use super::writes::Writes;
-use crate::families::control::alarm_thousands;
 use crate::families::resident::fill;
+use crate::families::start::{external, rounding};
 use crate::nc::number::number;
 use crate::nc::program::name;
 use crate::package::Program;
@@ -40,38 +40,18 @@ impl Resident {
         macros().map(|one| Program { number: one.number, text: self.fill(one) }).collect()
     }
 
-    /// The external offset of axis 1 + #12, taken off. On a Haas #5201 is the shift by G52 itself, which has to stay in.
-    fn external(&self) -> &'static str {
-        match self.dialect {
-            Dialect::HaasNgc => "",
-            Dialect::Fanuc31i | Dialect::Fanuc0iF => "-#[5201+#12]",
-        }
-    }
-
-    /// What is true where coordinates are scaled, mirrored, turned or polar. A Haas has neither G16 nor #4022.
-    fn changed(&self) -> &'static str {
-        match self.dialect {
-            Dialect::HaasNgc => "[#4011 EQ 51]OR[#4016 EQ 68]",
-            Dialect::Fanuc31i | Dialect::Fanuc0iF => {
-                "[#4011 EQ 51]OR[FIX[#4016]EQ 68]OR[#4017 EQ 16]OR[#4022 GT 51]"
-            }
-        }
-    }
-
     fn fill(&self, one: &Macro) -> String {
         let marks = [
             ("{name}", name(one.number, self.dialect)),
-            ("{k}", alarm_thousands(self.dialect).to_owned()),
             ("{rotary}", self.rotary.to_string()),
             ("{increment}", number(self.increment.size())),
-            // Half an increment in x and y each is 0.707 of one.
-            ("{rounding}", number(0.75 * self.increment.size())),
+            ("{rounding}", number(rounding(self.increment))),
             ("{per_unit}", number(self.increment.per_unit())),
-            ("{external}", self.external().to_owned()),
-            ("{changed}", self.changed().to_owned()),
+            // Of axis 1 + #12.
+            ("{external}", external(self.dialect, "[5201+#12]")),
             ("{writes}", one.writes.remark()),
         ];
-        fill(one.text, &marks)
+        fill(one.text, self.dialect, &marks)
     }
 }
 

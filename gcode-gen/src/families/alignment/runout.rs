@@ -3,7 +3,7 @@
 use gcode_sim::job::Alignment;
 
 use super::writes::Writes;
-use super::{Macro, Measurement, common_remarks, start};
+use super::{Macro, Measurement, begin, common_remarks};
 use crate::families::control;
 use crate::nc::block::Block;
 use crate::nc::number::number;
@@ -54,7 +54,7 @@ fn write(job: &Alignment, text: &mut Text) {
     ] {
         text.remark(line);
     }
-    start(job, text);
+    begin(job, text);
     // What stands there is of the part before; first what says of each pass that it is whole.
     for number in [585].into_iter().chain((590..596).rev()) {
         text.block(Block::of(format!("#{number}=#0")));

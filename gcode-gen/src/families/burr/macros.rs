@@ -31,7 +31,6 @@ impl Resident {
         let sign = |sign: i8| if sign < 0 { "-" } else { "" }.to_owned();
         let marks = [
             ("{flute}", name(FLUTE, self.dialect)),
-            ("{k}", crate::families::control::alarm_thousands(self.dialect).to_owned()),
             ("{per_unit}", number(self.increment.per_unit())),
             ("{increment}", number(self.increment.size())),
             ("{half}", number(self.increment.size() / 2.0)),
@@ -41,7 +40,7 @@ impl Resident {
             ("{b}", sign(self.signs.b)),
             ("{c}", sign(self.signs.c)),
         ];
-        fill(text, &marks)
+        fill(text, self.dialect, &marks)
     }
 }
 

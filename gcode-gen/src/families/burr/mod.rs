@@ -14,6 +14,7 @@ use gcode_sim::job::{Burr, FluteLaw, Nose, ProgramForm};
 use self::macros::{FLUTE, Resident};
 use self::nose::cylinder;
 use self::path::{Point, clear, points, stand_off};
+use super::start::Start;
 use super::{Family, control};
 use crate::nc::block::Block;
 use crate::nc::number::number;
@@ -44,19 +45,22 @@ struct Main<'j> {
     job: &'j Burr,
     /// What the moves are made for: the job's, or less where the helix angle asks for it.
     chord_error: f64,
+    start: Start,
     text: Text,
 }
 
 impl<'j> Main<'j> {
     fn new(job: &'j Burr) -> Self {
         let chord_error = lean::chord_error(job).unwrap_or(job.chord_error);
-        Self { job, chord_error, text: Text::new(MAIN, "BALL-END ROTARY BURR", job.control.dialect) }
+        // Not A, which turns all flutes alike. What axis the number 3 is on a grinder isn't known.
+        let start =
+            Start { control: job.control, changed: 97, shifted: 98, axes: "XY", cancelled: "BC".to_owned() };
+        Self { job, chord_error, start, text: Text::new(MAIN, "BALL-END ROTARY BURR", job.control.dialect) }
     }
 
     fn text(mut self) -> String {
         self.header();
-        self.block("G21");
-        self.block("G00 G17 G40 G49 G54 G80 G90 G94");
+        self.start.blocks(&mut self.text);
         self.block(format!("S{:.0} M03", self.job.program.wheel));
         self.block("M08");
         match self.job.program.form {
@@ -108,7 +112,7 @@ impl<'j> Main<'j> {
             "FEED ALONG THE FLUTE BY INVERSE TIME G93".to_owned(),
             "START WITH C BETWEEN 0 AND THE END OF THE FLUTE, WHEEL CLEAR".to_owned(),
         ];
-        for line in lines {
+        for line in lines.into_iter().chain(self.start.remarks()) {
             self.text.remark(line);
         }
         if self.chord_error < job.chord_error {

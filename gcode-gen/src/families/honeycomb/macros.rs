@@ -29,13 +29,12 @@ impl Resident {
         let code = |code: Option<u32>| code.map_or_else(String::new, |code| format!("\nM{code}"));
         let marks = [
             ("{comb}", name(COMB, self.dialect)),
-            ("{k}", crate::families::control::alarm_thousands(self.dialect).to_owned()),
             ("{pi}", PI.to_owned()),
             ("{rotary}", self.rotary.to_string()),
             ("{unclamp}", code(self.clamp.map(|clamp| clamp.off))),
             ("{clamp}", code(self.clamp.map(|clamp| clamp.on))),
         ];
-        Program { number: COMB, text: fill(include_str!("comb.nc"), &marks) }
+        Program { number: COMB, text: fill(include_str!("comb.nc"), self.dialect, &marks) }
     }
 }
 

@@ -8,6 +8,7 @@ pub mod macros;
 use gcode_sim::job::{Honeycomb, Metric, Spacing};
 
 use self::macros::{COMB, Resident};
+use super::start::Start;
 use super::{Family, control};
 use crate::nc::block::Block;
 use crate::nc::number::number;
@@ -28,11 +29,13 @@ pub fn emit(job: &Honeycomb) -> Package {
 
 fn main(job: &Honeycomb) -> String {
     let mut text = Text::new(MAIN, "HONEYCOMB OF RADIAL HOLES ON A CYLINDER", job.control.dialect);
-    header(job).into_iter().for_each(|line| text.remark(line));
+    // Where the rows begin round the axis is the operator's: a shift of the rotary turns the whole pattern.
+    let start =
+        Start { control: job.control, changed: 51, shifted: 52, axes: "XYZ", cancelled: String::new() };
+    header(job).into_iter().chain(start.remarks()).for_each(|line| text.remark(line));
     let drill = &job.drill;
     let retract = number(job.machine.retract);
-    text.block(Block::of("G21"));
-    text.block(Block::of("G00 G17 G40 G49 G54 G80 G90 G94"));
+    start.blocks(&mut text);
     text.block(Block::of(format!("T{} M06", drill.number)));
     text.block(Block::of(format!("S{:.0} M03", drill.speed)));
     text.block(Block::of(format!("G43 H{} Z{retract}", drill.number)));
@@ -75,7 +78,7 @@ fn header(job: &Honeycomb) -> Vec<String> {
         "A DRILL, B PITCH, C CLEARANCE, D DIAMETER OF THE PITCH, E DIVISIONS".to_owned(),
         "F FEED, H 0. DEVELOPED 1. STRAIGHT, I OUTER DIAMETER, J BORE, Q PECK".to_owned(),
         format!("U SIGN OF {}, V RETRACT, X LENGTH, Z DEPTH", rotary.letter),
-        format!("ALARMS {k}031-{k}050 BY O{COMB}"),
+        format!("ALARMS {k}031-{k}051 BY O{COMB}"),
         "START WITH THE TOOL CLEAR OF THE PART".to_owned(),
     ];
     lines.extend(clamp);

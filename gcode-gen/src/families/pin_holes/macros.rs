@@ -63,14 +63,13 @@ impl Resident {
             ("{rotary}", self.rotary.to_string()),
             ("{angle}", self.common.to_string()),
             ("{set}", self.set().to_string()),
-            ("{k}", crate::families::control::alarm_thousands(self.dialect).to_owned()),
             ("{per_degree}", number(self.increment.per_unit())),
             // The head's angle is rounded to its increment: half of one is no other angle.
             ("{half}", number(self.increment.size() / 2.0)),
             ("{set_head}", set_head),
             ("{spindle_note}", spindle_note.to_owned()),
         ];
-        fill(text, &marks)
+        fill(text, self.dialect, &marks)
     }
 }
 

@@ -9,6 +9,7 @@ pub mod macros;
 use gcode_sim::job::{AxisDirection, HeadKind, HoleWanted, PinHoles};
 
 use self::macros::{HEAD, HOLE, Resident};
+use super::start::Start;
 use super::{Family, control};
 use crate::nc::block::Block;
 use crate::nc::number::number;
@@ -32,13 +33,21 @@ pub fn emit(job: &PinHoles) -> Package {
 struct Main<'j> {
     job: &'j PinHoles,
     resident: Resident,
+    start: Start,
     text: Text,
 }
 
 impl<'j> Main<'j> {
     fn new(job: &'j PinHoles) -> Self {
         let text = Text::new(MAIN, "PIN HOLES ON AN ELLIPSOID OF REVOLUTION", job.control.dialect);
-        Self { job, resident: Resident::of(job), text }
+        let start = Start {
+            control: job.control,
+            changed: 17,
+            shifted: 18,
+            axes: "XYZ",
+            cancelled: job.machine.rotary.letter.to_string(),
+        };
+        Self { job, resident: Resident::of(job), start, text }
     }
 
     fn text(mut self) -> String {
@@ -86,10 +95,10 @@ impl<'j> Main<'j> {
             "E FEED OUT, F FEED IN, H 0. NORMAL 1. AXIAL, Q PIVOT TO TIP".to_owned(),
             format!("R RADIUS, U SIGN OF {}, V RETRACT, W AZIMUTH", rotary.letter),
             format!("COMMON VARIABLES #{common} HEAD ANGLE TO SET, #{} ANGLE SET", common + 1),
-            format!("ALARMS {k}001-{k}016 BY O{HOLE}, {k}021-{k}029 BY O{HEAD}"),
+            format!("ALARMS {k}001-{k}017 BY O{HOLE}, {k}021-{k}030 BY O{HEAD}"),
             "START WITH THE TOOL CLEAR OF THE PART, ABOVE OR BESIDE IT".to_owned(),
         ];
-        for line in lines {
+        for line in lines.into_iter().chain(self.start.remarks()) {
             self.text.remark(line);
         }
         for ToolPass { tool, .. } in passes {
@@ -99,8 +108,7 @@ impl<'j> Main<'j> {
     }
 
     fn start(&mut self) {
-        self.text.block(Block::of("G21"));
-        self.text.block(Block::of("G00 G17 G40 G49 G54 G80 G90 G94"));
+        self.start.blocks(&mut self.text);
         self.text.block(Block::of(format!("#{}=#0", self.resident.set())).comment("HEAD NOT SET YET"));
     }
 
