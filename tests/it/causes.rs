@@ -165,7 +165,8 @@ fn a_shift_by_the_pitch_moves_all_holes() {
     );
 }
 
-/// H3 holds 5 mm less than H2, all Z of the tool are 5 mm more: the machine does what it did. The pecks are 5 mm apart as well.
+/// H3 holds 5 mm less than H2, all Z of the tool are 5 mm more: the machine does what it did. The pecks are 5 mm
+/// apart as well.
 #[test]
 fn another_length_that_all_moves_make_up_for_is_told_once_with_them() {
     let program = |length: u32, up: i32| {

@@ -6,15 +6,16 @@ use super::change::Change;
 use super::record::{Record, Where};
 use crate::syntax::parse;
 
-/// The only block of two programs that is written otherwise, before and now; of a block that is gone or new one of the two.
+/// The only block of two programs that is written otherwise, before and now; of a block that is gone or new one of
+/// the two.
 pub(super) struct Edit {
     was: Option<Where>,
     is: Option<Where>,
 }
 
-/// Nothing where the texts aren't known, where more than one block is written otherwise, or more than one word of it: of two
-/// words nobody knows which has done what, and a reviewer must not accept one thing with another. A word that is gone or new is
-/// one, and so is a whole block.
+/// Nothing where the texts aren't known, where more than one block is written otherwise, or more than one word of it:
+/// of two words nobody knows which has done what, and a reviewer must not accept one thing with another. A word that
+/// is gone or new is one, and so is a whole block.
 pub(super) fn edit(old: &Record, new: &Record) -> Option<Edit> {
     let (was, is) = (programs(old)?, programs(new)?);
     let mut edits = Vec::new();
@@ -74,8 +75,8 @@ impl Edit {
     }
 }
 
-/// All entries about holes, moves, and what these are made under, are told with the first of them, each in its own words, at
-/// the block that is written otherwise; one alone as well, wherever the moves are that it is about.
+/// All entries about holes, moves, and what these are made under, are told with the first of them, each in its own
+/// words, at the block that is written otherwise; one alone as well, wherever the moves are that it is about.
 pub(super) fn joined(changes: Vec<Change>, edit: &Edit) -> Vec<Change> {
     let (motion, mut others): (Vec<Change>, Vec<Change>) = changes.into_iter().partition(is_motion);
     let mut motion = motion.into_iter();
@@ -95,8 +96,8 @@ fn is_motion(change: &Change) -> bool {
     ["hole-", "move-"].iter().any(|code| change.code.starts_with(code)) || codes.contains(&&*change.code)
 }
 
-/// Every block that says something of every program that was read, by the program's name; the main program has the first place
-/// and none.
+/// Every block that says something of every program that was read, by the program's name; the main program has the
+/// first place and none.
 fn programs(record: &Record) -> Option<BTreeMap<String, Vec<Where>>> {
     let sources = record.sources.as_ref()?;
     let mut programs = BTreeMap::new();

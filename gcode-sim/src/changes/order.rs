@@ -25,8 +25,8 @@ pub(super) struct Order {
     pub steps: Vec<(usize, usize)>,
 }
 
-/// The fewest passes that can be called moved, those whose steps are linked staying where they can. Passes of holes that are made
-/// more or less often are made at another time because of that.
+/// The fewest passes that can be called moved, those whose steps are linked staying where they can. Passes of holes
+/// that are made more or less often are made at another time because of that.
 pub(super) fn order(
     (old, new): (&Record, &Record),
     links: &[Link],
