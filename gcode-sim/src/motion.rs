@@ -16,14 +16,17 @@ pub type Axis = usize;
 pub struct Axes {
     letters: [u8; MAX_AXES],
     count: usize,
-    /// The same as bits, A the lowest: each of them, 0 where there is no axis, and all.
-    bits: [u32; MAX_AXES],
+    /// The axis of each letter, [`Axes::NONE`] where it is none's.
+    places: [u8; 256],
+    /// The letters as bits, A the lowest.
     mask: u32,
     /// The axes that turn as bits, axis 1 the lowest.
     rotary: u32,
 }
 
 impl Axes {
+    const NONE: u8 = MAX_AXES as u8;
+
     /// At most [`MAX_AXES`] letters; more are an error of the machine file and refused there.
     pub fn new(letters: &str) -> Option<Self> {
         let bytes = letters.as_bytes();
@@ -33,17 +36,21 @@ impl Axes {
     }
 
     fn of(some: &[u8]) -> Self {
-        let (mut letters, mut bits) = ([0; MAX_AXES], [0; MAX_AXES]);
+        let (mut letters, mut places, mut mask, mut rotary) = ([0; MAX_AXES], [Self::NONE; 256], 0, 0);
         for (axis, letter) in some.iter().enumerate() {
-            (letters[axis], bits[axis]) = (*letter, 1 << (letter - b'A'));
+            letters[axis] = *letter;
+            places[usize::from(*letter)] = axis as u8;
+            mask |= 1 << (letter - b'A');
+            rotary |= u32::from(matches!(letter, b'A' | b'B' | b'C')) << axis;
         }
-        let turns = |(axis, letter): (Axis, &u8)| u32::from(matches!(letter, b'A' | b'B' | b'C')) << axis;
-        let rotary = some.iter().enumerate().map(turns).sum();
-        Self { letters, count: some.len(), bits, mask: bits.iter().fold(0, |mask, bit| mask | bit), rotary }
+        Self { letters, count: some.len(), places, mask, rotary }
     }
 
+    /// The axis of an address.
+    #[inline]
     pub fn find(&self, letter: u8) -> Option<Axis> {
-        self.letters().position(|(_, l)| l == letter)
+        let axis = usize::from(self.places[usize::from(letter)]);
+        (axis < MAX_AXES).then_some(axis)
     }
 
     pub fn letter(&self, axis: Axis) -> char {
@@ -75,11 +82,6 @@ impl Axes {
     /// The axes with the letters of their addresses.
     pub fn letters(&self) -> impl Iterator<Item = (Axis, u8)> + '_ {
         self.letters[..self.count].iter().copied().enumerate()
-    }
-
-    /// The letters and their [`Axes::mask`] bits in places of their own; 0 where there is no axis.
-    pub fn places(&self) -> (&[u8; MAX_AXES], &[u32; MAX_AXES]) {
-        (&self.letters, &self.bits)
     }
 }
 
@@ -307,6 +309,11 @@ pub enum Signal {
 pub trait Sink {
     fn event(&mut self, event: &Event<'_>);
 
+    /// Whether anybody listens.
+    fn listens(&self) -> bool {
+        true
+    }
+
     /// Where the skip signal comes on a way that is about to be gone. `None`: here nothing gives such a signal.
     fn signal(&mut self, _: &SkipFeed<'_>) -> Option<Signal> {
         None
@@ -316,6 +323,10 @@ pub trait Sink {
 /// Nobody listens: only the control's end state is asked for.
 impl Sink for () {
     fn event(&mut self, _: &Event<'_>) {}
+
+    fn listens(&self) -> bool {
+        false
+    }
 }
 
 /// Two listeners side by side; the first that can answer does.
@@ -323,6 +334,11 @@ impl<A: Sink, B: Sink> Sink for (A, B) {
     fn event(&mut self, event: &Event<'_>) {
         self.0.event(event);
         self.1.event(event);
+    }
+
+    #[inline]
+    fn listens(&self) -> bool {
+        self.0.listens() || self.1.listens()
     }
 
     fn signal(&mut self, feed: &SkipFeed<'_>) -> Option<Signal> {
@@ -338,12 +354,22 @@ impl<S: Sink> Sink for Option<S> {
         }
     }
 
+    #[inline]
+    fn listens(&self) -> bool {
+        self.as_ref().is_some_and(S::listens)
+    }
+
     fn signal(&mut self, feed: &SkipFeed<'_>) -> Option<Signal> {
         self.as_mut().and_then(|sink| sink.signal(feed))
     }
 }
 
 impl<S: Sink + ?Sized> Sink for &mut S {
+    #[inline]
+    fn listens(&self) -> bool {
+        (**self).listens()
+    }
+
     fn event(&mut self, event: &Event<'_>) {
         (**self).event(event);
     }

@@ -49,7 +49,7 @@ pub(crate) fn targets(program: &Program, settings: &Settings) -> Vec<CalledAs> {
 pub(super) fn sites(program: &Program, settings: &Settings) -> Vec<CallSite> {
     let mut found = Vec::new();
     for (block, op) in program.ops().iter().enumerate() {
-        if let OpKind::Words(words) = &op.kind {
+        if let OpKind::Words(words) = op.kind() {
             found.extend(site(block, words, settings));
         }
     }
@@ -57,7 +57,7 @@ pub(super) fn sites(program: &Program, settings: &Settings) -> Vec<CallSite> {
 }
 
 fn site(block: OpIndex, words: &Words, settings: &Settings) -> Option<CallSite> {
-    let Some(call) = &words.call else { return by_code(block, words, settings) };
+    let Some(call) = words.call() else { return by_code(block, words, settings) };
     let subprogram = matches!(call.kind, Calling::Subprogram | Calling::File | Calling::Local);
     if matches!(call.kind, Calling::Return | Calling::Cancel) {
         return None;

@@ -41,8 +41,8 @@ impl Flow {
             if op.number.is_some() {
                 flow.numbered.push(block);
             }
-            let mut ways = flow.of_block(program, block, &op.kind);
-            if op.skip.is_some() {
+            let mut ways = flow.of_block(program, block, op.kind());
+            if op.skip().is_some() {
                 ways.falls = true;
             }
             flow.ways.push(ways);
@@ -56,7 +56,7 @@ impl Flow {
             OpKind::Empty | OpKind::Alarm(_) => Ways { falls: true, ..Ways::default() },
             OpKind::Words(words) => {
                 let mut ways = self.of_words(program, block, words);
-                if let Some((_, short)) = &words.short {
+                if let Some((_, short)) = words.short() {
                     let other = self.of_words(program, block, short);
                     ways.falls |= other.falls;
                     ways.leaves |= other.leaves;
@@ -81,7 +81,7 @@ impl Flow {
         {
             ways.jumps.extend(program.find_number(number, block + 1));
         }
-        if let Some(call) = words.call.as_ref().filter(|call| call.kind == Calling::Return) {
+        if let Some(call) = words.call().filter(|call| call.kind == Calling::Return) {
             ways.falls = false;
             ways.leaves = true;
             if let CallTarget::Number(word) = &call.target {
@@ -100,14 +100,15 @@ impl Flow {
 
     fn of_statement(&mut self, program: &Program, block: OpIndex, statement: &Statement) -> Ways {
         match statement {
-            Statement::Goto(to) => self.goto(program, block, to.node),
-            Statement::IfGoto { to, .. } => Ways { falls: true, ..self.goto(program, block, to.node) },
+            Statement::Goto(to) => self.goto(program, block, &to.node),
+            Statement::IfGoto { to, .. } => Ways { falls: true, ..self.goto(program, block, &to.node) },
             Statement::IfThen { then, .. } => Ways { falls: true, ..self.of_statement(program, block, then) },
             Statement::While { end, .. } => Ways { falls: true, jumps: vec![end + 1], ..Ways::default() },
             Statement::End { start, .. } => Ways { jumps: vec![*start], ..Ways::default() },
             Statement::Assign { target, .. } if target.is(3000) => Ways { leaves: true, ..Ways::default() },
             Statement::Several(all) if all.iter().any(is_raise) => Ways { leaves: true, ..Ways::default() },
             Statement::Assign { .. }
+            | Statement::Compute { .. }
             | Statement::Several(_)
             | Statement::Do { .. }
             | Statement::SetNames { .. }
@@ -118,7 +119,7 @@ impl Flow {
         }
     }
 
-    fn goto(&mut self, program: &Program, block: OpIndex, to: Operand) -> Ways {
+    fn goto(&mut self, program: &Program, block: OpIndex, to: &Operand) -> Ways {
         let Some(number) = literal::of_operand(to).and_then(literal::whole) else {
             let computed = literal::of_operand(to).is_none();
             return Ways { anywhere: computed, ..Ways::default() };

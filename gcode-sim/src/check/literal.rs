@@ -6,8 +6,9 @@ use crate::syntax::ast::{BinaryOp, Decimal, Expr, ExprKind, Name};
 pub(super) fn of_word(word: &Coded) -> Option<f64> {
     match word.value {
         Input::Literal(number) => Some(number.value()),
-        Input::Operand(operand) => of_operand(operand),
+        Input::Number(number) => Some(number),
         Input::G(code, _) => Some(f64::from(code) / 10.0),
+        Input::Variable { .. } | Input::Code(_) => None,
     }
 }
 
@@ -16,9 +17,9 @@ pub(super) fn count(word: &Coded) -> Option<u32> {
     of_word(word).and_then(whole)
 }
 
-pub(super) fn of_operand(operand: Operand) -> Option<f64> {
+pub(super) fn of_operand(operand: &Operand) -> Option<f64> {
     match operand {
-        Operand::Number(number) => Some(number),
+        Operand::Number(number) => Some(*number),
         Operand::Variable { .. } | Operand::Code(_) => None,
     }
 }

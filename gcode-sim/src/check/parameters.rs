@@ -8,7 +8,7 @@ pub(crate) fn inside(program: &Program) -> Vec<bool> {
     let mut parameters = false;
     let blocks = program.ops().iter().map(|op| {
         let before = parameters;
-        if let OpKind::Words(words) = &op.kind {
+        if let OpKind::Words(words) = op.kind() {
             parameters = if parameters { !has_g(words, 110) } else { enters(words) };
         }
         before && parameters

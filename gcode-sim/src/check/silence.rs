@@ -20,7 +20,7 @@ impl Silence {
         let mut off = Vec::new();
         let mut head = true;
         for (index, (block, op)) in unit.blocks.iter().zip(unit.program.ops()).enumerate() {
-            head &= matches!(op.kind, OpKind::Empty) && op.number.is_none();
+            head &= matches!(op.kind(), OpKind::Empty) && op.number.is_none();
             for comment in &block.comments {
                 let text = String::from_utf8_lossy(&comment.text).to_ascii_uppercase();
                 let Some(names) = text.trim().strip_prefix(WORD) else { continue };

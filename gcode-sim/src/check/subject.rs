@@ -146,13 +146,13 @@ impl Unit<'_> {
         if !self.callers.is_empty() {
             return Role::Called;
         }
-        let returns = self.program.ops().iter().any(|op| match &op.kind {
-            OpKind::Words(words) => words.call.as_ref().is_some_and(|call| call.kind == Calling::Return),
+        let returns = self.program.ops().iter().any(|op| match op.kind() {
+            OpKind::Words(words) => words.call().is_some_and(|call| call.kind == Calling::Return),
             _ => false,
         });
         let ends = self.flow.ways.iter().zip(self.program.ops()).any(|(ways, op)| {
-            let returns = matches!(&op.kind, OpKind::Words(words) if words.call.is_some());
-            ways.leaves && matches!(op.kind, OpKind::Words(_)) && !returns
+            let returns = matches!(op.kind(), OpKind::Words(words) if words.call().is_some());
+            ways.leaves && matches!(op.kind(), OpKind::Words(_)) && !returns
         });
         if returns && !ends { Role::Resident } else { Role::Main }
     }

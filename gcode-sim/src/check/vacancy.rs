@@ -80,7 +80,7 @@ pub(super) fn steps(unit: &Unit<'_>, block: OpIndex, state: &Locals) -> Vec<(OpI
     let Some(op) = unit.program.ops().get(block) else { return both(*state) };
     let mut after = *state;
     let statement = variables::statement(&unit.blocks, block);
-    let mut steps = match (&op.kind, statement) {
+    let mut steps = match (op.kind(), statement) {
         (
             OpKind::Statement(_),
             Some(Statement::IfGoto { condition, .. } | Statement::While { condition, .. }),
@@ -112,7 +112,7 @@ pub(super) fn steps(unit: &Unit<'_>, block: OpIndex, state: &Locals) -> Vec<(OpI
                     Some((target, value)) => assign(target, value, &mut when_true),
                     None => steps.extend(unit.flow.ways[block].jumps.iter().map(|to| (*to, when_true))),
                 }
-                if !super::flow::raises(&op.kind) && variables::assigned(then).is_some() {
+                if !super::flow::raises(op.kind()) && variables::assigned(then).is_some() {
                     steps.push((block + 1, when_true));
                 }
             }
@@ -145,7 +145,7 @@ pub(super) fn steps(unit: &Unit<'_>, block: OpIndex, state: &Locals) -> Vec<(OpI
         }
         _ => both(after),
     };
-    if op.skip.is_some() {
+    if op.skip().is_some() {
         steps.push((block + 1, *state));
     }
     steps

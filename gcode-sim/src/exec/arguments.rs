@@ -1,27 +1,27 @@
 //! The words of a macro call to the locals they set.
 use super::Core;
-use super::eval::Checked;
+use super::eval::{Checked, RoundsTo};
 use super::quantities::POWERS;
 use super::vars::{Locals, VACANT, Value};
 use super::words::Raw;
 use crate::alarm::Alarm;
 use crate::control::ArgumentScale;
-use crate::program::{ArgumentLocals, Coded, Input, Program};
+use crate::program::{ArgumentLocals, Coded, Input, Words};
 use crate::syntax::ast::Decimal;
 
 impl Core {
-    /// Word by word in the order they stand in; a vacant value leaves its local vacant. `every` is G66.1, which takes
+    /// Words of a block, one by one in the order they stand in; a vacant value leaves its local vacant. `every` is G66.1, which takes
     /// G, L, N and P as well.
-    pub(super) fn arguments(&self, program: &Program, words: &[Coded], every: bool) -> Checked<Locals> {
+    pub(super) fn arguments(&self, words: &Words, list: &[Coded], every: bool) -> Checked<Locals> {
         let mut locals = VACANT;
         let mut letters = ArgumentLocals::new(self.settings.plain_ijk, every);
-        for word in words {
+        for word in list {
             if word.comma {
                 return Err(Alarm::ImproperAddress { letter: char::from(word.letter) }.at(word.span));
             }
             let local = letters.next(word.letter).map_err(|alarm| alarm.at(word.span))?;
             let Some(local) = local else { continue };
-            if let Some(raw) = self.raw_argument(program, word)? {
+            if let Some(raw) = self.raw_argument(words, word)? {
                 let decimals = self.argument_decimals(raw, word.letter);
                 locals.set(local, Value::Number(self.argument(raw, word.letter)), decimals);
             }
@@ -30,12 +30,13 @@ impl Core {
     }
 
     /// The value of a word that is an argument of a macro.
-    fn raw_argument(&self, program: &Program, word: &Coded) -> Checked<Option<Raw>> {
+    fn raw_argument(&self, words: &Words, word: &Coded) -> Checked<Option<Raw>> {
         match word.value {
-            Input::Operand(operand) => {
-                Ok(self.argument_operand(program, operand)?.given().map(Raw::Computed))
+            Input::Code(place) => {
+                let value = self.run_code(words.code(place), RoundsTo::Whole)?;
+                Ok(value.given().map(Raw::Computed))
             }
-            Input::Literal(_) | Input::G(..) => self.raw(program, word),
+            _ => self.raw(words, word),
         }
     }
 

@@ -19,57 +19,38 @@ use super::plan::Plan;
 use super::state::State;
 use super::words::Given;
 use crate::alarm::Alarm;
-use crate::motion::Sink;
 use crate::program::modes::CutterSide;
-use crate::program::{Calling, Op, Program, Words};
+use crate::program::{Calling, Words};
 use crate::source::Span;
 
 impl Core {
-    /// Checks a block of words; where it isn't a plain move, that is done already, makes the plan of it, which is to be
-    /// carried out. An alarm leaves no trace.
-    pub(super) fn words<S: Sink>(
-        &mut self,
-        (program, op): (&Program, &Op),
-        words: &Words,
-        given: &mut Given,
-        plan: &mut Plan,
-        sink: &mut S,
-    ) -> Checked<bool> {
+    /// Checks a block of words and makes the plan of it. An alarm leaves no trace.
+    pub(super) fn words(&self, words: &Words, given: &mut Given, plan: &mut Plan) -> Checked<()> {
         let words = self.unskipped(words);
+        plan.begin(&self.state);
         let mut calling = None;
-        if self.plain_zero.is_some() {
-            self.collect(program, words, None, given)?;
-            if self.step(words, given, op.number, sink)? {
-                return Ok(false);
+        if !self.settings.code_calls.is_empty() {
+            if self.macro_by_code(words, plan)? {
+                return Ok(());
             }
-            plan.begin(&self.state);
-        } else {
-            plan.begin(&self.state);
-            if !self.settings.code_calls.is_empty() {
-                if self.macro_by_code(program, words, plan)? {
-                    return Ok(true);
-                }
-                calling = self.subprogram_by_code(program, words)?;
-            }
-            self.collect(program, words, calling.as_ref(), given)?;
+            calling = self.subprogram_by_code(words)?;
         }
-        self.prepare(program, words, calling, given, plan)?;
-        Ok(true)
+        self.collect(words, calling.as_ref(), given)?;
+        self.prepare(words, calling, given, plan)
     }
 
     /// The words of a block but for those behind a block skip that is on.
     #[inline(always)]
     fn unskipped<'a>(&self, words: &'a Words) -> &'a Words {
-        let Some((switch, short)) = &words.short else { return words };
+        let Some((switch, short)) = words.short() else { return words };
         let is_on = self.skips(*switch);
-        self.told.set(Some(Note::BlockSkip { switch: (*switch).max(1), is_on }));
+        self.aftermath.tell(Note::BlockSkip { switch: (*switch).max(1), is_on });
         if is_on { short } else { words }
     }
 
     /// Makes the plan of a block of words that are collected. Nothing changes.
     fn prepare(
         &self,
-        program: &Program,
         words: &Words,
         calling: Option<CallingWord>,
         given: &Given,
@@ -92,11 +73,11 @@ impl Core {
             }
             None => self.motion(given, plan, lengthened, span)?,
         }
-        if let Some(call) = &words.call {
-            self.prepare_call(program, call, plan)?;
+        if let Some(call) = words.call() {
+            self.prepare_call(words, call, plan)?;
         }
         if let Some(calling) = calling {
-            self.plan_calling_word(program, words, &calling, plan)?;
+            self.plan_calling_word(words, &calling, plan)?;
         }
         if plan.moved {
             plan.state.ended = None;
@@ -144,7 +125,7 @@ impl Core {
 
     /// Only N, P and L may stand beside M99 while G66 is on.
     fn beside_return(&self, words: &Words) -> Checked<()> {
-        let returns = words.call.as_ref().is_some_and(|call| call.kind == Calling::Return);
+        let returns = words.call().is_some_and(|call| call.kind == Calling::Return);
         if !returns || self.modal_calls.is_empty() {
             return Ok(());
         }

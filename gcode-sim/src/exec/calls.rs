@@ -8,21 +8,21 @@ use super::words::count;
 use super::{Control, Core};
 use crate::alarm::Alarm;
 use crate::program::m_codes;
-use crate::program::{CallOp, CallTarget, Calling, Coded, Library, Program};
+use crate::program::{CallOp, CallTarget, Calling, Coded, Library, Words};
 use crate::source::Span;
 
 impl Core {
-    pub(super) fn coded_count(&self, program: &Program, word: &Coded) -> Checked<Option<u32>> {
-        let Some(raw) = self.raw(program, word)? else { return Ok(None) };
+    pub(super) fn coded_count(&self, words: &Words, word: &Coded) -> Checked<Option<u32>> {
+        let Some(raw) = self.raw(words, word)? else { return Ok(None) };
         at(count(raw, word.letter), word.span).map(Some)
     }
 
     /// 7. The call or return of a block.
-    pub(super) fn prepare_call(&self, program: &Program, call: &CallOp, plan: &mut Plan) -> Checked<()> {
+    pub(super) fn prepare_call(&self, words: &Words, call: &CallOp, plan: &mut Plan) -> Checked<()> {
         let kind = match call.kind {
             Calling::Return => {
                 let to = match &call.target {
-                    CallTarget::Number(word) => self.coded_count(program, word)?,
+                    CallTarget::Number(word) => self.coded_count(words, word)?,
                     CallTarget::Name(_) | CallTarget::None => None,
                 };
                 plan.flow = Flow::Return { number: to, target: None };
@@ -54,7 +54,7 @@ impl Core {
             Calling::Subprogram | Calling::File | Calling::Local => CallKind::Subprogram,
         };
         let start = match &call.start {
-            Some(word) => self.coded_count(program, word)?,
+            Some(word) => self.coded_count(words, word)?,
             None => None,
         };
         let unsure = &self.settings.unsure;
@@ -63,7 +63,7 @@ impl Core {
             _ => Alarm::ProgramNotNamed.at(call.span),
         };
         let mut repeats = match &call.repeats {
-            Some(word) => self.coded_count(program, word)?,
+            Some(word) => self.coded_count(words, word)?,
             None => None,
         };
         let target = match &call.target {
@@ -72,7 +72,7 @@ impl Core {
             CallTarget::None => return Err(missing),
             CallTarget::Name(name) => Target::Name(name.clone()),
             CallTarget::Number(word) => {
-                let number = self.coded_count(program, word)?.ok_or(missing)?;
+                let number = self.coded_count(words, word)?.ok_or(missing)?;
                 // M98 P with more than four digits: repeats in front of a four-digit program number.
                 if call.kind == Calling::Subprogram
                     && self.settings.repeats_in_p
@@ -87,7 +87,7 @@ impl Core {
             }
         };
         let every = kind == CallKind::EveryBlock;
-        let locals = self.arguments(program, &call.arguments, every)?;
+        let locals = self.arguments(words, &call.arguments, every)?;
         let own = self.settings.unsure.every_block_calls_itself && !call.arguments.is_empty();
         let calls_now = !every || own;
         let repeats = repeats.unwrap_or(1);

@@ -7,7 +7,7 @@ use super::vars::{VACANT, Value};
 use super::words::{Raw, count};
 use crate::alarm::Alarm;
 use crate::control::{Called, CodeCallKind};
-use crate::program::{Coded, Program, Words};
+use crate::program::{Coded, Words};
 
 /// A word that calls a subprogram, taken out of its block.
 #[derive(Clone, Copy, Debug)]
@@ -30,9 +30,9 @@ impl CallingWord {
 
 impl Core {
     /// A code that calls a macro: it stands first, and the block's other words are the arguments.
-    pub(super) fn macro_by_code(&self, program: &Program, words: &Words, plan: &mut Plan) -> Checked<bool> {
+    pub(super) fn macro_by_code(&self, words: &Words, plan: &mut Plan) -> Checked<bool> {
         for (place, word) in words.list.iter().enumerate() {
-            let Some(called) = self.called_by(program, word)? else { continue };
+            let Some(called) = self.called_by(words, word)? else { continue };
             if called.kind == CodeCallKind::Subprogram {
                 continue;
             }
@@ -40,23 +40,18 @@ impl Core {
                 let what = "words before a code that calls a macro".into();
                 return Err(Alarm::MacroFormat { what }.at(words.list[0].span));
             }
-            if let Some(second) = &words.call {
+            if let Some(second) = words.call() {
                 return Err(Alarm::TwoMacroCalls.at(second.span));
             }
-            let call = self.macro_call(program, called, word, &words.list[1..])?;
+            let call = self.macro_call(called, words, word)?;
             plan.flow = Flow::Call(Box::new(call));
             return Ok(true);
         }
         Ok(false)
     }
 
-    fn macro_call(
-        &self,
-        program: &Program,
-        called: Called,
-        code: &Coded,
-        arguments: &[Coded],
-    ) -> Checked<CallPlan> {
+    fn macro_call(&self, called: Called, words: &Words, code: &Coded) -> Checked<CallPlan> {
+        let arguments = &words.list[1..];
         let every = called.kind == CodeCallKind::Modal && self.settings.code_calls.every_block;
         for word in arguments.iter().filter(|_| !every) {
             match word.letter {
@@ -70,7 +65,7 @@ impl Core {
             }
         }
         let repeats = match arguments.iter().find(|word| word.letter == b'L') {
-            Some(word) => self.coded_count(program, word)?.unwrap_or(1),
+            Some(word) => self.coded_count(words, word)?.unwrap_or(1),
             None => 1,
         };
         let own = self.settings.unsure.every_block_calls_itself && !arguments.is_empty();
@@ -83,7 +78,7 @@ impl Core {
             target: Target::Number(called.program),
             repeats,
             start: None,
-            locals: self.arguments(program, arguments, every)?,
+            locals: self.arguments(words, arguments, every)?,
             calls_now: !every || own,
             by_code: by_code(code.letter),
             external: false,
@@ -92,15 +87,11 @@ impl Core {
     }
 
     /// The word of a block that calls a subprogram; the words beside it act first.
-    pub(super) fn subprogram_by_code(
-        &self,
-        program: &Program,
-        words: &Words,
-    ) -> Checked<Option<CallingWord>> {
+    pub(super) fn subprogram_by_code(&self, words: &Words) -> Checked<Option<CallingWord>> {
         let mut found = None;
         for (place, word) in words.list.iter().enumerate() {
-            let Some(calling) = self.calling_word(program, place, word)? else { continue };
-            if found.is_some() || words.call.is_some() {
+            let Some(calling) = self.calling_word(words, place, word)? else { continue };
+            if found.is_some() || words.call().is_some() {
                 return Err(Alarm::TwoSubprogramCalls.at(word.span));
             }
             found = Some(calling);
@@ -108,12 +99,12 @@ impl Core {
         Ok(found)
     }
 
-    fn calling_word(&self, program: &Program, place: usize, word: &Coded) -> Checked<Option<CallingWord>> {
+    fn calling_word(&self, words: &Words, place: usize, word: &Coded) -> Checked<Option<CallingWord>> {
         let by_address = self.settings.code_calls.by_address(word.letter);
         if let Some(call) =
             by_address.filter(|_| self.code_may_call(word.letter) && !self.is_axis(word.letter))
         {
-            let Some(raw) = self.raw(program, word)? else { return Ok(None) };
+            let Some(raw) = self.raw(words, word)? else { return Ok(None) };
             let number = match word.letter {
                 b'B' | b'S' | b'T' => f64::from(at(count(raw, word.letter), word.span)?),
                 letter => self.argument(raw, letter),
@@ -121,7 +112,7 @@ impl Core {
             let value = Some((call.variable, number));
             return Ok(Some(CallingWord { place, repeats: false, program: call.program, value }));
         }
-        let called = self.called_by(program, word)?;
+        let called = self.called_by(words, word)?;
         let called = called.filter(|called| called.kind == CodeCallKind::Subprogram);
         Ok(called.map(|called| CallingWord { place, repeats: true, program: called.program, value: None }))
     }
@@ -129,14 +120,13 @@ impl Core {
     /// The call that a word has made a plan of, with its repetitions.
     pub(super) fn plan_calling_word(
         &self,
-        program: &Program,
         words: &Words,
         calling: &CallingWord,
         plan: &mut Plan,
     ) -> Checked<()> {
         let word = &words.list[calling.place];
         let repeats = match words.list.iter().find(|other| calling.repeats && other.letter == b'L') {
-            Some(word) => self.coded_count(program, word)?.unwrap_or(1),
+            Some(word) => self.coded_count(words, word)?.unwrap_or(1),
             None => 1,
         };
         if let Some((number, value)) = calling.value {
@@ -157,11 +147,11 @@ impl Core {
     }
 
     /// What a G or M code calls here; inside a program that a code called it is an ordinary one.
-    fn called_by(&self, program: &Program, word: &Coded) -> Checked<Option<Called>> {
+    fn called_by(&self, words: &Words, word: &Coded) -> Checked<Option<Called>> {
         if !matches!(word.letter, b'G' | b'M') || !self.code_may_call(word.letter) {
             return Ok(None);
         }
-        let Some(raw) = self.raw(program, word)? else { return Ok(None) };
+        let Some(raw) = self.raw(words, word)? else { return Ok(None) };
         let tenths = match (word.letter, raw) {
             (b'G', Raw::Computed(value)) => (value * 10.0).round(),
             (b'G', Raw::Literal(number)) => number.value() * 10.0,

@@ -1,9 +1,9 @@
 //! What a block commands that would otherwise be as it was left: modal codes, the places of axes, offsets.
-use super::words::{Raw, computed_row};
+use super::words::computed_row;
 use super::{Control, Core};
 use crate::program::codes::{Effect, OneShot, spelled};
 use crate::program::modes::Distance;
-use crate::program::{OpKind, Program, Statement, Words};
+use crate::program::{OpKind, Statement, Words};
 
 /// Of a block that is about to be done.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -22,12 +22,12 @@ impl Control {
     /// What [`Control::next_block`] commands; nothing for a block that is skipped.
     pub fn next_commanded(&self) -> Commanded {
         let mut commanded = Commanded::default();
-        self.look_at_next(|core, program, op| {
+        self.look_at_next(|core, op| {
             if core.is_skipped(op) {
                 return;
             }
-            if let OpKind::Words(words) = core.behind_if(program, &op.kind) {
-                core.commanded(program, words, &mut commanded);
+            if let OpKind::Words(words) = core.behind_if(op.kind()) {
+                core.commanded(words, &mut commanded);
             }
         });
         commanded
@@ -35,15 +35,15 @@ impl Control {
 
     /// Whether [`Control::next_block`] will do all that it says: it isn't skipped, and no condition stands in the way.
     pub fn next_is_whole(&self) -> bool {
-        let is_whole = self.look_at_next(|core, program, op| {
-            let condition = match &op.kind {
+        let is_whole = self.look_at_next(|core, op| {
+            let condition = match op.kind() {
                 OpKind::If { condition, .. }
                 | OpKind::Statement(
                     Statement::IfGoto { condition, .. } | Statement::IfThen { condition, .. },
-                ) => Some(*condition),
+                ) => Some(condition),
                 OpKind::Empty | OpKind::Words(_) | OpKind::Statement(_) | OpKind::Alarm(_) => None,
             };
-            let holds = condition.is_none_or(|condition| core.holds(program, condition).unwrap_or(true));
+            let holds = condition.is_none_or(|condition| core.holds(condition).unwrap_or(true));
             holds && !core.is_skipped(op)
         });
         is_whole.unwrap_or(true)
@@ -51,19 +51,19 @@ impl Control {
 }
 
 impl Core {
-    fn commanded(&self, program: &Program, words: &Words, commanded: &mut Commanded) {
+    fn commanded(&self, words: &Words, commanded: &mut Commanded) {
         // Behind G65 and M98 letters are arguments.
-        if words.call.is_some() {
+        if words.call().is_some() {
             return;
         }
-        let words = match &words.short {
+        let words = match words.short() {
             Some((switch, short)) if self.skips(*switch) => short,
             _ => words,
         };
         let mut distance = self.state.modal.distance;
         let mut act = None;
         for word in words.list.iter().filter(|word| word.letter == b'G') {
-            let Ok(Some(raw)) = self.raw(program, word) else { continue };
+            let Ok(Some(raw)) = self.raw(words, word) else { continue };
             let Ok(row) = computed_row(raw, self.settings.codes) else { continue };
             match row.effect {
                 Effect::OneShot(one) => act = Some(one),
@@ -73,30 +73,26 @@ impl Core {
             commanded.modes.extend(row.effect.group().map(|group| (group, row.code)));
         }
         let values = words.list.iter().filter(|word| b"FST".contains(&word.letter) && !word.comma);
-        let values = values.filter(|word| matches!(self.raw(program, word), Ok(Some(_))));
+        let values = values.filter(|word| matches!(self.raw(words, word), Ok(Some(_))));
         commanded.values.extend(values.map(|word| char::from(word.letter)));
         if act == Some(OneShot::DataInput) {
-            self.offsets_written(program, words, commanded);
+            self.offsets_written(words, commanded);
         } else if is_sent(act, distance) {
             let letters = words.list.iter().filter(|word| !word.comma && word.axis.is_none());
-            let given = letters.filter(|word| matches!(self.raw(program, word), Ok(Some(_))));
+            let given = letters.filter(|word| matches!(self.raw(words, word), Ok(Some(_))));
             let axes = given.filter(|word| self.settings.axes.find(word.letter).is_some());
             commanded.axes.extend(axes.map(|word| char::from(word.letter)));
         }
     }
 
     /// `G10 L2 P1 X`, for every value that the block gives.
-    fn offsets_written(&self, program: &Program, words: &Words, commanded: &mut Commanded) {
+    fn offsets_written(&self, words: &Words, commanded: &mut Commanded) {
         let mut table = "G10".to_owned();
         for letter in *b"LP" {
             let word = words.list.iter().find(|word| word.letter == letter && !word.comma);
-            let raw = word.and_then(|word| self.raw(program, word).ok().flatten());
+            let raw = word.and_then(|word| self.raw(words, word).ok().flatten());
             if let Some(raw) = raw {
-                let number = match raw {
-                    Raw::Literal(number) => number.value(),
-                    Raw::Computed(value) => value,
-                };
-                table.push_str(&format!(" {}{number}", char::from(letter)));
+                table.push_str(&format!(" {}{}", char::from(letter), raw.value()));
             }
         }
         let values = words.list.iter().filter(|word| !b"GLPN".contains(&word.letter) && !word.comma);

@@ -1,6 +1,7 @@
 //! Carries out what a block has planned, and tells the machine.
 use super::drill::Drill;
 use super::plan::{Plan, Write};
+use super::run::Over;
 use super::vars::Kind;
 use super::{Core, STOPS, Stop};
 use crate::alarm::Alarm;
@@ -71,7 +72,7 @@ impl Core {
             sink.event(&Event { kind: &kind, seconds: Seconds(time), block, calls: &calls });
         });
         self.seconds += seconds;
-        self.moves += moves;
+        self.count_moves(moves);
     }
 
     /// Tells the machine one thing and counts it.
@@ -86,9 +87,24 @@ impl Core {
     #[inline(always)]
     pub(super) fn count(&mut self, kind: &EventKind, seconds: f64) {
         self.seconds += seconds;
-        self.moves += u64::from(kind.end().is_some());
+        self.count_moves(u64::from(kind.end().is_some()));
         if let EventKind::Stop { kind, text, named } = kind {
             self.count_stop(*kind, text, named);
+        }
+    }
+
+    /// Counts a move that nobody is told of.
+    #[inline(always)]
+    pub(super) fn count_move(&mut self, seconds: f64) {
+        self.seconds += seconds;
+        self.count_moves(1);
+    }
+
+    #[inline(always)]
+    fn count_moves(&mut self, moves: u64) {
+        self.moves += moves;
+        if self.moves > self.most_moves {
+            self.aftermath.end(Over::Moves);
         }
     }
 

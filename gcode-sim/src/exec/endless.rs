@@ -93,32 +93,35 @@ impl Watch {
         self.found
     }
 
-    /// Told of every statement, with its place.
-    #[inline]
-    pub(super) fn look(&mut self, place: OpIndex, core: &mut Core) {
-        if core.frame.next <= place {
-            self.jumped(core);
-        }
-    }
-
     /// Told of every jump back; ends the run where the program is now known never to leave the loop.
+    #[inline(always)]
     pub(super) fn jumped(&mut self, core: &mut Core) {
-        self.wait(core);
+        if self.waiting || core.clock_read.get() {
+            self.wait(core);
+        }
         if self.copy.is_some() {
             self.widen(core);
         }
+        if self.left == 0 || self.seen.as_ref().is_some_and(|seen| seen.may_be_again(core)) {
+            self.look(core);
+        }
+        self.left = self.left.saturating_sub(1);
+    }
+
+    /// Looks closely whether the control has come back, and keeps this moment when it is time.
+    #[inline(never)]
+    fn look(&mut self, core: &mut Core) {
         self.found = None;
         if self.seen.as_mut().is_some_and(|seen| seen.is_again(core)) {
             self.come_back(core);
             if self.found.is_some() {
-                core.over = Some(Over::Never);
+                core.aftermath.end(Over::Never);
                 return;
             }
         }
         if self.left == 0 {
             self.keep(core);
         }
-        self.left -= 1;
     }
 
     /// Keeps this moment instead of an earlier one, for longer.
@@ -137,7 +140,7 @@ impl Watch {
             None => self.copy = Some(Box::new(Copy::of(core))),
             // It waits for the clock, which only motion has moved so far.
             Some(copy) if copy.equals(core) && self.clock_read => {
-                self.waiting = true;
+                (self.seconds, self.waiting) = (core.seconds, true);
                 self.forget();
             }
             Some(copy) if copy.equals(core) => {
@@ -148,6 +151,7 @@ impl Watch {
         }
     }
 
+    #[cold]
     /// Takes note of a jump that leads further out, or further up, than those since the control was copied.
     fn widen(&mut self, core: &Core) {
         let Frame { program, next: to, .. } = core.frame;
@@ -158,6 +162,7 @@ impl Watch {
     }
 
     /// A program that does nothing but wait for a clock is given a millisecond a jump, so that the wait ends.
+    #[cold]
     fn wait(&mut self, core: &mut Core) {
         let read = core.clock_read.take();
         self.clock_read |= read;
@@ -186,10 +191,18 @@ impl Seen {
         }
     }
 
-    /// Whether the control has come to this moment again. What counts turns tells nearly all moments apart.
+    /// Whether nothing that is looked at first differs. What counts turns tells nearly all moments apart.
+    #[inline]
+    fn may_be_again(&self, core: &Core) -> bool {
+        self.machine[0].to_bits() == core.state.machine[0].to_bits()
+            && self.next == core.frame.next
+            && !self.vars.differ_at(self.differed, &core.vars)
+    }
+
+    /// Whether the control has come to this moment again.
     fn is_again(&mut self, core: &Core) -> bool {
-        if (self.next, self.program) != (core.frame.next, core.frame.program)
-            || self.vars.differ_at(self.differed, &core.vars)
+        if !self.may_be_again(core)
+            || self.program != core.frame.program
             || self.callers != core.callers.len()
             || self.machine.0.iter().zip(core.state.machine.0).any(|(a, b)| a.to_bits() != b.to_bits())
         {

@@ -2,11 +2,11 @@
 use std::cell::Cell;
 
 use super::Core;
-use super::functions::{atan2, binary, compare, function, power};
+use super::functions::{angle, atan2, binary, compare, is_finite, no_value, power, value_of};
 use super::notes::Note;
-use super::vars::{Kind, Value};
+use super::vars::{Kind, Last, Value};
 use crate::alarm::{Alarm, Placed};
-use crate::program::{Code, Computed, Instruction, Operand, Operation, Program, STACK, Slot, Source};
+use crate::program::{Computed, Instruction, Operand, Operation, Rare, STACK, Slot, Source};
 use crate::source::Span;
 use crate::syntax::ast::{BinaryOp, Function};
 use crate::units::round;
@@ -52,56 +52,60 @@ pub(super) enum RoundsTo {
 
 impl Core {
     #[inline]
-    pub(super) fn operand(&self, program: &Program, operand: Operand) -> Checked<Value> {
-        self.value(program, operand, RoundsTo::Increment)
-    }
-
-    /// The value of an argument of a macro call, where ROUND gives whole numbers as in any macro statement.
-    pub(super) fn argument_operand(&self, program: &Program, operand: Operand) -> Checked<Value> {
-        self.value(program, operand, RoundsTo::Whole)
-    }
-
-    #[inline]
-    fn value(&self, program: &Program, operand: Operand, rounds: RoundsTo) -> Checked<Value> {
+    pub(super) fn operand(&self, operand: &Operand) -> Checked<Value> {
         match operand {
-            Operand::Number(number) => Ok(Value::Number(number)),
-            Operand::Variable { slot, span } => self.load(slot).map_err(|alarm| alarm.at(span)),
-            Operand::Code(code) => self.run_code(program, code, rounds),
+            Operand::Number(number) => Ok(Value::Number(*number)),
+            Operand::Variable { slot, span } => self.load(*slot, span),
+            Operand::Code(code) => self.run_code(code, RoundsTo::Increment),
         }
     }
 
-    /// Whether a condition holds.
-    pub(super) fn holds(&self, program: &Program, condition: Code) -> Checked<bool> {
-        self.run_code(program, condition, RoundsTo::Whole).map(is_true)
+    /// Whether a condition holds; most are one comparison.
+    #[inline]
+    pub(super) fn holds(&self, condition: &[Instruction]) -> Checked<bool> {
+        match self.compared(condition) {
+            Some(holds) => Ok(holds),
+            None => self.run_code(condition, RoundsTo::Whole).map(is_true),
+        }
+    }
+
+    /// Whether a condition of one comparison holds; `None` of others.
+    #[inline(never)]
+    fn compared(&self, condition: &[Instruction]) -> Option<bool> {
+        let [Instruction { operation: Operation::Compare(relation, [left, right]), .. }] = condition else {
+            return None;
+        };
+        let left = self.fetch(left, Last::VACANT);
+        Some(compare(*relation, left, self.fetch(right, Last::VACANT)))
     }
 
     /// A value that an operator needs; `last` is what the instruction before has given.
     #[inline(always)]
-    fn fetch(&self, source: &Source, last: Value) -> Value {
+    fn fetch(&self, source: &Source, last: Last) -> Value {
         match source {
             Source::Number(number) => Value::Number(*number),
             Source::Free(place) => self.vars.free(*place),
-            Source::Computed(Computed::Last) => last,
+            Source::Computed(Computed::Last) => last.into(),
             Source::Computed(Computed::Waiting) => self.waiting.pop(),
         }
     }
 
     /// As [`Core::fetch`], where only the number is asked for.
     #[inline(always)]
-    fn number(&self, source: &Source, last: Value) -> f64 {
+    fn number(&self, source: &Source, last: Last) -> f64 {
         match source {
-            Source::Number(number) => *number,
             Source::Free(place) => self.vars.number(*place),
-            Source::Computed(Computed::Last) => last.number(),
+            Source::Number(number) => *number,
+            Source::Computed(Computed::Last) => last.number,
             Source::Computed(Computed::Waiting) => self.waiting.pop().number(),
         }
     }
 
-    #[inline]
-    fn load(&self, slot: Slot) -> Result<Value, Alarm> {
+    #[inline(always)]
+    pub(super) fn load(&self, slot: Slot, span: &Span) -> Checked<Value> {
         match slot {
             Slot::Free(place) => Ok(self.vars.free(place)),
-            Slot::Other(number) => self.read(number),
+            Slot::Other(number) => at(self.read(number), *span),
         }
     }
 
@@ -114,34 +118,36 @@ impl Core {
         }
     }
 
+    /// What code gives; `rounds` is what ROUND in it rounds to: in a word to the increment of its address, in statements and
+    /// arguments to whole numbers.
     #[inline(never)]
-    fn run_code(&self, program: &Program, code: Code, rounds: RoundsTo) -> Checked<Value> {
-        self.evaluate(program, code, rounds)
+    pub(super) fn run_code(&self, code: &[Instruction], rounds: RoundsTo) -> Checked<Value> {
+        self.evaluate(code, rounds).map(Value::from)
     }
 
     /// As [`Core::run_code`], in the loop over the blocks itself: most expressions are those of assignments.
     #[inline(always)]
-    pub(super) fn evaluate(&self, program: &Program, code: Code, rounds: RoundsTo) -> Checked<Value> {
-        let mut last = Value::Vacant;
-        for Instruction { operation, span } in program.code(code) {
-            last = Value::Number(match operation {
-                Operation::Add(values) => at(self.binary(BinaryOp::Add, values, last), *span)?,
-                Operation::Subtract(values) => at(self.binary(BinaryOp::Sub, values, last), *span)?,
-                Operation::Multiply(values) => at(self.binary(BinaryOp::Mul, values, last), *span)?,
-                Operation::Divide(values) => at(self.binary(BinaryOp::Div, values, last), *span)?,
+    pub(super) fn evaluate(&self, code: &[Instruction], rounds: RoundsTo) -> Checked<Last> {
+        let mut last = Last::VACANT;
+        for Instruction { operation, span } in code {
+            last = Last::of(match operation {
+                Operation::Add(values) => self.binary(BinaryOp::Add, values, last, span)?,
+                Operation::Subtract(values) => self.binary(BinaryOp::Sub, values, last, span)?,
+                Operation::Multiply(values) => self.binary(BinaryOp::Mul, values, last, span)?,
+                Operation::Divide(values) => self.binary(BinaryOp::Div, values, last, span)?,
                 Operation::Compare(relation, [left, right]) => {
                     let left = self.fetch(left, last);
                     truth(compare(*relation, left, self.fetch(right, last)))
                 }
                 Operation::Function(name, argument) => {
-                    at(self.function(*name, self.number(argument, last)), *span)?
+                    self.function(*name, self.number(argument, last), span)?
                 }
                 Operation::Atan2([y, x]) => {
                     let y = self.number(y, last);
-                    at(self.atan(y, self.number(x, last)), *span)?
+                    self.atan(y, self.number(x, last), span)?
                 }
-                _ => {
-                    last = at(self.other(program, operation, last, rounds), *span)?;
+                Operation::Rare(rare) => {
+                    last = at(self.rare(rare, last, rounds), *span)?.into();
                     continue;
                 }
             });
@@ -149,76 +155,84 @@ impl Core {
         Ok(last)
     }
 
+    /// + − * /. Where there is no value, it is worked out why.
     #[inline(always)]
-    fn binary(&self, op: BinaryOp, [left, right]: &[Source; 2], last: Value) -> Result<f64, Alarm> {
-        binary(op, self.number(left, last), self.number(right, last), &self.settings.unsure)
+    fn binary(&self, op: BinaryOp, [left, right]: &[Source; 2], last: Last, span: &Span) -> Checked<f64> {
+        let left = self.number(left, last);
+        let right = self.number(right, last);
+        let value = match op {
+            BinaryOp::Add => left + right,
+            BinaryOp::Sub => left - right,
+            BinaryOp::Mul => left * right,
+            _ => left / right,
+        };
+        if !is_finite(value) {
+            return at(binary(op, left, right, &self.settings.unsure), *span);
+        }
+        Ok(value)
     }
 
     #[inline(always)]
-    fn function(&self, name: Function, argument: f64) -> Result<f64, Alarm> {
-        let value = function(name, argument, &self.settings);
-        if name == Function::Tan && (argument % 180.0).abs() == 90.0 && value.is_ok() {
-            self.told.set(Some(Note::TangentOf90));
+    fn function(&self, name: Function, argument: f64, span: &Span) -> Checked<f64> {
+        let value = value_of(name, argument, &self.settings);
+        if !is_finite(value) {
+            return Err(no_value(name, argument).at(*span));
         }
-        value
+        if name == Function::Tan && (argument % 180.0).abs() == 90.0 {
+            self.aftermath.tell(Note::TangentOf90);
+        }
+        Ok(value)
     }
 
     /// ATAN of two values.
     #[inline(always)]
-    fn atan(&self, y: f64, x: f64) -> Result<f64, Alarm> {
-        let value = atan2(y, x, &self.settings);
-        if y == 0.0 && x == 0.0 && value.is_ok() {
-            self.told.set(Some(Note::AtanOf0));
+    fn atan(&self, y: f64, x: f64, span: &Span) -> Checked<f64> {
+        let value = angle(y, x, &self.settings);
+        if !is_finite(value) {
+            return at(atan2(y, x, &self.settings), *span);
         }
-        value
+        if y == 0.0 && x == 0.0 {
+            self.aftermath.tell(Note::AtanOf0);
+        }
+        Ok(value)
     }
 
     /// What only some expressions contain. It stands apart so that the others needn't carry it.
     #[inline(never)]
-    fn other(
-        &self,
-        program: &Program,
-        operation: &Operation,
-        last: Value,
-        rounds: RoundsTo,
-    ) -> Result<Value, Alarm> {
-        let unsure = &self.settings.unsure;
+    fn rare(&self, operation: &Rare, before: Last, rounds: RoundsTo) -> Result<Value, Alarm> {
+        let (last, unsure) = (Value::from(before), &self.settings.unsure);
         Ok(match *operation {
-            Operation::Load(ref source) => self.fetch(source, last),
-            Operation::Wait => {
+            Rare::Load(ref source) => self.fetch(source, before),
+            Rare::Wait => {
                 self.waiting.push(last);
                 last
             }
-            Operation::Add(_)
-            | Operation::Subtract(_)
-            | Operation::Multiply(_)
-            | Operation::Divide(_)
-            | Operation::Compare(..)
-            | Operation::Function(..)
-            | Operation::Atan2(_)
-            | Operation::Plus => last,
-            Operation::Read(number) => self.read(number)?,
-            Operation::LoadIndirect => self.read(index(last)?)?,
-            Operation::Negate => match last {
+            Rare::Plus => last,
+            Rare::Read(number) => self.read(number)?,
+            Rare::LoadIndirect => self.read(index(last)?)?,
+            Rare::Negate => match last {
                 Value::Vacant if unsure.minus_keeps_vacancy => Value::Vacant,
                 value => Value::Number(-value.number()),
             },
-            Operation::Reverse => match last {
+            Rare::Reverse => match last {
                 Value::Vacant => Value::Vacant,
                 Value::Number(number) => Value::Number(-number),
             },
-            Operation::Bracket => match last {
+            Rare::Bracket => match last {
                 Value::Vacant if !unsure.brackets_keep_vacancy => Value::Number(0.0),
                 value => value,
             },
-            Operation::Whole(op, ref values) => Value::Number(self.binary(op, values, last)?),
-            Operation::Power([ref base, ref exponent]) => {
-                let base = self.number(base, last);
-                Value::Number(power(base, self.number(exponent, last))?)
+            Rare::Whole(op, [ref left, ref right]) => {
+                let left = self.number(left, before);
+                Value::Number(binary(op, left, self.number(right, before), unsure)?)
             }
-            Operation::RoundTo(_) if rounds == RoundsTo::Whole => Value::Number(round(last.number())),
-            Operation::RoundTo(letter) => Value::Number(self.round_to(letter, last.number())),
-            Operation::Logic(op) => {
+            Rare::Power([ref base, ref exponent]) => {
+                let base = self.number(base, before);
+                Value::Number(power(base, self.number(exponent, before))?)
+            }
+            Rare::RoundTo(_) if rounds == RoundsTo::Whole => Value::Number(round(last.number())),
+            Rare::RoundTo(letter) => Value::Number(self.round_to(letter, last.number())),
+            Rare::Logic(op) => {
                 let (left, right) = (is_true(self.waiting.pop()), is_true(last));
                 let holds = match op {
                     BinaryOp::And => left && right,
@@ -227,28 +241,28 @@ impl Core {
                 };
                 Value::Number(truth(holds))
             }
-            Operation::Parameter { bit, axis } => {
+            Rare::Parameter { bit, axis } => {
                 let mut part = last;
-                let mut before = |is_there: bool| {
+                let mut wait = |is_there: bool| {
                     is_there.then(|| std::mem::replace(&mut part, self.waiting.pop()).number())
                 };
-                let (axis, bit) = (before(axis), before(bit));
+                let (axis, bit) = (wait(axis), wait(bit));
                 Value::Number(self.parameter(part.number(), bit, axis)?)
             }
-            Operation::AxisNumber(letter) => {
+            Rare::AxisNumber(letter) => {
                 let axis = self.settings.axes.find(letter);
                 let unknown = || Alarm::AxisAddress { text: char::from(letter).into() };
                 Value::Number(axis.ok_or_else(unknown)? as f64 + 1.0)
             }
-            Operation::AddPoint => {
+            Rare::AddPoint => {
                 let number = index(last)?;
                 match self.vars.kind(number) {
                     Kind::Local(local) => Value::Number(self.vars.with_point(local)),
                     _ => return Err(Alarm::ArgumentFormat { function: "ADP".into() }),
                 }
             }
-            Operation::NameNumber(name) => Value::Number(f64::from(self.named(program.variable_name(name))?)),
-            Operation::SystemNumber(row) => {
+            Rare::NameNumber(ref name) => Value::Number(f64::from(self.named(name)?)),
+            Rare::SystemNumber(row) => {
                 let number = if self.settings.series_15_offsets { row.series_15 } else { row.number };
                 let place = match row.suffix {
                     None => 0,

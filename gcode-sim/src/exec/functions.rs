@@ -5,13 +5,18 @@ use crate::control::{Settings, Unsure};
 use crate::syntax::ast::{BinaryOp, Function, Relation};
 use crate::units::{Deg, round};
 
-/// Results beyond what a double holds are PS0111.
-#[inline]
-fn finite(value: f64) -> Result<f64, Alarm> {
-    if value.abs() <= f64::MAX { Ok(value) } else { Err(Alarm::FloatOverflow) }
+/// Whether an operator or a function has a value: else it is infinite or no number.
+#[inline(always)]
+pub(super) fn is_finite(value: f64) -> bool {
+    value.abs() <= f64::MAX
 }
 
-#[inline(always)]
+/// Results beyond what a double holds are PS0111.
+fn finite(value: f64) -> Result<f64, Alarm> {
+    if is_finite(value) { Ok(value) } else { Err(Alarm::FloatOverflow) }
+}
+
+#[inline(never)]
 pub(crate) fn binary(op: BinaryOp, left: f64, right: f64, unsure: &Unsure) -> Result<f64, Alarm> {
     finite(match op {
         BinaryOp::Add => left + right,
@@ -68,65 +73,48 @@ pub(super) fn compare(relation: Relation, left: Value, right: Value) -> bool {
     }
 }
 
-#[inline(never)]
 pub(crate) fn function(name: Function, x: f64, settings: &Settings) -> Result<f64, Alarm> {
-    let domain = |ok: bool| {
-        let function = || format!("{name:?}").to_uppercase();
-        if ok { Ok(()) } else { Err(Alarm::OutOfRange { function: function(), value: x }) }
-    };
+    let value = value_of(name, x, settings);
+    if is_finite(value) { Ok(value) } else { Err(no_value(name, x)) }
+}
+
+/// What a function gives; no number, or infinite, where it alarms.
+#[inline(never)]
+pub(super) fn value_of(name: Function, x: f64, settings: &Settings) -> f64 {
     let residue = |y: f64| if settings.zero_residues && y.abs() < 1e-8 { 0.0 } else { y };
-    finite(match name {
+    match name {
+        Function::Sqrt => x.sqrt(),
         Function::Sin => residue(Deg(x).sin()),
         Function::Cos => residue(Deg(x).cos()),
-        Function::Tan => {
-            domain(!(settings.unsure.tan_90_alarms && (x % 180.0).abs() == 90.0))?;
-            residue(Deg(x).tan())
-        }
-        Function::Asin => {
-            domain(x.abs() <= 1.0)?;
-            signed(Deg::asin(x).0, settings)
-        }
-        Function::Acos => {
-            domain(x.abs() <= 1.0)?;
-            Deg::acos(x).0
-        }
+        Function::Tan if settings.unsure.tan_90_alarms && (x % 180.0).abs() == 90.0 => f64::NAN,
+        Function::Tan => residue(Deg(x).tan()),
+        Function::Asin => signed(Deg::asin(x).0, settings),
+        Function::Acos => Deg::acos(x).0,
         Function::Atan => Deg::atan2(x, 1.0).0,
-        Function::Sqrt => {
-            domain(x >= 0.0)?;
-            x.sqrt()
-        }
         Function::Abs => x.abs(),
         Function::Round => round(x),
         Function::Fix => x.trunc(),
-        Function::Fup => {
-            if x < 0.0 {
-                x.floor()
-            } else {
-                x.ceil()
-            }
-        }
-        Function::Ln => {
-            domain(x > 0.0)?;
-            libm::log(x)
-        }
-        Function::Exp => {
-            let y = libm::exp(x);
-            domain(y.is_finite())?;
-            y
-        }
-        Function::Bcd => {
-            domain((0.0..=99_999_999.0).contains(&round(x)))?;
-            f64::from(to_bcd(round(x) as u32))
-        }
-        Function::Bin => {
-            domain((0.0..=f64::from(u32::MAX)).contains(&round(x)))?;
-            let number = from_bcd(round(x) as u32);
-            domain(number.is_some())?;
-            f64::from(number.unwrap_or_default())
-        }
-        Function::Adp => return Err(Alarm::ArgumentFormat { function: "ADP".into() }),
-        Function::Pow => return Err(Alarm::MissingComma),
-    })
+        Function::Fup if x < 0.0 => x.floor(),
+        Function::Fup => x.ceil(),
+        Function::Ln => libm::log(x),
+        Function::Exp => libm::exp(x),
+        Function::Bcd if !(0.0..=99_999_999.0).contains(&round(x)) => f64::NAN,
+        Function::Bcd => f64::from(to_bcd(round(x) as u32)),
+        Function::Bin if !(0.0..=f64::from(u32::MAX)).contains(&round(x)) => f64::NAN,
+        Function::Bin => from_bcd(round(x) as u32).map_or(f64::NAN, f64::from),
+        // They have two values, or a variable.
+        Function::Adp | Function::Pow => f64::NAN,
+    }
+}
+
+/// The alarm of a function that has no value.
+#[cold]
+pub(super) fn no_value(name: Function, x: f64) -> Alarm {
+    match name {
+        Function::Adp => Alarm::ArgumentFormat { function: "ADP".into() },
+        Function::Pow => Alarm::MissingComma,
+        _ => Alarm::OutOfRange { function: format!("{name:?}").to_uppercase(), value: x },
+    }
 }
 
 /// NAT: negative angles as they are, or a turn added.
@@ -135,14 +123,18 @@ fn signed(degrees: f64, settings: &Settings) -> f64 {
 }
 
 pub(crate) fn atan2(y: f64, x: f64, settings: &Settings) -> Result<f64, Alarm> {
+    let angle = angle(y, x, settings);
+    if is_finite(angle) { Ok(angle) } else { Err(Alarm::OutOfRange { function: "ATAN".into(), value: 0.0 }) }
+}
+
+/// ATAN of two values; no number where it alarms.
+#[inline]
+pub(super) fn angle(y: f64, x: f64, settings: &Settings) -> f64 {
     if y == 0.0 && x == 0.0 {
-        if settings.unsure.atan_of_nothing_alarms {
-            return Err(Alarm::OutOfRange { function: "ATAN".into(), value: 0.0 });
-        }
-        return Ok(0.0);
+        return if settings.unsure.atan_of_nothing_alarms { f64::NAN } else { 0.0 };
     }
     // A negative zero must not turn 180° into −180°.
-    Ok(signed(Deg::atan2(y + 0.0, x).0, settings))
+    signed(Deg::atan2(y + 0.0, x).0, settings)
 }
 
 pub(crate) fn power(base: f64, exponent: f64) -> Result<f64, Alarm> {

@@ -1,4 +1,5 @@
 //! Operations to events: a control that can be stepped block by block, held and looked at.
+mod aftermath;
 mod ahead;
 mod arcs;
 mod arguments;
@@ -68,6 +69,7 @@ pub use state::{Codes, State};
 pub use vars::{Value, Vars};
 pub use watch::Watcher;
 
+use self::aftermath::Aftermath;
 use self::ahead::Ahead;
 use self::endless::Watch;
 use self::eval::Waiting;
@@ -75,12 +77,11 @@ use self::frames::Frame;
 use self::modal_calls::ModalCall;
 use self::offsets::Offsets;
 use self::plan::Plan;
-use self::run::Over;
+use self::travel::Counting;
 use self::words::Given;
 use self::work_use::WorkUse;
 use crate::alarm::Alarm;
 use crate::control::{ParameterPlace, Settings};
-use crate::motion::Position;
 use crate::program::{Memory, ProgramId, Slot};
 use crate::source::Span;
 
@@ -105,8 +106,8 @@ pub struct Control {
 pub(crate) struct Core {
     settings: Settings,
     state: Box<State>,
-    /// While a block can be a plain move: where its axes count from.
-    plain_zero: Option<Position>,
+    /// While a block can be a plain move: what its axis words count from.
+    plain: Option<Counting>,
     vars: Vars,
     offsets: Offsets,
     /// What has been read and waits for the next move.
@@ -134,12 +135,11 @@ pub(crate) struct Core {
     clock_read: Cell<bool>,
     /// For values that wait for their operators.
     waiting: Waiting,
-    /// What a function of the block at hand has to tell.
-    told: Cell<Option<Note>>,
-    /// How the block at hand has ended the run.
-    over: Option<Over>,
+    aftermath: Aftermath,
     blocks: u64,
     moves: u64,
+    /// Beyond so many the run ends.
+    most_moves: u64,
     stops: Vec<Stop>,
     printed: print::Printed,
     /// M codes that went to the machine builder's logic, with the block of the first of each.
@@ -159,7 +159,7 @@ impl Control {
         let core = Core {
             settings,
             state: Box::default(),
-            plain_zero: None,
+            plain: None,
             vars,
             offsets,
             ahead: Ahead::default(),
@@ -176,10 +176,10 @@ impl Control {
             idle: 0.0,
             clock_read: Cell::new(false),
             waiting: Waiting::default(),
-            told: Cell::new(None),
-            over: None,
+            aftermath: Aftermath::default(),
             blocks: 0,
             moves: 0,
+            most_moves: u64::MAX,
             stops: Vec::new(),
             printed: print::Printed::default(),
             passed_on: BTreeMap::new(),

@@ -5,7 +5,7 @@ use super::frames::{ByCodes, Frame, FrameKind};
 use super::plan::Flow;
 use super::vars::{Locals, Value};
 use crate::alarm::Alarm;
-use crate::program::{Calling, Program, ProgramId, Words};
+use crate::program::{Calling, ProgramId, Words};
 use crate::source::Span;
 
 /// G66: waits for moves.
@@ -59,12 +59,6 @@ impl Core {
         Err(Alarm::NotSimulated { what }.at(block))
     }
 
-    /// Whether a block that moves, or any block, is going to call.
-    #[inline]
-    pub(super) fn waits_for_moves(&self) -> bool {
-        self.waiting_call().is_some()
-    }
-
     /// The modal call that a block of this program can trigger.
     #[inline]
     fn waiting_call(&self) -> Option<usize> {
@@ -74,35 +68,23 @@ impl Core {
     /// Under G66.1 a block of words is not executed: its words, G L N P among them, are the macro's arguments.
     /// M99 and G67 stay what they are.
     #[inline]
-    pub(super) fn call_by_block(
-        &mut self,
-        program: &Program,
-        words: &Words,
-        number: Option<u32>,
-        block: Span,
-    ) -> Checked<bool> {
+    pub(super) fn call_by_block(&mut self, words: &Words, number: Option<u32>, block: Span) -> Checked<bool> {
         if !self.waiting_call().is_some_and(|i| self.modal_calls[i].every) {
             return Ok(false);
         }
-        self.call_by_words(program, words, number, block)
+        self.call_by_words(words, number, block)
     }
 
     #[inline(never)]
-    fn call_by_words(
-        &mut self,
-        program: &Program,
-        words: &Words,
-        number: Option<u32>,
-        block: Span,
-    ) -> Checked<bool> {
-        match &words.call {
+    fn call_by_words(&mut self, words: &Words, number: Option<u32>, block: Span) -> Checked<bool> {
+        match words.call() {
             Some(call) if matches!(call.kind, Calling::Cancel | Calling::Return) => return Ok(false),
             Some(call) => {
                 return Err(Alarm::NotSimulated { what: "a call while G66.1 is on".into() }.at(call.span));
             }
             None => {}
         }
-        let mut locals = self.arguments(program, &words.list, true)?;
+        let mut locals = self.arguments(words, &words.list, true)?;
         if let Some(number) = number {
             locals.set(14, Value::Number(f64::from(number)), 0);
         }

@@ -7,8 +7,8 @@ use super::words::{Given, Raw};
 use crate::alarm::Alarm;
 use crate::control::{ParameterError, ParameterPlace, Settings, is_without_effect};
 use crate::motion::Axis;
+use crate::program::Words;
 use crate::program::codes::{Effect, OneShot};
-use crate::program::{Program, Words};
 use crate::source::Span;
 
 impl Core {
@@ -45,7 +45,6 @@ impl Core {
     /// A block between G10 L52 and G11: `N_ R_`, with P for an axis and Q for a bit.
     pub(super) fn prepare_parameter(
         &self,
-        program: &Program,
         (words, number): (&Words, Option<u32>),
         given: &mut Given,
         plan: &mut Plan,
@@ -53,20 +52,20 @@ impl Core {
     ) -> Checked<()> {
         plan.begin(&self.state);
         let wrong = |what: &str| Alarm::ParameterFormat { what: what.to_owned() }.at(span);
-        self.collect(program, words, None, given)?;
+        self.collect(words, None, given)?;
         let mut codes = given.g_codes();
         match (codes.next(), codes.next()) {
             (None, _) => {}
             (Some(code), None) if code.effect == Effect::OneShot(OneShot::DataInputEnd) => {
                 plan.state.parameter_input = false;
                 return match given.unread() {
-                    None if words.call.is_none() => Ok(()),
+                    None if words.call().is_none() => Ok(()),
                     _ => Err(wrong("words beside G11")),
                 };
             }
             _ => return Err(wrong("another G code before G11")),
         }
-        if given.m_count > 0 || words.call.is_some() {
+        if given.m_count > 0 || words.call().is_some() {
             return Err(wrong("an M code before G11"));
         }
         let number = number.and_then(|number| u16::try_from(number).ok());

@@ -4,7 +4,7 @@ use super::eval::Checked;
 use super::notes::Note;
 use crate::alarm::Alarm;
 use crate::control::Settings;
-use crate::program::{PrintPart, Program};
+use crate::program::PrintPart;
 use crate::source::Span;
 use crate::syntax::ast::PrintKind;
 use crate::units::nearest;
@@ -27,13 +27,7 @@ impl Core {
     }
 
     /// DPRNT and BPRNT: one line.
-    pub(super) fn print(
-        &mut self,
-        program: &Program,
-        kind: PrintKind,
-        parts: &[PrintPart],
-        span: Span,
-    ) -> Checked<()> {
+    pub(super) fn print(&mut self, kind: PrintKind, parts: &[PrintPart], span: Span) -> Checked<()> {
         if self.settings.print_needs_open && !self.printed.open {
             let what = "DPRNT without POPEN before it".into();
             return Err(Alarm::MacroFormat { what }.at(span));
@@ -46,13 +40,13 @@ impl Core {
                     line.extend(text.bytes().map(|b| if b == b'*' { b' ' } else { b }));
                 }
                 PrintPart::Value { value, whole, decimals } => {
-                    let number = self.operand(program, *value)?.number();
+                    let number = self.operand(value)?.number();
                     let printed = match kind {
                         PrintKind::Decimal => decimal(number, *whole, *decimals, &self.settings, &mut line),
                         PrintKind::Binary => binary(number, *decimals, &mut line).map(|()| true),
                     };
                     if !printed.map_err(|alarm| alarm.at(span))? {
-                        self.told.set(Some(Note::DigitsLost));
+                        self.aftermath.tell(Note::DigitsLost);
                     }
                 }
             }

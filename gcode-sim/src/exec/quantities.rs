@@ -1,4 +1,6 @@
 //! What the number of a word is at its address: a length, an angle, a time, a feed.
+use std::hint::cold_path;
+
 use super::Core;
 use super::eval::{Checked, at};
 use super::state::State;
@@ -8,7 +10,7 @@ use crate::contour::Blend;
 use crate::control::Increment;
 use crate::program::modes::{FeedMode, Unit};
 use crate::syntax::ast::Decimal;
-use crate::units::nearest;
+use crate::units::{nearest, nearest_within};
 
 /// What [`Core::measure`] finds out once for all axes of a block.
 #[derive(Clone, Copy, Debug)]
@@ -20,8 +22,40 @@ pub(super) struct Measure {
     inch: bool,
 }
 
+/// Nine digits in increments (8.1, PS0003).
+const MOST: u64 = 999_999_999;
+
 /// Powers of ten by their exponent.
 pub(super) const POWERS: [f64; 8] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7];
+
+/// The same as integers; the last is more than any literal's digits are.
+const UNITS: [u64; 20] = {
+    let mut units = [1; 20];
+    let mut place = 1;
+    while place < units.len() {
+        units[place] = units[place - 1] * 10;
+        place += 1;
+    }
+    units
+};
+
+impl Measure {
+    /// Whether an address counts in inches.
+    #[inline(always)]
+    fn is_inch(&self, letter: u8) -> bool {
+        if self.inch {
+            cold_path();
+            return !turns(letter);
+        }
+        false
+    }
+}
+
+/// The increments, `scale` in a unit, nearest to a computed value, half away from 0; `None` where they have too many digits.
+#[inline(always)]
+fn computed(value: f64, scale: f64) -> Option<f64> {
+    nearest_within(value, scale, MOST as f64).map(|number| number + 0.0)
+}
 
 impl Core {
     /// How many decimals the least increment of an address has in the unit in force.
@@ -35,45 +69,47 @@ impl Core {
         if unit == Unit::Inch && !turns(letter) { metric + 1 } else { metric }
     }
 
-    /// Whole increments: literals are cut off (or rounded, by setting), computed values rounded half away from 0.
-    #[inline(always)]
+    /// Whole increments.
     fn increments(&self, raw: &Raw, decimals: usize) -> Result<f64, Alarm> {
         let number = match raw {
-            Raw::Computed(value) => nearest(*value, POWERS[decimals]),
-            Raw::Literal(Decimal { digits, places, negative }) => {
-                let places = match places {
-                    // Without a point the digits count increments, or whole units in calculator notation.
-                    None if self.settings.calculator_input => 0,
-                    None => decimals,
-                    Some(places) => usize::from(*places),
-                };
-                // Signed numbers become doubles in one step; no literal has as many digits.
-                let magnitude = if places == decimals {
-                    *digits as i64 as f64
-                } else if places < decimals {
-                    *digits as i64 as f64 * POWERS[decimals - places]
-                } else {
-                    self.cut(*digits, places - decimals)
-                };
-                if *negative { -magnitude } else { magnitude }
-            }
+            Raw::Computed(value) => computed(*value, POWERS[decimals]),
+            Raw::Literal(number) => self.literal(number, decimals),
         };
-        // Nine digits in increments (8.1, PS0003).
-        if number.abs() > 999_999_999.0 { Err(Alarm::TooManyDigits) } else { Ok(number + 0.0) }
+        number.ok_or(Alarm::TooManyDigits)
     }
 
-    /// Digits without some of the last, which are less than an increment.
+    /// Increments of a literal: what is less than one is cut off, or rounded, by setting. `None` as of [`computed`].
     #[inline(always)]
-    fn cut(&self, digits: u64, places: usize) -> f64 {
-        let unit = 10_u64.saturating_pow(places as u32);
+    fn literal(&self, Decimal { digits, places, negative }: &Decimal, decimals: usize) -> Option<f64> {
+        let places = match places {
+            Some(places) => usize::from(*places),
+            // Without a point the digits count increments, or whole units in calculator notation.
+            None => {
+                cold_path();
+                if self.settings.calculator_input { 0 } else { decimals }
+            }
+        };
+        let number = if places == decimals { *digits } else { self.shifted(*digits, places, decimals) };
+        // Signed numbers become doubles in one step.
+        let signed = if *negative { -(number as i64) } else { number as i64 };
+        (number <= MOST).then_some(signed as f64)
+    }
+
+    /// Digits as increments that have some decimals. What is less than an increment is cut off, or rounded, by setting.
+    #[inline]
+    fn shifted(&self, digits: u64, places: usize, decimals: usize) -> u64 {
+        let unit = UNITS[places.abs_diff(decimals).min(UNITS.len() - 1)];
+        if places < decimals {
+            return digits.saturating_mul(unit);
+        }
         let half = if self.settings.unsure.round_literals { unit / 2 } else { 0 };
-        (digits.saturating_add(half) / unit) as f64
+        digits.saturating_add(half) / unit
     }
 
     /// A length in mm or an angle in degrees, a multiple of the increment of its address.
     pub(super) fn dimension(&self, given: &Given, letter: u8, state: &State) -> Checked<Option<f64>> {
         let Some((raw, span)) = given.get(letter) else { return Ok(None) };
-        at(self.dimension_of(&raw, letter, self.measure(state.modal.unit)), span).map(Some)
+        at(self.dimension_of(&raw, letter, &self.measure(state.modal.unit)), span).map(Some)
     }
 
     /// How the numbers of axis words are read while a unit is in force.
@@ -84,14 +120,32 @@ impl Core {
     }
 
     /// As [`Core::dimension`], of a word's value.
+    pub(super) fn dimension_of(&self, raw: &Raw, letter: u8, measure: &Measure) -> Result<f64, Alarm> {
+        let value = match raw {
+            Raw::Literal(number) => self.written(number, letter, measure),
+            Raw::Computed(value) => self.rounded(*value, letter, measure),
+        };
+        value.ok_or(Alarm::TooManyDigits)
+    }
+
+    /// As [`Core::dimension_of`], of a literal; `None` where it has too many digits.
     #[inline(always)]
-    pub(super) fn dimension_of(&self, raw: &Raw, letter: u8, measure: Measure) -> Result<f64, Alarm> {
-        let Measure { decimals, scale, inch } = measure;
-        if inch && !turns(letter) {
-            let inches = self.increments(raw, decimals + 1)? / POWERS[decimals + 1];
-            return Ok(self.clean(inches * 25.4));
+    pub(super) fn written(&self, number: &Decimal, letter: u8, measure: &Measure) -> Option<f64> {
+        if measure.is_inch(letter) {
+            let decimals = measure.decimals + 1;
+            return Some(self.clean(self.literal(number, decimals)? / POWERS[decimals] * 25.4));
         }
-        Ok(self.increments(raw, decimals)? / scale)
+        Some(self.literal(number, measure.decimals)? / measure.scale)
+    }
+
+    /// As [`Core::written`], of a computed value.
+    #[inline(always)]
+    pub(super) fn rounded(&self, value: f64, letter: u8, measure: &Measure) -> Option<f64> {
+        if measure.is_inch(letter) {
+            let scale = POWERS[measure.decimals + 1];
+            return Some(self.clean(computed(value, scale)? / scale * 25.4));
+        }
+        Some(computed(value, measure.scale)? / measure.scale)
     }
 
     /// An angle at an address that is a length elsewhere: R of G68.
@@ -157,15 +211,17 @@ impl Core {
     /// F in the unit of the feed mode.
     pub(super) fn feed_word(&self, given: &Given, state: &State) -> Checked<Option<f64>> {
         let Some((raw, span)) = given.get(b'F') else { return Ok(None) };
+        at(self.feed_of(&raw, state), span).map(Some)
+    }
+
+    /// The same of the value of the word.
+    pub(super) fn feed_of(&self, raw: &Raw, state: &State) -> Result<f64, Alarm> {
         let value = match raw {
             Raw::Literal(number) if number.places.is_some() => number.value(),
             Raw::Literal(number) => number.value() / POWERS[self.feed_decimals(state)],
-            Raw::Computed(value) => value,
+            Raw::Computed(value) => *value,
         };
-        if value < 0.0 {
-            return Err(Alarm::IllegalMinus { letter: 'F' }.at(span));
-        }
-        Ok(Some(value))
+        if value < 0.0 { Err(Alarm::IllegalMinus { letter: 'F' }) } else { Ok(value) }
     }
 
     /// How many decimals F has where it is written without a point.

@@ -8,7 +8,7 @@ use super::plan::Flow;
 use super::{Control, Core, Limits, Outcome, Stopped, Watcher};
 use crate::alarm::Alarm;
 use crate::motion::{Place, Sink};
-use crate::program::{Form, Library, Memory, Op, OpKind};
+use crate::program::{Act, Asked, Form, Library, Memory, OpKind};
 use crate::source::Span;
 
 /// A run ends after so many moves, and so many for every block that it may execute: a cycle with K or with small
@@ -24,6 +24,8 @@ pub(super) enum Over {
     End,
     /// It is in a loop that never ends.
     Never,
+    /// It has told as many moves as it may.
+    Moves,
 }
 
 impl Control {
@@ -40,18 +42,19 @@ impl Control {
         sink: &mut S,
         watcher: &mut impl Watcher,
     ) -> Outcome {
-        let moves = limits.blocks.saturating_mul(MOVES_PER_BLOCK).max(MOVES);
         if let Some(outcome) = self.over() {
             return outcome;
         }
-        while self.core.blocks < limits.blocks && self.core.moves <= moves {
+        self.core.most_moves = limits.blocks.saturating_mul(MOVES_PER_BLOCK).max(MOVES);
+        while self.core.blocks < limits.blocks && self.core.moves <= self.core.most_moves {
             if self.core.blocks.is_multiple_of(TOLD) && self.is_told_to_stop() {
                 break;
             }
             let until = limits.blocks.min((self.core.blocks / TOLD + 1) * TOLD);
-            while self.core.blocks < until && self.core.moves <= moves {
+            while self.core.blocks < until {
                 watcher.before(self);
-                let done = self.block(library, sink);
+                let until = if watcher.looks() { self.core.blocks + 1 } else { until };
+                let done = self.block(until, library, sink);
                 if !self.is_uneventful(&done)
                     && let Some(outcome) = self.conclude(done, sink)
                 {
@@ -78,7 +81,8 @@ impl Control {
         if let Some(outcome) = self.over() {
             return Some(outcome);
         }
-        let done = self.block(library, sink);
+        self.core.most_moves = u64::MAX;
+        let done = self.block(self.core.blocks + 1, library, sink);
         self.conclude(done, sink).map(|outcome| *outcome)
     }
 
@@ -90,25 +94,25 @@ impl Control {
     /// Whether a block has ended nothing and has nothing to tell, as most.
     #[inline(always)]
     fn is_uneventful(&self, done: &Checked<()>) -> bool {
-        done.is_ok() && self.core.over.is_none() && self.core.told.get().is_none()
+        done.is_ok() && self.core.aftermath.is_none()
     }
 
     /// Takes note of what a block has to tell, and of the end of the run.
     #[inline(never)]
     fn conclude<S: Sink>(&mut self, mut done: Checked<()>, sink: &mut S) -> Option<Box<Outcome>> {
-        let over = self.core.over.take();
+        let (note, over) = self.core.aftermath.take();
         if over == Some(Over::End)
             && let Err(alarm) = self.core.end_ahead(sink)
         {
             done = Err(alarm);
         }
-        if let Some(note) = self.core.told.take() {
+        if let Some(note) = note {
             self.core.notes.entry(note).or_insert(self.core.block);
         }
         let outcome = match done {
             Ok(()) => match over? {
                 Over::End => Outcome::End,
-                Over::Never => Outcome::Limit,
+                Over::Never | Over::Moves => Outcome::Limit,
             },
             Err(alarm) => {
                 self.core.complete(&alarm, sink);
@@ -121,44 +125,43 @@ impl Control {
         Some(Box::new(outcome))
     }
 
-    /// Reads the next block and does what it says.
+    /// Reads the next block and does what it says. A statement never leads into another program: behind one the next block
+    /// is done at once, as long as there are fewer than `until`.
     #[inline(always)]
-    fn block<S: Sink>(&mut self, library: &mut impl Library, sink: &mut S) -> Checked<()> {
+    fn block<S: Sink>(&mut self, until: u64, library: &mut impl Library, sink: &mut S) -> Checked<()> {
         let Self { memory, core, plan, given, watch, .. } = self;
-        let place = core.frame.next;
-        let Some((program, op)) = memory.ready(core.frame.program, place) else {
-            return core.behind_last(memory);
-        };
-        core.block = op.span;
-        core.blocks += 1;
-        core.frame.next = place + 1;
-        if let Some(switch) = op.skip {
-            let is_on = core.skips(switch);
-            core.notes.entry(Note::BlockSkip { switch: switch.max(1), is_on }).or_insert(core.block);
-            if is_on {
+        let Some(program) = memory.get_mut(core.frame.program) else { return core.behind_last(memory) };
+        let (program, op) = loop {
+            let place = core.frame.next;
+            let Some((program, op)) = program.ready(place) else { return core.behind_last(memory) };
+            core.block = op.span;
+            core.blocks += 1;
+            core.frame.next = place + 1;
+            let Act::Plain(OpKind::Statement(statement)) = op.act() else { break (program, op) };
+            core.statement(program, statement, watch, sink)?;
+            if core.blocks >= until || !core.aftermath.is_none() {
                 return Ok(());
             }
-        }
-        if !op.forms.is_empty() {
-            core.take_forms(op)?;
-        }
-        // In a loop most blocks are statements.
-        if let OpKind::Statement(statement) = &op.kind {
-            core.statement(program, statement, sink)?;
-            watch.look(place, core);
+        };
+        // In a long file most blocks are plain moves.
+        if let Act::Plain(OpKind::Words(words)) = op.act()
+            && core.step(op, words, sink)
+        {
             return Ok(());
         }
-        let mut kind = &op.kind;
+        let mut kind = match op.act() {
+            Act::Plain(kind) => kind,
+            Act::Asked(asked) if core.passes_over(asked)? => return Ok(()),
+            Act::Asked(asked) => &asked.kind,
+        };
         if let OpKind::If { condition, then } = kind
-            && core.holds(program, *condition)?
+            && core.holds(condition)?
         {
             kind = then;
         }
         match kind {
             OpKind::Statement(statement) => {
-                core.any_statement(program, statement, sink)?;
-                watch.look(place, core);
-                return Ok(());
+                return core.any_statement(program, statement, watch, sink);
             }
             OpKind::Empty if core.state.parameter_input && op.number.is_some() => {
                 return Err(Alarm::ParameterFormat { what: "R is missing".into() }.at(core.block));
@@ -167,17 +170,15 @@ impl Control {
             OpKind::Empty | OpKind::If { .. } => {}
             OpKind::Alarm(alarm) => return Err(alarm.clone()),
             OpKind::Words(words) if core.state.parameter_input => {
-                core.prepare_parameter(program, (words, op.number), given, plan, core.block)?;
+                core.prepare_parameter((words, op.number), given, plan, core.block)?;
                 return self.finish(library, sink);
             }
             OpKind::Words(words) => {
-                if core.call_by_block(program, words, op.number, core.block)? {
+                if core.call_by_block(words, op.number, core.block)? {
                     core.state.codes.o = memory.get(core.frame.program).shown_number();
                     return Ok(());
                 }
-                if !core.words((program, op), words, given, plan, sink)? {
-                    return Ok(());
-                }
+                core.words(words, given, plan)?;
                 if let Some(number) = op.number {
                     plan.state.codes.n = number;
                 }
@@ -221,17 +222,19 @@ impl Control {
                 self.core.state.codes.o = self.memory.get(program).shown_number();
             }
             Flow::Return { number, target } => {
-                self.core.over = self.go_back(number.zip(target));
+                if let Some(over) = self.go_back(number.zip(target)) {
+                    self.core.aftermath.end(over);
+                }
                 let program = self.core.frame.program;
                 self.core.state.codes.o = self.memory.get(program).shown_number();
-                if self.core.over.is_none() {
+                if !self.core.aftermath.is_over() {
                     self.watch.jumped(&mut self.core);
                 }
             }
             Flow::CancelModal => self.core.cancel_modal(),
             Flow::End => {
                 self.core.parts[0] += 1.0;
-                self.core.over = Some(Over::End);
+                self.core.aftermath.end(Over::End);
             }
         }
         Ok(())
@@ -249,23 +252,30 @@ impl Core {
         };
         self.block = Span { start: program.span.end, ..program.span };
         if main && !program.closed {
-            self.over = Some(Over::End);
+            self.aftermath.end(Over::End);
             return Ok(());
         }
         Err(Alarm::EndOfRecord.at(self.block))
     }
 
-    /// Ways of writing that not every control reads.
+    /// Block skip, and ways of writing that not every control reads; whether the block isn't done.
     #[inline(never)]
-    fn take_forms(&mut self, op: &Op) -> Checked<()> {
-        for form in &op.forms {
+    fn passes_over(&mut self, asked: &Asked) -> Checked<bool> {
+        if let Some(switch) = asked.skip {
+            let is_on = self.skips(switch);
+            self.notes.entry(Note::BlockSkip { switch: switch.max(1), is_on }).or_insert(self.block);
+            if is_on {
+                return Ok(true);
+            }
+        }
+        for form in &asked.forms {
             if !form.node.is_taken(&self.settings) {
                 return Err(form.node.alarm().at(form.span));
             }
             if form.node == Form::LowerCase {
-                self.notes.entry(Note::LowerCase).or_insert(op.span);
+                self.notes.entry(Note::LowerCase).or_insert(self.block);
             }
         }
-        Ok(())
+        Ok(false)
     }
 }

@@ -3,7 +3,7 @@ use super::words::{computed_row, count};
 use super::{Control, Core};
 use crate::program::codes::{Effect, OneShot, spelled};
 use crate::program::m_codes::{self, MEffect};
-use crate::program::{Input, OpKind, Program, Words};
+use crate::program::{Input, OpKind, Words};
 
 /// Of a block that is about to be done.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -26,13 +26,13 @@ impl Control {
     /// What [`Control::next_block`] says so; nothing for a block that is skipped.
     pub fn next_silent(&self) -> Silent {
         let mut silent = Silent::default();
-        self.look_at_next(|core, program, op| {
+        self.look_at_next(|core, op| {
             if core.is_skipped(op) {
                 return;
             }
-            silent.skips.extend(op.skip.map(skip));
-            match core.behind_if(program, &op.kind) {
-                OpKind::Words(words) => core.silent(program, words, &mut silent),
+            silent.skips.extend(op.skip().map(skip));
+            match core.behind_if(op.kind()) {
+                OpKind::Words(words) => core.silent(words, &mut silent),
                 OpKind::Statement(_) => {
                     silent.writes = self.will_assign().iter().any(|number| *number >= 1000);
                 }
@@ -49,9 +49,9 @@ fn skip(switch: u8) -> String {
 }
 
 impl Core {
-    fn silent(&self, program: &Program, words: &Words, silent: &mut Silent) {
+    fn silent(&self, words: &Words, silent: &mut Silent) {
         silent.writes |= self.state.parameter_input;
-        let words = match &words.short {
+        let words = match words.short() {
             Some((switch, short)) if self.skips(*switch) => short,
             Some((switch, _)) => {
                 silent.skips.push(skip(*switch));
@@ -60,13 +60,13 @@ impl Core {
             None => words,
         };
         for word in words.list.iter().filter(|word| matches!(word.letter, b'G' | b'M')) {
-            let Ok(Some(raw)) = self.raw(program, word) else { continue };
+            let Ok(Some(raw)) = self.raw(words, word) else { continue };
             if word.letter == b'M' {
                 let Ok(code) = count(raw, b'M') else { continue };
                 match m_codes::find(code, self.settings.codes) {
                     Some(MEffect::NoEffect) => silent.m_codes.push(format!("M{code:02}")),
                     Some(MEffect::Orient) => {
-                        silent.m_codes.push(self.with_words(program, words, format!("M{code:02}"), b"PR"));
+                        silent.m_codes.push(self.with_words(words, format!("M{code:02}"), b"PR"));
                     }
                     Some(MEffect::End) => silent.ends = Some(code),
                     _ => {}
@@ -74,7 +74,7 @@ impl Core {
                 continue;
             }
             let Ok(row) = computed_row(raw, self.settings.codes) else { continue };
-            let text = || self.with_values(program, words, row.code);
+            let text = || self.with_values(words, row.code);
             match row.effect {
                 Effect::NoEffect if [50, 51, 90].contains(&row.code) => silent.path.push(text()),
                 Effect::LookAhead | Effect::Smoothness => silent.path.push(text()),
@@ -87,7 +87,7 @@ impl Core {
                     silent.g_codes.push(format!("G{}", spelled(row.code)));
                 }
                 Effect::OneShot(OneShot::SecondReference) => {
-                    silent.g_codes.push(self.with_words(program, words, "G30".to_owned(), b"P"));
+                    silent.g_codes.push(self.with_words(words, "G30".to_owned(), b"P"));
                 }
                 _ => {}
             }
@@ -95,21 +95,20 @@ impl Core {
     }
 
     /// A code with the words that belong to it; exact stop has none.
-    fn with_values(&self, program: &Program, words: &Words, code: u32) -> String {
+    fn with_values(&self, words: &Words, code: u32) -> String {
         let name = if code.is_multiple_of(10) { format!("G{:02}", code / 10) } else { two_digits(code) };
-        self.with_words(program, words, name, if code == 90 { b"" } else { b"EIPQR" })
+        self.with_words(words, name, if code == 90 { b"" } else { b"EIPQR" })
     }
 
     /// A name and what stands behind these letters.
-    fn with_words(&self, program: &Program, words: &Words, name: String, letters: &[u8]) -> String {
+    fn with_words(&self, words: &Words, name: String, letters: &[u8]) -> String {
         let of_code = |letter: u8| letters.contains(&letter);
         let values = words.list.iter().filter(|word| of_code(word.letter) && !word.comma);
         let shown = values.filter_map(|word| {
-            let value = match word.value {
-                Input::Literal(number) => number.value(),
-                Input::Operand(operand) => self.operand(program, operand).ok()?.given()?,
-                Input::G(..) => return None,
-            };
+            if matches!(word.value, Input::G(..)) {
+                return None;
+            }
+            let value = self.raw(words, word).ok()??.value();
             Some(format!(" {}{value}", char::from(word.letter)))
         });
         name + &shown.collect::<String>()

@@ -1,6 +1,7 @@
 //! Macro statements: assignments, branches and loops. They never tell the machine anything, but for #3000 and #3006.
 use super::Core;
-use super::eval::{Checked, RoundsTo, at, index, integer, is_true};
+use super::endless::Watch;
+use super::eval::{Checked, RoundsTo, at, index, integer};
 use super::notes::Note;
 use super::vars::{Kind, Value};
 use crate::alarm::Alarm;
@@ -19,22 +20,26 @@ impl Core {
         &mut self,
         program: &Program,
         statement: &Statement,
+        watch: &mut Watch,
         sink: &mut S,
     ) -> Checked<()> {
-        match statement {
-            Statement::Assign { target: Target::Slot(Slot::Free(place)), value, .. } => {
-                let value = self.assigned(program, value)?;
-                self.vars.set_free(*place, value);
-                Ok(())
-            }
-            Statement::While { condition, number, end } => {
-                let holds = is_true(self.evaluate(program, *condition, RoundsTo::Whole)?);
-                self.begin_turn(*number, *end, holds);
-                Ok(())
-            }
-            Statement::End { number, start } => self.end_turn(*number, *start),
-            _ => self.any_statement(program, statement, sink),
+        if let Statement::Compute { place, code } = statement {
+            let value = self.evaluate(code, RoundsTo::Increment)?;
+            self.vars.set_free(*place, value);
+            return Ok(());
         }
+        match statement {
+            Statement::While { condition, number, end } => {
+                let holds = self.holds(condition)?;
+                self.begin_turn(*number, *end, holds);
+            }
+            Statement::End { number, start } => {
+                self.end_turn(*number, *start)?;
+                watch.jumped(self);
+            }
+            _ => return self.any_statement(program, statement, watch, sink),
+        }
+        Ok(())
     }
 
     /// As [`Core::statement`], away from the loop over the blocks.
@@ -43,53 +48,53 @@ impl Core {
         &mut self,
         program: &Program,
         statement: &Statement,
+        watch: &mut Watch,
         sink: &mut S,
     ) -> Checked<()> {
+        let next = self.frame.next;
         match statement {
+            Statement::Compute { place, code } => {
+                let value = self.run_code(code, RoundsTo::Increment)?;
+                self.vars.set_free(*place, value.into());
+            }
             Statement::Assign { target, target_span, value, text } => {
-                let slot = at(self.target(program, *target), *target_span)?;
-                let value = self.operand(program, *value)?;
+                let slot = at(self.target(target), *target_span)?;
+                let value = self.operand(value)?;
                 self.write(slot, value, text.as_deref(), *target_span, sink)?;
             }
             Statement::Several(assignments) => {
                 for one in assignments {
-                    self.any_statement(program, one, sink)?;
+                    self.any_statement(program, one, watch, sink)?;
                 }
             }
             Statement::Goto(to) => self.goto(program, to)?,
             Statement::IfGoto { condition, to } => {
-                if self.holds(program, *condition)? {
+                if self.holds(condition)? {
                     self.goto(program, to)?;
                 }
             }
             Statement::IfThen { condition, then } => {
-                if self.holds(program, *condition)? {
+                if self.holds(condition)? {
                     // An assignment or a GOTO: lowering lets nothing else stand here.
-                    return self.any_statement(program, then, sink);
+                    return self.any_statement(program, then, watch, sink);
                 }
             }
             Statement::While { condition, number, end } => {
-                let holds = self.holds(program, *condition)?;
+                let holds = self.holds(condition)?;
                 self.begin_turn(*number, *end, holds);
             }
             Statement::Do { number, end } => self.begin_turn(*number, *end, true),
             Statement::End { number, start } => self.end_turn(*number, *start)?,
-            Statement::SetNames { first, names } => self.name_variables(program, *first, names)?,
-            Statement::Print { kind, parts } => self.print(program, *kind, parts, self.block)?,
+            Statement::SetNames { first, names } => self.name_variables(first, names)?,
+            Statement::Print { kind, parts } => self.print(*kind, parts, self.block)?,
             Statement::OpenOutput => self.open_output(true),
             Statement::CloseOutput => self.open_output(false),
             Statement::Alarm(alarm) => return Err(alarm.clone()),
         }
-        Ok(())
-    }
-
-    /// The value of an assignment.
-    #[inline(always)]
-    fn assigned(&self, program: &Program, value: &Operand) -> Checked<Value> {
-        match value {
-            Operand::Code(code) => self.evaluate(program, *code, RoundsTo::Increment),
-            value => self.operand(program, *value),
+        if self.frame.next < next {
+            watch.jumped(self);
         }
+        Ok(())
     }
 
     /// The DO or WHILE of a loop, `end` the operation of its END.
@@ -117,16 +122,16 @@ impl Core {
     }
 
     #[inline(never)]
-    fn name_variables(&mut self, program: &Program, first: Operand, names: &[String]) -> Checked<()> {
-        let first = at(index(self.operand(program, first)?), self.block)?;
+    fn name_variables(&mut self, first: &Operand, names: &[String]) -> Checked<()> {
+        let first = at(index(self.operand(first)?), self.block)?;
         at(self.set_names(first, names), self.block)
     }
 
-    pub(super) fn target(&self, program: &Program, target: Target) -> Result<Slot, Alarm> {
+    pub(super) fn target(&self, target: &Target) -> Result<Slot, Alarm> {
         match target {
-            Target::Slot(slot) => Ok(slot),
+            Target::Slot(slot) => Ok(*slot),
             Target::Computed(number) => {
-                let value = self.operand(program, number).map_err(|alarm| alarm.node)?;
+                let value = self.operand(number).map_err(|alarm| alarm.node)?;
                 index(value).map(Slot::of)
             }
         }
@@ -134,7 +139,7 @@ impl Core {
 
     #[inline(never)]
     fn goto(&mut self, program: &Program, to: &Spanned<Operand>) -> Checked<()> {
-        let value = self.operand(program, to.node)?.number();
+        let value = self.operand(&to.node)?.number();
         let number = integer(value).map_err(|alarm| alarm.at(to.span))?;
         if self.settings.unsure.minus_searches_up && (-99_999_999..0).contains(&number) {
             let target = program.find_number_above(number.unsigned_abs() as u32, self.frame.next);
@@ -184,7 +189,7 @@ impl Core {
         sink: &mut S,
     ) -> Checked<()> {
         match slot {
-            Slot::Free(place) => self.vars.set_free(place, value),
+            Slot::Free(place) => self.vars.set_free(place, value.into()),
             Slot::Other(number) => self.write_other(number, value, text, span, sink)?,
         }
         Ok(())

@@ -1,84 +1,179 @@
 //! A plain move: a block of axis words, G00 or G01 and F while nothing is in force that makes more of them. Most steps
 //! of a block have nothing to do for it, and of the state it changes little.
+use std::hint::cold_path;
+
 use super::Core;
-use super::eval::{Checked, at};
-use super::travel::Goal;
-use super::words::{Given, letters};
-use crate::motion::{EventKind, Sink};
-use crate::program::Words;
+use super::travel::{Counting, Way};
+use super::vars::Value;
+use super::words::G_CODES;
+use crate::motion::{Axis, EventKind, MAX_AXES, Position, Sink};
+use crate::program::codes::Effect;
 use crate::program::modes::{CutterSide, Motion, Polar};
+use crate::program::{Input, Op, Slot, Words};
 use crate::units::MmPerMin;
 
-impl Core {
-    /// Does a block that is a plain move; whether it is one. All checks come first.
+/// The axes that a block names.
+#[derive(Clone, Copy)]
+struct Named {
+    /// As bits, axis 1 the lowest.
+    axes: u8,
+    /// Behind the last of them.
+    next: Axis,
+    /// They stand in their order.
+    ascend: bool,
+}
+
+impl Named {
+    const NONE: Self = Self { axes: 0, next: 0, ascend: true };
+
+    /// Notes an axis; `None` where it is named twice.
     #[inline(always)]
-    pub(super) fn step<S: Sink>(
-        &mut self,
-        words: &Words,
-        given: &Given,
-        number: Option<u32>,
-        sink: &mut S,
-    ) -> Checked<bool> {
-        let state = &*self.state;
-        let Some(zero) = &self.plain_zero else { return Ok(false) };
-        let Some(motion @ (Motion::Rapid | Motion::Linear)) = self.plain_motion(words, given) else {
-            return Ok(false);
-        };
-        let f = if given.has(b'F') { self.feed_word(given, state)? } else { None };
-        let f = f.unwrap_or(state.codes.f);
-        let mut goal = Goal::here(state);
-        let led = self.lead(given, state, zero, &mut goal)?;
-        if led.beyond {
-            self.beyond_range(given, &goal.machine)?;
+    fn add(&mut self, axis: Axis) -> Option<()> {
+        if axis < self.next {
+            cold_path();
+            if self.axes >> axis & 1 == 1 {
+                return None;
+            }
+            self.ascend = false;
+        } else {
+            self.next = axis + 1;
         }
-        let (rate, seconds) = match motion {
-            Motion::Rapid => (MmPerMin::ZERO, self.rapid_seconds(&state.machine, &goal.machine)),
-            _ => at(self.time_of(state, f, led.way, given.has(b'F')), self.block)?,
+        self.axes |= 1 << axis;
+        Some(())
+    }
+
+    fn iter(self) -> impl Iterator<Item = Axis> {
+        (0..MAX_AXES).filter(move |axis| self.axes >> axis & 1 == 1)
+    }
+}
+
+/// What the words of a plain move say.
+struct Led {
+    motion: Motion,
+    /// F, where it is commanded.
+    f: Option<f64>,
+    named: Named,
+    way: Way,
+}
+
+/// Where they lead the axes that they name. It stands apart, so that the compiler keeps the rest in registers.
+#[derive(Default)]
+struct Ends {
+    programmed: Position,
+    machine: Position,
+}
+
+impl Core {
+    /// Does a block that is a plain move; whether it is one. A block that alarms is none: the steps of a block know where
+    /// and why.
+    #[inline(never)]
+    pub(super) fn step<S: Sink>(&mut self, op: &Op, words: &Words, sink: &mut S) -> bool {
+        self.plain_move(op, words, sink).is_some()
+    }
+
+    /// As [`Core::step`]. Until the move is known to be a plain one nothing changes.
+    #[inline(always)]
+    fn plain_move<S: Sink>(&mut self, op: &Op, words: &Words, sink: &mut S) -> Option<()> {
+        let counting = self.plain.as_ref()?;
+        if !words.is_plain() || words.list.len() > G_CODES || !self.modal_calls.is_empty() {
+            return None;
+        }
+        let state = &*self.state;
+        let mut ends = Ends::default();
+        let mut led = Led { motion: state.modal.motion, f: None, named: Named::NONE, way: Way::default() };
+        self.lead_plain(words, counting, &mut led, &mut ends)?;
+        if !led.named.ascend {
+            // A sum depends on its order, a way must not on that of the words.
+            led.way = self.way(led.named.iter(), &state.machine, &ends.machine);
+        }
+        let f = led.f.unwrap_or(state.codes.f);
+        let (rate, seconds) = match led.motion {
+            Motion::Rapid => {
+                (MmPerMin::ZERO, self.rapid_seconds_of(led.named.iter(), &state.machine, &ends.machine))
+            }
+            Motion::Linear => self.time_of(state, f, led.way, led.f.is_some()).ok()?,
+            _ => return None,
         };
 
-        let Goal { programmed, machine, unplaced } = goal;
         let before = state.unplaced;
+        let unplaced = if before == 0 { 0 } else { counting.placed(before, led.named.axes) };
         let state = &mut *self.state;
-        (state.programmed, state.machine, state.unplaced) = (programmed, machine, unplaced);
-        (state.modal.motion, state.codes.f) = (motion, f);
-        state.codes.n = number.unwrap_or(state.codes.n);
+        for axis in led.named.iter() {
+            (state.programmed[axis], state.machine[axis]) = (ends.programmed[axis], ends.machine[axis]);
+        }
+        state.unplaced = unplaced;
+        (state.modal.motion, state.codes.f) = (led.motion, f);
+        state.codes.n = op.number.unwrap_or(state.codes.n);
         self.note_work(self.state.modal.work, true);
         if unplaced != before {
             self.tell(&EventKind::Unplaced { axes: unplaced }, 0.0, sink);
         }
-        match motion {
+        let to = &self.state.machine;
+        match led.motion {
             _ if !led.way.is_some() => {}
-            Motion::Rapid => self.tell(&EventKind::Rapid { to: machine }, seconds, sink),
-            _ => self.tell(&EventKind::Feed { to: machine, rate }, seconds, sink),
+            _ if !sink.listens() => self.count_move(seconds),
+            Motion::Rapid => self.tell(&EventKind::Rapid { to: *to }, seconds, sink),
+            _ => self.tell(&EventKind::Feed { to: *to, rate }, seconds, sink),
         }
-        Ok(true)
+        Some(())
     }
 
-    /// The code of group 01 by which a block moves that has nothing but axis words, F and such codes, while no modal call
-    /// waits for it.
+    /// Goes where the words of a block lead; `None` where it isn't a plain move, or alarms.
     #[inline(always)]
-    fn plain_motion(&self, words: &Words, given: &Given) -> Option<Motion> {
-        let axes = self.settings.axes.mask();
-        let alone = given.has_of(axes)
-            && !given.has_of(!(axes | letters(b"F")))
-            && !given.has_more_than_moves()
-            && !given.has_corner()
-            && given.m_count == 0
-            && words.call.is_none()
-            && !self.waits_for_moves();
-        alone.then(|| given.motion.unwrap_or(self.state.modal.motion))
+    fn lead_plain(&self, words: &Words, counting: &Counting, led: &mut Led, ends: &mut Ends) -> Option<()> {
+        let state = &*self.state;
+        for word in &words.list {
+            if word.comma {
+                return None;
+            }
+            let Some(axis) = self.settings.axes.find(word.letter) else {
+                match &word.value {
+                    Input::G(_, found) => match found.on(self.settings.codes)?.effect {
+                        Effect::Motion(code) => led.motion = code,
+                        _ => return None,
+                    },
+                    _ if word.letter != b'F' || led.f.is_some() => return None,
+                    _ => {
+                        if let Some(raw) = self.raw(words, word).ok()? {
+                            led.f = Some(self.feed_of(&raw, state).ok()?);
+                        }
+                    }
+                }
+                continue;
+            };
+            let value = match &word.value {
+                Input::Literal(number) => self.written(number, word.letter, &counting.measure)?,
+                value => {
+                    let value = match value {
+                        Input::Variable { slot: Slot::Free(place), .. } => self.vars.free(*place),
+                        value => self.computed(words, value).ok()?,
+                    };
+                    let Value::Number(value) = value else { continue };
+                    self.rounded(value, word.letter, &counting.measure)?
+                }
+            };
+            led.named.add(axis)?;
+            let to = &mut ends.machine[axis];
+            (ends.programmed[axis], *to) = self.end_of(axis, value, state, counting);
+            if to.abs() > counting.most {
+                return None;
+            }
+            led.way.add(*to - state.machine[axis], self.settings.axes.is_rotary(axis));
+        }
+        (led.named.axes != 0).then_some(())
     }
 
     /// Finds out, behind everything that could change it, whether the next block can be a plain move, and what its axes
     /// count from.
     pub(super) fn see_if_plain(&mut self) {
-        self.plain_zero = self.is_plain().then(|| self.zeros(&self.state));
+        self.plain = self.is_plain().then(|| self.counting(&self.state));
     }
 
     /// Whether nothing is in force between two blocks that could make more of axis words than a move of those axes.
     fn is_plain(&self) -> bool {
         let modal = &self.state.modal;
         modal.cycle.is_none()
+            && !self.state.parameter_input
             && modal.cutter == CutterSide::Off
             && modal.polar == Polar::Off
             && self.state.ended.is_none()
@@ -115,7 +210,7 @@ mod tests {
         let mut told = Told(Vec::new());
         let outcome = control.run(Limits { blocks: 500 }, &mut NoLibrary, &mut told);
         told.0.push(format!("{outcome:?} {:?} {:?}", control.core.state, control.core.notes));
-        (told.0, control.core.plain_zero.is_some())
+        (told.0, control.core.plain.is_some())
     }
 
     fn settings() -> Settings {
@@ -132,7 +227,10 @@ mod tests {
 
     fn block() -> impl Strategy<Value = String> {
         let number = "-?[0-9]{1,2}(\\.[0-9]{0,5})?|#[1-3]|#500[13]";
-        let axes = format!("(X({number}))?(Y({number}))?(Z({number}))?(A({number}))?(B({number}))?");
+        // Mostly in their order and once each.
+        let axes = format!(
+            "(X({number}))?(Y({number}))?(Z({number}))?(A({number}))?(B({number}))?([XYZAB]({number}))?"
+        );
         let moves = format!("(N[0-9]{{1,3}} )?(G0?[01]|G9[01]|G0|G1)?{axes}(F[1-9][0-9]{{1,2}})?");
         let others = "G9[01]|G2[01]|G5[45]|G52X[1-9]Y2\\.|G92X[0-9]\\.|G43H1|G49|G28Z0|G53X[0-9]|G10L2P1X0\\.[1-9]5|G10L10P1R1\\.5\
             |G81X1\\.Z-2\\.R1\\.F50|G80|G15|G16|G68X0Y0R30\\.|G69|G51X0Y0P2000|G50|G51\\.1X0|G50\\.1X0|G41D1|G40|G31Z-1\\.F50\

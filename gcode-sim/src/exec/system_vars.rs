@@ -264,7 +264,7 @@ impl Core {
             true => self.state.transform.forward(self.state.programmed),
             false => {
                 if self.state.ended.is_some() {
-                    self.told.set(Some(Note::EndBeforeSwitch));
+                    self.aftermath.tell(Note::EndBeforeSwitch);
                 }
                 self.move_end(&self.state)
             }

@@ -2,9 +2,10 @@
 use std::hint::cold_path;
 
 use super::Core;
-use super::eval::Checked;
+use super::eval::{Checked, at};
 use super::notes::Note;
 use super::plan::Plan;
+use super::quantities::Measure;
 use super::state::{PolarPoint, State};
 use super::words::Given;
 use crate::alarm::Alarm;
@@ -21,12 +22,17 @@ pub(super) struct Goal {
     pub(super) unplaced: u8,
 }
 
-/// What the named axes do on their way to a [`Goal`].
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Led {
-    pub(super) way: Way,
-    /// One of them gets beyond the largest coordinate.
-    pub(super) beyond: bool,
+/// What axis words count from and in, the same for all of a block.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Counting {
+    /// [`Core::zeros`].
+    zero: Position,
+    /// The axes whose zero and tool length are none, as bits, axis 1 the lowest.
+    unshifted: u8,
+    incremental: bool,
+    pub(super) measure: Measure,
+    /// The largest coordinate: nine digits in increments, as a word has.
+    pub(super) most: f64,
 }
 
 /// How far axes move: the sums of the squares of those that slide, in mm, and of those that turn, in degrees.
@@ -38,7 +44,7 @@ pub(super) struct Way {
 
 impl Way {
     #[inline(always)]
-    fn add(&mut self, way: f64, turns: bool) {
+    pub(super) fn add(&mut self, way: f64, turns: bool) {
         if turns {
             self.turning += way * way;
         } else {
@@ -49,6 +55,14 @@ impl Way {
     /// Whether one of the axes moves; the increments are far too large for squares that vanish.
     pub(super) fn is_some(self) -> bool {
         self.sliding + self.turning > 0.0
+    }
+}
+
+impl Counting {
+    /// What is left of [`State::unplaced`] behind a move of some axes, as bits.
+    #[inline]
+    pub(super) fn placed(&self, unplaced: u8, axes: u8) -> u8 {
+        if self.incremental { unplaced } else { unplaced & !axes }
     }
 }
 
@@ -83,7 +97,8 @@ impl Core {
     /// The end point of the block's axis words, from where `state` stands.
     pub(super) fn goal(&self, given: &Given, state: &mut State) -> Checked<Goal> {
         let mut goal = Goal::here(state);
-        self.lead(given, state, &self.zeros(state), &mut goal)?;
+        let counting = self.counting(state);
+        self.lead(given, state, &counting, &mut goal)?;
         state.unplaced = goal.unplaced;
         if state.modal.polar == Polar::On {
             self.polar(given, state, &mut goal.programmed)?;
@@ -96,63 +111,67 @@ impl Core {
         for axis in self.settings.rolling().filter(|axis| given.has(self.settings.axes.letter(*axis) as u8)) {
             goal.machine[axis] = turned[axis];
         }
-        if goal.machine.0.iter().any(|at| at.abs() > self.farthest()) {
-            self.beyond_range(given, &goal.machine)?;
+        if goal.machine.0.iter().any(|at| at.abs() > counting.most) {
+            self.beyond_range(given, &goal.machine, counting.most)?;
         }
         Ok(goal)
     }
 
-    /// Takes a goal from where `state` stands to where the block's axis words lead, on the axes that are named; `zero` is
-    /// [`Core::zeros`]. On the machine that is right as long as the others [stand where they should](Core::is_placed).
-    #[inline(always)]
-    pub(super) fn lead(
-        &self,
-        given: &Given,
-        state: &State,
-        zero: &Position,
-        goal: &mut Goal,
-    ) -> Checked<Led> {
-        let mut led = Led::default();
-        let Goal { programmed, machine, unplaced } = goal;
-        let incremental = state.modal.distance == Distance::Incremental;
-        let places = *unplaced != 0 && !incremental;
+    /// What axis words count from where `state` stands.
+    pub(super) fn counting(&self, state: &State) -> Counting {
+        let zero = self.zeros(state);
+        let unshifted = |axis: &Axis| zero[*axis] == 0.0 && state.length[*axis] == 0.0;
+        Counting {
+            zero,
+            unshifted: (0..MAX_AXES).filter(unshifted).fold(0, |axes, axis| axes | 1 << axis),
+            incremental: state.modal.distance == Distance::Incremental,
+            measure: self.measure(state.modal.unit),
+            most: 999_999_999.0 / self.settings.increment.per_unit(),
+        }
+    }
+
+    /// Takes a goal to where the block's axis words lead, but for those of a plane in which G16 is on.
+    fn lead(&self, given: &Given, state: &State, counting: &Counting, goal: &mut Goal) -> Checked<()> {
         let polar = state.modal.polar == Polar::On;
-        let measure = self.measure(state.modal.unit);
-        let most = self.farthest();
-        given.ask(self.settings.axes.mask());
-        let (letters, bits) = self.settings.axes.places();
-        for axis in 0..MAX_AXES {
-            if !given.has_of(bits[axis]) || polar && self.in_plane(state, axis) {
+        for (axis, letter) in self.settings.axes.letters() {
+            if polar && self.in_plane(state, axis) {
                 continue;
             }
-            let letter = letters[axis];
-            let value = match self.dimension_of(given.raw(letter), letter, measure) {
-                Ok(value) => value,
-                Err(alarm) => return Err(alarm.at(given.span(letter))),
+            let Some((raw, span)) = given.get(letter) else { continue };
+            let value = at(self.dimension_of(&raw, letter, &counting.measure), span)?;
+            (goal.programmed[axis], goal.machine[axis]) = match self.settings.roll_over[axis] {
+                true => self.rolled_end(axis, value, state, counting),
+                false => self.end_of(axis, value, state, counting),
             };
-            let from = programmed[axis];
-            if places {
-                *unplaced &= !(1 << axis);
-            }
-            let to = if self.settings.roll_over[axis] {
-                let way = if incremental { value } else { shorter_way(from, value) };
-                programmed[axis] = self.rolled(axis, from + way);
-                self.clean(machine[axis] + way)
-            } else {
-                programmed[axis] = if incremental {
-                    // Else the compiler computes it in G90 too, for nothing.
-                    cold_path();
-                    self.clean(from + value)
-                } else {
-                    value
-                };
-                self.on_machine(programmed[axis], zero[axis], state.length[axis])
-            };
-            led.way.add(to - machine[axis], self.settings.axes.is_rotary(axis));
-            led.beyond |= to.abs() > most;
-            machine[axis] = to;
+            goal.unplaced = counting.placed(goal.unplaced, 1 << axis);
         }
-        Ok(led)
+        Ok(())
+    }
+
+    /// Where the value of one axis word leads: as programmed, and on the machine. There that is right as long as the other
+    /// axes [stand where they should](Core::is_placed).
+    #[inline(always)]
+    pub(super) fn end_of(&self, axis: Axis, value: f64, state: &State, counting: &Counting) -> (f64, f64) {
+        let programmed = if counting.incremental {
+            // Else the compiler computes it in G90 too, for nothing.
+            cold_path();
+            self.clean(state.programmed[axis] + value)
+        } else {
+            value
+        };
+        // What is clean needn't be cleaned where nothing is added to it.
+        let machine = match counting.unshifted >> axis & 1 == 1 {
+            true => programmed + 0.0,
+            false => self.on_machine(programmed, counting.zero[axis], state.length[axis]),
+        };
+        (programmed, machine)
+    }
+
+    /// The same of an axis that rolls over.
+    fn rolled_end(&self, axis: Axis, value: f64, state: &State, counting: &Counting) -> (f64, f64) {
+        let from = state.programmed[axis];
+        let way = if counting.incremental { value } else { shorter_way(from, value) };
+        (self.rolled(axis, from + way), self.clean(state.machine[axis] + way))
     }
 
     /// An axis that the block doesn't name keeps still, though its coordinate is another since a transform was switched.
@@ -162,20 +181,13 @@ impl Core {
             !given.has(letter as u8) && self.move_end(state)[axis] != state.programmed[axis]
         };
         if self.settings.axes.iter().any(stays) {
-            self.told.set(Some(Note::AxisLeftOut));
+            self.aftermath.tell(Note::AxisLeftOut);
         }
     }
 
-    /// The largest coordinate: nine digits in increments, as a word has.
-    #[inline]
-    fn farthest(&self) -> f64 {
-        999_999_999.0 / self.settings.increment.per_unit()
-    }
-
-    /// The alarm of an axis beyond [`Core::farthest`], if one is there; one that rolls over begins anew with each turn.
+    /// The alarm of an axis beyond the largest coordinate, if one is there; one that rolls over begins anew with each turn.
     #[cold]
-    pub(super) fn beyond_range(&self, given: &Given, machine: &Position) -> Checked<()> {
-        let most = self.farthest();
+    fn beyond_range(&self, given: &Given, machine: &Position, most: f64) -> Checked<()> {
         for (axis, letter) in self.settings.axes.iter() {
             if machine[axis].abs() > most && !self.settings.roll_over[axis] {
                 let alarm = Alarm::PositionOverflow { letter, value: machine[axis] };
@@ -248,8 +260,19 @@ impl Core {
 
     /// All axes start together at their own rapid rates; the slowest decides.
     pub(super) fn rapid_seconds(&self, from: &Position, to: &Position) -> f64 {
+        self.rapid_seconds_of(0..self.settings.axes.len(), from, to)
+    }
+
+    /// The same of those axes that may move.
+    #[inline]
+    pub(super) fn rapid_seconds_of(
+        &self,
+        axes: impl Iterator<Item = Axis>,
+        from: &Position,
+        to: &Position,
+    ) -> f64 {
         let mut minutes = 0.0_f64;
-        for axis in 0..self.settings.axes.len() {
+        for axis in axes {
             let rotary = self.settings.axes.is_rotary(axis);
             let rate = if rotary { self.settings.rapid_rotary } else { self.settings.rapid.0 };
             minutes = minutes.max((to[axis] - from[axis]).abs() / rate);
@@ -267,11 +290,16 @@ impl Core {
         to: &Position,
         f_in_block: bool,
     ) -> Result<(MmPerMin, f64), Alarm> {
-        let mut way = Way::default();
-        for axis in 0..self.settings.axes.len() {
-            way.add(to[axis] - from[axis], self.settings.axes.is_rotary(axis));
-        }
+        let way = self.way(0..self.settings.axes.len(), from, to);
         self.time_of(state, state.codes.f, way, f_in_block)
+    }
+
+    /// How far some axes move.
+    #[inline]
+    pub(super) fn way(&self, axes: impl Iterator<Item = Axis>, from: &Position, to: &Position) -> Way {
+        let mut way = Way::default();
+        axes.for_each(|axis| way.add(to[axis] - from[axis], self.settings.axes.is_rotary(axis)));
+        way
     }
 
     /// As [`Core::feed_seconds`] of an F that may not be in force yet.

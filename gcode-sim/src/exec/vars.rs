@@ -31,7 +31,37 @@ impl Value {
     }
 }
 
-/// A value as it is kept: the number is 0 where it is vacant, so that arithmetic needn't ask.
+/// What code has given last: the number is 0 where it is vacant, so that arithmetic needn't ask.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Last {
+    pub(super) number: f64,
+    vacant: bool,
+}
+
+impl Last {
+    pub(super) const VACANT: Self = Self { number: 0.0, vacant: true };
+
+    #[inline(always)]
+    pub(super) fn of(number: f64) -> Self {
+        Self { number, vacant: false }
+    }
+}
+
+impl From<Value> for Last {
+    #[inline]
+    fn from(value: Value) -> Self {
+        Self { number: value.number(), vacant: value.is_vacant() }
+    }
+}
+
+impl From<Last> for Value {
+    #[inline]
+    fn from(last: Last) -> Self {
+        if last.vacant { Self::Vacant } else { Self::Number(last.number) }
+    }
+}
+
+/// A value as it is kept, in the same way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Held {
     number: f64,
@@ -160,8 +190,9 @@ impl Vars {
 
     /// Writes such a variable.
     #[inline(always)]
-    pub(super) fn set_free(&mut self, number: u16, value: Value) {
-        self.ordinary[usize::from(number) % PLACES] = value.into();
+    pub(super) fn set_free(&mut self, number: u16, value: Last) {
+        let held = &mut self.ordinary[usize::from(number) % PLACES];
+        (held.number, held.vacant, held.decimals) = (value.number, value.vacant, 0);
     }
 
     /// The value at a place that [`Vars::kind`] tells.

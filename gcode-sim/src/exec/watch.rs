@@ -1,11 +1,16 @@
 //! Looking on while a control runs: at what stands in it before and after every block.
 use super::frames::Frame;
 use super::{Control, Core};
-use crate::program::{Op, OpKind, Program, Slot, Statement};
+use crate::program::{Op, OpKind, Slot, Statement};
 use crate::source::Span;
 
 /// Looks at a control between its blocks.
 pub trait Watcher {
+    /// Whether anybody looks.
+    fn looks(&self) -> bool {
+        true
+    }
+
     /// A block is about to be done: [`Control::next_block`], which makes it ready and changes nothing else.
     fn before(&mut self, control: &mut Control);
 
@@ -15,12 +20,20 @@ pub trait Watcher {
 
 /// Nobody looks on.
 impl Watcher for () {
+    fn looks(&self) -> bool {
+        false
+    }
+
     fn before(&mut self, _: &mut Control) {}
 
     fn after(&mut self, _: &Control) {}
 }
 
 impl<W: Watcher> Watcher for &mut W {
+    fn looks(&self) -> bool {
+        (**self).looks()
+    }
+
     fn before(&mut self, control: &mut Control) {
         (**self).before(control);
     }
@@ -32,6 +45,10 @@ impl<W: Watcher> Watcher for &mut W {
 
 /// Somebody who may be there.
 impl<W: Watcher> Watcher for Option<W> {
+    fn looks(&self) -> bool {
+        self.as_ref().is_some_and(W::looks)
+    }
+
     fn before(&mut self, control: &mut Control) {
         self.iter_mut().for_each(|watcher| watcher.before(control));
     }
@@ -45,65 +62,61 @@ impl Control {
     /// The block that a step would do now; `None` where the program has no more.
     pub fn next_block(&mut self) -> Option<Span> {
         let Frame { program, next, .. } = self.core.frame;
-        self.memory.ready(program, next).map(|(_, op)| op.span)
+        self.memory.ready(program, next).map(|op| op.span)
     }
 
     /// The variables that [`Control::next_block`] will assign as things stand; those whose numbers are computed as well.
     pub fn will_assign(&self) -> Vec<u32> {
         let mut numbers = Vec::new();
-        self.look_at_next(|core, program, op| {
+        self.look_at_next(|core, op| {
             if !core.is_skipped(op) {
-                core.targets(program, &op.kind, &mut numbers);
+                core.targets(op.kind(), &mut numbers);
             }
         });
         numbers
     }
 
     /// What `look` sees in the operation of [`Control::next_block`]; `None` where there is none that is ready.
-    pub(super) fn look_at_next<T>(&self, look: impl FnOnce(&Core, &Program, &Op) -> T) -> Option<T> {
+    pub(super) fn look_at_next<T>(&self, look: impl FnOnce(&Core, &Op) -> T) -> Option<T> {
         let Frame { program, next, .. } = self.core.frame;
-        let program = self.memory.get(program);
-        let op = program.op(next)?;
-        // To look is no part of the run: what a function has to tell is told when the block is done.
-        let told = self.core.told.take();
-        let seen = look(&self.core, program, op);
-        self.core.told.set(told);
-        Some(seen)
+        let op = self.memory.get(program).op(next)?;
+        Some(self.core.aftermath.apart(|| look(&self.core, op)))
     }
 }
 
 impl Core {
     /// Whether the switch of a block skip before a block is on.
     pub(super) fn is_skipped(&self, op: &Op) -> bool {
-        op.skip.is_some_and(|switch| self.skips(switch))
+        op.skip().is_some_and(|switch| self.skips(switch))
     }
 
     /// What stands behind an IF that holds; else the operation itself.
-    pub(super) fn behind_if<'a>(&self, program: &Program, kind: &'a OpKind) -> &'a OpKind {
+    pub(super) fn behind_if<'a>(&self, kind: &'a OpKind) -> &'a OpKind {
         match kind {
-            OpKind::If { condition, then } if self.holds(program, *condition).unwrap_or(false) => then,
+            OpKind::If { condition, then } if self.holds(condition).unwrap_or(false) => then,
             _ => kind,
         }
     }
 
-    fn targets(&self, program: &Program, kind: &OpKind, numbers: &mut Vec<u32>) {
+    fn targets(&self, kind: &OpKind, numbers: &mut Vec<u32>) {
         match kind {
-            OpKind::If { condition, then } if self.holds(program, *condition).unwrap_or(false) => {
-                self.targets(program, then, numbers);
+            OpKind::If { condition, then } if self.holds(condition).unwrap_or(false) => {
+                self.targets(then, numbers);
             }
-            OpKind::Statement(statement) => self.targets_of(program, statement, numbers),
+            OpKind::Statement(statement) => self.targets_of(statement, numbers),
             OpKind::Empty | OpKind::Words(_) | OpKind::If { .. } | OpKind::Alarm(_) => {}
         }
     }
 
-    fn targets_of(&self, program: &Program, statement: &Statement, numbers: &mut Vec<u32>) {
+    fn targets_of(&self, statement: &Statement, numbers: &mut Vec<u32>) {
         match statement {
+            Statement::Compute { place, .. } => numbers.push(u32::from(*place)),
             Statement::Assign { target, .. } => {
-                numbers.extend(self.target(program, *target).map(Slot::number));
+                numbers.extend(self.target(target).map(Slot::number));
             }
-            Statement::Several(all) => all.iter().for_each(|one| self.targets_of(program, one, numbers)),
-            Statement::IfThen { condition, then } if self.holds(program, *condition).unwrap_or(false) => {
-                self.targets_of(program, then, numbers);
+            Statement::Several(all) => all.iter().for_each(|one| self.targets_of(one, numbers)),
+            Statement::IfThen { condition, then } if self.holds(condition).unwrap_or(false) => {
+                self.targets_of(then, numbers);
             }
             _ => {}
         }

@@ -4,14 +4,14 @@ use std::cell::Cell;
 
 use super::Core;
 use super::code_calls::CallingWord;
-use super::eval::{Checked, at, integer};
+use super::eval::{Checked, RoundsTo, at, integer};
 use super::vars::Value;
 use crate::alarm::Alarm;
 use crate::control::{CodeSet, Settings};
 use crate::program::codes::{self, Effect, Row};
 use crate::program::m_codes;
 use crate::program::modes::Motion;
-use crate::program::{Coded, Input, Program, Words};
+use crate::program::{Coded, Input, Words};
 use crate::source::Span;
 use crate::syntax::ast::Decimal;
 use crate::units::round;
@@ -21,6 +21,16 @@ use crate::units::round;
 pub(super) enum Raw {
     Literal(Decimal),
     Computed(f64),
+}
+
+impl Raw {
+    /// The number that stands there, whatever it is at its address.
+    pub(super) fn value(self) -> f64 {
+        match self {
+            Self::Literal(number) => number.value(),
+            Self::Computed(value) => value,
+        }
+    }
 }
 
 /// Letters as bits, A the lowest.
@@ -33,7 +43,7 @@ pub(super) const fn letters(some: &[u8]) -> u32 {
     bits
 }
 
-const G_CODES: usize = 12;
+pub(super) const G_CODES: usize = 12;
 const M_CODES: usize = 3;
 
 /// The words of a block by letter. Kept between blocks and cleared by its mask, so that it costs nothing.
@@ -178,17 +188,6 @@ impl Given {
         Some((char::from(letter), self.span(letter)))
     }
 
-    /// The value, before anything is made of it, of a word that it [has](Self::has). Who takes it [asks](Self::ask) for it.
-    #[inline(always)]
-    pub(super) fn raw(&self, letter: u8) -> &Raw {
-        &self.values[usize::from(letter - b'A')].0
-    }
-
-    /// Asks for the words of some [`letters`].
-    pub(super) fn ask(&self, letters: u32) {
-        self.read.set(self.read.get() | letters);
-    }
-
     /// Whether it has `,R` or `,C`.
     pub(super) fn has_corner(&self) -> bool {
         self.corner.is_some()
@@ -240,54 +239,52 @@ impl Core {
     /// Evaluates every word of a block into `given`, but for those that belong to a call.
     pub(super) fn collect(
         &self,
-        program: &Program,
         words: &Words,
         calling: Option<&CallingWord>,
         given: &mut Given,
     ) -> Checked<()> {
         given.clear();
-        given.punched = words.punched;
+        given.punched = words.punched();
         match calling {
-            None => words.list.iter().try_for_each(|word| self.take(program, word, given)),
+            None => words.list.iter().try_for_each(|word| self.take(words, word, given)),
             Some(calling) => {
                 let mut others =
                     words.list.iter().enumerate().filter(|(place, word)| !calling.takes(*place, word));
-                others.try_for_each(|(_, word)| self.take(program, word, given))
+                others.try_for_each(|(_, word)| self.take(words, word, given))
             }
         }
     }
 
     /// Evaluates a word and puts it to those of its block.
     #[inline(always)]
-    fn take(&self, program: &Program, word: &Coded, given: &mut Given) -> Checked<()> {
-        let raw = match word.value {
-            Input::Literal(number) => Raw::Literal(number),
+    fn take(&self, words: &Words, word: &Coded, given: &mut Given) -> Checked<()> {
+        let raw = match &word.value {
+            Input::Literal(number) => Raw::Literal(*number),
             Input::G(code, found) if !word.comma => {
                 let row = found.on(self.settings.codes);
-                let improper = || Alarm::ImproperGCode { code: codes::spelled(code) }.at(word.span);
+                let improper = || Alarm::ImproperGCode { code: codes::spelled(*code) }.at(word.span);
                 return at(given.put_g(row.ok_or_else(improper)?), word.span);
             }
-            Input::G(code, _) => Raw::Computed(f64::from(code) / 10.0),
-            Input::Operand(operand) => match self.operand(program, operand)? {
+            value => match self.computed(words, value)? {
                 Value::Number(value) => Raw::Computed(value),
                 Value::Vacant => return Ok(()),
             },
         };
         if word.comma || word.axis.is_some() || matches!(word.letter, b'G' | b'M') {
-            return self.put(program, word, raw, given);
+            return self.put(words, word, raw, given);
         }
         self.put_value(word.letter, word.span, raw, given)
     }
 
     /// Puts a word that is more than a value at an address to those of its block.
     #[inline(never)]
-    fn put(&self, program: &Program, word: &Coded, raw: Raw, given: &mut Given) -> Checked<()> {
+    fn put(&self, words: &Words, word: &Coded, raw: Raw, given: &mut Given) -> Checked<()> {
         if word.comma {
             return at(given.put_corner(word, raw), word.span);
         }
-        let letter = match word.axis {
+        let letter = match word.axis.and_then(|place| words.axis(place)) {
             Some(axis) => {
-                let number = self.operand(program, program.axis(axis))?.number();
+                let number = self.operand(axis)?.number();
                 self.settings.axes.letter(at(self.axis_of(number), word.span)?) as u8
             }
             None => word.letter,
@@ -317,12 +314,23 @@ impl Core {
 
     /// The value of a word, or `None` where it is vacant and the word therefore not there.
     #[inline]
-    pub(super) fn raw(&self, program: &Program, word: &Coded) -> Checked<Option<Raw>> {
-        Ok(match word.value {
-            Input::Literal(number) => Some(Raw::Literal(number)),
-            Input::G(code, _) => Some(Raw::Computed(f64::from(code) / 10.0)),
-            Input::Operand(operand) => self.operand(program, operand)?.given().map(Raw::Computed),
-        })
+    pub(super) fn raw(&self, words: &Words, word: &Coded) -> Checked<Option<Raw>> {
+        match &word.value {
+            Input::Literal(number) => Ok(Some(Raw::Literal(*number))),
+            value => Ok(self.computed(words, value)?.given().map(Raw::Computed)),
+        }
+    }
+
+    /// What a value behind an address is that is more than a literal.
+    #[inline(always)]
+    pub(super) fn computed(&self, words: &Words, value: &Input) -> Checked<Value> {
+        match value {
+            Input::Variable { slot, span } => self.load(*slot, span),
+            Input::Code(place) => self.run_code(words.code(*place), RoundsTo::Increment),
+            Input::Number(number) => Ok(Value::Number(*number)),
+            Input::G(code, _) => Ok(Value::Number(f64::from(*code) / 10.0)),
+            Input::Literal(number) => Ok(Value::Number(number.value())),
+        }
     }
 }
 

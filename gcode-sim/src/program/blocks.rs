@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 
 use super::loops::Loops;
 use super::lower::{Lowering, lower_case};
-use super::{AxisPlace, Code, Instruction, Op, OpIndex, OpKind, Operand, Statement};
+use super::{Act, Op, OpIndex, OpKind, Statement};
 use crate::alarm::Alarm;
 use crate::source::{Bytes, SourceId};
 use crate::syntax::{ast, block_at, sequence_number_at};
 
-/// As many operations are kept, and as many trees' code. Loops are shorter; some megabytes at most.
+/// As many operations are kept. Loops are shorter; some megabytes at most.
 const KEPT: usize = 8192;
 
 /// The text that a program stands in.
@@ -35,24 +35,17 @@ pub(super) struct Blocks {
     starts: Vec<u32>,
     /// The trees of blocks that don't begin their line.
     apart: BTreeMap<u32, ast::Block>,
-    /// Operations, and the block that each is of, [`Blocks::NONE`] where it is forgotten: its list of words is filled
-    /// again then. A block has one place for its operation, which it shares with those a multiple of [`KEPT`] away.
+    /// Operations. A block has one place for its own, which it shares with those a multiple of [`KEPT`] away: the list of
+    /// words of the one that was there is filled again.
     ops: Vec<Op>,
-    held: Vec<u32>,
-    /// A block's place for its operation is its own within these bits: all of them where every block is held.
+    /// A block's place for its operation is its own within these bits: all of them where every block is kept.
     bits: usize,
     lowering: Lowering,
-    /// How many trees have been lowered by it.
-    trees: usize,
 }
 
 impl Blocks {
-    /// No block has this place.
-    const NONE: u32 = u32::MAX;
-
     pub(super) fn new(text: Text, starts: Vec<u32>, apart: BTreeMap<u32, ast::Block>) -> Self {
-        let (ops, held, lowering) = (Vec::new(), Vec::new(), Lowering::default());
-        Self { text, starts, apart, ops, held, bits: KEPT - 1, lowering, trees: 0 }
+        Self { text, starts, apart, ops: Vec::new(), bits: KEPT - 1, lowering: Lowering::default() }
     }
 
     /// The tree of a block, read anew.
@@ -81,12 +74,7 @@ impl Blocks {
     /// The operation of a block, if it is lowered.
     #[inline(always)]
     pub(super) fn op(&self, place: OpIndex) -> Option<&Op> {
-        if self.holds(place) { self.ops.get(place & self.bits) } else { None }
-    }
-
-    #[inline(always)]
-    fn holds(&self, place: OpIndex) -> bool {
-        self.held.get(place & self.bits).is_some_and(|held| *held as usize == place)
+        self.ops.get(place & self.bits).filter(|op| op.nth as usize == place + 1)
     }
 
     /// All operations; to ask before all are lowered, in order, is a mistake of ours.
@@ -95,91 +83,51 @@ impl Blocks {
         if self.bits == usize::MAX { &self.ops } else { &[] }
     }
 
-    #[inline(always)]
-    pub(super) fn code(&self, code: Code) -> &[Instruction] {
-        &self.lowering.instructions[..code.end as usize][code.start as usize..]
-    }
-
-    pub(super) fn axis(&self, axis: AxisPlace) -> Operand {
-        self.lowering.axes[axis.0 as usize]
-    }
-
-    pub(super) fn variable_name(&self, index: u32) -> &str {
-        self.lowering.names.get(index as usize).map_or("", String::as_str)
-    }
-
-    /// The place of a block's operation, which is lowered where it isn't; `None` behind the last block. Another that had the
-    /// place is forgotten, and where too many trees have been lowered, all are.
-    #[inline(always)]
-    pub(super) fn ready(&mut self, place: OpIndex, loops: &Loops) -> Option<usize> {
-        if !self.holds(place) {
-            self.make_ready(place, loops)?;
-        }
-        Some(place & self.bits)
-    }
-
-    /// An operation by the place that [`Blocks::ready`] tells.
-    #[inline(always)]
-    pub(super) fn op_at(&self, place: usize) -> Option<&Op> {
-        self.ops.get(place)
-    }
-
+    /// Lowers a block in the place of another; `None` behind the last block.
     #[inline(never)]
-    fn make_ready(&mut self, place: OpIndex, loops: &Loops) -> Option<()> {
-        if self.trees >= KEPT {
-            self.forget();
+    pub(super) fn lower(&mut self, place: OpIndex, loops: &Loops) -> Option<()> {
+        let start = *self.starts.get(place)?;
+        let at = place & self.bits;
+        if at >= self.ops.len() {
+            self.ops.resize_with(at + 1, Op::default);
         }
-        self.lower(place, loops)
+        let apart = self.apart.contains_key(&(place as u32));
+        if apart || !self.ops[at].refill(self.text.source, self.text.written(), start) {
+            let op = self.lower_tree(place, loops)?;
+            self.ops[at] = op;
+        }
+        self.ops[at].nth = place as u32 + 1;
+        Some(())
     }
 
     /// Lowers all blocks, in order.
     pub(super) fn lower_all(&mut self, loops: &Loops) {
-        self.forget();
+        self.ops.clear();
         self.bits = usize::MAX;
         for place in 0..self.starts.len() {
             self.lower(place, loops);
         }
     }
 
-    fn forget(&mut self) {
-        self.held.fill(Self::NONE);
-        self.lowering.forget();
-        self.trees = 0;
-    }
-
-    fn lower(&mut self, place: OpIndex, loops: &Loops) -> Option<()> {
-        let start = *self.starts.get(place)?;
-        let at = place & self.bits;
-        if at >= self.ops.len() {
-            self.ops.resize_with(at + 1, Op::default);
-            self.held.resize(at + 1, Self::NONE);
-        }
-        let apart = self.apart.contains_key(&(place as u32));
-        if apart || !self.ops[at].refill(self.text.source, self.text.written(), start) {
-            self.lower_tree(place, at, loops)?;
-        }
-        self.held[at] = place as u32;
-        Some(())
-    }
-
-    /// Lowers a block that is more than numbers into a place.
+    /// Lowers a block that is more than numbers.
     #[inline(never)]
-    fn lower_tree(&mut self, place: OpIndex, at: usize, loops: &Loops) -> Option<()> {
-        self.held[at] = Self::NONE;
+    fn lower_tree(&mut self, place: OpIndex, loops: &Loops) -> Option<Op> {
         let tree = self.tree(place)?;
         let small = lower_case(&tree, &self.text.bytes);
         let mut op = self.lowering.block(&tree, small);
-        self.trees += 1;
         join(&mut op, place, loops);
-        self.ops[at] = op;
-        Some(())
+        Some(op)
     }
 }
 
 /// Writes into a WHILE, DO or END where its partner stands. What has none becomes the alarm that a control raises when
 /// it gets there.
 fn join(op: &mut Op, place: OpIndex, loops: &Loops) {
-    let OpKind::Statement(statement) = &mut op.kind else { return };
+    let kind = match &mut op.act {
+        Act::Plain(kind) => kind,
+        Act::Asked(asked) => &mut asked.kind,
+    };
+    let OpKind::Statement(statement) = kind else { return };
     let alarm = match statement {
         Statement::While { number, end, .. } | Statement::Do { number, end } => match loops.end_of(place) {
             Some(found) => {
@@ -197,7 +145,7 @@ fn join(op: &mut Op, place: OpIndex, loops: &Loops) {
         },
         _ => return,
     };
-    op.kind = OpKind::Alarm(alarm.at(op.span));
+    *kind = OpKind::Alarm(alarm.at(op.span));
 }
 
 #[cfg(test)]
@@ -219,11 +167,11 @@ mod tests {
         let id = memory.ids().next().unwrap();
         let near = (0..2 * KEPT).map(|step| step * KEPT % (LINES - 3));
         for place in (0..LINES).chain((0..2 * LINES).map(|step| step * 7919 % LINES)).chain(near) {
-            let (program, op) = memory.ready(id, place).unwrap();
+            let op = memory.ready(id, place).unwrap();
             let span = op.span;
-            if let OpKind::Statement(Statement::Assign { value: Operand::Code(code), .. }) = op.kind {
+            if let OpKind::Statement(Statement::Compute { code, .. }) = op.kind() {
                 let wanted = Operation::Add([Source::Number(place as f64), Source::Free(2)]);
-                assert_eq!(program.code(code)[0].operation, wanted);
+                assert_eq!(code[0].operation, wanted);
             } else {
                 assert_eq!(op.number, Some(place as u32));
             }
@@ -232,7 +180,7 @@ mod tests {
         }
         assert!(memory.ready(id, LINES).is_none());
         assert_eq!(memory.lowered(id).ops().len(), LINES);
-        assert_eq!(memory.ready(id, 2 * KEPT).unwrap().1.number, Some(2 * KEPT as u32));
+        assert_eq!(memory.ready(id, 2 * KEPT).unwrap().number, Some(2 * KEPT as u32));
     }
 
     #[test]

@@ -4,7 +4,7 @@ use crate::source::Span;
 use crate::syntax::ast::{BinaryOp, Function, Relation};
 
 /// A value: known, one variable, or code to evaluate. The first two are most of what programs contain.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Operand {
     Number(f64),
     /// `#n` with a literal n.
@@ -41,7 +41,7 @@ impl Slot {
 }
 
 /// The variable that an assignment writes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Target {
     Slot(Slot),
     /// Its number is computed, or no variable's.
@@ -50,20 +50,15 @@ pub enum Target {
 
 impl Target {
     /// Whether it is the variable of this number, written out.
-    pub fn is(self, number: u32) -> bool {
-        self == Self::Slot(Slot::of(number))
+    pub fn is(&self, number: u32) -> bool {
+        *self == Self::Slot(Slot::of(number))
     }
 }
 
-/// A range of a program's instructions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Code {
-    pub start: u32,
-    pub end: u32,
-    pub span: Span,
-}
+/// What computes a value: the last of its instructions gives it.
+pub type Code = Box<[Instruction]>;
 
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Instruction {
     pub operation: Operation,
     pub span: Span,
@@ -72,9 +67,9 @@ pub struct Instruction {
 /// Where an operator finds a value that it needs. Most are numbers and variables, which then needn't wait on the stack.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Source {
-    Number(f64),
     /// A variable of [`Slot::Free`].
     Free(u16),
+    Number(f64),
     Computed(Computed),
 }
 
@@ -87,19 +82,25 @@ pub enum Computed {
 }
 
 /// Gives a value, mostly of the one that the instruction before has given; where that is needed later it waits on a stack.
-/// Conditions are numbers here, 0 or 1; the tree keeps them apart.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Conditions are numbers here, 0 or 1; the tree keeps them apart. Which one it is stands in a byte of its own, for it is
+/// asked at every step.
+#[derive(Clone, Debug, PartialEq)]
+#[repr(u8)]
 pub enum Operation {
     Add([Source; 2]),
     Subtract([Source; 2]),
     Multiply([Source; 2]),
     Divide([Source; 2]),
-    /// An operator on whole numbers.
-    Whole(BinaryOp, [Source; 2]),
     Compare(Relation, [Source; 2]),
     Function(Function, Source),
     /// ATAN of two values.
     Atan2([Source; 2]),
+    Rare(Rare),
+}
+
+/// What only some expressions contain.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Rare {
     Load(Source),
     /// Lets the last value wait for its operator.
     Wait,
@@ -112,6 +113,8 @@ pub enum Operation {
     Reverse,
     Plus,
     Bracket,
+    /// An operator on whole numbers.
+    Whole(BinaryOp, [Source; 2]),
     Power([Source; 2]),
     /// ROUND in a word: to the increment of that address.
     RoundTo(u8),
@@ -126,10 +129,16 @@ pub enum Operation {
     AxisNumber(u8),
     /// ADP: takes a variable's number, gives its value as if it had been passed with a point.
     AddPoint,
-    /// The number of a variable named by SETVN: an index into the program's names.
-    NameNumber(u32),
+    /// The number of a variable named by SETVN.
+    NameNumber(Box<str>),
     /// Takes a suffix, gives the number of the system variable; of `[#_NAME]` without a suffix it takes nothing.
     SystemNumber(NameRow),
+}
+
+impl From<Rare> for Operation {
+    fn from(rare: Rare) -> Self {
+        Self::Rare(rare)
+    }
 }
 
 impl Operation {
@@ -139,7 +148,7 @@ impl Operation {
             BinaryOp::Sub => Self::Subtract(values),
             BinaryOp::Mul => Self::Multiply(values),
             BinaryOp::Div => Self::Divide(values),
-            BinaryOp::Mod | BinaryOp::And | BinaryOp::Or | BinaryOp::Xor => Self::Whole(op, values),
+            BinaryOp::Mod | BinaryOp::And | BinaryOp::Or | BinaryOp::Xor => Rare::Whole(op, values).into(),
         }
     }
 }

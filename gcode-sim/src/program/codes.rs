@@ -351,35 +351,40 @@ pub const CODES: &[Row] = &[
     haas(2690, Effect::NotSimulated, "feature coordinate system off"),
 ];
 
-/// The rows of a code × 10, one for each group of controls that has it: the place of the first, and of the one behind
-/// the last.
+/// What a code × 10 is on each group of controls: the place of its row; 255 where they don't have it.
 #[derive(Clone, Copy, Debug)]
-pub struct Found(u16, u16);
+pub struct Found([u8; CodeSet::EVERY.len()]);
 
 impl Found {
+    const NONE: u8 = u8::MAX;
+    const NOWHERE: Self = Self([Self::NONE; CodeSet::EVERY.len()]);
+
     /// What the code is on a control.
+    #[inline]
     pub fn on(self, set: CodeSet) -> Option<&'static Row> {
-        CODES[usize::from(self.0)..usize::from(self.1)].iter().find(|row| row.on.contains(&set))
+        CODES.get(usize::from(self.0[set as usize]))
     }
 }
 
 /// What is known of a code × 10.
 #[inline]
 pub fn find(code: u32) -> Found {
-    FOUND.get(code as usize).copied().unwrap_or(Found(0, 0))
+    FOUND.get(code as usize).copied().unwrap_or(Found::NOWHERE)
 }
 
-/// The rows of each code × 10 up to the last one.
+/// The same of each code × 10 up to the last one.
 const FOUND: [Found; LAST_CODE + 1] = {
-    let mut all = [Found(0, 0); LAST_CODE + 1];
-    let (mut code, mut place) = (0, 0);
-    while code <= LAST_CODE {
-        let first = place;
-        while place < CODES.len() && CODES[place].code == code as u32 {
-            place += 1;
+    assert!(CODES.len() <= Found::NONE as usize);
+    let mut all = [Found::NOWHERE; LAST_CODE + 1];
+    let mut place = 0;
+    while place < CODES.len() {
+        let row = &CODES[place];
+        let mut set = 0;
+        while set < row.on.len() {
+            all[row.code as usize].0[row.on[set] as usize] = place as u8;
+            set += 1;
         }
-        all[code] = Found(first as u16, place as u16);
-        code += 1;
+        place += 1;
     }
     all
 };

@@ -1,6 +1,6 @@
 //! Expressions lowered to postfix code.
 use super::Form;
-use super::code::{Code, Computed, Instruction, Operand, Operation, STACK, Slot, Source, Target};
+use super::code::{Code, Computed, Instruction, Operand, Operation, Rare, STACK, Slot, Source, Target};
 use super::lower::Lowering;
 use super::names::{self, OTHER_MEMORIES};
 use crate::alarm::{Alarm, Placed};
@@ -44,7 +44,7 @@ impl Lowering {
     pub(super) fn word_value(&mut self, expr: &Expr, letter: u8) -> Lowered<Operand> {
         let context = Context::Address(letter);
         let ExprKind::Negate(inner) = &expr.kind else { return self.operand(expr, context) };
-        let write = |this: &mut Self| this.unary(inner, Operation::Reverse, expr.span, context, 0);
+        let write = |this: &mut Self| this.unary(inner, Rare::Reverse, expr.span, context, 0);
         self.code(expr.span, write).map(Operand::Code)
     }
 
@@ -53,25 +53,24 @@ impl Lowering {
     }
 
     fn code(&mut self, span: Span, write: impl FnOnce(&mut Self) -> Lowered<usize>) -> Lowered<Code> {
-        let start = self.instructions.len();
-        let written = write(self)
-            .and_then(|depth| if depth > STACK { Err(Alarm::TooManyBrackets.at(span)) } else { Ok(()) });
-        if let Err(alarm) = written {
-            self.instructions.truncate(start);
-            return Err(alarm);
+        self.instructions.clear();
+        let depth = write(self)?;
+        if depth > STACK {
+            Err(Alarm::TooManyBrackets.at(span))
+        } else {
+            Ok(self.instructions.drain(..).collect())
         }
-        Ok(Code { start: start as u32, end: self.instructions.len() as u32, span })
     }
 
-    fn emit(&mut self, operation: Operation, span: Span) {
-        self.instructions.push(Instruction { operation, span });
+    fn emit(&mut self, operation: impl Into<Operation>, span: Span) {
+        self.instructions.push(Instruction { operation: operation.into(), span });
     }
 
     /// Writes the code of `expr`; the answer is how many values it needs on the stack at once.
     fn expr(&mut self, expr: &Expr, context: Context, brackets: usize) -> Lowered<usize> {
         let (source, depth) = self.source(expr, context, brackets)?;
         if source != LAST {
-            self.emit(Operation::Load(source), expr.span);
+            self.emit(Rare::Load(source), expr.span);
         }
         Ok(depth)
     }
@@ -89,14 +88,14 @@ impl Lowering {
                     let source = match Slot::of(number) {
                         Slot::Free(number) => Source::Free(number),
                         Slot::Other(number) => {
-                            self.emit(Operation::Read(number), expr.span);
+                            self.emit(Rare::Read(number), expr.span);
                             LAST
                         }
                     };
                     return Ok((source, 1));
                 }
                 let depth = self.expr(index, Context::Macro, brackets)?;
-                self.emit(Operation::LoadIndirect, expr.span);
+                self.emit(Rare::LoadIndirect, expr.span);
                 return Ok((LAST, depth));
             }
             _ => {}
@@ -116,7 +115,7 @@ impl Lowering {
         let (right_source, right_depth) = self.source(right, context, brackets)?;
         if (left_source, right_source) == (LAST, LAST) {
             left_source = WAITING;
-            let wait = Instruction { operation: Operation::Wait, span: left.span };
+            let wait = Instruction { operation: Rare::Wait.into(), span: left.span };
             self.instructions.insert(behind_left, wait);
         }
         Ok(([left_source, right_source], left_depth.max(right_depth + 1)))
@@ -129,12 +128,12 @@ impl Lowering {
             ExprKind::Literal(_) | ExprKind::Variable(_) => self.expr(expr, context, brackets)?,
             ExprKind::Named(name) => {
                 let depth = self.named(name, span, brackets)?;
-                self.emit(Operation::LoadIndirect, span);
+                self.emit(Rare::LoadIndirect, span);
                 depth
             }
-            ExprKind::Negate(inner) => self.unary(inner, Operation::Negate, span, context, brackets)?,
-            ExprKind::Plus(inner) => self.unary(inner, Operation::Plus, span, context, brackets)?,
-            ExprKind::Bracket(inner) => self.unary(inner, Operation::Bracket, span, context, brackets + 1)?,
+            ExprKind::Negate(inner) => self.unary(inner, Rare::Negate, span, context, brackets)?,
+            ExprKind::Plus(inner) => self.unary(inner, Rare::Plus, span, context, brackets)?,
+            ExprKind::Bracket(inner) => self.unary(inner, Rare::Bracket, span, context, brackets + 1)?,
             ExprKind::Binary(op, left, right) => {
                 if *op == BinaryOp::Mod {
                     self.note(Form::NewFunction("MOD"), span);
@@ -148,15 +147,15 @@ impl Lowering {
                 self.note(Form::NewWord("PRM"), span);
                 let mut depth = self.expr(number, Context::Macro, brackets + 1)?;
                 for (place, part) in bit.iter().chain(axis).enumerate() {
-                    self.emit(Operation::Wait, span);
+                    self.emit(Rare::Wait, span);
                     depth = depth.max(self.expr(part, Context::Macro, brackets + 1)? + place + 1);
                 }
-                self.emit(Operation::Parameter { bit: bit.is_some(), axis: axis.is_some() }, span);
+                self.emit(Rare::Parameter { bit: bit.is_some(), axis: axis.is_some() }, span);
                 depth
             }
             ExprKind::AxisNumber(letter) => {
                 self.note(Form::NewWord("AXNUM"), span);
-                self.emit(Operation::AxisNumber(*letter), span);
+                self.emit(Rare::AxisNumber(*letter), span);
                 1
             }
         })
@@ -165,7 +164,7 @@ impl Lowering {
     fn unary(
         &mut self,
         inner: &Expr,
-        operation: Operation,
+        operation: Rare,
         span: Span,
         context: Context,
         brackets: usize,
@@ -203,16 +202,16 @@ impl Lowering {
             (Function::Atan, CallForm::Slash(a, b) | CallForm::Comma(a, b), _) => {
                 two(self, a, b, Operation::Atan2)
             }
-            (Function::Pow, CallForm::Comma(a, b), _) => two(self, a, b, Operation::Power),
+            (Function::Pow, CallForm::Comma(a, b), _) => two(self, a, b, |values| Rare::Power(values).into()),
             (Function::Pow, CallForm::One(_), _) => Err(Alarm::MissingComma.at(span)),
             (Function::Round, CallForm::One(inner), Context::Address(letter)) => {
-                self.unary(inner, Operation::RoundTo(letter), span, context, brackets)
+                self.unary(inner, Rare::RoundTo(letter), span, context, brackets)
             }
             (Function::Adp, CallForm::One(inner), _) => {
                 let ExprKind::Variable(index) = &inner.kind else {
                     return Err(Alarm::ArgumentFormat { function: "ADP".into() }.at(span));
                 };
-                self.unary(index, Operation::AddPoint, span, Context::Macro, brackets)
+                self.unary(index, Rare::AddPoint, span, Context::Macro, brackets)
             }
             (_, CallForm::One(inner), _) => {
                 let (value, depth) = self.source(inner, context, brackets)?;
@@ -251,8 +250,7 @@ impl Lowering {
             if name.index.is_some() {
                 return Err(Alarm::Suffix { name: text() }.at(span));
             }
-            let place = self.name(&name.text);
-            self.emit(Operation::NameNumber(place), span);
+            self.emit(Rare::NameNumber(name.text.as_str().into()), span);
             return Ok(1);
         }
         if OTHER_MEMORIES.contains(&name.text.as_str()) {
@@ -264,7 +262,7 @@ impl Lowering {
             (None, None) => 1,
             _ => return Err(Alarm::Suffix { name: text() }.at(span)),
         };
-        self.emit(Operation::SystemNumber(row), span);
+        self.emit(Rare::SystemNumber(row), span);
         Ok(depth)
     }
 
@@ -293,13 +291,13 @@ impl Lowering {
             Condition::Logic(op, written, first, second) => {
                 let left = self.test(first)?;
                 let span = self.instructions.last().map_or_else(Span::default, |i| i.span);
-                self.emit(Operation::Wait, span);
+                self.emit(Rare::Wait, span);
                 let right = self.test(second)?;
                 let span = self.instructions.last().map_or_else(Span::default, |i| i.span);
                 if *written == Written::Sign {
                     self.note(Form::Signs, span);
                 }
-                self.emit(Operation::Logic(*op), span);
+                self.emit(Rare::Logic(*op), span);
                 Ok(left.max(right + 1))
             }
             Condition::Bracket(inner) => self.test(inner),

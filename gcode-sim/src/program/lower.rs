@@ -1,9 +1,7 @@
 //! Lowers a tree to operations, block by block; what can't run becomes the alarm it raises when it is reached.
-use std::collections::BTreeMap;
-
-use super::code::Instruction;
+use super::code::{Code, Instruction, Slot, Target};
 use super::expr::Context;
-use super::{Form, Op, OpKind, Operand, PrintPart, Statement};
+use super::{Act, Asked, Form, Op, OpKind, Operand, PrintPart, Statement};
 use crate::alarm::{Alarm, Placed};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast;
@@ -11,17 +9,14 @@ use crate::syntax::ast;
 /// Skips inside one block: as many as there are switches.
 const MOST_SKIPS: usize = 9;
 
-/// What grows while blocks are lowered.
+/// What is at hand while blocks are lowered.
 #[derive(Debug, Default)]
 pub(super) struct Lowering {
-    /// The postfix code of all expressions; a [`super::Code`] is a range of it.
+    /// The code of the expression at hand.
     pub(super) instructions: Vec<Instruction>,
-    /// The names that [`super::Operation::NameNumber`] counts: of variables that SETVN names.
-    pub(super) names: Vec<String>,
-    /// The numbers of axes that [`super::AxisPlace`] counts.
+    /// What the words of the block at hand compute, and the numbers of their axes.
+    pub(super) codes: Vec<Code>,
     pub(super) axes: Vec<Operand>,
-    /// The places of the names.
-    named: BTreeMap<String, u32>,
     /// What the block at hand has that not every control takes.
     forms: Vec<Spanned<Form>>,
 }
@@ -29,25 +24,6 @@ pub(super) struct Lowering {
 type Lowered<T> = Result<T, Placed>;
 
 impl Lowering {
-    /// Gives up what was written for the blocks so far.
-    pub(super) fn forget(&mut self) {
-        self.instructions.clear();
-        self.names.clear();
-        self.axes.clear();
-        self.named.clear();
-    }
-
-    /// The place of a name.
-    pub(super) fn name(&mut self, text: &str) -> u32 {
-        if let Some(place) = self.named.get(text) {
-            return *place;
-        }
-        let place = self.names.len() as u32;
-        self.names.push(text.to_owned());
-        self.named.insert(text.to_owned(), place);
-        place
-    }
-
     /// Notes a way of writing for the block at hand.
     pub(super) fn note(&mut self, form: Form, span: Span) {
         self.forms.push(Spanned::new(form, span));
@@ -62,13 +38,12 @@ impl Lowering {
             self.note(Form::ShortWord, span);
         }
         let kind = self.kind(block).unwrap_or_else(OpKind::Alarm);
-        Op {
-            span: block.span,
-            skip: block.skip.as_ref().map(|s| s.node),
-            number: block.number.as_ref().map(|n| n.node),
-            forms: if self.forms.is_empty() { Box::default() } else { self.forms.drain(..).collect() },
-            kind,
-        }
+        let skip = block.skip.as_ref().map(|s| s.node);
+        let act = match skip.is_some() || !self.forms.is_empty() {
+            true => Act::Asked(Box::new(Asked { skip, forms: self.forms.drain(..).collect(), kind })),
+            false => Act::Plain(kind),
+        };
+        Op { nth: 0, span: block.span, number: block.number.as_ref().map(|n| n.node), act }
     }
 
     fn kind(&mut self, block: &ast::Block) -> Lowered<OpKind> {
@@ -79,7 +54,8 @@ impl Lowering {
             let condition = self.condition(condition, first.span)?;
             let rest = ast::Block { items: block.items[1..].to_vec(), ..block.clone() };
             let then = match self.kind(&rest)? {
-                then @ (OpKind::Words(_) | OpKind::Statement(Statement::Assign { .. })) => Box::new(then),
+                then @ (OpKind::Words(_)
+                | OpKind::Statement(Statement::Assign { .. } | Statement::Compute { .. })) => Box::new(then),
                 _ => return Err(Alarm::IfFormat.at(first.span)),
             };
             return Ok(OpKind::If { condition, then });
@@ -114,7 +90,10 @@ impl Lowering {
             }
             (None, false) => {
                 let mut lowered = self.words(&block.items, &skips)?;
-                lowered.punched = block.comments.first().and_then(|comment| sixteen_digits(&comment.text));
+                if let Some(value) = block.comments.first().and_then(|comment| sixteen_digits(&comment.text))
+                {
+                    lowered.punch(value);
+                }
                 Ok(OpKind::Words(lowered))
             }
         }
@@ -183,12 +162,14 @@ impl Lowering {
         span: Span,
         block: &ast::Block,
     ) -> Lowered<Statement> {
-        let text = block.comments.iter().find(|c| c.span.start >= span.start);
-        Ok(Statement::Assign {
-            target: self.target(target)?,
-            target_span: target.span,
-            value: self.operand(value, Context::Macro)?,
-            text: text.map(|c| c.text.clone().into_boxed_slice()),
+        let (to, value) = (self.target(target)?, self.operand(value, Context::Macro)?);
+        Ok(match (to, value) {
+            (Target::Slot(Slot::Free(place)), Operand::Code(code)) => Statement::Compute { place, code },
+            (to, value) => {
+                let text = block.comments.iter().find(|c| c.span.start >= span.start);
+                let text = text.map(|c| c.text.clone().into_boxed_slice());
+                Statement::Assign { target: to, target_span: target.span, value, text }
+            }
         })
     }
 

@@ -108,14 +108,15 @@ impl Memory {
         &self.programs[id.0 as usize]
     }
 
-    /// Lowers one block of a program, so that it can be executed; `None` behind the last.
+    /// A program whose blocks can be [made ready](Program::ready).
     #[inline]
-    pub(crate) fn ready(&mut self, id: ProgramId, place: OpIndex) -> Option<(&Program, &Op)> {
-        let program = self.programs.get_mut(id.0 as usize)?;
-        let Program { blocks, loops, .. } = program;
-        let place = blocks.ready(place, loops)?;
-        let program = &*program;
-        program.blocks.op_at(place).map(|op| (program, op))
+    pub(crate) fn get_mut(&mut self, id: ProgramId) -> Option<&mut Program> {
+        self.programs.get_mut(id.0 as usize)
+    }
+
+    /// One block of a program, lowered; `None` behind the last.
+    pub(crate) fn ready(&mut self, id: ProgramId, place: OpIndex) -> Option<&Op> {
+        self.get_mut(id)?.ready(place).map(|(_, op)| op)
     }
 
     /// A program with all of its blocks lowered: [`Program::ops`].

@@ -21,10 +21,10 @@ mod outline;
 mod words;
 
 pub use arguments::{ArgumentLocals, argument_letter};
-pub use code::{Code, Computed, Instruction, Operand, Operation, STACK, Slot, Source, Target};
+pub use code::{Code, Computed, Instruction, Operand, Operation, Rare, STACK, Slot, Source, Target};
 pub use forms::Form;
 pub use memory::{Library, Memory, NoLibrary, ProgramId};
-pub use words::{AxisPlace, CallOp, CallTarget, Calling, Coded, Input, Words};
+pub use words::{CallOp, CallTarget, Calling, Coded, Input, Words};
 
 use std::sync::OnceLock;
 
@@ -57,13 +57,64 @@ pub struct Program {
 /// One block.
 #[derive(Debug, Default)]
 pub struct Op {
+    /// Which of its program's blocks it is, counted from 1; 0 while it is none.
+    nth: u32,
     pub span: Span,
+    pub number: Option<u32>,
+    act: Act,
+}
+
+/// What a block does, and what is asked before.
+#[derive(Debug)]
+pub(crate) enum Act {
+    /// Nothing is, as of most.
+    Plain(OpKind),
+    Asked(Box<Asked>),
+}
+
+impl Default for Act {
+    fn default() -> Self {
+        Self::Plain(OpKind::Empty)
+    }
+}
+
+/// What a block does that is asked something first.
+#[derive(Debug)]
+pub(crate) struct Asked {
     /// The block skip switch at its start.
     pub skip: Option<u8>,
-    pub number: Option<u32>,
     /// What is written in it that not every control takes, in the order it is held against the settings.
     pub forms: Box<[Spanned<Form>]>,
     pub kind: OpKind,
+}
+
+impl Op {
+    /// What the block does, once nothing is asked any more.
+    pub fn kind(&self) -> &OpKind {
+        match &self.act {
+            Act::Plain(kind) => kind,
+            Act::Asked(asked) => &asked.kind,
+        }
+    }
+
+    #[inline(always)]
+    pub(crate) fn act(&self) -> &Act {
+        &self.act
+    }
+
+    fn asked(&self) -> Option<&Asked> {
+        if let Act::Asked(asked) = &self.act { Some(asked) } else { None }
+    }
+
+    /// The block skip switch at its start.
+    pub fn skip(&self) -> Option<u8> {
+        self.asked()?.skip
+    }
+
+    /// What is written in it that not every control takes.
+    pub fn forms(&self) -> &[Spanned<Form>] {
+        self.asked().map_or(&[], |asked| &asked.forms)
+    }
 }
 
 /// What a block does. Which of these it is stands in a byte of its own, for it is asked at every block.
@@ -88,6 +139,12 @@ pub enum OpKind {
 #[derive(Debug)]
 #[repr(u8)]
 pub enum Statement {
+    /// An assignment of what code gives to a variable of [`Slot::Free`], as most are.
+    Compute {
+        place: u16,
+        code: Code,
+    },
+    /// Any other assignment.
     Assign {
         target: Target,
         target_span: Span,
@@ -167,23 +224,19 @@ impl Program {
         self.blocks.all()
     }
 
-    /// An operation that was made ready: see [`Memory::ready`].
+    /// Lowers one block, so that it can be executed; `None` behind the last.
+    #[inline(always)]
+    pub(crate) fn ready(&mut self, place: OpIndex) -> Option<(&Self, &Op)> {
+        if self.blocks.op(place).is_none() {
+            self.blocks.lower(place, &self.loops)?;
+        }
+        let program = &*self;
+        program.blocks.op(place).map(|op| (program, op))
+    }
+
+    /// An operation that was made ready: see [`Program::ready`].
     pub(crate) fn op(&self, place: OpIndex) -> Option<&Op> {
         self.blocks.op(place)
-    }
-
-    #[inline(always)]
-    pub fn code(&self, code: Code) -> &[Instruction] {
-        self.blocks.code(code)
-    }
-
-    /// The number of the axis that a word is for.
-    pub fn axis(&self, axis: AxisPlace) -> Operand {
-        self.blocks.axis(axis)
-    }
-
-    pub(crate) fn variable_name(&self, index: u32) -> &str {
-        self.blocks.variable_name(index)
     }
 
     fn numbers(&self) -> &[(u32, u32)] {

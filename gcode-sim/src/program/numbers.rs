@@ -1,7 +1,7 @@
 //! Blocks of numbers, lowered straight from their text.
 use super::codes;
 use super::words::{Coded, Input, Words, g_code};
-use super::{Op, OpKind};
+use super::{Act, Op, OpKind};
 use crate::source::{SourceId, Span};
 use crate::syntax::{NumberWord, Numbers};
 
@@ -10,19 +10,19 @@ impl Op {
     /// become anything, and its tree must be lowered.
     #[inline]
     pub(super) fn refill(&mut self, source: SourceId, text: &[u8], start: u32) -> bool {
+        self.nth = 0;
         let Some(numbers) = Numbers::new(source, text, start) else { return false };
         let number = numbers.sequence_number;
-        if !matches!(self.kind, OpKind::Words(_)) {
-            self.kind = OpKind::Words(Words::default());
+        if !matches!(self.act, Act::Plain(OpKind::Words(_))) {
+            self.act = Act::Plain(OpKind::Words(Words::default()));
         }
-        let OpKind::Words(words) = &mut self.kind else { return false };
+        let Act::Plain(OpKind::Words(words)) = &mut self.act else { return false };
         let Some(end) = fill(words.emptied(), numbers) else { return false };
         if words.list.is_empty() {
-            self.kind = OpKind::Empty;
+            self.act = Act::default();
         }
         self.span = Span { source, start, end };
-        (self.skip, self.number) = (None, number);
-        self.forms = Box::default();
+        self.number = number;
         true
     }
 }
@@ -88,7 +88,7 @@ mod tests {
         let mut op = another();
         assert!(op.refill(SourceId(0), text.as_bytes(), 0));
         assert_eq!((op.number, op.span.end), (Some(10), 21));
-        assert!(matches!(op.kind, OpKind::Words(words) if words.list.len() == 4));
+        assert!(matches!(op.kind(), OpKind::Words(words) if words.list.len() == 4));
     }
 
     #[test]

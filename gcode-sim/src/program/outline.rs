@@ -68,11 +68,11 @@ impl Growing {
         if !block.items.iter().any(is_of_loop) {
             return;
         }
-        let part = match Lowering::default().block(block, None).kind {
+        let part = match Lowering::default().block(block, None).kind() {
             OpKind::Statement(Statement::While { number, .. } | Statement::Do { number, .. }) => {
-                Some((Part::Begin, number))
+                Some((Part::Begin, *number))
             }
-            OpKind::Statement(Statement::End { number, .. }) => Some((Part::End, number)),
+            OpKind::Statement(Statement::End { number, .. }) => Some((Part::End, *number)),
             _ => None,
         };
         self.loops.extend(part.map(|(part, number)| (place as OpIndex, part, number)));

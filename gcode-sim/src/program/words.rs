@@ -1,47 +1,58 @@
 //! Blocks of words: codes looked up, calls taken out, the rest left for the run to evaluate.
 use super::Form;
-use super::Operand;
+use super::code::{Code, Instruction, Operand, Slot};
 use super::codes::{self, Found};
 use super::expr::Context;
 use super::lower::Lowering;
 use crate::alarm::{Alarm, Placed};
 use crate::source::Span;
-use crate::syntax::ast::{AX, Decimal, Item, Word, WordValue};
+use crate::syntax::ast::{AX, Decimal, Expr, Item, Word, WordValue};
 
 /// The words of one block.
 #[derive(Debug, Default)]
 pub struct Words {
     pub list: Vec<Coded>,
-    pub call: Option<Box<CallOp>>,
+    /// What blocks of numbers don't have, so that the next one needs only its list.
+    rest: Option<Box<Rest>>,
+}
+
+/// What few blocks of words have.
+#[derive(Debug, Default)]
+struct Rest {
+    call: Option<CallOp>,
     /// `/n` inside the block: what is left of it while switch n is on.
-    pub short: Option<(u8, Box<Words>)>,
-    /// Sixteen hexadecimal digits in the block's comment: the value behind `G10 L85 P500`, as controls punch it.
-    pub punched: Option<u64>,
+    short: Option<(u8, Words)>,
+    punched: Option<u64>,
+    /// What [`Input::Code`] counts.
+    codes: Vec<Code>,
+    /// The numbers of axes that [`Coded::axis`] counts.
+    axes: Vec<Operand>,
 }
 
 /// A word ready to be evaluated.
 #[derive(Clone, Copy, Debug)]
 pub struct Coded {
     pub letter: u8,
-    /// `AX[…]`: the number of the axis that the word is for, see [`super::Program::axis`].
-    pub axis: Option<AxisPlace>,
+    /// `AX[…]`: where the number of the axis is among those of its block, see [`Words::axis`].
+    pub axis: Option<u32>,
     /// `,R` and `,C`.
     pub comma: bool,
     pub value: Input,
     pub span: Span,
 }
 
-/// Where a program keeps the number of an axis: few words have one.
-#[derive(Clone, Copy, Debug)]
-pub struct AxisPlace(pub(super) u32);
-
 #[derive(Clone, Copy, Debug)]
 pub enum Input {
     /// Its meaning depends on the increment and on units: decided when it runs.
     Literal(Decimal),
-    Operand(Operand),
     /// A G code × 10 written as a number, with its rows.
     G(u32, Found),
+    /// Known, and computed for the control: it rounds.
+    Number(f64),
+    /// `#n` with a literal n.
+    Variable { slot: Slot, span: Span },
+    /// Its place among those of its block, see [`Words::code`].
+    Code(u32),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,16 +97,56 @@ pub struct CallOp {
 }
 
 impl Words {
-    pub(super) fn new(list: Vec<Coded>, call: Option<CallOp>) -> Self {
-        Self { list, call: call.map(Box::new), short: None, punched: None }
+    fn new(list: Vec<Coded>, call: Option<CallOp>) -> Self {
+        let rest = call.map(|call| Box::new(Rest { call: Some(call), ..Rest::default() }));
+        Self { list, rest }
     }
 
     /// Its list, emptied for the words of another block.
     #[inline]
     pub(super) fn emptied(&mut self) -> &mut Vec<Coded> {
-        (self.call, self.short, self.punched) = (None, None, None);
+        self.rest = None;
         self.list.clear();
         &mut self.list
+    }
+
+    fn rest_mut(&mut self) -> &mut Rest {
+        self.rest.get_or_insert_default()
+    }
+
+    /// Keeps sixteen hexadecimal digits of the block's comment.
+    pub(super) fn punch(&mut self, value: u64) {
+        self.rest_mut().punched = Some(value);
+    }
+
+    /// Whether the block has nothing but its list, and what that computes.
+    #[inline]
+    pub fn is_plain(&self) -> bool {
+        self.rest.as_ref().is_none_or(|rest| rest.call.is_none() && rest.short.is_none())
+    }
+
+    pub fn call(&self) -> Option<&CallOp> {
+        self.rest.as_ref()?.call.as_ref()
+    }
+
+    /// `/n` inside the block: n, and what is left of the block while switch n is on.
+    pub fn short(&self) -> Option<&(u8, Self)> {
+        self.rest.as_ref()?.short.as_ref()
+    }
+
+    /// Sixteen hexadecimal digits in the block's comment: the value behind `G10 L85 P500`, as controls punch it.
+    pub fn punched(&self) -> Option<u64> {
+        self.rest.as_ref()?.punched
+    }
+
+    /// What computes the value of a word.
+    pub fn code(&self, place: u32) -> &[Instruction] {
+        self.rest.as_ref().map_or(&[], |rest| &rest.codes[place as usize])
+    }
+
+    /// The number of the axis that a word is for.
+    pub fn axis(&self, place: u32) -> Option<&Operand> {
+        self.rest.as_ref()?.axes.get(place as usize)
     }
 }
 
@@ -105,11 +156,22 @@ impl Lowering {
         let Some(((switch, place), before)) = skips.split_last() else { return self.plain_words(items) };
         let short = self.words(&items[..*place], before)?;
         let mut whole = self.plain_words(items)?;
-        whole.short = Some((*switch, Box::new(short)));
+        whole.rest_mut().short = Some((*switch, short));
         Ok(whole)
     }
 
     fn plain_words(&mut self, items: &[Item]) -> Result<Words, Placed> {
+        (self.codes, self.axes) = (Vec::new(), Vec::new());
+        let mut words = self.listed(items)?;
+        let (codes, axes) = (std::mem::take(&mut self.codes), std::mem::take(&mut self.axes));
+        if !codes.is_empty() || !axes.is_empty() {
+            let rest = words.rest_mut();
+            (rest.codes, rest.axes) = (codes, axes);
+        }
+        Ok(words)
+    }
+
+    fn listed(&mut self, items: &[Item]) -> Result<Words, Placed> {
         let words =
             items.iter().filter_map(|item| if let Item::Word(word) = item { Some(word) } else { None });
         let mut list = Vec::with_capacity(items.len());
@@ -156,8 +218,8 @@ impl Lowering {
             WordValue::Literal(number) => literal(letter, *number)
                 .ok_or_else(|| Alarm::ImproperGCode { code: number.value().to_string() }.at(word.span))?,
             // Axes have one increment.
-            WordValue::Expr(expr) if letter == AX => Input::Operand(self.word_value(expr, b'X')?),
-            WordValue::Expr(expr) => Input::Operand(self.word_value(expr, letter)?),
+            WordValue::Expr(expr) if letter == AX => self.computed_word(expr, b'X')?,
+            WordValue::Expr(expr) => self.computed_word(expr, letter)?,
             // Taken up by the call in the same block.
             WordValue::Name(_) => {
                 self.note(Form::NewWord("<NAME>"), word.span);
@@ -168,11 +230,22 @@ impl Lowering {
             Some(axis) => {
                 let axis = self.operand(axis, Context::Macro)?;
                 self.axes.push(axis);
-                Some(AxisPlace(self.axes.len() as u32 - 1))
+                Some(self.axes.len() as u32 - 1)
             }
             None => None,
         };
         Ok(Coded { letter, axis, comma: word.address.comma, value, span: word.span })
+    }
+
+    fn computed_word(&mut self, expr: &Expr, letter: u8) -> Result<Input, Placed> {
+        Ok(match self.word_value(expr, letter)? {
+            Operand::Number(number) => Input::Number(number),
+            Operand::Variable { slot, span } => Input::Variable { slot, span },
+            Operand::Code(code) => {
+                self.codes.push(code);
+                Input::Code(self.codes.len() as u32 - 1)
+            }
+        })
     }
 }
 

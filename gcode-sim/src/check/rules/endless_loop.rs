@@ -20,7 +20,7 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     let mut told = vec![false; unit.program.ops().len()];
     for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.reached[*block]) {
         use crate::program::Statement::{Do, While};
-        let OpKind::Statement(While { end, .. } | Do { end, .. }) = op.kind else { continue };
+        let OpKind::Statement(While { end, .. } | Do { end, .. }) = *op.kind() else { continue };
         let inside: Vec<OpIndex> = (block..=end).filter(|b| unit.reached[*b]).collect();
         if never_entered(unit, block)
             || escapes(subject, unit, &inside, |to| (block..=end).contains(&to) && unit.reached[to])
@@ -112,7 +112,7 @@ fn escapes(
     inside.iter().copied().any(|block| {
         let op = unit.op(block);
         let ways = &unit.flow.ways[block];
-        if ways.leaves || ways.anywhere || raises(&op.kind) || waits(&op.kind) || is_alarm(&op.kind) {
+        if ways.leaves || ways.anywhere || raises(op.kind()) || waits(op.kind()) || is_alarm(op.kind()) {
             return true;
         }
         if unit.flow.after(block).all(&contains) {

@@ -24,7 +24,7 @@ pub(super) fn find(_: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
 fn around(unit: &Unit<'_>) -> Vec<Vec<(OpIndex, OpIndex)>> {
     let mut around = vec![Vec::new(); unit.program.ops().len()];
     for (first, op) in unit.program.ops().iter().enumerate() {
-        if let OpKind::Statement(Statement::While { end, .. } | Statement::Do { end, .. }) = op.kind {
+        if let OpKind::Statement(Statement::While { end, .. } | Statement::Do { end, .. }) = *op.kind() {
             around[first + 1..=end].iter_mut().for_each(|loops: &mut Vec<_>| loops.push((first, end)));
         }
     }

@@ -61,12 +61,12 @@ fn moving(settings: &Settings, unit: &Unit<'_>) -> Vec<Option<OpIndex>> {
         seen[block] = true;
         moving[block] = moving[block].or(motion);
         let op = unit.program.ops().get(block);
-        let after = match op.and_then(|op| effect(settings, &op.kind)) {
+        let after = match op.and_then(|op| effect(settings, op.kind())) {
             Some(true) => Some(block),
             Some(false) => None,
             None => moving[block],
         };
-        let skipped = op.and_then(|op| op.skip).map(|_| (block + 1, moving[block]));
+        let skipped = op.and_then(|op| op.skip()).map(|_| (block + 1, moving[block]));
         open.extend(unit.flow.after(block).map(|to| (to, after)).chain(skipped));
     }
     moving.truncate(unit.flow.ways.len());

@@ -90,7 +90,7 @@ fn refusal(subject: &Subject<'_>, unit: &Unit<'_>, states: &States) -> Option<St
     }
     for (block, state) in states[..ops.len()].iter().enumerate() {
         let Some(state) = state else { continue };
-        if raises(&ops[block].kind) {
+        if raises(ops[block].kind()) {
             let sure = match variables::statement(&unit.blocks, block) {
                 Some(Statement::IfThen { condition, .. }) => truth(condition, state) == Some(true),
                 _ => true,
@@ -98,7 +98,7 @@ fn refusal(subject: &Subject<'_>, unit: &Unit<'_>, states: &States) -> Option<St
             if sure && first.is_none() {
                 first = Some(block);
             }
-        } else if unit.flow.ways[block].leaves || matches!(ops[block].kind, OpKind::Alarm(_)) {
+        } else if unit.flow.ways[block].leaves || matches!(ops[block].kind(), OpKind::Alarm(_)) {
             return None;
         }
     }

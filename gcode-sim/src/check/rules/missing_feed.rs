@@ -18,7 +18,7 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     }
     let mut found = Vec::new();
     for (block, fed) in fed(subject, unit).into_iter().enumerate() {
-        let OpKind::Words(words) = &unit.op(block).kind else { continue };
+        let OpKind::Words(words) = unit.op(block).kind() else { continue };
         if fed == Some(false) && !gives(words) && feeds(subject, words) {
             let alarm = Alarm::FeedZero.at(unit.op(block).span);
             found.push(finding(subject, unit, NAME, block, &alarm));
@@ -48,7 +48,7 @@ fn fed(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Option<bool>> {
 
 /// Whether a block has an F, or calls what may have one.
 fn may_give(subject: &Subject<'_>, unit: &Unit<'_>, block: OpIndex) -> bool {
-    let here = match &unit.op(block).kind {
+    let here = match unit.op(block).kind() {
         OpKind::Words(words) => gives(words),
         OpKind::If { .. } => true,
         _ => false,
@@ -60,7 +60,7 @@ fn may_give(subject: &Subject<'_>, unit: &Unit<'_>, block: OpIndex) -> bool {
         // What it calls in its turn is not looked at: it may.
         Some(Some(called)) => {
             let called = &subject.units[called];
-            let written = |block| matches!(&called.op(block).kind, OpKind::Words(words) if gives(words));
+            let written = |block| matches!(called.op(block).kind(), OpKind::Words(words) if gives(words));
             !called.calls.is_empty() || (0..called.program.ops().len()).any(written)
         }
     }
@@ -82,7 +82,7 @@ fn feeds(subject: &Subject<'_>, words: &Words) -> bool {
             Some(_) => {}
         }
     }
-    feeds && axis && words.call.is_none()
+    feeds && axis && words.call().is_none()
 }
 
 #[cfg(test)]

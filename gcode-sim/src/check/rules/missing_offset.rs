@@ -12,7 +12,7 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     let most = subject.settings.tool_offsets;
     let mut found = Vec::new();
     for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.reached[*block]) {
-        let OpKind::Words(words) = &op.kind else { continue };
+        let OpKind::Words(words) = op.kind() else { continue };
         // What a macro gets is its own affair.
         if unit.call_in(block).is_some() {
             continue;

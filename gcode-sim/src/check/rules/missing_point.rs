@@ -21,14 +21,14 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     if settings.calculator_input || in_increments(unit, settings) {
         return Vec::new();
     }
-    let inch = unit.program.ops().iter().any(|op| words(&op.kind).is_some_and(|words| has(words, &[200])));
+    let inch = unit.program.ops().iter().any(|op| words(op.kind()).is_some_and(|words| has(words, &[200])));
     let parameters = parameters::inside(unit.program);
     let mut found = Vec::new();
     for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.reached[*block]) {
-        let Some(words) = words(&op.kind).filter(|_| !parameters[block]) else { continue };
+        let Some(words) = words(op.kind()).filter(|_| !parameters[block]) else { continue };
         for word in measures(words, settings) {
             let Some(number) = without_point(word) else { continue };
-            let counted = (word.letter == b'Q' && words.call.is_none()) || has(words, &[40]);
+            let counted = (word.letter == b'Q' && words.call().is_none()) || has(words, &[40]);
             if counted && number.digits >= LEAST_MEANT {
                 continue;
             }
@@ -55,7 +55,7 @@ fn has(words: &Words, codes: &[u32]) -> bool {
 fn measures<'a>(words: &'a Words, settings: &'a Settings) -> impl Iterator<Item = &'a Coded> {
     let plain = words.list.iter().filter(move |word| is_measure(words, word, settings));
     // The letters of a macro call that a control scales: all but D E F H M S T.
-    let arguments = words.call.iter().flat_map(|call| &call.arguments);
+    let arguments = words.call().into_iter().flat_map(|call| &call.arguments);
     let scaled = arguments.filter(|word| b"ABCIJKQRUVWXYZ".contains(&word.letter));
     // K of a drilling cycle counts repetitions, and arcs have it with I or J or alone: a small K is left alone.
     plain.filter(move |word| word.letter != b'K' || !drills(words)).chain(scaled)
@@ -89,12 +89,12 @@ fn drills(words: &Words) -> bool {
 /// A program without any point whose numbers are of 1 mm and more counts in increments on purpose.
 fn in_increments(unit: &Unit<'_>, settings: &Settings) -> bool {
     let mut large = false;
-    for words in unit.program.ops().iter().filter_map(|op| words(&op.kind)) {
+    for words in unit.program.ops().iter().filter_map(|op| words(op.kind())) {
         for word in measures(words, settings) {
             match word.value {
                 Input::Literal(Decimal { places: Some(_), .. }) => return false,
                 Input::Literal(number) => large |= number.digits as f64 >= settings.increment.per_unit(),
-                Input::Operand(_) | Input::G(..) => {}
+                _ => {}
             }
         }
     }
@@ -118,7 +118,7 @@ fn meaning(letter: u8, number: Decimal, words: &Words, settings: &Settings, inch
     let finer = if inch && !turns && !dwell { 10.0 } else { 1.0 };
     let per_unit = settings.increment.per_unit() * finer;
     let unit = match () {
-        () if words.call.is_some() => "for the macro",
+        () if words.call().is_some() => "for the macro",
         () if dwell => "seconds",
         () if turns => "degrees",
         () if inch => "inch",

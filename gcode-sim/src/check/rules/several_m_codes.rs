@@ -13,7 +13,7 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     let most = if settings.three_m_codes { 3 } else { 1 };
     let mut found = Vec::new();
     for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.reached[*block]) {
-        let OpKind::Words(words) = &op.kind else { continue };
+        let OpKind::Words(words) = op.kind() else { continue };
         let mut kept = Vec::new();
         for word in words.list.iter().filter(|word| word.letter == b'M') {
             // A code that calls a macro is none of the control's.

@@ -11,7 +11,7 @@ pub(super) const NAME: &str = "stray-word";
 pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     let mut found = Vec::new();
     for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.reached[*block]) {
-        let OpKind::Words(words) = &op.kind else { continue };
+        let OpKind::Words(words) = op.kind() else { continue };
         if unit.call_in(block).is_some() {
             continue;
         }

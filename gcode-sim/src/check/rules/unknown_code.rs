@@ -21,7 +21,7 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
         improper.map(|(block, alarm)| finding(subject, unit, NAME, block, &alarm)).collect();
     let mut told = BTreeSet::new();
     for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.reached[*block]) {
-        let OpKind::Words(words) = &op.kind else { continue };
+        let OpKind::Words(words) = op.kind() else { continue };
         for word in &words.list {
             let Some((name, message, certain)) = about(subject, word) else { continue };
             if certain {

@@ -35,7 +35,7 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
 
 /// What isn't missed where nothing reaches it.
 fn harmless(unit: &Unit<'_>, block: OpIndex) -> bool {
-    let kind = &unit.op(block).kind;
+    let kind = unit.op(block).kind();
     match kind {
         OpKind::Empty => true,
         OpKind::Words(words) => unit.flow.ways[block].leaves && words.list.len() <= 1,

@@ -12,7 +12,7 @@ pub(super) fn find(_: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     let entry = if unit.role == Role::Main { Locals::UNSET } else { Locals::ANYTHING };
     let states = states(unit, entry);
     let mut found = Vec::new();
-    for (block, op) in unit.program.ops().iter().enumerate().filter(|(_, op)| raises(&op.kind)) {
+    for (block, op) in unit.program.ops().iter().enumerate().filter(|(_, op)| raises(op.kind())) {
         if !unit.reached[block] {
             let help = "jump to its number, or take it out";
             let message = "nothing reaches this alarm, so it never stops anything";

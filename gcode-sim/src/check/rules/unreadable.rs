@@ -22,7 +22,7 @@ pub(super) fn refused<'a>(
 ) -> impl Iterator<Item = (usize, Placed)> + 'a {
     let ops = unit.program.ops().iter().enumerate().filter(|(block, _)| unit.reached[*block]);
     ops.filter_map(|(block, op)| {
-        let form = op.forms.iter().find(|form| !form.node.is_taken(subject.settings))?;
+        let form = op.forms().iter().find(|form| !form.node.is_taken(subject.settings))?;
         Some((block, form.node.alarm().at(form.span)))
     })
 }
@@ -30,7 +30,7 @@ pub(super) fn refused<'a>(
 /// The blocks that raise an alarm as they are read and that something reaches.
 pub(super) fn alarms<'a>(unit: &'a Unit<'_>) -> impl Iterator<Item = (usize, &'a Placed)> {
     unit.program.ops().iter().enumerate().filter(|(block, _)| unit.reached[*block]).filter_map(
-        |(block, op)| match &op.kind {
+        |(block, op)| match op.kind() {
             OpKind::Alarm(alarm) => Some((block, alarm)),
             OpKind::Statement(Statement::IfThen { then, .. }) => match &**then {
                 Statement::Alarm(alarm) => Some((block, alarm)),

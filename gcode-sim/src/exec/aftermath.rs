@@ -1,0 +1,51 @@
+//! What a block leaves behind for the run: something to tell, or its end. Most leave nothing, which is one question.
+use std::cell::Cell;
+
+use super::notes::Note;
+use super::run::Over;
+
+#[derive(Clone, Debug, Default)]
+pub(super) struct Aftermath {
+    some: Cell<bool>,
+    /// What a function of the block at hand has to tell.
+    note: Cell<Option<Note>>,
+    /// How the block at hand has ended the run.
+    over: Cell<Option<Over>>,
+}
+
+impl Aftermath {
+    pub(super) fn is_none(&self) -> bool {
+        !self.some.get()
+    }
+
+    pub(super) fn tell(&self, note: Note) {
+        self.note.set(Some(note));
+        self.some.set(true);
+    }
+
+    pub(super) fn end(&self, over: Over) {
+        self.over.set(Some(over));
+        self.some.set(true);
+    }
+
+    /// Whether the block has ended the run.
+    pub(super) fn is_over(&self) -> bool {
+        self.over.get().is_some()
+    }
+
+    /// What there is, which is then no more.
+    pub(super) fn take(&self) -> (Option<Note>, Option<Over>) {
+        self.some.set(false);
+        (self.note.take(), self.over.take())
+    }
+
+    /// Does what is no part of the run: what that leaves behind is forgotten, and told when the block is done.
+    pub(super) fn apart<T>(&self, look: impl FnOnce() -> T) -> T {
+        let before = (self.some.get(), self.note.get(), self.over.get());
+        let seen = look();
+        self.some.set(before.0);
+        self.note.set(before.1);
+        self.over.set(before.2);
+        seen
+    }
+}
