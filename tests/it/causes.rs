@@ -165,7 +165,8 @@ fn a_shift_by_the_pitch_moves_all_holes() {
     );
 }
 
-/// H3 holds 5 mm less than H2, all Z of the tool are 5 mm more: the machine does what it did. The pecks are 5 mm apart as well.
+/// H3 holds 5 mm less than H2, all Z of the tool are 5 mm more: the machine does what it did. The pecks are 5 mm
+/// apart as well.
 #[test]
 fn another_length_that_all_moves_make_up_for_is_told_once_with_them() {
     let program = |length: u32, up: i32| {
@@ -201,4 +202,35 @@ fn a_length_that_is_in_force_already_is_not_lost() {
         "{entries:#?}"
     );
     assert!(entries[0].message.contains("G43 H3 instead of G43 H2"), "{entries:#?}");
+}
+
+/// Behind G91, X10. is where it was, X20. 10 mm farther, and X0 Y0 goes nowhere.
+#[test]
+fn what_one_lost_or_new_word_or_block_does_is_one_entry() {
+    let program = |block: &str| {
+        format!("O1\nG90 G54 G0 X0 Y0 Z50.\nG91 Z5.\n{block}\nG1 X20. F100\nY5.\nG0 X0 Y0\nM30\n")
+    };
+    for (with, without, named) in
+        [("G90\nX10.", "X10.", ["G90", ""]), ("G90 X10.", "X10.", ["G90 X10.", "X10."])]
+    {
+        let (old, new) = (program(with), program(without));
+        let stays = "the program leaves G91 instead of G90";
+        let found = found(&old, &new);
+        let shifted = "a feed ends elsewhere, by X +10.0000 (2 moves)";
+        let wanted = [
+            format!("move-shifted: {shifted}; a rapid to X0.0000 Y0.0000 is no longer there"),
+            format!("mode: {stays}"),
+        ];
+        assert_eq!(texts(&found), wanted);
+        assert_eq!(blocks(&found[0]), named.map(|block| Some(block).filter(|block| !block.is_empty())));
+        let back = self::found(&new, &old);
+        assert_eq!(back.len(), 2, "{back:#?}");
+        assert_eq!(
+            blocks(&back[0]),
+            [named[1], named[0]].map(|block| Some(block).filter(|block| !block.is_empty()))
+        );
+    }
+    // Two words: nobody knows which has done what.
+    let two = told(&program("G90 X10."), &program("X11."));
+    assert!(2 < two.len(), "{two:#?}");
 }

@@ -177,7 +177,7 @@ const MORE: [(&str, &str, &str); 7] = [
     ),
     ("examples/alignment/", "G65", "what is measured goes to variables, offsets and a stop"),
     ("examples/alignment/", "G55", "the correction goes to another offset"),
-    ("examples/alignment/", "G52", "a shift of the work zero is left to the next program"),
+    ("", "G52", "a shift of the work zero is left to the next program"),
     ("examples/head-by-axis/", "M06", "a tool of another length, and put in twice: its holes are others"),
     (
         "honeycomb",

@@ -1,5 +1,5 @@
-//! Holes, passes of them and cuts that are made at another time: one entry, at the block that was moved, with what the cut is made
-//! with otherwise because of that.
+//! Holes, passes of them and cuts that are made at another time: one entry, at the block that was moved, with what
+//! the cut is made with otherwise because of that.
 use gcode_sim::changes::{Change, Revision, changes};
 use gcode_sim::machine::Machine;
 use gcode_sim::program::NoLibrary;
@@ -23,7 +23,8 @@ fn lines(change: &Change) -> [Option<u32>; 2] {
     [&change.old, &change.new].map(|side| side.as_ref().map(|at| at.line))
 }
 
-/// T1 spots, T2 drills and T3 reams four holes, each of them by its own list of positions: X30 stands in lines 8, 16 and 24.
+/// T1 spots, T2 drills and T3 reams four holes, each of them by its own list of positions: X30 stands in lines 8, 16
+/// and 24.
 fn reamed(lists: [&str; 3]) -> String {
     let tool = |number: usize, cycle: &str| {
         format!(
@@ -120,6 +121,14 @@ fn swapped_sections_are_one_entry() {
     let message = "8 moves are made later than before, the first a rapid to X10.0000 Y10.0000";
     assert_eq!((&*found[0].code, &*found[0].message), ("move-order", message));
     assert_eq!(lines(&found[0]), [Some(5), Some(13)]);
+    // In reverse order, two of three sections change places with one.
+    let last = RIGHT.replace("Y10.", "Y50.").replace("Y30.", "Y70.");
+    assert_eq!(
+        told(&milled(LEFT, RIGHT, &last), &milled(&last, RIGHT, LEFT)),
+        [
+            "move-order: 16 moves in 2 places are made at other times, the first a rapid to X10.0000 Y10.0000, later"
+        ]
+    );
     // What is milled twice and once less is no other order.
     let twice = milled(LEFT, LEFT, RIGHT);
     let codes: Vec<_> =

@@ -1,13 +1,15 @@
-//! Programs that make the same moves from block to block, all elsewhere by the same: their steps are linked in this order, though
-//! one may end where another did before. A shift by the pitch of holes leads each of them to the place of the next.
+//! Programs that make the same moves from block to block, all elsewhere by the same: their steps are linked in this
+//! order, though one may end where another did before. A shift by the pitch of holes leads each of them to the place
+//! of the next.
 use super::align::{Link, align};
 use super::cause::is_same_block;
 use super::record::Record;
 use super::steps::{Step, difference, near};
 use crate::motion::{MAX_AXES, Position};
 
-/// Nothing where `links`, by places, tell the moves of one revision from none of the other, or where the blocks or the ways
-/// are others. Moves that stand at the same places of the machine by another tool length may be of any blocks.
+/// Nothing where `links`, by places, tell the moves of one revision from none of the other, or where the blocks or
+/// the ways are others. Moves that stand at the same places of the machine by another tool length may be of any
+/// blocks.
 pub(super) fn as_a_whole(links: &[Link], old: &Record, new: &Record, tolerance: f64) -> Option<Vec<Link>> {
     let is_lost = |link: &Link| matches!(link, Link::Lost(i) if old.steps[*i].is_move());
     let is_added = |link: &Link| matches!(link, Link::Added(j) if new.steps[*j].is_move());

@@ -15,8 +15,8 @@ pub(super) struct Run(Vec<(usize, usize)>);
 /// Of so many cuts that are alike the one is looked for with most moves before and behind it.
 const MOST_ALIKE: usize = 16;
 
-/// Runs of such moves with a cut in each that is of no hole, for holes have an order of their own, on the other side of cuts that
-/// both make. Steps of them that were linked with others are linked no more.
+/// Runs of such moves with a cut in each that is of no hole, for holes have an order of their own, on the other side
+/// of cuts that both make. Steps of them that were linked with others are linked no more.
 pub(super) fn displaced(links: &mut Vec<Link>, old: &Record, new: &Record, tolerance: f64) -> Vec<Run> {
     let sides = (Side::new(old, links, |link| link.sides().0), Side::new(new, links, |link| link.sides().1));
     let runs = find(&sides, tolerance);
@@ -186,7 +186,8 @@ impl<'a> Displaced<'a> {
         }
     }
 
-    /// Whether the next cut behind a step is the same one of a run, before and now: tool, spindle and coolant of these moves.
+    /// Whether the next cut behind a step is the same one of a run, before and now: tool, spindle and coolant of
+    /// these moves.
     pub(super) fn is_before_run(&self, i: usize, j: usize) -> bool {
         let cut =
             |steps: &[Step], from: usize| (from..steps.len()).find(|step| steps[*step].kind.rate().is_some());
@@ -194,13 +195,27 @@ impl<'a> Displaced<'a> {
         cuts.is_some_and(|cuts| self.runs.iter().any(|run| run.0.contains(&cuts)))
     }
 
-    /// One entry for each run.
+    /// One entry for all runs that are made otherwise by the same because of their time, or not at all.
     pub(super) fn changes(&self, links: &[Link]) -> Vec<Change> {
-        self.runs.iter().map(|run| self.change(run, links)).collect()
+        let is_cut = |(i, _): &(usize, usize)| self.old.steps[*i].kind.rate().is_some();
+        let cuts = |run: &Run| run.0.iter().copied().filter(is_cut).collect::<Vec<_>>();
+        let all: Vec<(usize, usize)> = self.runs.iter().flat_map(cuts).collect();
+        let mut with = made_with(self.old, self.new, &all).into_iter();
+        let mut groups: Vec<(String, Vec<&Run>)> = Vec::new();
+        for run in self.runs {
+            let mut texts: Vec<String> = with.by_ref().take(cuts(run).len()).flatten().collect();
+            texts.dedup();
+            let text: String = texts.iter().map(|text| format!(", {text}")).collect();
+            match groups.iter_mut().find(|(known, _)| *known == text) {
+                Some((_, runs)) => runs.push(run),
+                None => groups.push((text, vec![run])),
+            }
+        }
+        groups.iter().map(|(with, runs)| self.change(runs, with, links)).collect()
     }
 
-    fn change(&self, Run(pairs): &Run, links: &[Link]) -> Change {
-        let (i, j) = pairs[0];
+    fn change(&self, runs: &[&Run], with: &str, links: &[Link]) -> Change {
+        let (i, j) = runs[0].0[0];
         let (old, new) = (&self.old.steps[i], &self.new.steps[j]);
         let is_first = |link: &&Link| {
             matches!(link, Link::Lost(step) if *step == i) || matches!(link, Link::Added(step) if *step == j)
@@ -208,16 +223,15 @@ impl<'a> Displaced<'a> {
         let is_later = matches!(links.iter().find(is_first), Some(Link::Lost(_)));
         let when = if is_later { "later" } else { "earlier" };
         let one = format!("{} to {}", old.kind.one(), point(old, &self.old.axes));
-        let what = match pairs.len() {
-            1 => format!("{one} is made {when} than before"),
-            n => format!("{n} moves are made {when} than before, the first {one}"),
+        let moves: usize = runs.iter().map(|run| run.0.len()).sum();
+        let what = match (runs.len(), moves) {
+            (1, 1) => format!("{one} is made {when} than before"),
+            (1, n) => format!("{n} moves are made {when} than before, the first {one}"),
+            (runs, n) => {
+                format!("{n} moves in {runs} places are made at other times, the first {one}, {when}")
+            }
         };
-        let cuts: Vec<(usize, usize)> =
-            pairs.iter().copied().filter(|(i, _)| self.old.steps[*i].kind.rate().is_some()).collect();
-        let mut with: Vec<String> = made_with(self.old, self.new, &cuts).into_iter().flatten().collect();
-        with.dedup();
-        let with: String = with.iter().map(|text| format!(", {text}")).collect();
-        Change::new("move-order", what + &with)
+        Change::new("move-order", what + with)
             .once_at(self.old.places.get(old.place))
             .now_at(self.new.places.get(new.place))
     }

@@ -7,7 +7,8 @@ use super::set_up::InForce;
 use super::steps::Kind;
 use super::words::short;
 
-/// For cuts that both revisions make, by their steps, in words how each of them is made otherwise now; nothing where it isn't.
+/// For cuts that both revisions make, by their steps, in words how each of them is made otherwise now; nothing where
+/// it isn't.
 pub(super) fn made_with(old: &Record, new: &Record, cuts: &[(usize, usize)]) -> Vec<Option<String>> {
     let is_named = InForce::is_named(old, new);
     let before = states(old, cuts.iter().map(|(i, _)| *i), is_named);

@@ -12,7 +12,7 @@ use super::groups::{Groups, Sides};
 use super::holes::Explained;
 use super::left::mode;
 use super::record::Record;
-use super::repeated::{is_speed_alone, repeated};
+use super::repeated::{is_speed_alone, repeated, says_nothing};
 use super::returns::returns;
 use super::set_up::{relied_on, set_up};
 use super::steps::{Kind, Quiet, Step, difference, goes_with, near};
@@ -57,8 +57,10 @@ pub(super) fn compare(
             None if set_up.contains(&k) => {}
             None => motion.step(*link, explained),
             Some(None) => {}
-            // Beside the rapids of another level the same block stands at another time, and so does the spindle's turn in another cycle.
+            // Beside the rapids of another level the same block stands at another time, and so does the spindle's
+            // turn in another cycle.
             Some(Some((i, j, _))) if motion.is_of_strokes(*i, *j) => {}
+            Some(Some((i, j, _))) if says_nothing(&old.steps, *i) && says_nothing(&new.steps, *j) => {}
             Some(Some((i, j, word))) => motion.shifted(*i, *j, word),
         }
     }
@@ -83,7 +85,8 @@ pub(super) fn compare(
 /// What is said of G01 where G00 was, and of G00 where G01 was.
 const KINDS: [&str; 2] = ["a feed where a rapid was", "a rapid where a feed was"];
 
-/// Moves next to one another that are all different, each with its place among the links; other steps between them don't part them.
+/// Moves next to one another that are all different, each with its place among the links; other steps between them
+/// don't part them.
 fn regions(links: &[Link], old: &[Step], new: &[Step]) -> Vec<Vec<(usize, Link)>> {
     let mut regions = vec![Vec::new()];
     for (k, link) in links.iter().enumerate() {
@@ -252,8 +255,8 @@ impl<'a> Motion<'a> {
     }
 
     /// A move that is there once only. One that goes the way by which those next to it end elsewhere, where none was
-    /// needed before, is one of these; one that makes up for that way is no difference of its own. One that begins where the
-    /// old revision stands may also go the way by which moves of other regions end elsewhere.
+    /// needed before, is one of these; one that makes up for that way is no difference of its own. One that begins
+    /// where the old revision stands may also go the way by which moves of other regions end elsewhere.
     fn alone(
         &mut self,
         shifts: &[(Position, bool)],
@@ -298,8 +301,8 @@ impl<'a> Motion<'a> {
         near(a, b, self.tolerance)
     }
 
-    /// Whether a move belongs to the hole that `feed` cuts. Of a hole that is there before and now, it does what it did,
-    /// seen from the hole; of a lost or added one it is a rapid next to it, or a feed on the same line.
+    /// Whether a move belongs to the hole that `feed` cuts. Of a hole that is there before and now, it does what it
+    /// did, seen from the hole; of a lost or added one it is a rapid next to it, or a feed on the same line.
     fn is_part_of_hole(&self, link: &Link, feed: &Feed) -> bool {
         if let (Link::Changed(i, j), Some(deeper)) = (*link, feed.deeper)
             && let [Some(before), Some(now)] = self.sides(&feed.link)
@@ -320,7 +323,8 @@ impl<'a> Motion<'a> {
             && (is_same_block() || self.strokes.explain(&Link::Changed(i, j), self.records.0, self.records.1))
     }
 
-    /// Whether a move that is there once only is on the line of a hole that is deeper now or less deep, made by its block.
+    /// Whether a move that is there once only is on the line of a hole that is deeper now or less deep, made by its
+    /// block.
     fn is_peck_of(&self, link: &Link, feed: &Feed) -> bool {
         let alone = match link {
             Link::Lost(_) | Link::Added(_) => self.sides(link),

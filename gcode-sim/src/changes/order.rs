@@ -25,8 +25,8 @@ pub(super) struct Order {
     pub steps: Vec<(usize, usize)>,
 }
 
-/// The fewest passes that can be called moved, those whose steps are linked staying where they can. Passes of holes that are made
-/// more or less often are made at another time because of that.
+/// The fewest passes that can be called moved, those whose steps are linked staying where they can. Passes of holes
+/// that are made more or less often are made at another time because of that.
 pub(super) fn order(
     (old, new): (&Record, &Record),
     links: &[Link],
@@ -78,12 +78,13 @@ pub(super) fn order(
 /// Its passes one by one, where they are as many as before.
 fn of_hole(passes: &(Passes, Passes), hole: usize, other: usize) -> Vec<Pass> {
     let (was, is) = (&passes.0.steps[hole], &passes.1.steps[other]);
-    if was.len() != is.len() {
+    let (before, tools) = (&passes.0.tools[hole], &passes.1.tools[other]);
+    // Where nobody knows the tools, nothing else tells of a hole that is made more often.
+    if was.len() != is.len() && !(before.is_empty() && tools.is_empty()) {
         return Vec::new();
     }
-    let tools = &passes.1.tools[other];
     let pass = |(place, steps)| {
-        let (number, tool) = ((place + 1, was.len()), tools.get(place).copied());
+        let (number, tool) = ((place + 1, was.len().min(is.len())), tools.get(place).copied());
         Pass { hole, number, tool, steps }
     };
     was.iter().copied().zip(is.iter().copied()).enumerate().map(pass).collect()

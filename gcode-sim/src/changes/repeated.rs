@@ -1,4 +1,5 @@
-//! Spindle, coolant and tool length that are commanded where they are in force already: one command more or fewer does nothing.
+//! Spindle, coolant and tool length that are commanded where they are in force already: one command more or fewer
+//! does nothing.
 use super::align::Link;
 use super::steps::{Category, Kind, Step};
 use crate::motion::{Position, Spindle};
@@ -35,6 +36,11 @@ pub(super) fn is_speed_alone(steps: &[Step], at: usize) -> bool {
     turning != Spindle::Off && matches!(before, Some(Kind::Spindle(other, _)) if *other == turning)
 }
 
+/// Whether a step says what is in force before it.
+pub(super) fn says_nothing(steps: &[Step], at: usize) -> bool {
+    Command::of(&steps[at].kind).is_some_and(|said| said.is_last(&steps[..at]))
+}
+
 /// What a step puts in force.
 #[derive(Clone, Copy, PartialEq)]
 enum Command {
@@ -57,8 +63,12 @@ impl Command {
     fn is_in_force(self, steps: &[Step], at: usize) -> bool {
         let at_once = steps[at..].iter().take_while(|step| !interrupts(step) && !step.is_move());
         let at = at + at_once.count();
+        self.is_last(&steps[..at])
+    }
+
+    fn is_last(self, steps: &[Step]) -> bool {
         let is_length = matches!(self, Self::Length(_));
-        let before = steps[..at].iter().rev().take_while(|step| is_length || !interrupts(step));
+        let before = steps.iter().rev().take_while(|step| is_length || !interrupts(step));
         let is_alike = |other: &Self| std::mem::discriminant(other) == std::mem::discriminant(&self);
         before.filter_map(|step| Self::of(&step.kind)).find(is_alike) == Some(self)
     }

@@ -102,7 +102,8 @@ fn same_line(passes: &[Pass]) -> Vec<usize> {
     groups.firsts()
 }
 
-/// The passes of one line: those that cut, and those of tools that came back for nothing. One is filled again for each line.
+/// The passes of one line: those that cut, and those of tools that came back for nothing. One is filled again for
+/// each line.
 #[derive(Default)]
 struct Sorted<'p> {
     cutting: Vec<&'p Pass>,
@@ -130,7 +131,8 @@ impl<'p> Sorted<'p> {
     }
 }
 
-/// One hole, and one more for every time a tool came back for nothing. Heights count along `out`, the first pass's axis.
+/// One hole, and one more for every time a tool came back for nothing. Heights count along `out`, the first pass's
+/// axis.
 fn holes_of(passes: &Sorted<'_>, out: Unit<Vector3<f64>>, machine: &Machine, found: &mut Vec<Found>) {
     let first = found.len();
     let height = |p: &Point3<f64>| p.coords.dot(&out);
@@ -171,8 +173,8 @@ fn holes_of(passes: &Sorted<'_>, out: Unit<Vector3<f64>>, machine: &Machine, fou
 }
 
 /// The last pass of the largest tool that goes at least half as deep as the hole; where diameters aren't known, of
-/// the last tool. A countersink is large and shallow and doesn't make the hole, nor does a spot drill, however deep: a tool behind
-/// it goes deeper.
+/// the last tool. A countersink is large and shallow and doesn't make the hole, nor does a spot drill, however deep:
+/// a tool behind it goes deeper.
 fn finishing<'p>(
     cutting: &[&'p Pass],
     lowest: f64,
