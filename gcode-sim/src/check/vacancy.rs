@@ -127,7 +127,7 @@ pub(super) fn steps(unit: &Unit<'_>, block: OpIndex, state: &Locals) -> Vec<(OpI
             }
             both(after)
         }
-        (OpKind::Statement(_), Some(Statement::Assign { target, value })) => {
+        (OpKind::Statement(_) | OpKind::Compute(_), Some(Statement::Assign { target, value })) => {
             assign(target, value, &mut after);
             both(after)
         }
