@@ -305,11 +305,11 @@ pub enum Signal {
     Broken { stopped: f64, pushed: f64, give: f64 },
 }
 
-/// Who is told what the machine does. The control calls it once per event, in order.
+/// Who is told what the machine does: of each event once, in order.
 pub trait Sink {
     fn event(&mut self, event: &Event<'_>);
 
-    /// Whether anybody listens.
+    /// Whether anybody listens. Where nobody does, plain moves are counted and not told.
     fn listens(&self) -> bool {
         true
     }

@@ -7,9 +7,9 @@ use super::run::Over;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Aftermath {
     some: Cell<bool>,
-    /// What a function of the block at hand has to tell.
+    /// What the block has to tell.
     note: Cell<Option<Note>>,
-    /// How the block at hand has ended the run.
+    /// How it has ended the run.
     over: Cell<Option<Over>>,
 }
 
@@ -39,7 +39,7 @@ impl Aftermath {
         (self.note.take(), self.over.take())
     }
 
-    /// Does what is no part of the run: what that leaves behind is forgotten, and told when the block is done.
+    /// Does what leaves nothing behind.
     pub(super) fn apart<T>(&self, look: impl FnOnce() -> T) -> T {
         let before = (self.some.get(), self.note.get(), self.over.get());
         let seen = look();

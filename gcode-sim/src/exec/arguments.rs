@@ -10,8 +10,8 @@ use crate::program::{ArgumentLocals, Coded, Input, Words};
 use crate::syntax::ast::Decimal;
 
 impl Core {
-    /// Words of a block, one by one in the order they stand in; a vacant value leaves its local vacant. `every` is G66.1, which takes
-    /// G, L, N and P as well.
+    /// Words of a block, one by one in the order they stand in; a vacant value leaves its local vacant. `every` is
+    /// G66.1, which takes G, L, N and P as well.
     pub(super) fn arguments(&self, words: &Words, list: &[Coded], every: bool) -> Checked<Locals> {
         let mut locals = VACANT;
         let mut letters = ArgumentLocals::new(self.settings.plain_ijk, every);

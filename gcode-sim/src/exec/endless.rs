@@ -81,6 +81,7 @@ pub(super) struct Watch {
     clock_read: bool,
     /// Nothing has happened since the program was found to wait for a clock.
     waiting: bool,
+    /// How long the motion had taken then.
     seconds: f64,
     /// How many they were the last time.
     turns: u64,
@@ -91,6 +92,11 @@ impl Watch {
     /// The loop that was found to run for ever.
     pub(super) fn endless(&self) -> Option<Endless> {
         self.found
+    }
+
+    /// A run begins, or goes on.
+    pub(super) fn begin(&mut self) {
+        self.found = None;
     }
 
     /// Told of every jump back; ends the run where the program is now known never to leave the loop.
@@ -153,8 +159,8 @@ impl Watch {
         }
     }
 
-    #[cold]
     /// Takes note of a jump that leads further out, or further up, than those since the control was copied.
+    #[cold]
     fn widen(&mut self, core: &Core) {
         let Frame { program, next: to, .. } = core.frame;
         let callers = core.callers.len();

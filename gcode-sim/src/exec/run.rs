@@ -15,7 +15,7 @@ use crate::source::Span;
 /// pecks is one block, and a loop round it must end as well.
 const MOVES: u64 = 1_000_000;
 const MOVES_PER_BLOCK: u64 = 20;
-/// Who watches is told after so many blocks.
+/// [`super::Progress`] is told after so many blocks.
 const TOLD: u64 = 4096;
 
 /// How a block can end the run without an alarm.
@@ -24,7 +24,7 @@ pub(super) enum Over {
     End,
     /// It is in a loop that never ends.
     Never,
-    /// It has told as many moves as it may.
+    /// It has made more moves than it may.
     Moves,
 }
 
@@ -45,6 +45,7 @@ impl Control {
         if let Some(outcome) = self.over() {
             return outcome;
         }
+        self.watch.begin();
         self.core.most_moves = limits.blocks.saturating_mul(MOVES_PER_BLOCK).max(MOVES);
         while self.core.blocks < limits.blocks && self.core.moves <= self.core.most_moves {
             if self.core.blocks.is_multiple_of(TOLD) && self.is_told_to_stop() {
@@ -121,6 +122,8 @@ impl Control {
                 Outcome::Alarm(Stopped { alarm: alarm.node, span: alarm.span, place })
             }
         };
+        // What was told at the end may have left something behind as well.
+        self.core.aftermath.take();
         self.outcome = Some(outcome.clone());
         Some(Box::new(outcome))
     }

@@ -32,7 +32,7 @@ impl Control {
 
     /// A variable of any kind by its number, as a program would read it now.
     pub fn variable(&self, number: u32) -> Result<Value, Alarm> {
-        self.core.read(number)
+        self.core.apart(|core| core.read(number))
     }
 
     /// Local and common variables as they stand.
@@ -70,7 +70,7 @@ impl Control {
         self.core.blocks
     }
 
-    /// Moves told so far.
+    /// Moves so far.
     pub fn moves(&self) -> u64 {
         self.core.moves
     }

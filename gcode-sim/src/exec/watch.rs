@@ -4,7 +4,7 @@ use super::{Control, Core};
 use crate::program::{Compute, Op, OpKind, Slot, Statement};
 use crate::source::Span;
 
-/// Looks at a control between its blocks.
+/// Looks at a control between its blocks. Where nobody does, statements in a row are done at once.
 pub trait Watcher {
     /// Whether anybody looks.
     fn looks(&self) -> bool {
@@ -80,11 +80,19 @@ impl Control {
     pub(super) fn look_at_next<T>(&self, look: impl FnOnce(&Core, &Op) -> T) -> Option<T> {
         let Frame { program, next, .. } = self.core.frame;
         let op = self.memory.get(program).op(next)?;
-        Some(self.core.aftermath.apart(|| look(&self.core, op)))
+        Some(self.core.apart(|core| look(core, op)))
     }
 }
 
 impl Core {
+    /// Does what is no part of the run: what it leaves behind is forgotten.
+    pub(super) fn apart<T>(&self, look: impl FnOnce(&Self) -> T) -> T {
+        let clock_read = self.clock_read.get();
+        let seen = self.aftermath.apart(|| look(self));
+        self.clock_read.set(clock_read);
+        seen
+    }
+
     /// Whether the switch of a block skip before a block is on.
     pub(super) fn is_skipped(&self, op: &Op) -> bool {
         op.skip().is_some_and(|switch| self.skips(switch))

@@ -401,7 +401,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rows_ascend_so_that_the_search_finds_them() {
+    fn rows_ascend_and_a_control_has_one_for_each_code() {
         for pair in CODES.windows(2) {
             let once = pair[0].on.iter().all(|set| !pair[1].on.contains(set));
             let ascends = pair[0].code < pair[1].code || pair[0].code == pair[1].code && once;

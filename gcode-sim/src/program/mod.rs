@@ -126,7 +126,7 @@ pub enum OpKind {
     Empty,
     Words(Words),
     Statement(Statement),
-    /// A block of one [`Statement::Compute`].
+    /// A block of one [`Statement::Compute`]: who asks for statements has to ask for it as well.
     Compute(Compute),
     /// `IF[…]` before words or a statement, with THEN or without.
     If {

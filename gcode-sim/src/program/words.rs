@@ -45,7 +45,7 @@ pub struct Coded {
 pub enum Input {
     /// Its meaning depends on the increment and on units: decided when it runs.
     Literal(Decimal),
-    /// A G code × 10 written as a number, with its rows.
+    /// A G code × 10 written as a number, with what it is on each control.
     G(u32, Found),
     /// Known, and computed for the control: it rounds.
     Number(f64),
@@ -119,7 +119,7 @@ impl Words {
         self.rest_mut().punched = Some(value);
     }
 
-    /// Whether the block has nothing but its list, and what that computes.
+    /// Whether the block has neither a call nor `/n` inside.
     #[inline]
     pub fn is_plain(&self) -> bool {
         self.rest.as_ref().is_none_or(|rest| rest.call.is_none() && rest.short.is_none())
