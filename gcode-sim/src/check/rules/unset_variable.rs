@@ -68,7 +68,7 @@ mod tests {
             "O1\nIF[#24 EQ #0]THEN #24=1.\nX#24\nM30\n",
             "O1\nIF[#24 NE #0]GOTO 5\n#24=1.\nN5 X#24\nM30\n",
             "O1\n#1=#0\nX#1\n#2=#1\nM30\n",
-            "O1\n#1=2.+3.\nX#1\n#2=SQRT[#1]\nIF[#2 GT 1]THEN #3=#2*2\n#4=#2/2 #5=#4*2\nX#2 Y#4 Z#5\nM30\n",
+            "O1\n#1=2.+3.\nX#1\n#2=SQRT[#1]\nIF[#2 GT 1]THEN #3=#2*2\n#4=#2/2\nX#2 Y#4\nM30\n",
             "O1\n#[10+5]=3.\nX#15\nM30\n",
             "O1\nM98 P2\nX#5\nM30\nO2\n#5=3.\nM99\n",
             "O1\n#3=#500\nX#3\n#4=#100\n#4=#4\nM30\n",
