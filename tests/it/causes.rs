@@ -1,24 +1,14 @@
 //! One cause is one entry, at the block that somebody has edited, and nothing it says is false.
-use gcode_sim::changes::{Change, Revision, changes};
+use gcode_sim::changes::Change;
 use gcode_sim::machine::Machine;
-use gcode_sim::program::NoLibrary;
-use gcode_sim::session::Request;
+use gcode_tests::changes::{found_on, texts};
 
 fn found_by(machine: &str, old: &str, new: &str) -> Vec<Change> {
-    let record = |text: &str| {
-        let machine = Machine::parse(machine).unwrap();
-        let request = Request::new("O1.nc", text.as_bytes().to_vec(), machine);
-        Revision::of(&request, &mut NoLibrary, None).unwrap().record
-    };
-    changes(&record(old), &record(new), 0.0001)
+    found_on(&Machine::parse(machine).unwrap(), old, new)
 }
 
 fn found(old: &str, new: &str) -> Vec<Change> {
     found_by(FIXED, old, new)
-}
-
-fn texts(found: &[Change]) -> Vec<String> {
-    found.iter().map(|change| format!("{}: {}", change.code, change.message)).collect()
 }
 
 /// What is different, as `code: message`.

@@ -1,22 +1,7 @@
 //! Holes, passes of them and cuts that are made at another time: one entry, at the block that was moved, with what
 //! the cut is made with otherwise because of that.
-use gcode_sim::changes::{Change, Revision, changes};
-use gcode_sim::machine::Machine;
-use gcode_sim::program::NoLibrary;
-use gcode_sim::session::Request;
-
-fn found(old: &str, new: &str) -> Vec<Change> {
-    let record = |text: &str| {
-        let request = Request::new("O1.nc", text.as_bytes().to_vec(), Machine::default());
-        Revision::of(&request, &mut NoLibrary, None).unwrap().record
-    };
-    changes(&record(old), &record(new), 0.0001)
-}
-
-/// What is different, as `code: message`.
-fn told(old: &str, new: &str) -> Vec<String> {
-    found(old, new).iter().map(|change| format!("{}: {}", change.code, change.message)).collect()
-}
+use gcode_sim::changes::Change;
+use gcode_tests::changes::{found, told};
 
 /// The lines of an entry, before and now.
 fn lines(change: &Change) -> [Option<u32>; 2] {

@@ -1,19 +1,7 @@
 //! Passes of a hole that aren't its last, and what leads to them and back: a changed pilot is told at its hole, and nothing is
 //! told with it that it doesn't explain.
-use gcode_sim::changes::{Revision, changes};
 use gcode_sim::machine::Machine;
-use gcode_sim::program::NoLibrary;
-use gcode_sim::session::Request;
-
-/// What is different, as `code: message`.
-fn told(old: &str, new: &str) -> Vec<String> {
-    let record = |text: &str| {
-        let request = Request::new("O1.nc", text.as_bytes().to_vec(), Machine::default());
-        Revision::of(&request, &mut NoLibrary, None).unwrap().record
-    };
-    let found = changes(&record(old), &record(new), 0.0001);
-    found.iter().map(|change| format!("{}: {}", change.code, change.message)).collect()
-}
+use gcode_tests::changes::{found_on, told};
 
 /// T1 makes both holes 4 mm deep, T2 the first of them to its end at 12 mm.
 const PART: &str = "O1\nG90 G54 G0 X0 Y0\nT1 M6\nG43 H1 Z50.\nG98 G81 X10. Y0 Z-4. R2. F100\nX20. Z-4.\nG80\n\
@@ -293,12 +281,7 @@ fn a_pass_that_another_length_makes_up_for_says_so() {
     let old = format!("O1\nG10 L10 P1 R80.\nG10 L10 P2 R90.\n{}", PART.strip_prefix("O1\n").unwrap());
     let told = |edits: &[(&str, &str)]| {
         let new = edits.iter().fold(old.clone(), |text, (from, to)| text.replacen(from, to, 1));
-        let record = |text: &str| {
-            let machine = Machine::parse(machine).unwrap();
-            let request = Request::new("O1.nc", text.as_bytes().to_vec(), machine);
-            Revision::of(&request, &mut NoLibrary, None).unwrap().record
-        };
-        let found = changes(&record(&old), &record(&new), 0.0001);
+        let found = found_on(&Machine::parse(machine).unwrap(), &old, &new);
         let passes = found.into_iter().filter(|change| change.code == "hole-pass");
         passes.map(|change| change.message).collect::<Vec<_>>()
     };

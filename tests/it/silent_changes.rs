@@ -1,20 +1,7 @@
 //! What a run alone doesn't show: what a program finds as it was left, places that are the same here alone, pulses,
 //! guards that no run needed.
-use gcode_sim::changes::{Revision, changes, unexecuted};
-use gcode_sim::machine::Machine;
-use gcode_sim::program::NoLibrary;
-use gcode_sim::session::Request;
-
-fn revision(text: &str) -> Revision {
-    let request = Request::new("O1.nc", text.as_bytes().to_vec(), Machine::default());
-    Revision::of(&request, &mut NoLibrary, None).unwrap()
-}
-
-/// What is different, as `code: message`.
-fn told(old: &str, new: &str) -> Vec<String> {
-    let found = changes(&revision(old).record, &revision(new).record, 0.0001);
-    found.iter().map(|change| format!("{}: {}", change.code, change.message)).collect()
-}
+use gcode_sim::changes::{changes, unexecuted};
+use gcode_tests::changes::{revision, told};
 
 /// `PROGRAM` with one thing written otherwise.
 fn changed(from: &str, to: &str) -> Vec<String> {

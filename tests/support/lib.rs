@@ -7,6 +7,7 @@
 pub mod alignment;
 pub mod browser;
 mod burr_picture;
+pub mod changes;
 mod check;
 mod cli;
 mod control;

@@ -3,20 +3,19 @@
 //!
 //! `says.snap` beside it has the picture's words. With an `other.toml` the picture is the comparison of both. What
 //! was drawn instead, and where it differs, is left in `target/pictures/`.
-use gcode_sim::changes::{Compared, Revision};
+use gcode_sim::changes::Compared;
 use gcode_sim::machine::Machine;
 use gcode_sim::part::hole::Hole;
 use gcode_sim::picture::{
     Cylinder, Difference, DrawnHole, PathKind, PathPiece, Question, Sheet, Side, Size, Standing, TopView,
     compare, development, lay_out, paint, png, top_view,
 };
-use gcode_sim::program::NoLibrary;
 use gcode_sim::report::changed_view;
-use gcode_sim::session::Request;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ImageFormat, RgbImage};
 use serde::Deserialize;
 
+use crate::changes::revision;
 use crate::{Case, burr_picture, root};
 
 /// A picture that people look at in a review is small.
@@ -124,11 +123,7 @@ pub(crate) fn run(case: &Case) {
 /// The holes of a new revision over those of the old one, on the machine that is taken where none is told.
 fn changed(old: &str, new: &str, tolerance: f64) -> TopView {
     let machine = Machine::default();
-    let made = |text: &str| {
-        let request = Request::new("O0100.nc", text.as_bytes(), machine.clone());
-        Revision::of(&request, &mut NoLibrary, None).unwrap()
-    };
-    let (old, new) = (made(old), made(new));
+    let (old, new) = (revision(old), revision(new));
     let compared = Compared::new(&old.record, &new.record, tolerance);
     let differences = (&compared, tolerance);
     changed_view::of_changes("O0100.nc", (&old, &new), &machine, differences, None)

@@ -153,7 +153,7 @@ impl Control {
         };
         // In a long file most blocks are plain moves.
         if let Act::Plain(OpKind::Words(words)) = op.act()
-            && core.step(op, words, sink)
+            && core.plain_move(op, words, sink).is_some()
         {
             return Ok(());
         }

@@ -64,16 +64,10 @@ struct Ends {
 }
 
 impl Core {
-    /// Does a block that is a plain move; whether it is one. A block that alarms is none: the steps of a block know where
-    /// and why.
+    /// Does a block that is a plain move; `None` where it isn't one, and nothing has changed. A block that alarms is none:
+    /// the steps of a block know where and why.
     #[inline(never)]
-    pub(super) fn step<S: Sink>(&mut self, op: &Op, words: &Words, sink: &mut S) -> bool {
-        self.plain_move(op, words, sink).is_some()
-    }
-
-    /// As [`Core::step`]. Until the move is known to be a plain one nothing changes.
-    #[inline(always)]
-    fn plain_move<S: Sink>(&mut self, op: &Op, words: &Words, sink: &mut S) -> Option<()> {
+    pub(super) fn plain_move<S: Sink>(&mut self, op: &Op, words: &Words, sink: &mut S) -> Option<()> {
         let counting = self.plain.as_ref()?;
         if !words.is_plain() || words.list.len() > G_CODES || !self.modal_calls.is_empty() {
             return None;

@@ -58,14 +58,6 @@ impl Way {
     }
 }
 
-impl Counting {
-    /// What is left of [`State::unplaced`] behind a move of some axes, as bits.
-    #[inline]
-    pub(super) fn placed(&self, unplaced: u8, axes: u8) -> u8 {
-        if self.incremental { unplaced } else { unplaced & !axes }
-    }
-}
-
 impl Goal {
     /// Where the program stands.
     #[inline]
@@ -143,7 +135,9 @@ impl Core {
                 true => self.rolled_end(axis, value, state, counting),
                 false => self.end_of(axis, value, state, counting),
             };
-            goal.unplaced = counting.placed(goal.unplaced, 1 << axis);
+            if !counting.incremental {
+                goal.unplaced &= !(1 << axis);
+            }
         }
         Ok(())
     }

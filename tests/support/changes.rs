@@ -1,0 +1,39 @@
+//! What `diff` finds between two programs, as the tests of it ask.
+use gcode_sim::changes::{Change, Revision, changes};
+use gcode_sim::machine::Machine;
+use gcode_sim::program::NoLibrary;
+use gcode_sim::session::Request;
+
+/// From how many mm on a difference is one.
+const TOLERANCE: f64 = 0.0001;
+
+/// A program, run on the machine that is taken where none is told.
+pub fn revision(text: &str) -> Revision {
+    revision_on(&Machine::default(), text)
+}
+
+fn revision_on(machine: &Machine, text: &str) -> Revision {
+    let request = Request::new("O1.nc", text.as_bytes(), machine.clone());
+    Revision::of(&request, &mut NoLibrary, None).unwrap()
+}
+
+/// What is different between two programs.
+pub fn found(old: &str, new: &str) -> Vec<Change> {
+    found_on(&Machine::default(), old, new)
+}
+
+/// What is different between two programs on a machine.
+pub fn found_on(machine: &Machine, old: &str, new: &str) -> Vec<Change> {
+    let [old, new] = [old, new].map(|text| revision_on(machine, text).record);
+    changes(&old, &new, TOLERANCE)
+}
+
+/// What is different, as `code: message`.
+pub fn told(old: &str, new: &str) -> Vec<String> {
+    texts(&found(old, new))
+}
+
+/// Entries as `code: message`.
+pub fn texts(found: &[Change]) -> Vec<String> {
+    found.iter().map(|change| format!("{}: {}", change.code, change.message)).collect()
+}
