@@ -6,8 +6,8 @@ use gcode_sim::schema::{Format, result};
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::check::{Checked, Judgement};
-use crate::sheet::cost::{Cost, Taken};
+use crate::check::{CheckedPackage, PackageVerdict};
+use crate::sheet::cost::{Cost, MachineTime};
 
 const BASIS: &str = "predicted by simulation, not measured";
 
@@ -31,23 +31,23 @@ pub struct EmitReport<'c> {
     /// Running time, operator stops left out; null where nothing could be run.
     pub seconds: Option<f64>,
     /// What `verify` says of the programs; null of measurements, and where nothing could be run.
-    pub verdict: Option<&'c Judgement>,
+    pub verdict: Option<&'c PackageVerdict>,
     #[serde(skip)]
     table: &'c str,
 }
 
 impl<'c> EmitReport<'c> {
     /// Of programs that hold.
-    pub fn new(checked: &'c Checked, written: Vec<String>, left_over: Vec<String>) -> Self {
+    pub fn new(checked: &'c CheckedPackage, written: Vec<String>, left_over: Vec<String>) -> Self {
         Self { written, left_over, ..Self::of(Some(checked), None) }
     }
 
     /// Of programs that aren't written; `checked` where they could be run.
-    pub fn refused(checked: Option<&'c Checked>, why: String) -> Self {
+    pub fn refused(checked: Option<&'c CheckedPackage>, why: String) -> Self {
         Self::of(checked, Some(why))
     }
 
-    fn of(checked: Option<&'c Checked>, refused: Option<String>) -> Self {
+    fn of(checked: Option<&'c CheckedPackage>, refused: Option<String>) -> Self {
         Self {
             basis: BASIS,
             refused,
@@ -56,7 +56,7 @@ impl<'c> EmitReport<'c> {
             seconds: checked.map(|checked| checked.seconds),
             verdict: checked
                 .map(|checked| &checked.judgement)
-                .filter(|of| !matches!(of, Judgement::Measured)),
+                .filter(|of| !matches!(of, PackageVerdict::Measured)),
             table: checked.map_or("", |checked| &checked.report),
         }
     }
@@ -114,7 +114,7 @@ pub struct CostReport {
 
 impl SheetReport {
     /// Of a sheet that is written to a file; costs in one currency, the job's own machine first.
-    pub fn new(written: String, taken: &Taken, currency: &str, costs: &[Cost]) -> Self {
+    pub fn new(written: String, taken: &MachineTime, currency: &str, costs: &[Cost]) -> Self {
         let cost = |cost: &Cost| CostReport {
             machine: cost.machine.clone(),
             currency: currency.to_owned(),

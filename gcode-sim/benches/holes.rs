@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use divan::counter::ItemsCount;
 use gcode_sim::job::Job;
 use gcode_sim::machine::Machine;
+use gcode_sim::part::nominal::NominalPart;
 use gcode_sim::part::reference::Reference;
-use gcode_sim::part::wanted::Wanted;
 use gcode_sim::program::NoLibrary;
 use gcode_sim::session::{Request, Simulation, simulate};
 use gcode_sim::verify::{Answer, Tolerances};
@@ -28,7 +28,7 @@ impl Case {
     fn new((rows, along): (u32, u32)) -> Self {
         let job = Job::parse(&job(rows, along)).expect("the job is one");
         let machine = Machine::of_job(&job).expect("the job has a machine");
-        let wanted = Wanted::of_job(&job).expect("the job has a part");
+        let wanted = NominalPart::of_job(&job).expect("the job has a part");
         let reference = wanted.into_holes().expect("the part has holes");
         assert_eq!(reference.holes.len() as u32, rows * along);
         let program = program(&reference, along as usize);

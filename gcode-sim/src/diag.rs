@@ -1,7 +1,7 @@
 //! Findings and messages as plain data: what, where, why and what to do. Drawing them is `report`'s business.
 use nalgebra::Point3;
 
-use crate::motion::Place;
+use crate::motion::Backtrace;
 use crate::source::Span;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -43,7 +43,7 @@ pub struct Diagnostic {
     pub severity: Severity,
     pub message: String,
     /// The block it is about, and the calls that led to it.
-    pub place: Option<Place>,
+    pub place: Option<Backtrace>,
     /// The exact part of the block, where known.
     pub span: Option<Span>,
     /// Where that is on the part, the worst first.
@@ -79,7 +79,7 @@ impl Diagnostic {
     }
 
     #[must_use]
-    pub fn at(mut self, place: Place) -> Self {
+    pub fn at(mut self, place: Backtrace) -> Self {
         self.place = Some(place);
         self
     }

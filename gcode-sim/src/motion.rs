@@ -9,7 +9,7 @@ use crate::units::{Deg, MmPerMin, Rpm, Seconds};
 pub const MAX_AXES: usize = 8;
 
 /// The place of an axis in the control's axis table, counted from 0 (the manuals count from 1).
-pub type Axis = usize;
+pub type AxisIndex = usize;
 
 /// The letters of a control's axes, axis 1 first: `#5001` is the first, `#5002` the second.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -48,17 +48,17 @@ impl Axes {
 
     /// The axis of an address.
     #[inline]
-    pub fn find(&self, letter: u8) -> Option<Axis> {
+    pub fn find(&self, letter: u8) -> Option<AxisIndex> {
         let axis = usize::from(self.places[usize::from(letter)]);
         (axis < MAX_AXES).then_some(axis)
     }
 
-    pub fn letter(&self, axis: Axis) -> char {
+    pub fn letter(&self, axis: AxisIndex) -> char {
         self.letters[..self.count].get(axis).map_or('?', |l| char::from(*l))
     }
 
     /// A B C turn; all others slide.
-    pub fn is_rotary(&self, axis: Axis) -> bool {
+    pub fn is_rotary(&self, axis: AxisIndex) -> bool {
         axis < MAX_AXES && self.rotary >> axis & 1 == 1
     }
 
@@ -75,12 +75,12 @@ impl Axes {
         self.mask
     }
 
-    pub fn iter(&self) -> impl Iterator<Item = (Axis, char)> + '_ {
+    pub fn iter(&self) -> impl Iterator<Item = (AxisIndex, char)> + '_ {
         self.letters().map(|(axis, letter)| (axis, char::from(letter)))
     }
 
     /// The axes with the letters of their addresses.
-    pub fn letters(&self) -> impl Iterator<Item = (Axis, u8)> + '_ {
+    pub fn letters(&self) -> impl Iterator<Item = (AxisIndex, u8)> + '_ {
         self.letters[..self.count].iter().copied().enumerate()
     }
 }
@@ -104,15 +104,15 @@ impl PartialEq for Position {
     }
 }
 
-impl std::ops::Index<Axis> for Position {
+impl std::ops::Index<AxisIndex> for Position {
     type Output = f64;
-    fn index(&self, axis: Axis) -> &f64 {
+    fn index(&self, axis: AxisIndex) -> &f64 {
         &self.0[axis]
     }
 }
 
-impl std::ops::IndexMut<Axis> for Position {
-    fn index_mut(&mut self, axis: Axis) -> &mut f64 {
+impl std::ops::IndexMut<AxisIndex> for Position {
+    fn index_mut(&mut self, axis: AxisIndex) -> &mut f64 {
         &mut self.0[axis]
     }
 }
@@ -122,17 +122,17 @@ impl std::ops::IndexMut<Axis> for Position {
 pub struct Call {
     /// The calling block (`G65 P8101 …`).
     pub from: Span,
-    pub outer: Calls,
+    pub outer: CallChain,
 }
 
 /// The chain of calls that led to a block, innermost first; `None` in the main program.
-pub type Calls = Option<Arc<Call>>;
+pub type CallChain = Option<Arc<Call>>;
 
 /// Where an event comes from: the block, and the calls that led to it.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Place {
+pub struct Backtrace {
     pub block: Span,
-    pub calls: Calls,
+    pub calls: CallChain,
 }
 
 /// What the machine is told by one block, or by one step of a cycle.
@@ -142,12 +142,12 @@ pub struct Event<'a> {
     /// How long it takes: path over feed, rapid rates of the control's parameters, no acceleration.
     pub seconds: Seconds,
     pub block: Span,
-    pub calls: &'a Calls,
+    pub calls: &'a CallChain,
 }
 
 impl Event<'_> {
-    pub fn place(&self) -> Place {
-        Place { block: self.block, calls: self.calls.clone() }
+    pub fn place(&self) -> Backtrace {
+        Backtrace { block: self.block, calls: self.calls.clone() }
     }
 }
 
@@ -165,7 +165,7 @@ pub enum EventKind {
     /// A circle in the plane of two axes while all others move linearly.
     Arc {
         to: Position,
-        arc: Arc2,
+        arc: PlanarArc,
         rate: MmPerMin,
     },
     /// G31: a feed that ended at `to`, where the signal came or at its end.
@@ -178,22 +178,22 @@ pub enum EventKind {
         time: Seconds,
     },
     /// M06: this tool is in the spindle now.
-    Tool {
+    ToolChange {
         number: u32,
     },
     /// The tool length offset that is part of every machine position from now on, or what it comes of, is another; moves
     /// nothing itself.
     ToolLength {
         offset: Position,
-        by: Lengthening,
+        by: LengthCompensation,
     },
     /// From the next move's end on these axes stand where G28, G30 or G53 sends them, as bits, axis 1 the lowest, while
     /// nothing has set the work offset in effect: where that is on the part isn't known. Moves nothing itself.
-    Unplaced {
+    WorkZeroUnknown {
         axes: u8,
     },
     Spindle {
-        turning: Spindle,
+        turning: SpindleDirection,
         speed: Rpm,
     },
     /// M07 and M08 switch it on, M09 off.
@@ -221,9 +221,9 @@ impl EventKind {
                 Some(to)
             }
             Self::Dwell { .. }
-            | Self::Tool { .. }
+            | Self::ToolChange { .. }
             | Self::ToolLength { .. }
-            | Self::Unplaced { .. }
+            | Self::WorkZeroUnknown { .. }
             | Self::Spindle { .. }
             | Self::Coolant { .. }
             | Self::Auxiliary { .. }
@@ -234,9 +234,9 @@ impl EventKind {
 
 /// An arc of [`EventKind::Arc`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Arc2 {
+pub struct PlanarArc {
     /// The two axes of the plane, in its right-handed order: X Y, Z X or Y Z.
-    pub plane: (Axis, Axis),
+    pub plane: (AxisIndex, AxisIndex),
     /// The centre in machine coordinates, in the order of `plane`.
     pub centre: (f64, f64),
     /// The angle swept; positive is counterclockwise seen from the plane's positive third axis.
@@ -245,7 +245,7 @@ pub struct Arc2 {
 
 /// What a tool length offset comes of: G43 or G44, and the H with it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Lengthening {
+pub enum LengthCompensation {
     #[default]
     Off,
     Plus(u32),
@@ -253,7 +253,7 @@ pub enum Lengthening {
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Spindle {
+pub enum SpindleDirection {
     #[default]
     Off,
     Clockwise,
@@ -282,7 +282,7 @@ impl StopKind {
 
 /// A straight cut that a skip signal may end: G31, before it moves.
 #[derive(Clone, Copy, Debug)]
-pub struct SkipFeed<'a> {
+pub struct SkipMove<'a> {
     pub from: &'a Position,
     pub to: &'a Position,
     pub rate: MmPerMin,
@@ -292,12 +292,12 @@ pub struct SkipFeed<'a> {
 
 /// Whether the skip signal comes; places are parts of the way, 0 to 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Signal {
+pub enum SkipSignal {
     /// The motion goes to its end.
     Missed,
     At {
         /// Where the control notes the position.
-        noted: f64,
+        latched: f64,
         /// Where the axes stand still: there, or farther on.
         stopped: f64,
     },
@@ -306,48 +306,48 @@ pub enum Signal {
 }
 
 /// Who is told what the machine does: of each event once, in order.
-pub trait Sink {
+pub trait EventSink {
     fn event(&mut self, event: &Event<'_>);
 
     /// Whether anybody listens. Where nobody does, plain moves are counted and not told.
-    fn listens(&self) -> bool {
+    fn is_active(&self) -> bool {
         true
     }
 
     /// Where the skip signal comes on a way that is about to be gone. `None`: here nothing gives such a signal.
-    fn signal(&mut self, _: &SkipFeed<'_>) -> Option<Signal> {
+    fn skip_signal(&mut self, _: &SkipMove<'_>) -> Option<SkipSignal> {
         None
     }
 }
 
 /// Nobody listens: only the control's end state is asked for.
-impl Sink for () {
+impl EventSink for () {
     fn event(&mut self, _: &Event<'_>) {}
 
-    fn listens(&self) -> bool {
+    fn is_active(&self) -> bool {
         false
     }
 }
 
 /// Two listeners side by side; the first that can answer does.
-impl<A: Sink, B: Sink> Sink for (A, B) {
+impl<A: EventSink, B: EventSink> EventSink for (A, B) {
     fn event(&mut self, event: &Event<'_>) {
         self.0.event(event);
         self.1.event(event);
     }
 
     #[inline]
-    fn listens(&self) -> bool {
-        self.0.listens() || self.1.listens()
+    fn is_active(&self) -> bool {
+        self.0.is_active() || self.1.is_active()
     }
 
-    fn signal(&mut self, feed: &SkipFeed<'_>) -> Option<Signal> {
-        self.0.signal(feed).or_else(|| self.1.signal(feed))
+    fn skip_signal(&mut self, feed: &SkipMove<'_>) -> Option<SkipSignal> {
+        self.0.skip_signal(feed).or_else(|| self.1.skip_signal(feed))
     }
 }
 
 /// A listener that may be there.
-impl<S: Sink> Sink for Option<S> {
+impl<S: EventSink> EventSink for Option<S> {
     fn event(&mut self, event: &Event<'_>) {
         if let Some(sink) = self {
             sink.event(event);
@@ -355,26 +355,26 @@ impl<S: Sink> Sink for Option<S> {
     }
 
     #[inline]
-    fn listens(&self) -> bool {
-        self.as_ref().is_some_and(S::listens)
+    fn is_active(&self) -> bool {
+        self.as_ref().is_some_and(S::is_active)
     }
 
-    fn signal(&mut self, feed: &SkipFeed<'_>) -> Option<Signal> {
-        self.as_mut().and_then(|sink| sink.signal(feed))
+    fn skip_signal(&mut self, feed: &SkipMove<'_>) -> Option<SkipSignal> {
+        self.as_mut().and_then(|sink| sink.skip_signal(feed))
     }
 }
 
-impl<S: Sink + ?Sized> Sink for &mut S {
+impl<S: EventSink + ?Sized> EventSink for &mut S {
     #[inline]
-    fn listens(&self) -> bool {
-        (**self).listens()
+    fn is_active(&self) -> bool {
+        (**self).is_active()
     }
 
     fn event(&mut self, event: &Event<'_>) {
         (**self).event(event);
     }
 
-    fn signal(&mut self, feed: &SkipFeed<'_>) -> Option<Signal> {
-        (**self).signal(feed)
+    fn skip_signal(&mut self, feed: &SkipMove<'_>) -> Option<SkipSignal> {
+        (**self).skip_signal(feed)
     }
 }

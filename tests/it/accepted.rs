@@ -6,7 +6,7 @@ use gcode_sim::changes::{Record, Revision, changes};
 use gcode_sim::cli::library::Folders;
 use gcode_sim::exec::Limits;
 use gcode_sim::machine::{Machine, Probe};
-use gcode_sim::part::probed::Probed;
+use gcode_sim::part::probed::ProbedPart;
 use gcode_sim::program::Library;
 use gcode_sim::report::changes::ChangesReport;
 use gcode_sim::session::Request;
@@ -52,8 +52,8 @@ pub(crate) fn request(main: &Path) -> Request {
     let mut request = Request::new(name, std::fs::read(main).unwrap(), machine);
     request.limits = Limits { blocks: BLOCKS };
     // Programs that probe find the part of their job there.
-    if let Some(Ok(Probed { surface, radius: Some(radius), .. })) =
-        read("job.toml").map(|text| Probed::parse(&text))
+    if let Some(Ok(ProbedPart { surface, radius: Some(radius), .. })) =
+        read("job.toml").map(|text| ProbedPart::parse(&text))
     {
         request.part = Some(surface);
         request.machine.probe.get_or_insert(Probe::new(radius));
@@ -114,7 +114,7 @@ fn every_example_does_what_was_accepted_and_every_macro_is_in_one() {
             .ok()
             .map(|text| Record::from_json(&text).unwrap_or_else(|e| panic!("{}: {e}", file.display())));
         let change = match &known {
-            Some(known) if known.is_older() => Some("accepted when less was noted\n".to_owned()),
+            Some(known) if known.is_legacy() => Some("accepted when less was noted\n".to_owned()),
             Some(known) => told(&name, known, &record),
             None => Some("nothing is accepted yet\n".to_owned()),
         };

@@ -8,11 +8,11 @@ use gcode_gen::check::Programs;
 use gcode_gen::families;
 use gcode_gen::package::file_name;
 use gcode_sim::exec::{Outcome, Value};
-use gcode_sim::holes::Extractor;
+use gcode_sim::holes::HoleExtractor;
 use gcode_sim::job::Job;
 use gcode_sim::machine::{Frame, Machine, Placement};
+use gcode_sim::part::nominal::NominalPart;
 use gcode_sim::part::surface::Surface;
-use gcode_sim::part::wanted::Wanted;
 use gcode_sim::session::{Request, Run, run, simulate};
 use gcode_sim::units::Deg;
 use gcode_sim::verify::{Answer, Tolerances, Verdict};
@@ -33,7 +33,7 @@ fn measured(job: &str, main: u32, part: Placement, more: &str, variables: Vec<(u
     let mut request = Request::new(file_name(main), text, machine);
     request.variables = variables;
     let surface = Surface::Ellipsoid { a: wanted.surface.a, b: wanted.surface.b };
-    let mut probe = Extractor::new(&request.machine).with_surface(Some(surface));
+    let mut probe = HoleExtractor::new(&request.machine).with_surface(Some(surface));
     run(&request, &mut Programs(&package), &mut probe).unwrap()
 }
 
@@ -126,7 +126,7 @@ fn five_holes(part: Placement, zero: f64) -> Verdict {
     let job = Job::parse(&example("melon-mould")).unwrap();
     let package = families::emit(&job);
     let machine = Machine { part, ..Machine::parse(&package.machine).unwrap() };
-    let reference = Wanted::of_job(&job).unwrap().into_holes().unwrap();
+    let reference = NominalPart::of_job(&job).unwrap().into_holes().unwrap();
     let text = package.main().unwrap().text.clone().into_bytes();
     let mut request = Request::new("O8100.nc", text, machine.clone());
     request.variables.push((5222, zero));
@@ -181,10 +181,11 @@ fn after_the_correction_the_five_holes_hold_and_before_they_do_not() {
             // A hole that is far off is none of the wanted ones.
             for verdict in [&before, &run_out] {
                 let hole = verdict.holes.iter().find(|hole| hole.id == after.id);
-                let phi = hole.map_or("not there".to_owned(), |hole| format!("{:.3}", hole.phi));
+                let phi =
+                    hole.map_or("not there".to_owned(), |hole| format!("{:.3}", hole.position_deviation));
                 row.push_str(&format!(" {phi} |"));
             }
-            row.push_str(&format!(" {:.3} |", after.phi));
+            row.push_str(&format!(" {:.3} |", after.position_deviation));
         }
     }
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/methods/alignment.md");

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use gcode_gen::package::file_name;
-use gcode_sim::exec::{Control, Limits, Watcher};
+use gcode_sim::exec::{Control, Limits, Observer};
 use gcode_sim::machine::Placement;
 use gcode_tests::alignment::{Bench, alarm, kept, marks, standing, vacant, value};
 use gcode_tests::workspace;
@@ -12,15 +12,16 @@ use gcode_tests::workspace;
 #[derive(Default)]
 struct Assigned(BTreeMap<String, BTreeSet<u32>>);
 
-impl Watcher for Assigned {
-    fn before(&mut self, control: &mut Control) {
+impl Observer for Assigned {
+    fn before_block(&mut self, control: &mut Control) {
         let Some(block) = control.next_block() else { return };
         let file = control.memory().sources().get(block.source).name.to_string();
-        let numbers = control.will_assign().into_iter().filter(|number| (100..1000).contains(number));
+        let numbers =
+            control.next_assigned_variables().into_iter().filter(|number| (100..1000).contains(number));
         self.0.entry(file).or_default().extend(numbers);
     }
 
-    fn after(&mut self, _: &Control) {}
+    fn after_block(&mut self, _: &Control) {}
 }
 
 /// `#501-#560 #578`, of a head's line.
@@ -85,10 +86,10 @@ fn every_head_names_the_common_variables_that_are_overwritten() {
 #[derive(Default)]
 struct States(Vec<Vec<(u32, f64)>>);
 
-impl Watcher for States {
-    fn before(&mut self, _: &mut Control) {}
+impl Observer for States {
+    fn before_block(&mut self, _: &mut Control) {}
 
-    fn after(&mut self, control: &Control) {
+    fn after_block(&mut self, control: &Control) {
         let now: Vec<_> = control.variables().filter(|(number, _)| (500..600).contains(number)).collect();
         if !self.0.contains(&now) {
             self.0.push(now);

@@ -9,7 +9,7 @@ use gcode_gen::package::file_name;
 use gcode_sim::exec::{Control, Outcome};
 use gcode_sim::job::Job;
 use gcode_sim::machine::Machine;
-use gcode_sim::part::wanted::Wanted;
+use gcode_sim::part::nominal::NominalPart;
 use gcode_sim::program::Memory;
 use gcode_sim::session::Request;
 
@@ -42,9 +42,9 @@ fn the_macros_cost_so_many_blocks_for_each_hole() {
     for example in ["melon-mould", "honeycomb", "burr"] {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().join("examples").join(example);
         let job = Job::parse(&std::fs::read_to_string(path.join("job.toml")).unwrap()).unwrap();
-        let (wanted, what) = match Wanted::of_job(&job).unwrap() {
-            Wanted::Holes(holes) => (holes.holes.len(), "hole"),
-            Wanted::Flutes(flutes) => (flutes.count as usize, "flute"),
+        let (wanted, what) = match NominalPart::of_job(&job).unwrap() {
+            NominalPart::Holes(holes) => (holes.holes.len(), "hole"),
+            NominalPart::Flutes(flutes) => (flutes.count as usize, "flute"),
         };
         let package = families::emit(&job);
         for (name, blocks) in blocks(&job) {

@@ -8,7 +8,7 @@ use gcode_gen::families;
 use gcode_sim::budget::{Budget, Question, budget};
 use gcode_sim::job::Job;
 use gcode_sim::machine::{Machine, error_file};
-use gcode_sim::part::wanted::Wanted;
+use gcode_sim::part::nominal::NominalPart;
 
 fn example(name: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples").join(name);
@@ -17,7 +17,7 @@ fn example(name: &str) -> String {
 
 fn found(job: &Job, errors: &str, samples: usize) -> Budget {
     let machine = Machine::of_job(job).unwrap();
-    let reference = Wanted::of_job(job).unwrap().into_holes().unwrap();
+    let reference = NominalPart::of_job(job).unwrap().into_holes().unwrap();
     let question = Question {
         machine: &machine,
         holes: &reference.holes,
@@ -41,7 +41,11 @@ fn without_errors_the_budget_is_what_verify_says() {
         let verdict = check(&job, &package).unwrap().judgement.into_holes().unwrap();
         for (hole, judged) in found(&job, "", 1).holes.iter().zip(&verdict.holes) {
             assert_eq!(hole.id, judged.id);
-            assert!((hole.nominal - judged.phi).abs() < 1e-3, "{name}: {hole:?} and {}", judged.phi);
+            assert!(
+                (hole.nominal - judged.position_deviation).abs() < 1e-3,
+                "{name}: {hole:?} and {}",
+                judged.position_deviation
+            );
             assert_eq!(hole.nominal, hole.statistics.max);
         }
     }
@@ -68,7 +72,11 @@ fn a_fixed_error_is_off_as_far_as_on_a_machine_with_that_error() {
         let found = found(&job, errors, 1);
         assert!(found.parts.max > least, "{errors}: {found:?}");
         for (hole, judged) in found.holes.iter().zip(&verdict.holes) {
-            assert!((hole.statistics.max - judged.phi).abs() < 2e-3, "{errors}: {hole:?} and {}", judged.phi);
+            assert!(
+                (hole.statistics.max - judged.position_deviation).abs() < 2e-3,
+                "{errors}: {hole:?} and {}",
+                judged.position_deviation
+            );
         }
     }
 }

@@ -7,7 +7,7 @@ use gcode_gen::families;
 use gcode_gen::package::Package;
 use gcode_sim::exec::Outcome;
 use gcode_sim::job::{Alignment, Job};
-use gcode_sim::machine::random::Draw;
+use gcode_sim::machine::random::RandomStream;
 use gcode_sim::machine::{Machine, Setup};
 use gcode_sim::motion::Position;
 use gcode_sim::part::surface::Surface;
@@ -29,7 +29,7 @@ fn on_surface(job: &Alignment, x: f64, z: f64) -> Point3<f64> {
 }
 
 /// Ten points of the surface, anywhere within the circle round an end of the chord.
-fn candidates(job: &Alignment, x: f64, draw: Draw) -> Vec<Point3<f64>> {
+fn candidates(job: &Alignment, x: f64, draw: RandomStream) -> Vec<Point3<f64>> {
     let end = on_surface(job, x, 0.0);
     // In the plane z = 0 the surface falls as x grows, by the angle of its tangent.
     let slope = (on_surface(job, x + 1e-3, 0.0).y - on_surface(job, x - 1e-3, 0.0).y) / 2e-3;
@@ -57,7 +57,7 @@ struct Matched {
     after_ellipse: f64,
 }
 
-fn matched(job: &Alignment, package: &Package, draw: Draw) -> Matched {
+fn matched(job: &Alignment, package: &Package, draw: RandomStream) -> Matched {
     let machine = Machine::parse(&package.machine).unwrap();
     let ends = [job.chord.e_radius, job.chord.f_radius];
     let measured = [0, 1].map(|end| candidates(job, ends[end], draw.at(end as u64)));
@@ -100,7 +100,7 @@ fn row(name: &str, mut values: Vec<f64>) -> String {
 fn the_right_length_says_little_about_the_points() {
     let job = example();
     let package = families::emit(&Job::Alignment(job.clone()));
-    let all: Vec<_> = (0..100).map(|part| matched(&job, &package, Draw::new(1).at(part))).collect();
+    let all: Vec<_> = (0..100).map(|part| matched(&job, &package, RandomStream::new(1).at(part))).collect();
     let of = |value: fn(&Matched) -> f64| all.iter().map(value).collect::<Vec<_>>();
     let mut table = String::new();
     for (name, values) in [

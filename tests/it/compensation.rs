@@ -3,7 +3,7 @@ use std::fmt::Write;
 
 use gcode_sim::control::Settings;
 use gcode_sim::exec::{Control, Limits, Outcome};
-use gcode_sim::motion::{Event, EventKind, Position, Sink};
+use gcode_sim::motion::{Event, EventKind, EventSink, Position};
 use gcode_sim::program::{Memory, NoLibrary};
 use proptest::prelude::*;
 
@@ -60,7 +60,7 @@ impl Way {
     }
 }
 
-impl Sink for Told {
+impl EventSink for Told {
     fn event(&mut self, event: &Event<'_>) {
         self.text.push(format!("{:?} {:?}", event.kind, event.seconds));
         let line = self.starts.partition_point(|start| *start <= event.block.start as usize);

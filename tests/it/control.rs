@@ -1,7 +1,7 @@
 //! Laws of the control: it never panics, and it runs the same program the same way every time.
 use gcode_sim::control::Settings;
 use gcode_sim::exec::{Control, Limits, Outcome};
-use gcode_sim::motion::{Event, Sink};
+use gcode_sim::motion::{Event, EventSink};
 use gcode_sim::program::{Memory, NoLibrary};
 use proptest::prelude::*;
 
@@ -9,7 +9,7 @@ use proptest::prelude::*;
 #[derive(Default)]
 struct Told(Vec<String>);
 
-impl Sink for Told {
+impl EventSink for Told {
     fn event(&mut self, event: &Event<'_>) {
         if self.0.len() < 1000 {
             self.0.push(format!("{:?} {:?}", event.kind, event.seconds));

@@ -3,14 +3,14 @@
 use gcode_gen::check::Programs;
 use gcode_gen::families;
 use gcode_gen::package::Package;
-use gcode_sim::alarm::Code;
+use gcode_sim::alarm::AlarmCode;
 use gcode_sim::exec::Outcome;
 use gcode_sim::job::Job;
 use gcode_sim::machine::Machine;
-use gcode_sim::motion::{Event, EventKind, Sink};
+use gcode_sim::motion::{Event, EventKind, EventSink};
 use gcode_sim::part::indicator::tilted;
 use gcode_sim::part::surface::Surface;
-use gcode_sim::session::{Following, Request, follow, run};
+use gcode_sim::session::{Request, StylusRun, follow, run};
 use gcode_sim::units::{Deg, Mm};
 use nalgebra::Vector3;
 
@@ -65,7 +65,7 @@ impl Path {
     }
 
     /// What is read on a part that is shifted and tilted about z.
-    fn read(&self, shift: [f64; 3], tilt: f64) -> Following {
+    fn read(&self, shift: [f64; 3], tilt: f64) -> StylusRun {
         let package = self.package();
         let mut request = self.request(&package);
         request.machine.part.shift = Vector3::from(shift);
@@ -80,7 +80,7 @@ struct Points {
     all: Vec<[f64; 2]>,
 }
 
-impl Sink for Points {
+impl EventSink for Points {
     fn event(&mut self, event: &Event<'_>) {
         if let EventKind::Feed { to, .. } = &event.kind {
             self.all.push([to[0], to[1]]);
@@ -213,7 +213,7 @@ fn what_can_not_be_followed_is_refused() {
         let mut points = Points::default();
         let ran = run(&request, &mut Programs(&package), &mut points).unwrap();
         let Outcome::Alarm(stopped) = &ran.outcome else { panic!("{to} in place of {from} runs") };
-        assert_eq!(stopped.alarm.row().code, Code::Mc(3000 + number), "{to} in place of {from}");
+        assert_eq!(stopped.alarm.row().code, AlarmCode::Mc(3000 + number), "{to} in place of {from}");
         assert!(points.all.is_empty(), "nothing is fed before: {to} in place of {from}");
     }
 }
@@ -273,7 +273,7 @@ fn the_machine_finds_what_the_formula_of_figure_5_says() {
         let mut request = Request::new("O1.nc", program.as_slice(), machine);
         request.settings.increment = gcode_sim::control::Increment::IsC;
         let surface = MELON.surface();
-        let mut probe = gcode_sim::holes::Extractor::new(&request.machine).with_surface(Some(surface));
+        let mut probe = gcode_sim::holes::HoleExtractor::new(&request.machine).with_surface(Some(surface));
         let ran = run(&request, &mut Programs(&MELON.package()), &mut probe).unwrap();
         let x = ran.control.variable(500).unwrap().number();
         let said = tilted(Mm(1158.8), Mm(724.3), Mm(200.0), Deg(tilt)).unwrap();

@@ -140,7 +140,7 @@ fn is_more(main: &str, slip: &Slip) -> bool {
 fn shown(main: &str, program: &str, slip: &Slip, is_idle: bool, found: &[Change]) -> String {
     let what = if is_idle { "nothing different" } else { "different" };
     let entries = found.iter().map(|change| {
-        let at = |place: &Option<gcode_sim::changes::Where>| place.as_ref().map(|place| place.line);
+        let at = |place: &Option<gcode_sim::changes::BlockLocation>| place.as_ref().map(|place| place.line);
         format!("    {} {:?} {:?}: {}\n", change.code, at(&change.old), at(&change.new), change.message)
     });
     let entries: String = entries.collect();

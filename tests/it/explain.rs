@@ -6,15 +6,15 @@ use gcode_sim::changes::CODES;
 use gcode_sim::diag::{Diagnostic, Severity};
 use gcode_sim::exec::Outcome;
 use gcode_sim::machine::Machine;
-use gcode_sim::part::probed::Probed;
-use gcode_sim::part::wanted::Wanted;
+use gcode_sim::part::nominal::NominalPart;
+use gcode_sim::part::probed::ProbedPart;
 use gcode_sim::program::NoLibrary;
 use gcode_sim::report::explain::{self, PAGES, Page};
 use gcode_sim::session::{Request, follow, grind, simulate};
 use gcode_sim::verify::Tolerances;
 use gcode_tests::{expect, workspace};
 
-use crate::tidy::below;
+use crate::house_rules::below;
 
 /// The codes that the table of alarms can give; all that programs raise themselves are `MC3000`.
 fn alarms() -> BTreeSet<String> {
@@ -138,7 +138,7 @@ fn on_a_machine(page: &Page, program: &str) -> Outcome {
         page.fenced("toml").into_iter().partition(|text| text.starts_with("family"));
     let machine = Machine::parse(machines[0]).unwrap();
     let mut request = Request::new("example.nc", program.as_bytes(), machine);
-    request.part = Some(Probed::parse(jobs[0]).unwrap().surface);
+    request.part = Some(ProbedPart::parse(jobs[0]).unwrap().surface);
     simulate(&request, &mut NoLibrary, None).unwrap().run.outcome
 }
 
@@ -153,12 +153,13 @@ fn found(page: &Page, number: usize) -> Vec<Diagnostic> {
         .map_or_else(Machine::default, |text| Machine::parse(text).unwrap());
     // A finding on the reference itself has a second one without it.
     let job = jobs.get(number).or(jobs.first()).copied();
-    let wanted = page.fenced("csv").into_iter().chain(job).next().map(|text| Wanted::parse(text).unwrap());
+    let wanted =
+        page.fenced("csv").into_iter().chain(job).next().map(|text| NominalPart::parse(text).unwrap());
     let mut request = Request::new("example.nc", program.as_bytes(), machine.clone());
-    if let Some(Wanted::Flutes(flutes)) = &wanted {
+    if let Some(NominalPart::Flutes(flutes)) = &wanted {
         return grind(&request, &mut NoLibrary, flutes).unwrap().verify().diagnostics;
     }
-    let reference = wanted.and_then(Wanted::into_holes);
+    let reference = wanted.and_then(NominalPart::into_holes);
     // Of a job on these pages only the surface counts, or the pattern.
     let surface = reference.as_ref().and_then(|reference| reference.surface);
     if let (Some(surface), Some(probe)) = (surface, &machine.probe) {

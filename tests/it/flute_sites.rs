@@ -1,21 +1,21 @@
 //! Findings on flutes say where on the burr, by pass and by place.
 use gcode_sim::machine::Machine;
-use gcode_sim::part::wanted::Wanted;
+use gcode_sim::part::nominal::NominalPart;
 use gcode_sim::program::NoLibrary;
-use gcode_sim::session::{Grinding, Request, grind};
-use gcode_sim::verify::OnPart;
+use gcode_sim::session::{GrindingRun, Request, grind};
+use gcode_sim::verify::PartPoint;
 use nalgebra::Vector3;
 
 /// The sites of the finding of that code.
-fn sites(grinding: &Grinding, code: &str) -> Vec<OnPart> {
+fn sites(grinding: &GrindingRun, code: &str) -> Vec<PartPoint> {
     let verdict = grinding.verify();
     let finding = verdict.findings.iter().find(|finding| finding.code == code);
     finding.unwrap_or_else(|| panic!("no {code} in {:?}", verdict.findings)).sites.clone()
 }
 
-fn run(program: &str, machine: &str, reference: &str) -> Grinding {
+fn run(program: &str, machine: &str, reference: &str) -> GrindingRun {
     let machine = Machine::parse(machine).unwrap();
-    let Wanted::Flutes(wanted) = Wanted::parse(reference).unwrap() else { panic!("a burr") };
+    let NominalPart::Flutes(wanted) = NominalPart::parse(reference).unwrap() else { panic!("a burr") };
     grind(&Request::new("case.nc", program.as_bytes(), machine), &mut NoLibrary, &wanted).unwrap()
 }
 

@@ -8,7 +8,7 @@ use gcode_sim::alarm::Alarm;
 use gcode_sim::exec::Outcome;
 use gcode_sim::job::Job;
 use gcode_sim::machine::Machine;
-use gcode_sim::motion::{Event, EventKind, Position, Sink};
+use gcode_sim::motion::{Event, EventKind, EventSink, Position};
 use gcode_sim::session::{Request, Run, run};
 use gcode_sim::verify::{Answer, Verdict};
 use proptest::prelude::*;
@@ -55,7 +55,7 @@ fn verdict(text: &str, changes: &[(&str, &str)]) -> Verdict {
     check(&job, &package).unwrap().judgement.into_holes().unwrap()
 }
 
-fn ran(package: &Package, sink: &mut impl Sink) -> Run {
+fn ran(package: &Package, sink: &mut impl EventSink) -> Run {
     let main = package.main().unwrap();
     let machine = Machine::parse(&package.machine).unwrap();
     run(&Request::new("O8300.nc", main.text.as_bytes(), machine), &mut Programs(package), sink).unwrap()
@@ -241,7 +241,7 @@ fn called(changes: &[(&str, &str)], modes: &str) -> (u32, String) {
 
 struct Count(u32);
 
-impl Sink for Count {
+impl EventSink for Count {
     fn event(&mut self, event: &Event<'_>) {
         self.0 += u32::from(matches!(event.kind, EventKind::Rapid { .. } | EventKind::Feed { .. }));
     }
@@ -309,7 +309,7 @@ struct Turns {
     turns: u32,
 }
 
-impl Sink for Turns {
+impl EventSink for Turns {
     fn event(&mut self, event: &Event<'_>) {
         let to = match &event.kind {
             EventKind::Rapid { to } | EventKind::Feed { to, .. } => to,

@@ -4,7 +4,7 @@ use std::sync::atomic::Ordering;
 
 use gcode_sim::exec::{Outcome, Progress};
 use gcode_sim::machine::Machine;
-use gcode_sim::motion::{Event, Sink};
+use gcode_sim::motion::{Event, EventSink};
 use gcode_sim::program::NoLibrary;
 use gcode_sim::session::{Request, run};
 use gcode_tests::{expect, fuzz};
@@ -168,7 +168,7 @@ proptest! {
 /// Somebody who ends the run at its first move.
 struct Impatient(Arc<Progress>);
 
-impl Sink for Impatient {
+impl EventSink for Impatient {
     fn event(&mut self, _: &Event<'_>) {
         self.0.stop.store(true, Ordering::Relaxed);
     }

@@ -53,7 +53,7 @@ fn phis(lines: &str, angles: &[f64]) -> Vec<f64> {
     let machine = misplaced(lines);
     let verdict = drilled(300.0, 320.0, angles, &machine, &wanted(300.0, 320.0, angles));
     assert_eq!(verdict.holes.len(), angles.len(), "{:?}", verdict.missing);
-    verdict.holes.iter().map(|hole| hole.phi).collect()
+    verdict.holes.iter().map(|hole| hole.position_deviation).collect()
 }
 
 fn near(found: &[f64], expected: &[f64]) {
@@ -78,7 +78,7 @@ fn a_part_shifted_along_the_hole_changes_its_depth() {
         let machine = misplaced(&format!("shift = [0, {shift}, 0]"));
         let verdict = drilled(300.0, 320.0, &[0.0, 180.0], &machine, &wanted(300.0, 320.0, &[0.0, 180.0]));
         for hole in &verdict.holes {
-            assert!(hole.phi < 1e-9 && (hole.depth_error - deeper).abs() < 1e-9, "{hole:?}");
+            assert!(hole.position_deviation < 1e-9 && (hole.depth_error - deeper).abs() < 1e-9, "{hole:?}");
         }
     }
 }
@@ -139,7 +139,7 @@ proptest! {
         let verdict = drilled(r, y, &angles, &machine, &reference);
         prop_assert_eq!(verdict.holes.len(), angles.len());
         for hole in &verdict.holes {
-            prop_assert!(hole.phi < 1e-8 && hole.depth_error.abs() < 1e-8, "{:?}", hole);
+            prop_assert!(hole.position_deviation < 1e-8 && hole.depth_error.abs() < 1e-8, "{:?}", hole);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Holes, passes of them and cuts that are made at another time: one entry, at the block that was moved, with what
 //! the cut is made with otherwise because of that.
 use gcode_sim::changes::Change;
-use gcode_tests::changes::{found, told};
+use gcode_tests::changes::{found, messages};
 
 /// The lines of an entry, before and now.
 fn lines(change: &Change) -> [Option<u32>; 2] {
@@ -28,7 +28,7 @@ const SWAPPED: &str = "X60.\nX30.\nX100.";
 #[test]
 fn passes_in_another_order_are_one_entry_at_their_own_block() {
     let old = reamed([LIST; 3]);
-    assert_eq!(told(&old, &old), [""; 0]);
+    assert_eq!(messages(&old, &old), [""; 0]);
     for tool in 0..3 {
         let mut lists = [LIST; 3];
         lists[tool] = SWAPPED;
@@ -47,7 +47,7 @@ fn passes_in_another_order_are_one_entry_at_their_own_block() {
     assert_eq!(lines(&found[0]), [Some(8), Some(9)]);
     // Spotted and reamed in the new order, drilled in the old one.
     assert_eq!(
-        told(&old, &reamed([SWAPPED, LIST, SWAPPED])),
+        messages(&old, &reamed([SWAPPED, LIST, SWAPPED])),
         ["hole-order: hole 2: passes 1 and 3 of 3, by T1 and T3, made at another time, after hole 3"]
     );
 }
@@ -59,7 +59,7 @@ fn a_tool_that_begins_with_another_hole_says_so() {
         "G85 Z-20. R2. X100. Y0 F100\nX10.\nX30.\nX60.",
     );
     assert_eq!(
-        told(&reamed([LIST; 3]), &last_first),
+        messages(&reamed([LIST; 3]), &last_first),
         ["hole-order: hole 4: pass 3 of 3, by T3, made at another time, first of T3's"]
     );
 }
@@ -75,14 +75,14 @@ fn a_hole_made_at_another_time_is_told_with_what_it_is_made_with_then() {
     };
     let (early, late) = (program("X30.\n", "X70.\n"), program("", "X30.\nX70.\n"));
     assert_eq!(
-        told(&early, &late),
+        messages(&early, &late),
         [
             "hole-order: hole 2: made at another time, after hole 3, with F80 instead of F100, M03 S500 instead of M03 S900, \
             coolant off instead of M08"
         ]
     );
     assert_eq!(
-        told(&late, &early),
+        messages(&late, &early),
         [
             "hole-order: hole 3: made at another time, after hole 1, with F100 instead of F80, M03 S900 instead of M03 S500, \
             M08 instead of coolant off"
@@ -109,7 +109,7 @@ fn swapped_sections_are_one_entry() {
     // In reverse order, two of three sections change places with one.
     let last = RIGHT.replace("Y10.", "Y50.").replace("Y30.", "Y70.");
     assert_eq!(
-        told(&milled(LEFT, RIGHT, &last), &milled(&last, RIGHT, LEFT)),
+        messages(&milled(LEFT, RIGHT, &last), &milled(&last, RIGHT, LEFT)),
         [
             "move-order: 16 moves in 2 places are made at other times, the first a rapid to X10.0000 Y10.0000, later"
         ]
@@ -128,11 +128,11 @@ fn a_section_is_told_with_what_it_is_made_with_then() {
         |number: u32, section: &str| format!("T{number} M6\nS{number}00 M3\nG43 H{number} Z50.\n{section}");
     let (left, right) = (tool(3, LEFT), tool(4, RIGHT));
     assert_eq!(
-        told(&milled(&left, "", &right), &milled(&right, "", &left)),
+        messages(&milled(&left, "", &right), &milled(&right, "", &left)),
         ["move-order: 8 moves are made later than before, the first a rapid to X10.0000 Y10.0000"]
     );
     // The sections change places, their tools don't.
-    let others = told(&milled(&left, "", &right), &milled(&tool(3, RIGHT), "", &tool(4, LEFT)));
+    let others = messages(&milled(&left, "", &right), &milled(&tool(3, RIGHT), "", &tool(4, LEFT)));
     let order: Vec<_> = others.iter().filter(|entry| entry.starts_with("move-order: ")).collect();
     assert!(
         order.iter().any(|entry| {
@@ -141,7 +141,7 @@ fn a_section_is_told_with_what_it_is_made_with_then() {
         "{others:#?}"
     );
     let between = "S500\nM8\n";
-    let found = told(&milled(LEFT, between, RIGHT), &milled(RIGHT, between, LEFT));
+    let found = messages(&milled(LEFT, between, RIGHT), &milled(RIGHT, between, LEFT));
     assert!(
         found.contains(
             &"move-order: 8 moves are made later than before, the first a rapid to X10.0000 Y10.0000, with M03 S500 instead of \

@@ -8,8 +8,8 @@ use gcode_sim::alarm::Alarm;
 use gcode_sim::exec::Outcome;
 use gcode_sim::job::Job;
 use gcode_sim::machine::Machine;
-use gcode_sim::motion::{Event, EventKind, Position, Sink};
-use gcode_sim::part::wanted::Wanted;
+use gcode_sim::motion::{Event, EventKind, EventSink, Position};
+use gcode_sim::part::nominal::NominalPart;
 use gcode_sim::session::{Request, Run, run, simulate};
 use gcode_sim::verify::{Answer, Tolerances, Verdict};
 
@@ -106,7 +106,7 @@ fn a_table_that_turns_the_other_way_fails() {
 #[test]
 fn neither_the_machine_file_nor_the_range_of_atan_changes_the_verdict() {
     let text = melon();
-    let reference = Wanted::of_job(&job(&text)).unwrap().into_holes().unwrap();
+    let reference = NominalPart::of_job(&job(&text)).unwrap().into_holes().unwrap();
     let package = families::emit(&job(&text));
     let main = package.main().unwrap();
     for machine in [Machine::default(), Machine::parse(&package.machine).unwrap()] {
@@ -171,7 +171,7 @@ struct Rectangles {
     rapids: u32,
 }
 
-impl Sink for Rectangles {
+impl EventSink for Rectangles {
     fn event(&mut self, event: &Event<'_>) {
         let to = match &event.kind {
             EventKind::Rapid { to } => {

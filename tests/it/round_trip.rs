@@ -1,7 +1,7 @@
 //! Random pin-hole jobs: what is generated from a job, run as the control would, makes the job's holes.
 use std::fmt::Write;
 
-use gcode_gen::check::{Checked, check};
+use gcode_gen::check::{CheckedPackage, check};
 use gcode_gen::families;
 use gcode_sim::job::Job;
 use gcode_sim::verify::Answer;
@@ -111,7 +111,7 @@ fn wanted() -> impl Strategy<Value = Wanted> {
     )
 }
 
-fn checked(text: &str) -> Checked {
+fn checked(text: &str) -> CheckedPackage {
     let job = Job::parse(text).unwrap_or_else(|error| panic!("{error}\n{text}"));
     check(&job, &families::emit(&job)).unwrap()
 }

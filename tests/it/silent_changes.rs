@@ -1,12 +1,12 @@
 //! What a run alone doesn't show: what a program finds as it was left, places that are the same here alone, pulses,
 //! guards that no run needed.
 use gcode_sim::changes::{changes, unexecuted};
-use gcode_tests::changes::{revision, told};
+use gcode_tests::changes::{messages, revision};
 
 /// `PROGRAM` with one thing written otherwise.
 fn changed(from: &str, to: &str) -> Vec<String> {
     assert_eq!(PROGRAM.matches(from).count(), 1, "{from}");
-    told(PROGRAM, &PROGRAM.replace(from, to))
+    messages(PROGRAM, &PROGRAM.replace(from, to))
 }
 
 /// Two tools, the second one started anew.
@@ -16,7 +16,7 @@ const PROGRAM: &str = "O1\nG90 G21 G54\nG17 G40 G49 G80\nG10 L2 P1 X0 Y0\nT1 M6\
 #[test]
 fn a_spindle_that_is_not_started_again_behind_a_tool_change_is_told() {
     assert_eq!(changed("S3000 M3", "S3000"), ["spindle: S3000 without M03 or M04 instead of M03 S3000"]);
-    assert_eq!(told(PROGRAM, PROGRAM), Vec::<String>::new());
+    assert_eq!(messages(PROGRAM, PROGRAM), Vec::<String>::new());
 }
 
 #[test]
@@ -33,10 +33,10 @@ fn a_mode_that_is_no_longer_commanded_is_told_with_its_block() {
     // Later than before, but for a move that needs it.
     let late = PROGRAM.replace("G90 G21 G54", "G21 G54").replace("X10.\n", "G90 X10.\n");
     assert_eq!(
-        told(PROGRAM, &late),
+        messages(PROGRAM, &late),
         [format!("start: G90 is no longer commanded before the first move: {relies}")]
     );
-    assert_eq!(told(&late, PROGRAM), Vec::<String>::new(), "what is commanded earlier relies on less");
+    assert_eq!(messages(&late, PROGRAM), Vec::<String>::new(), "what is commanded earlier relies on less");
 }
 
 #[test]
@@ -44,10 +44,10 @@ fn modes_commanded_elsewhere_before_the_first_move_are_the_same() {
     let called = "M98 P2\nG17 G40 G49 G80\n";
     let (block, end) = ("G90 G21 G54\nG17 G40 G49 G80\n", "M30\nO2\nG90\nG21 G54\nM99\n");
     let other = PROGRAM.replace(block, called).replace("M30\n", end);
-    assert_eq!(told(PROGRAM, &other), Vec::<String>::new());
+    assert_eq!(messages(PROGRAM, &other), Vec::<String>::new());
     // In the block of the move itself.
     let with = PROGRAM.replace("G90 G21 G54\n", "").replace("G0 X0 Y0", "G90 G21 G54 G0 X0 Y0");
-    assert_eq!(told(PROGRAM, &with), Vec::<String>::new());
+    assert_eq!(messages(PROGRAM, &with), Vec::<String>::new());
 }
 
 #[test]
@@ -88,14 +88,14 @@ fn codes_that_end_in_the_same_place_here_are_told() {
         ("#1132=1\n#1132=0", "#1132=0", "signal: #1132=1 is no longer there"),
         ("#1100=1", "#1101=1", "signal: #1101=1 instead of #1100=1"),
     ] {
-        let found = told(&with(old), &with(new));
+        let found = messages(&with(old), &with(new));
         assert_eq!(found[0], wanted, "{old} -> {new}: {found:?}");
         let pulse = if old.contains("G4") { 2 } else { 1 };
         assert_eq!(found.len(), pulse, "{old} -> {new}: {found:?}");
-        assert_eq!(told(&with(old), &with(old)), Vec::<String>::new(), "{old}");
+        assert_eq!(messages(&with(old), &with(old)), Vec::<String>::new(), "{old}");
     }
     // Where the moves are others these are the one entry.
-    let found = told(&with("G91 G28 Z0"), &with("G91"));
+    let found = messages(&with("G91 G28 Z0"), &with("G91"));
     assert!(found.iter().all(|entry| !entry.contains("G28")), "{found:?}");
 }
 

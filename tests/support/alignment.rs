@@ -2,13 +2,13 @@
 use gcode_gen::check::Programs;
 use gcode_gen::families;
 use gcode_gen::package::Package;
-use gcode_sim::alarm::Code;
-use gcode_sim::exec::{Limits, Outcome, Watcher};
-use gcode_sim::holes::Extractor;
+use gcode_sim::alarm::AlarmCode;
+use gcode_sim::exec::{Limits, Observer, Outcome};
+use gcode_sim::holes::HoleExtractor;
 use gcode_sim::job::{Alignment, Job};
 use gcode_sim::machine::{Machine, Placement};
 use gcode_sim::part::surface::Surface;
-use gcode_sim::session::{Request, Run, run_watched};
+use gcode_sim::session::{Request, Run, run_observed};
 use gcode_sim::units::Deg;
 
 use crate::workspace;
@@ -60,7 +60,7 @@ impl Bench {
         main: u32,
         part: &Placement,
         set: &[(u32, f64)],
-        watcher: &mut impl Watcher,
+        watcher: &mut impl Observer,
     ) -> Run {
         let machine = Machine { part: *part, ..Machine::parse(&self.package.machine).unwrap() };
         let text = self.package.program(main).unwrap().text.clone().into_bytes();
@@ -68,8 +68,8 @@ impl Bench {
         request.variables = set.to_vec();
         request.limits = self.limits;
         let surface = Surface::Ellipsoid { a: self.job.surface.a, b: self.job.surface.b };
-        let mut probe = Extractor::new(&request.machine).with_surface(Some(surface));
-        run_watched(&request, &mut Programs(&self.package), &mut probe, watcher).unwrap()
+        let mut probe = HoleExtractor::new(&request.machine).with_surface(Some(surface));
+        run_observed(&request, &mut Programs(&self.package), &mut probe, watcher).unwrap()
     }
 }
 
@@ -82,7 +82,7 @@ pub fn standing(shift: [f64; 3], tilt: [f64; 3]) -> Placement {
 pub fn alarm(run: &Run) -> Option<u16> {
     match &run.outcome {
         Outcome::Alarm(stopped) => match stopped.alarm.row().code {
-            Code::Mc(number) => Some(number),
+            AlarmCode::Mc(number) => Some(number),
             other => panic!("{other}"),
         },
         Outcome::End => None,

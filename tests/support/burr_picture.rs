@@ -3,7 +3,7 @@
 use gcode_gen::families;
 use gcode_sim::job::Job;
 use gcode_sim::machine::Machine;
-use gcode_sim::part::wanted::Wanted;
+use gcode_sim::part::nominal::NominalPart;
 use gcode_sim::picture::{Scene, helix_graph, side_view, tip_view};
 use gcode_sim::program::NoLibrary;
 use gcode_sim::report::flute_view;
@@ -17,7 +17,9 @@ pub(super) fn scene(job: &str, program: Option<String>, view: &str) -> Scene {
     let machine = Machine::parse(&package.machine).unwrap();
     let text = program.unwrap_or_else(|| main.text.clone());
     let request = Request::new("O8400.nc", text.as_bytes(), machine);
-    let Wanted::Flutes(wanted) = Wanted::of_job(&job).unwrap() else { panic!("the job is no burr") };
+    let NominalPart::Flutes(wanted) = NominalPart::of_job(&job).unwrap() else {
+        panic!("the job is no burr")
+    };
     let grinding = grind(&request, &mut NoLibrary, &wanted).unwrap();
     let view_of = flute_view::of("O8400.nc", &grinding, &grinding.verify());
     match view {

@@ -29,7 +29,7 @@ pub fn found_on(machine: &Machine, old: &str, new: &str) -> Vec<Change> {
 }
 
 /// What is different, as `code: message`.
-pub fn told(old: &str, new: &str) -> Vec<String> {
+pub fn messages(old: &str, new: &str) -> Vec<String> {
     texts(&found(old, new))
 }
 

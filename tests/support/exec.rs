@@ -4,8 +4,8 @@
 //! is one, is the end as it was worked out by hand, in the words of [`crate::expect`].
 use std::fmt::Write as _;
 
-use gcode_sim::exec::{Outcome, Stopped};
-use gcode_sim::motion::{Call, EventKind, Lengthening};
+use gcode_sim::exec::{AlarmStop, Outcome};
+use gcode_sim::motion::{Call, EventKind, LengthCompensation};
 use gcode_sim::source::Span;
 
 use crate::Case;
@@ -55,7 +55,7 @@ fn shown(ran: &Ran) -> String {
     text
 }
 
-fn alarmed(ran: &Ran, stopped: &Stopped, text: &mut String) {
+fn alarmed(ran: &Ran, stopped: &AlarmStop, text: &mut String) {
     let sources = ran.control.memory().sources();
     let place = sources.place(stopped.span);
     let code = stopped.alarm.code();
@@ -91,13 +91,13 @@ fn event(ran: &Ran, kind: &EventKind) -> String {
             format!("skip  {} at {:.1}, {}", at(to), rate.0, if *touched { "signal" } else { "no signal" })
         }
         EventKind::Dwell { time } => format!("dwell {:.3} s", time.0),
-        EventKind::Tool { number } => format!("tool {number}"),
+        EventKind::ToolChange { number } => format!("tool {number}"),
         EventKind::ToolLength { offset, by } => match by {
-            Lengthening::Off => format!("tool length {}", at(offset)),
-            Lengthening::Plus(h) => format!("tool length {} by G43 H{h}", at(offset)),
-            Lengthening::Minus(h) => format!("tool length {} by G44 H{h}", at(offset)),
+            LengthCompensation::Off => format!("tool length {}", at(offset)),
+            LengthCompensation::Plus(h) => format!("tool length {} by G43 H{h}", at(offset)),
+            LengthCompensation::Minus(h) => format!("tool length {} by G44 H{h}", at(offset)),
         },
-        EventKind::Unplaced { axes: unplaced } => {
+        EventKind::WorkZeroUnknown { axes: unplaced } => {
             let letters = axes.iter().filter(|(axis, _)| unplaced >> axis & 1 == 1);
             format!("not placed on the part: {}", letters.map(|(_, letter)| letter).collect::<String>())
         }

@@ -25,7 +25,7 @@ use std::fmt::Write as _;
 
 use gcode_sim::control::Settings;
 use gcode_sim::exec::{Control, Limits, Outcome, Value};
-use gcode_sim::motion::{Event, EventKind, Position, Sink};
+use gcode_sim::motion::{Event, EventKind, EventSink, Position};
 use gcode_sim::program::{Memory, NoLibrary};
 use gcode_sim::source::Span;
 
@@ -106,7 +106,7 @@ impl Ran {
                 return self.not(codes.join(",") == wanted, &format!("passed_on={wanted}"));
             }
             "note" => {
-                let holds = self.control.notes().any(|(note, _)| note.parts().0 == wanted);
+                let holds = self.control.notes().any(|(note, _)| note.describe().0 == wanted);
                 let holds = if wanted == "none" { self.control.notes().next().is_none() } else { holds };
                 return self.not(holds, &format!("note={wanted}"));
             }
@@ -178,7 +178,7 @@ struct Path {
     events: Vec<(Span, EventKind)>,
 }
 
-impl Sink for Path {
+impl EventSink for Path {
     fn event(&mut self, event: &Event<'_>) {
         self.events.push((event.block, event.kind.clone()));
         let (letter, to) = match &event.kind {

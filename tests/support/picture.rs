@@ -3,12 +3,12 @@
 //!
 //! `says.snap` beside it has the picture's words. With an `other.toml` the picture is the comparison of both. What
 //! was drawn instead, and where it differs, is left in `target/pictures/`.
-use gcode_sim::changes::Compared;
+use gcode_sim::changes::RevisionDiff;
 use gcode_sim::machine::Machine;
 use gcode_sim::part::hole::Hole;
 use gcode_sim::picture::{
-    Cylinder, Difference, DrawnHole, PathKind, PathPiece, Question, Sheet, Side, Size, Standing, TopView,
-    compare, development, lay_out, paint, png, top_view,
+    Cylinder, Difference, DrawnHole, HoleStatus, PathKind, PathPiece, PicturePurpose, Sheet, Side, Size,
+    TopView, compare, development, lay_out, paint, png, top_view,
 };
 use gcode_sim::report::changed_view;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
@@ -124,7 +124,7 @@ pub(crate) fn run(case: &Case) {
 fn changed(old: &str, new: &str, tolerance: f64) -> TopView {
     let machine = Machine::default();
     let (old, new) = (revision(old), revision(new));
-    let compared = Compared::new(&old.record, &new.record, tolerance);
+    let compared = RevisionDiff::new(&old.record, &new.record, tolerance);
     let differences = (&compared, tolerance);
     changed_view::of_changes("O0100.nc", (&old, &new), &machine, differences, None)
 }
@@ -144,7 +144,7 @@ fn draw(text: &str) -> (Picture, Sheet) {
         }),
         tolerance: picture.tolerance,
         rotary: "B".to_owned(),
-        question: Question::Verdict,
+        question: PicturePurpose::Verdict,
         holes: picture.hole.iter().map(drawn).collect(),
         path: picture
             .path
@@ -163,11 +163,11 @@ fn draw(text: &str) -> (Picture, Sheet) {
 
 fn drawn(case: &HoleCase) -> DrawnHole {
     let standing = match case.standing.as_str() {
-        "good" => Standing::Good,
-        "bad" => Standing::Bad,
-        "missing" => Standing::Missing,
-        "extra" => Standing::Extra,
-        "unjudged" => Standing::Unjudged,
+        "good" => HoleStatus::Good,
+        "bad" => HoleStatus::Bad,
+        "missing" => HoleStatus::Missing,
+        "extra" => HoleStatus::Extra,
+        "unjudged" => HoleStatus::Unjudged,
         other => panic!("a hole is good, bad, missing, extra or unjudged, not {other}"),
     };
     let length = case.axis.iter().map(|v| v * v).sum::<f64>().sqrt();
@@ -179,11 +179,11 @@ fn drawn(case: &HoleCase) -> DrawnHole {
         diameter: Some(case.diameter),
         from: None,
     };
-    let wanted = matches!(standing, Standing::Good | Standing::Bad | Standing::Missing);
+    let wanted = matches!(standing, HoleStatus::Good | HoleStatus::Bad | HoleStatus::Missing);
     DrawnHole {
         id: case.id.clone(),
         nominal: wanted.then(|| at([0.0; 3])),
-        found: (standing != Standing::Missing).then(|| at(case.off.unwrap_or_default())),
+        found: (standing != HoleStatus::Missing).then(|| at(case.off.unwrap_or_default())),
         standing,
         phi: case.phi,
         turn: case.turn,

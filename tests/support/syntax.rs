@@ -1,8 +1,8 @@
 //! Cases of kind `syntax`: what was read of `case.nc` in words, one line a block; grouping shown in round brackets.
 use gcode_sim::source::{SourceId, Sources};
 use gcode_sim::syntax::ast::{
-    BinaryOp, Block, CallForm, CommentMark, Condition, Expr, ExprKind, Item, PrintPart, Program, ProgramName,
-    Statement, Word, WordValue, Written,
+    BinaryOp, Block, CallForm, CommentMark, Condition, Expr, ExprKind, Item, OperatorSpelling, PrintPart,
+    Program, ProgramName, Statement, Word, WordValue,
 };
 use gcode_sim::syntax::{parse, print::decimal};
 
@@ -155,10 +155,10 @@ fn operator(op: BinaryOp) -> &'static str {
     }
 }
 
-fn sign(written: Written) -> &'static str {
+fn sign(written: OperatorSpelling) -> &'static str {
     match written {
-        Written::Letters => "",
-        Written::Sign => " by its sign",
+        OperatorSpelling::Letters => "",
+        OperatorSpelling::Sign => " by its sign",
     }
 }
 

@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use gcode_sim::diag::Diagnostic;
 use gcode_sim::machine::Machine;
 use gcode_sim::motion::Call;
-use gcode_sim::part::wanted::Wanted;
+use gcode_sim::part::nominal::NominalPart;
 use gcode_sim::program::NoLibrary;
 use gcode_sim::report::flute_table;
 use gcode_sim::report::verdict_table::{Layout, table};
@@ -21,14 +21,15 @@ pub(crate) fn run(case: &Case) {
         case.optional("machine.toml").map_or_else(Machine::default, |text| Machine::parse(&text).unwrap());
     let mut request = Request::new("case.nc", case.bytes("case.nc"), machine.clone());
     let files = ["reference.toml", "reference.csv", "reference.json"];
-    let wanted = files.iter().find_map(|name| case.optional(name)).map(|text| Wanted::parse(&text).unwrap());
-    if let Some(Wanted::Flutes(flutes)) = &wanted {
+    let wanted =
+        files.iter().find_map(|name| case.optional(name)).map(|text| NominalPart::parse(&text).unwrap());
+    if let Some(NominalPart::Flutes(flutes)) = &wanted {
         let grinding = grind(&request, &mut NoLibrary, flutes).unwrap();
         let verdict = grinding.verify();
         let shown = flute_table::table(&verdict);
         return case.snapshot("verdict", &with_findings(shown, &verdict.diagnostics, &grinding.run));
     }
-    let reference = wanted.and_then(Wanted::into_holes);
+    let reference = wanted.and_then(NominalPart::into_holes);
     let surface = reference.as_ref().and_then(|reference| reference.surface);
     request.conduct = reference.as_ref().map(|reference| reference.conduct.clone()).unwrap_or_default();
     let simulation = simulate(&request, &mut NoLibrary, surface).unwrap();

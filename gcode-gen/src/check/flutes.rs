@@ -7,10 +7,10 @@ use gcode_sim::report::{diagnostic, flute_table, flute_view};
 use gcode_sim::session::{Request, grind};
 use gcode_sim::verify::Answer;
 
-use super::{CheckError, Checked, Judgement, Programs, main_program, told, warnings};
+use super::{CheckError, CheckedPackage, PackageVerdict, Programs, main_program, told, warnings};
 use crate::package::{Package, file_name, stem};
 
-pub(super) fn check(package: &Package, wanted: &Flutes) -> Result<Checked, CheckError> {
+pub(super) fn check(package: &Package, wanted: &Flutes) -> Result<CheckedPackage, CheckError> {
     let machine = Machine::parse(&package.machine).map_err(|e| told("machine.toml", &e))?;
     let main = main_program(package)?;
     let request = Request::new(file_name(main.number), main.text.as_bytes(), machine);
@@ -24,7 +24,7 @@ pub(super) fn check(package: &Package, wanted: &Flutes) -> Result<Checked, Check
         refusals.push("the programs fail the job's reference\n".to_owned());
     }
     let view = flute_view::of(&file_name(main.number), &grinding, &verdict);
-    Ok(Checked {
+    Ok(CheckedPackage {
         refusals,
         warnings: warnings(&verdict.diagnostics, sources),
         seconds: grinding.run.control.seconds().0,
@@ -34,6 +34,6 @@ pub(super) fn check(package: &Package, wanted: &Flutes) -> Result<Checked, Check
             (format!("{}-tip", stem(main.number)), picture::tip_view(&view)),
             (format!("{}-helix", stem(main.number)), picture::helix_graph(&view)),
         ],
-        judgement: Judgement::Flutes(verdict),
+        judgement: PackageVerdict::Flutes(verdict),
     })
 }

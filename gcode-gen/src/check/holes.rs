@@ -10,10 +10,14 @@ use gcode_sim::report::{diagnostic, top};
 use gcode_sim::session::{Request, Simulation, simulate};
 use gcode_sim::verify::{Answer, Tolerances, Verdict};
 
-use super::{CheckError, Checked, Judgement, Programs, main_program, told, warnings};
+use super::{CheckError, CheckedPackage, PackageVerdict, Programs, main_program, told, warnings};
 use crate::package::{Package, file_name, stem};
 
-pub(super) fn check(job: &Job, package: &Package, reference: &Reference) -> Result<Checked, CheckError> {
+pub(super) fn check(
+    job: &Job,
+    package: &Package,
+    reference: &Reference,
+) -> Result<CheckedPackage, CheckError> {
     let machine = Machine::parse(&package.machine).map_err(|e| told("machine.toml", &e))?;
     let main = main_program(package)?;
     let mut request = Request::new(file_name(main.number), main.text.as_bytes(), machine.clone());
@@ -23,13 +27,13 @@ pub(super) fn check(job: &Job, package: &Package, reference: &Reference) -> Resu
     let tolerances = Tolerances::of(reference, None);
     let verdict = simulation.verify(reference, tolerances, &machine);
     let top = top::of_verdict(&file_name(main.number), &simulation, reference, &verdict, &machine);
-    Ok(Checked {
+    Ok(CheckedPackage {
         refusals: refusals(job, reference, &simulation, &verdict),
         warnings: warnings(&verdict.diagnostics, simulation.run.control.memory().sources()),
         seconds: simulation.run.control.seconds().0,
         report: table(&verdict, Layout::default()),
         pictures: vec![(stem(main.number), picture::main_view(&top))],
-        judgement: Judgement::Holes(verdict),
+        judgement: PackageVerdict::Holes(verdict),
     })
 }
 
@@ -44,8 +48,8 @@ fn refusals(job: &Job, reference: &Reference, simulation: &Simulation, verdict: 
         refusals.extend(cut.iter().map(|overlap| format!("error: {}\n", overlap.sentence(&reference.holes))));
     }
     let increment = job.control().increment;
-    for hole in verdict.holes.iter().filter(|hole| hole.phi > verdict.tolerance) {
-        if hole.rounding > verdict.tolerance - (hole.phi - hole.rounding).max(0.0) {
+    for hole in verdict.holes.iter().filter(|hole| hole.position_deviation > verdict.tolerance) {
+        if hole.rounding > verdict.tolerance - (hole.position_deviation - hole.rounding).max(0.0) {
             refusals.push(format!(
                 "hole {}: rounding to the least increment of {} mm and degrees alone can make Φ{:.4} here, {} is allowed; \
                  a finer increment or a wider tolerance is needed\n",

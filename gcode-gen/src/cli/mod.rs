@@ -7,10 +7,10 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
+use gcode_sim::cli::common::{self, Colours};
 use gcode_sim::cli::format::TextFormat;
-use gcode_sim::cli::front::{self, Colours};
 use gcode_sim::cli::packaging::{self, ManArguments, ShellArguments};
-use gcode_sim::cli::{Refusal, Status, output, schema};
+use gcode_sim::cli::{ExitStatus, UsageError, output, schema};
 
 use crate::report::FORMATS;
 
@@ -125,8 +125,8 @@ fn families() -> clap::builder::PossibleValuesParser {
 }
 
 /// Does what the command line asks for.
-pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Status {
-    let arguments: Arguments = match front::parse(arguments) {
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
+    let arguments: Arguments = match common::parse(arguments) {
         Ok(arguments) => arguments,
         Err(status) => return status,
     };
@@ -139,8 +139,8 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Status {
         Command::Completions(shell) => packaging::completions::<Arguments>(shell),
         Command::Man(folder) => packaging::man::<Arguments>(folder),
     };
-    done.unwrap_or_else(|refusal: Refusal| {
+    done.unwrap_or_else(|refusal: UsageError| {
         output::tell(&format!("error: {refusal}\n"));
-        Status::Refused
+        ExitStatus::Refused
     })
 }

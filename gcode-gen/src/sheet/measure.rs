@@ -6,7 +6,7 @@ use gcode_sim::units::{Deg, Mm};
 use gcode_sim::verify::flutes::FluteVerdict;
 use gcode_sim::verify::{Distance, HoleVerdict, Neighbours, Verdict};
 
-use crate::check::Judgement;
+use crate::check::PackageVerdict;
 
 /// So many holes have lines each; of more only the pattern has.
 pub const LISTED: usize = 100;
@@ -21,18 +21,18 @@ pub struct Characteristic {
     pub predicted: String,
 }
 
-pub fn characteristics(job: &Job, judgement: &Judgement) -> Vec<Characteristic> {
+pub fn characteristics(job: &Job, judgement: &PackageVerdict) -> Vec<Characteristic> {
     match judgement {
-        Judgement::Measured => match job {
+        PackageVerdict::Measured => match job {
             Job::Alignment(job) => of_alignment(job),
             Job::PinHoles(_) | Job::Honeycomb(_) | Job::Burr(_) => Vec::new(),
         },
-        Judgement::Holes(verdict) if verdict.holes.len() <= LISTED => {
+        PackageVerdict::Holes(verdict) if verdict.holes.len() <= LISTED => {
             let each = verdict.holes.iter().flat_map(|hole| of_hole(hole, verdict));
             each.chain(verdict.neighbours.iter().flat_map(of_neighbours)).collect()
         }
-        Judgement::Holes(verdict) => of_all(verdict),
-        Judgement::Flutes(verdict) => of_flutes(verdict),
+        PackageVerdict::Holes(verdict) => of_all(verdict),
+        PackageVerdict::Flutes(verdict) => of_flutes(verdict),
     }
 }
 
@@ -52,7 +52,7 @@ fn of_hole(hole: &HoleVerdict, verdict: &Verdict) -> Vec<Characteristic> {
             &reference,
             "position",
             format!("Φ{} (ISO 1101)", verdict.tolerance),
-            format!("Φ{}", near(hole.phi, 4)),
+            format!("Φ{}", near(hole.position_deviation, 4)),
         ),
         characteristic(
             &reference,

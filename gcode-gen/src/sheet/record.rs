@@ -1,9 +1,9 @@
 //! A run as the operator lives through it: the tools, the stops in their order, and what the time goes into.
 use gcode_sim::exec::Outcome;
-use gcode_sim::holes::Extractor;
+use gcode_sim::holes::HoleExtractor;
 use gcode_sim::job::Job;
 use gcode_sim::machine::Machine;
-use gcode_sim::motion::{Event, EventKind, Place, Sink, StopKind};
+use gcode_sim::motion::{Backtrace, Event, EventKind, EventSink, StopKind};
 use gcode_sim::part::surface::Surface;
 use gcode_sim::session::{Request, Run, SessionError, run};
 
@@ -18,8 +18,8 @@ const KEPT: std::ops::RangeInclusive<u32> = 500..=999;
 #[derive(Debug, Default)]
 pub struct Record {
     /// What each main program finds, the first time it is run, in the common variables that are kept.
-    pub begins: Vec<Begin>,
-    pub stops: Vec<Stop>,
+    pub begins: Vec<ProgramStart>,
+    pub stops: Vec<OperatorStop>,
     /// The numbers that M06 puts into the spindle.
     pub tools: Vec<u32>,
     pub times: Times,
@@ -33,14 +33,14 @@ pub struct Record {
 
 /// A main program, and the variables that those before it have left it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Begin {
+pub struct ProgramStart {
     pub main: u32,
     pub variables: Vec<(u32, f64)>,
 }
 
 /// The program waits for the operator.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Stop {
+pub struct OperatorStop {
     pub kind: StopKind,
     pub text: String,
     /// The variables that the text names, with their values.
@@ -77,7 +77,7 @@ pub fn record(job: &Job, package: &Package) -> Result<Record, CheckError> {
     let mut record = Record::default();
     let mut kept = Vec::new();
     for main in order(job, package) {
-        let begin = Begin { main, variables: std::mem::take(&mut kept) };
+        let begin = ProgramStart { main, variables: std::mem::take(&mut kept) };
         let request = request(package, &begin)?;
         record.rapids = [request.settings.rapid.0, request.settings.rapid_rotary];
         let run = attended(job, package, &request, &mut listener)
@@ -87,7 +87,7 @@ pub fn record(job: &Job, package: &Package) -> Result<Record, CheckError> {
         }
         kept.extend(run.control.variables().filter(|(number, _)| KEPT.contains(number)));
         let stops = listener.stops.drain(..);
-        record.stops.extend(stops.map(|(stop, place)| Stop { at: places(&run, &place), ..stop }));
+        record.stops.extend(stops.map(|(stop, place)| OperatorStop { at: places(&run, &place), ..stop }));
         record.passed_on.extend(run.control.passed_on().keys());
         if record.begins.iter().all(|earlier| earlier.main != main) {
             record.begins.push(begin);
@@ -107,7 +107,7 @@ fn order(job: &Job, package: &Package) -> Vec<u32> {
 }
 
 /// A run with the part on the machine, where the programs are to touch it.
-pub(super) fn attended<S: Sink>(
+pub(super) fn attended<S: EventSink>(
     job: &Job,
     package: &Package,
     request: &Request,
@@ -116,7 +116,7 @@ pub(super) fn attended<S: Sink>(
     match job {
         Job::Alignment(job) => {
             let surface = Surface::Ellipsoid { a: job.surface.a, b: job.surface.b };
-            let mut probe = Extractor::new(&request.machine).with_surface(Some(surface));
+            let mut probe = HoleExtractor::new(&request.machine).with_surface(Some(surface));
             run(request, &mut Programs(package), &mut (&mut probe, sink))
         }
         Job::PinHoles(_) | Job::Honeycomb(_) | Job::Burr(_) => run(request, &mut Programs(package), sink),
@@ -124,7 +124,7 @@ pub(super) fn attended<S: Sink>(
 }
 
 /// To run a main program on the package's own machine file.
-pub(super) fn request(package: &Package, begin: &Begin) -> Result<Request, CheckError> {
+pub(super) fn request(package: &Package, begin: &ProgramStart) -> Result<Request, CheckError> {
     let main = begin.main;
     let machine = Machine::parse(&package.machine).map_err(|e| told("machine.toml", &e))?;
     let program = package.program(main).ok_or_else(|| told(&file_name(main), &"it was not emitted"))?;
@@ -132,19 +132,19 @@ pub(super) fn request(package: &Package, begin: &Begin) -> Result<Request, Check
     Ok(Request { variables: begin.variables.clone(), ..request })
 }
 
-fn places(run: &Run, place: &Place) -> Vec<(String, u32)> {
+fn places(run: &Run, place: &Backtrace) -> Vec<(String, u32)> {
     let calls = std::iter::successors(place.calls.as_deref(), |call| call.outer.as_deref());
     std::iter::once(place.block).chain(calls.map(|call| call.from)).map(|span| run.locate(span)).collect()
 }
 
 #[derive(Default)]
 struct Listener {
-    stops: Vec<(Stop, Place)>,
+    stops: Vec<(OperatorStop, Backtrace)>,
     tools: Vec<u32>,
     times: Times,
 }
 
-impl Sink for Listener {
+impl EventSink for Listener {
     fn event(&mut self, event: &Event<'_>) {
         let seconds = event.seconds.0;
         match &event.kind {
@@ -153,9 +153,9 @@ impl Sink for Listener {
                 self.times.feed += seconds;
             }
             EventKind::Dwell { .. } => self.times.dwell += seconds,
-            EventKind::Tool { number } => self.tools.push(*number),
+            EventKind::ToolChange { number } => self.tools.push(*number),
             EventKind::Stop { kind, text, named } => {
-                let stop = Stop {
+                let stop = OperatorStop {
                     kind: *kind,
                     text: text.clone(),
                     named: named.clone(),
@@ -166,7 +166,7 @@ impl Sink for Listener {
                 self.stops.push((stop, event.place()));
             }
             EventKind::ToolLength { .. }
-            | EventKind::Unplaced { .. }
+            | EventKind::WorkZeroUnknown { .. }
             | EventKind::Spindle { .. }
             | EventKind::Coolant { .. }
             | EventKind::Auxiliary { .. } => {}

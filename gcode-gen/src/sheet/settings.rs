@@ -1,12 +1,12 @@
 //! Which settings of the control the programs depend on: each switch is turned in turn, and the run held against the one
 //! with all of them as the family of controls has them.
-use gcode_sim::control::{ROWS, Row, Settings};
+use gcode_sim::control::{ROWS, SettingRow, Settings};
 use gcode_sim::exec::{Limits, Outcome};
 use gcode_sim::job::Job;
-use gcode_sim::motion::{Event, EventKind, Position, Sink, StopKind};
+use gcode_sim::motion::{Event, EventKind, EventSink, Position, StopKind};
 use gcode_sim::session::{Request, SessionError};
 
-use super::record::{Begin, attended, request};
+use super::record::{ProgramStart, attended, request};
 use crate::check::{CheckError, told};
 use crate::package::Package;
 
@@ -15,7 +15,7 @@ pub const BLOCKS: u64 = 2_000;
 
 /// A switch that must stand as the simulation had it.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Needed {
+pub struct RequiredSetting {
     pub key: &'static str,
     pub meaning: &'static str,
     /// 0 or 1.
@@ -28,8 +28,12 @@ pub struct Needed {
 ///
 /// # Errors
 /// A package that contradicts itself.
-pub fn needed(job: &Job, package: &Package, begins: &[Begin]) -> Result<Vec<Needed>, CheckError> {
-    let mut found: Vec<Needed> = Vec::new();
+pub fn needed(
+    job: &Job,
+    package: &Package,
+    begins: &[ProgramStart],
+) -> Result<Vec<RequiredSetting>, CheckError> {
+    let mut found: Vec<RequiredSetting> = Vec::new();
     for begin in begins {
         let mut request = request(package, begin)?;
         request.limits = Limits { blocks: BLOCKS };
@@ -47,7 +51,7 @@ pub fn needed(job: &Job, package: &Package, begins: &[Begin]) -> Result<Vec<Need
             let other = trace(turned)?;
             if other != wanted && found.iter().all(|known| known.key != row.key) {
                 let otherwise = other.alarm.unwrap_or_else(|| "the machine moves otherwise".to_owned());
-                found.push(Needed { key: row.key, meaning: row.meaning, value, otherwise });
+                found.push(RequiredSetting { key: row.key, meaning: row.meaning, value, otherwise });
             }
         }
     }
@@ -55,7 +59,7 @@ pub fn needed(job: &Job, package: &Package, begins: &[Begin]) -> Result<Vec<Need
 }
 
 /// The value that a switch has, and the settings with the other one; `None` for what is no switch.
-fn turned(row: &Row, usual: &Settings) -> Option<(&'static str, Settings)> {
+fn turned(row: &SettingRow, usual: &Settings) -> Option<(&'static str, Settings)> {
     ["0", "1"].into_iter().zip(["1", "0"]).find_map(|(value, other)| {
         let mut same = usual.clone();
         same.set(row.key, value).ok()?;
@@ -90,7 +94,7 @@ impl Trace {
     }
 }
 
-impl Sink for Trace {
+impl EventSink for Trace {
     fn event(&mut self, event: &Event<'_>) {
         match &event.kind {
             EventKind::Rapid { to } => self.moves.push((*to, None)),
@@ -100,10 +104,10 @@ impl Sink for Trace {
                 self.moves.push((*to, Some(rate.0)));
             }
             EventKind::Dwell { time } => self.dwells.push(time.0),
-            EventKind::Tool { number } => self.tools.push(*number),
+            EventKind::ToolChange { number } => self.tools.push(*number),
             EventKind::Stop { kind, text, .. } => self.stops.push((*kind, text.clone())),
             EventKind::ToolLength { .. }
-            | EventKind::Unplaced { .. }
+            | EventKind::WorkZeroUnknown { .. }
             | EventKind::Spindle { .. }
             | EventKind::Coolant { .. }
             | EventKind::Auxiliary { .. } => {}
@@ -122,7 +126,7 @@ mod tests {
         let package = Package { mains: vec![1], programs, machine: String::new() };
         // Any job that isn't touched by a probe.
         let job = Job::parse(families::ALL[0].new_job).unwrap();
-        let needed = needed(&job, &package, &[Begin { main: 1, variables: Vec::new() }]).unwrap();
+        let needed = needed(&job, &package, &[ProgramStart { main: 1, variables: Vec::new() }]).unwrap();
         needed.into_iter().map(|one| (one.key, one.value, one.otherwise)).collect()
     }
 

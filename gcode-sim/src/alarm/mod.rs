@@ -1,24 +1,24 @@
 //! What stops a control: each alarm a fact, its number and wording in one table (`table.rs`).
 //!
 //! Numbers and triggers follow the alarm list of the 30i / 0i-F class; the wording is ours.
-mod slips;
 mod table;
+mod typos;
 
 use crate::source::{Span, Spanned};
 
-pub use slips::remedy;
+pub use typos::remedy;
 
 /// The control's own name for an alarm: `PS0112`, `MC3001`, `OT0500`; `SIM…` where the simulator, not the
 /// control, cannot go on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Code {
+pub enum AlarmCode {
     Ps(u16),
     Mc(u16),
     Ot(u16),
     Sim(u16),
 }
 
-impl Code {
+impl AlarmCode {
     pub fn number(self) -> u32 {
         match self {
             Self::Ps(n) | Self::Mc(n) | Self::Ot(n) | Self::Sim(n) => u32::from(n),
@@ -26,7 +26,7 @@ impl Code {
     }
 }
 
-impl std::fmt::Display for Code {
+impl std::fmt::Display for AlarmCode {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Ps(n) => write!(f, "PS{n:04}"),
@@ -314,24 +314,24 @@ pub enum Alarm {
 }
 
 /// An alarm with its place. Nearly every step of a run hands on that there is none, so it takes no more than a pointer.
-pub type Placed = Box<Spanned<Alarm>>;
+pub type LocatedAlarm = Box<Spanned<Alarm>>;
 
 /// What the table says about an alarm.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Row {
-    pub code: Code,
+pub struct AlarmRow {
+    pub code: AlarmCode,
     pub message: String,
     /// One thing to do.
     pub help: Option<String>,
 }
 
 impl Alarm {
-    pub fn code(&self) -> Code {
+    pub fn code(&self) -> AlarmCode {
         self.row().code
     }
 
     #[cold]
-    pub fn at(self, span: Span) -> Placed {
+    pub fn at(self, span: Span) -> LocatedAlarm {
         Box::new(Spanned::new(self, span))
     }
 }

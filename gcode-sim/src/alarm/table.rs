@@ -1,15 +1,15 @@
 //! The one table of alarm numbers, wordings and remedies.
-use super::{Alarm, Code, Row};
+use super::{Alarm, AlarmCode, AlarmRow};
 
 impl Alarm {
-    pub fn row(&self) -> Row {
+    pub fn row(&self) -> AlarmRow {
         let (code, message, help) = self.parts();
-        Row { code, message, help: help.map(str::to_owned) }
+        AlarmRow { code, message, help: help.map(str::to_owned) }
     }
 
     #[rustfmt::skip]
-    fn parts(&self) -> (Code, String, Option<&'static str>) {
-        use Code::{Mc, Ot, Ps, Sim};
+    fn parts(&self) -> (AlarmCode, String, Option<&'static str>) {
+        use AlarmCode::{Mc, Ot, Ps, Sim};
         match self {
             Self::TooManyDigits => (Ps(3), "too many digits".into(), Some("write at most 9 digits; 12 in a macro expression")),
             Self::Overtravel { letter, plus: true, value, limit } => (Ot(500), format!("{letter} would go to {value} of the machine, beyond its limit {limit} on the plus side"), Some("check the work offset, the tool length and the target")),

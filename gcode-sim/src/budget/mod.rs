@@ -17,8 +17,8 @@ pub use shares::Share;
 pub use statistics::Statistics;
 
 use crate::machine::Machine;
-use crate::machine::random::Draw;
-use crate::machine::sources::Source;
+use crate::machine::random::RandomStream;
+use crate::machine::sources::ErrorSource;
 use crate::part::hole::Hole;
 
 /// More samples than this would need more memory than a computer in a shop has: 16 bytes each.
@@ -32,7 +32,7 @@ pub struct Question<'q> {
     pub holes: &'q [Hole],
     /// How far above the surface each hole's feed begins, mm.
     pub clearance: f64,
-    pub sources: &'q [Source],
+    pub sources: &'q [ErrorSource],
     /// 1 to [`MOST_SAMPLES`].
     pub samples: usize,
     pub seed: u64,
@@ -106,7 +106,7 @@ fn sample(
     progress: &AtomicUsize,
 ) {
     let length = question.samples.div_ceil(question.threads.get()).max(WORTH_A_THREAD);
-    let root = Draw::new(question.seed);
+    let root = RandomStream::new(question.seed);
     let draw = |part: usize, phis: &mut [f64], worst: &mut [f64]| {
         let mut machine = question.machine.clone();
         for (offset, (phi, worst)) in phis.iter_mut().zip(worst).enumerate() {

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::planned::Planned;
 use super::{HoleBudget, Question};
 use crate::machine::Machine;
-use crate::machine::sources::{Quantity, Source};
+use crate::machine::sources::{ErrorSource, Quantity};
 use crate::units::Deg;
 
 /// One source's part.
@@ -25,7 +25,7 @@ pub(super) fn of_hole(question: &Question<'_>, hole: &Planned<'_>) -> Vec<Share>
         question.sources.iter().map(|source| mean_squares(question.machine, hole, source)).collect();
     let sums = [0, 1].map(|end| squares.iter().map(|ends| ends[end]).sum::<f64>());
     let end = usize::from(sums[1] > sums[0]);
-    let share = |(source, squares): (&Source, &[f64; 2])| Share {
+    let share = |(source, squares): (&ErrorSource, &[f64; 2])| Share {
         source: source.quantity.name(question.machine),
         moves: squares[end].sqrt(),
         share: if sums[end] > 0.0 { squares[end] / sums[end] } else { 0.0 },
@@ -53,7 +53,7 @@ pub(super) fn of_all(holes: &[HoleBudget]) -> Vec<Share> {
 }
 
 /// The mean square of the way that one source moves the axis at entry and bottom, by central differences.
-fn mean_squares(machine: &Machine, hole: &Planned<'_>, source: &Source) -> [f64; 2] {
+fn mean_squares(machine: &Machine, hole: &Planned<'_>, source: &ErrorSource) -> [f64; 2] {
     let size = source.spread.mean_square().sqrt();
     let moved = |direction: Deg| -> [f64; 2] {
         let ends = |value: f64| -> [Vector3<f64>; 2] {

@@ -1,6 +1,6 @@
 //! Budgets whose answer is known: one source or two, and distributions that tables have.
 use super::*;
-use crate::machine::error::Spread;
+use crate::machine::error::Distribution;
 use crate::machine::sources::Quantity;
 use crate::units::Deg;
 
@@ -16,7 +16,7 @@ fn hole(x: f64) -> Hole {
     }
 }
 
-fn found(holes: &[Hole], sources: &[Source], samples: usize, threads: usize) -> Budget {
+fn found(holes: &[Hole], sources: &[ErrorSource], samples: usize, threads: usize) -> Budget {
     let machine = Machine::default();
     let question = Question {
         machine: &machine,
@@ -31,8 +31,8 @@ fn found(holes: &[Hole], sources: &[Source], samples: usize, threads: usize) -> 
     budget(&question, &AtomicUsize::new(0)).unwrap()
 }
 
-fn source(quantity: Quantity, spread: Spread) -> Source {
-    Source { quantity, spread }
+fn source(quantity: Quantity, spread: Distribution) -> ErrorSource {
+    ErrorSource { quantity, spread }
 }
 
 const N: usize = 60_000;
@@ -49,7 +49,7 @@ fn percentile(found: f64, expected: f64, q: f64, density: f64) {
 fn one_gaussian_axis_gives_the_half_normal_distribution() {
     let sigma = 0.01;
     for x in [300.0, -300.0] {
-        let found = found(&[hole(x)], &[source(Quantity::Linear(0), Spread::Normal(sigma))], N, 2);
+        let found = found(&[hole(x)], &[source(Quantity::Linear(0), Distribution::Normal(sigma))], N, 2);
         let statistics = found.holes[0].statistics;
         let mean = 2.0 * sigma * (2.0 / std::f64::consts::PI).sqrt();
         let error = 2.0 * sigma * (1.0 - 2.0 / std::f64::consts::PI).sqrt() / (N as f64).sqrt();
@@ -74,7 +74,7 @@ fn one_gaussian_axis_gives_the_half_normal_distribution() {
 #[test]
 fn two_gaussian_shifts_give_the_rayleigh_distribution() {
     let sigma = 0.02;
-    let sources = [Quantity::Shift(0), Quantity::Shift(2)].map(|q| source(q, Spread::Normal(sigma)));
+    let sources = [Quantity::Shift(0), Quantity::Shift(2)].map(|q| source(q, Distribution::Normal(sigma)));
     let found = found(&[hole(300.0), hole(-400.0)], &sources, N, 2);
     for hole in &found.holes {
         let mean = 2.0 * sigma * (std::f64::consts::PI / 2.0).sqrt();
@@ -96,7 +96,7 @@ fn two_gaussian_shifts_give_the_rayleigh_distribution() {
 /// A run-out from 0 to 0.15 evenly, in any direction, is an eccentricity of 0 to 0.075, so Φ is 0 to 0.15 evenly.
 #[test]
 fn a_run_out_is_a_position_of_the_same_size() {
-    let found = found(&[hole(300.0)], &[source(Quantity::RunOut, Spread::Uniform(0.15))], N, 2);
+    let found = found(&[hole(300.0)], &[source(Quantity::RunOut, Distribution::Uniform(0.15))], N, 2);
     let statistics = found.holes[0].statistics;
     percentile(statistics.p50, 0.075, 0.5, 1.0 / 0.15);
     percentile(statistics.p95, 0.1425, 0.95, 1.0 / 0.15);
@@ -110,7 +110,7 @@ fn a_run_out_is_a_position_of_the_same_size() {
 #[test]
 fn a_heads_angle_is_off_at_the_mouth_as_verify_says() {
     for angle in [0.1, -0.1] {
-        let found = found(&[hole(300.0)], &[source(Quantity::Head, Spread::Fixed(angle))], 1, 1);
+        let found = found(&[hole(300.0)], &[source(Quantity::Head, Distribution::Fixed(angle))], 1, 1);
         let aside = 15.0 * Deg(0.1).tan();
         assert!((found.holes[0].statistics.max - 2.0 * aside).abs() < 1e-9, "{found:?}");
         assert!((found.shares[0].moves - aside).abs() < 1e-6);
@@ -121,10 +121,10 @@ fn a_heads_angle_is_off_at_the_mouth_as_verify_says() {
 #[test]
 fn the_shares_add_up_to_what_the_samples_show() {
     let sources = [
-        source(Quantity::Tilt(2), Spread::Normal(0.002)),
-        source(Quantity::Index, Spread::Uniform(0.002)),
-        source(Quantity::Linear(0), Spread::Normal(0.005)),
-        source(Quantity::Centre(0), Spread::Normal(0.004)),
+        source(Quantity::Tilt(2), Distribution::Normal(0.002)),
+        source(Quantity::Index, Distribution::Uniform(0.002)),
+        source(Quantity::Linear(0), Distribution::Normal(0.005)),
+        source(Quantity::Centre(0), Distribution::Normal(0.004)),
     ];
     let found = found(&[hole(-300.0)], &sources, N, 2);
     let squares: f64 = found.holes[0].shares.iter().map(|share| share.moves * share.moves).sum();
@@ -140,9 +140,9 @@ fn the_shares_add_up_to_what_the_samples_show() {
 #[test]
 fn the_same_seed_is_the_same_answer_on_any_number_of_threads() {
     let sources = [
-        source(Quantity::RunOut, Spread::Uniform(0.1)),
-        source(Quantity::Linear(0), Spread::Normal(0.01)),
-        source(Quantity::AxisTilt(2), Spread::Normal(0.01)),
+        source(Quantity::RunOut, Distribution::Uniform(0.1)),
+        source(Quantity::Linear(0), Distribution::Normal(0.01)),
+        source(Quantity::AxisTilt(2), Distribution::Normal(0.01)),
     ];
     let holes = [hole(300.0), hole(-200.0)];
     let one = found(&holes, &sources, 10_007, 1);

@@ -3,12 +3,12 @@
 //! First the longest common sequence of steps that do the same (E. Myers, *An O(ND) Difference Algorithm and Its
 //! Variations*); in the gaps between them moves that go the same way from another point; in what is left the pairs
 //! whose ends lie nearest to one another.
-use super::steps::{Kind, Step, difference};
+use super::steps::{Step, StepKind, difference};
 use crate::motion::MAX_AXES;
 
 /// A step of the old run, of the new one, or one of each that belong together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Link {
+pub(super) enum StepPair {
     Same(usize, usize),
     /// The same step, done differently.
     Changed(usize, usize),
@@ -16,7 +16,7 @@ pub(super) enum Link {
     Added(usize),
 }
 
-impl Link {
+impl StepPair {
     /// The numbers of the steps, old and new.
     pub(super) fn sides(self) -> (Option<usize>, Option<usize>) {
         match self {
@@ -37,7 +37,12 @@ const EDITS_AHEAD: usize = 200;
 const MOST_PAIRS: usize = 10_000;
 
 /// As [`align`]; where one of them alone stops (old, new), the other one's steps behind that are lost or added.
-pub(super) fn up_to_the_end(old: &[Step], new: &[Step], stops: (bool, bool), tolerance: f64) -> Vec<Link> {
+pub(super) fn align_until_stop(
+    old: &[Step],
+    new: &[Step],
+    stops: (bool, bool),
+    tolerance: f64,
+) -> Vec<StepPair> {
     let same = |i: usize, j: usize| old[i].is_same(&new[j], tolerance);
     let (rows, columns) = match stops {
         (false, true) => (reach(old.len(), new.len(), same), new.len()),
@@ -45,8 +50,8 @@ pub(super) fn up_to_the_end(old: &[Step], new: &[Step], stops: (bool, bool), tol
         _ => (old.len(), new.len()),
     };
     let mut links = align(&old[..rows], &new[..columns], tolerance);
-    links.extend((rows..old.len()).map(Link::Lost));
-    links.extend((columns..new.len()).map(Link::Added));
+    links.extend((rows..old.len()).map(StepPair::Lost));
+    links.extend((columns..new.len()).map(StepPair::Added));
     links
 }
 
@@ -61,42 +66,42 @@ fn reach(long: usize, short: usize, same: impl Fn(usize, usize) -> bool) -> usiz
 
 /// All steps of both runs, in an order that keeps both: with the fewest lost and added, or tool by tool where that loses
 /// and adds no more.
-pub(super) fn align(old: &[Step], new: &[Step], tolerance: f64) -> Vec<Link> {
+pub(super) fn align(old: &[Step], new: &[Step], tolerance: f64) -> Vec<StepPair> {
     let whole = [(old.len(), new.len())];
     let mut links = between((old, new), &whole, tolerance);
-    if links.iter().any(|link| !matches!(link, Link::Same(..))) {
+    if links.iter().any(|link| !matches!(link, StepPair::Same(..))) {
         let (was, is) = (tool_changes(old), tool_changes(new));
         let tools = common(was.len(), is.len(), |i, j| old[was[i]].kind == new[is[j]].kind);
         let mut stops: Vec<(usize, usize)> = tools.into_iter().map(|(i, j)| (was[i], is[j])).collect();
         stops.extend(whole);
         let by_tool = between((old, new), &stops, tolerance);
-        let edits = |links: &[Link]| edits(links, (old, new));
+        let edits = |links: &[StepPair]| edits(links, (old, new));
         if edits(&by_tool) <= edits(&links) {
             links = by_tool;
         }
     }
-    moves_stay((old, new), tolerance, &mut links);
+    keep_moves_paired((old, new), tolerance, &mut links);
     links
 }
 
 fn tool_changes(steps: &[Step]) -> Vec<usize> {
-    (0..steps.len()).filter(|step| matches!(steps[*step].kind, Kind::Tool(_))).collect()
+    (0..steps.len()).filter(|step| matches!(steps[*step].kind, StepKind::Tool(_))).collect()
 }
 
 /// How many steps are lost and added; a tool change counts for three, so that moves go with their tool.
-fn edits(links: &[Link], (old, new): (&[Step], &[Step])) -> usize {
-    let of = |step: &Step| if matches!(step.kind, Kind::Tool(_)) { 3 } else { 1 };
-    let each = |link: &Link| match *link {
-        Link::Same(..) => 0,
-        Link::Lost(i) => of(&old[i]),
-        Link::Added(j) => of(&new[j]),
-        Link::Changed(i, j) => of(&old[i]) + of(&new[j]),
+fn edits(links: &[StepPair], (old, new): (&[Step], &[Step])) -> usize {
+    let of = |step: &Step| if matches!(step.kind, StepKind::Tool(_)) { 3 } else { 1 };
+    let each = |link: &StepPair| match *link {
+        StepPair::Same(..) => 0,
+        StepPair::Lost(i) => of(&old[i]),
+        StepPair::Added(j) => of(&new[j]),
+        StepPair::Changed(i, j) => of(&old[i]) + of(&new[j]),
     };
     links.iter().map(each).sum()
 }
 
 /// Links the steps from stop to stop, each of which is the same in both; the last one is where both end.
-fn between((old, new): (&[Step], &[Step]), stops: &[(usize, usize)], tolerance: f64) -> Vec<Link> {
+fn between((old, new): (&[Step], &[Step]), stops: &[(usize, usize)], tolerance: f64) -> Vec<StepPair> {
     let mut links = Vec::with_capacity(old.len().max(new.len()));
     let (mut i, mut j) = (0, 0);
     for &(stop_i, stop_j) in stops {
@@ -106,9 +111,9 @@ fn between((old, new): (&[Step], &[Step]), stops: &[(usize, usize)], tolerance: 
         });
         let same = same.into_iter().map(|(a, b)| (from_i + a, from_j + b));
         for (to_i, to_j) in same.chain([(stop_i, stop_j)]) {
-            gap((old, i..to_i), (new, j..to_j), tolerance, &mut links);
+            align_gap((old, i..to_i), (new, j..to_j), tolerance, &mut links);
             if to_i < old.len() && to_j < new.len() {
-                links.push(Link::Same(to_i, to_j));
+                links.push(StepPair::Same(to_i, to_j));
             }
             (i, j) = (to_i + 1, to_j + 1);
         }
@@ -118,37 +123,40 @@ fn between((old, new): (&[Step], &[Step]), stops: &[(usize, usize)], tolerance: 
 
 /// Where something else has gone past a move, the move is the one that stays: a stop that comes later is one, and no
 /// move is lost.
-fn moves_stay((old, new): (&[Step], &[Step]), tolerance: f64, links: &mut [Link]) {
+fn keep_moves_paired((old, new): (&[Step], &[Step]), tolerance: f64, links: &mut [StepPair]) {
     for first in 0..links.len() {
-        let is_other = |link: &Link| matches!(link, Link::Same(i, _) if !old[*i].is_move());
+        let is_other = |link: &StepPair| matches!(link, StepPair::Same(i, _) if !old[*i].is_move());
         let between = links[first + 1..].iter().take_while(|link| is_other(link)).count();
         let Some(last) = links.get(first + 1 + between).copied() else { return };
         let (i, j) = match (links[first], last) {
-            (Link::Lost(i), Link::Added(j)) | (Link::Added(j), Link::Lost(i)) => (i, j),
+            (StepPair::Lost(i), StepPair::Added(j)) | (StepPair::Added(j), StepPair::Lost(i)) => (i, j),
             _ => continue,
         };
         let is_move = old[i].is_move() && old[i].is_same(&new[j], tolerance);
         // More than one between them would be more entries than it saves.
-        let Link::Same(other_i, other_j) = links[first + 1] else { continue };
+        let StepPair::Same(other_i, other_j) = links[first + 1] else { continue };
         // A move of a pass that comes or goes stays with it, and so does the tool.
-        let is_of_pass = matches!(old[other_i].kind, Kind::Tool(_))
+        let is_of_pass = matches!(old[other_i].kind, StepKind::Tool(_))
             && first
                 .checked_sub(1)
-                .is_some_and(|before| matches!(links[before], Link::Lost(_) | Link::Added(_)));
+                .is_some_and(|before| matches!(links[before], StepPair::Lost(_) | StepPair::Added(_)));
         if !is_move || between != 1 || is_of_pass {
             continue;
         }
-        let (lost, added) = (Link::Lost(other_i), Link::Added(other_j));
-        let gone_first = matches!(links[first], Link::Added(_));
-        (links[first], links[first + 1], links[first + 2]) =
-            if gone_first { (lost, Link::Same(i, j), added) } else { (added, Link::Same(i, j), lost) };
+        let (lost, added) = (StepPair::Lost(other_i), StepPair::Added(other_j));
+        let gone_first = matches!(links[first], StepPair::Added(_));
+        (links[first], links[first + 1], links[first + 2]) = if gone_first {
+            (lost, StepPair::Same(i, j), added)
+        } else {
+            (added, StepPair::Same(i, j), lost)
+        };
     }
 }
 
 type Side<'a> = (&'a [Step], std::ops::Range<usize>);
 
 /// Links the steps between two that are the same.
-fn gap((old, range_i): Side<'_>, (new, range_j): Side<'_>, tolerance: f64, links: &mut Vec<Link>) {
+fn align_gap((old, range_i): Side<'_>, (new, range_j): Side<'_>, tolerance: f64, links: &mut Vec<StepPair>) {
     let (first_i, first_j) = (range_i.start, range_j.start);
     let parallel = common(range_i.len(), range_j.len(), |i, j| {
         old[first_i + i].is_parallel(&new[first_j + j], tolerance)
@@ -160,21 +168,21 @@ fn gap((old, range_i): Side<'_>, (new, range_j): Side<'_>, tolerance: f64, links
         nearest((old, i..to_i), (new, j..to_j), links);
         // Where too much is different for the search, what is the same comes here as well.
         for link in &mut links[first..] {
-            if let Link::Changed(i, j) = *link
+            if let StepPair::Changed(i, j) = *link
                 && old[i].is_same(&new[j], tolerance)
             {
-                *link = Link::Same(i, j);
+                *link = StepPair::Same(i, j);
             }
         }
         if to_i < range_i.end {
-            links.push(Link::Changed(to_i, to_j));
+            links.push(StepPair::Changed(to_i, to_j));
         }
         (i, j) = (to_i + 1, to_j + 1);
     }
 }
 
 /// Links what is left: as many pairs as possible, of these the ones whose ends lie nearest.
-fn nearest((old, range_i): Side<'_>, (new, range_j): Side<'_>, links: &mut Vec<Link>) {
+fn nearest((old, range_i): Side<'_>, (new, range_j): Side<'_>, links: &mut Vec<StepPair>) {
     let (rows, columns) = (range_i.len(), range_j.len());
     if rows == columns || rows == 0 || columns == 0 || rows * columns > MOST_PAIRS {
         in_order((old, range_i), (new, range_j), links);
@@ -190,7 +198,7 @@ fn nearest((old, range_i): Side<'_>, (new, range_j): Side<'_>, links: &mut Vec<L
                 cost[r * width + c] = unpaired * ((rows - r) + (columns - c)) as f64;
                 continue;
             }
-            let apart = apart(&old[range_i.start + r], &new[range_j.start + c]);
+            let apart = step_distance(&old[range_i.start + r], &new[range_j.start + c]);
             let pair = apart.map_or(f64::INFINITY, |mm| mm + cost[(r + 1) * width + c + 1]);
             let skip = unpaired + cost[(r + 1) * width + c].min(cost[r * width + c + 1]);
             cost[r * width + c] = pair.min(skip);
@@ -202,41 +210,41 @@ fn nearest((old, range_i): Side<'_>, (new, range_j): Side<'_>, links: &mut Vec<L
         let best = cost[r * width + c];
         if r < rows
             && c < columns
-            && apart(&old[i], &new[j]).is_some_and(|mm| mm + cost[(r + 1) * width + c + 1] <= best)
+            && step_distance(&old[i], &new[j]).is_some_and(|mm| mm + cost[(r + 1) * width + c + 1] <= best)
         {
-            links.push(Link::Changed(i, j));
+            links.push(StepPair::Changed(i, j));
             (r, c) = (r + 1, c + 1);
         } else if r < rows && unpaired + cost[(r + 1) * width + c] <= best {
-            links.push(Link::Lost(i));
+            links.push(StepPair::Lost(i));
             r += 1;
         } else {
-            links.push(Link::Added(j));
+            links.push(StepPair::Added(j));
             c += 1;
         }
     }
 }
 
 /// Pairs steps of one category as they come.
-fn in_order((old, range_i): Side<'_>, (new, range_j): Side<'_>, links: &mut Vec<Link>) {
+fn in_order((old, range_i): Side<'_>, (new, range_j): Side<'_>, links: &mut Vec<StepPair>) {
     let (mut i, mut j) = (range_i.start, range_j.start);
     while i < range_i.end && j < range_j.end {
         if old[i].kind.category() == new[j].kind.category() {
-            links.push(Link::Changed(i, j));
+            links.push(StepPair::Changed(i, j));
             (i, j) = (i + 1, j + 1);
         } else if range_i.end - i >= range_j.end - j {
-            links.push(Link::Lost(i));
+            links.push(StepPair::Lost(i));
             i += 1;
         } else {
-            links.push(Link::Added(j));
+            links.push(StepPair::Added(j));
             j += 1;
         }
     }
-    links.extend((i..range_i.end).map(Link::Lost));
-    links.extend((j..range_j.end).map(Link::Added));
+    links.extend((i..range_i.end).map(StepPair::Lost));
+    links.extend((j..range_j.end).map(StepPair::Added));
 }
 
 /// How far apart two steps end, of one category; a rapid is no likely pair of a feed.
-fn apart(a: &Step, b: &Step) -> Option<f64> {
+fn step_distance(a: &Step, b: &Step) -> Option<f64> {
     if a.kind.category() != b.kind.category() {
         return None;
     }

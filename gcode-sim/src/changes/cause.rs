@@ -1,11 +1,11 @@
 //! What differences have in common: the call whose arguments are others, or the block that makes them.
-use super::record::Where;
+use super::record::BlockLocation;
 
 /// Before and now.
-pub(super) type Cause = (Where, Where);
+pub(super) type Cause = (BlockLocation, BlockLocation);
 
 /// The outermost call that is written otherwise; else the blocks themselves.
-pub(super) fn cause(old: &Where, new: &Where) -> Cause {
+pub(super) fn cause(old: &BlockLocation, new: &BlockLocation) -> Cause {
     let calls = old.calls.iter().rev().zip(new.calls.iter().rev());
     let mut calls = calls.take_while(|(was, is)| was.program == is.program);
     match calls.find(|(was, is)| words(&was.block) != words(&is.block)) {
@@ -15,7 +15,7 @@ pub(super) fn cause(old: &Where, new: &Where) -> Cause {
 }
 
 /// Blocks that say the same, whatever they call.
-pub(super) fn is_same_block(old: &Where, new: &Where) -> bool {
+pub(super) fn is_same_block(old: &BlockLocation, new: &BlockLocation) -> bool {
     words(&old.block) == words(&new.block)
 }
 
@@ -36,9 +36,9 @@ pub(super) fn words(block: &str) -> String {
 mod tests {
     use super::*;
 
-    fn at(line: u32, block: &str, calls: &[(u32, &str)]) -> Where {
+    fn at(line: u32, block: &str, calls: &[(u32, &str)]) -> BlockLocation {
         let calls = calls.iter().map(|(line, block)| at(*line, block, &[])).collect();
-        Where { program: "O1".to_owned(), line, block: block.to_owned(), calls }
+        BlockLocation { program: "O1".to_owned(), line, block: block.to_owned(), calls }
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::record::Where;
+use super::record::BlockLocation;
 
 /// What a change can be called, in the order of their sections in docs/changes.md.
 pub const CODES: [&str; 42] = [
@@ -61,25 +61,25 @@ pub struct Change {
     /// What is different, with numbers and units; makes sense alone.
     pub message: String,
     /// The first block of the old revision that does it, where there is one.
-    pub old: Option<Where>,
+    pub old: Option<BlockLocation>,
     /// … and of the new one.
-    pub new: Option<Where>,
+    pub new: Option<BlockLocation>,
     /// Of what is gone, the block of the new revision next to where it was.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub near: Option<Where>,
+    #[serde(rename = "near", default, skip_serializing_if = "Option::is_none")]
+    pub anchor: Option<BlockLocation>,
 }
 
 impl Change {
     pub(super) fn new(code: &'static str, message: impl Into<String>) -> Self {
         debug_assert!(CODES.contains(&code), "{code}");
-        Self { code: code.into(), message: message.into(), old: None, new: None, near: None }
+        Self { code: code.into(), message: message.into(), old: None, new: None, anchor: None }
     }
 
-    pub(super) fn once_at(self, place: Option<&Where>) -> Self {
+    pub(super) fn with_old(self, place: Option<&BlockLocation>) -> Self {
         Self { old: place.cloned(), ..self }
     }
 
-    pub(super) fn now_at(self, place: Option<&Where>) -> Self {
+    pub(super) fn with_new(self, place: Option<&BlockLocation>) -> Self {
         Self { new: place.cloned(), ..self }
     }
 }

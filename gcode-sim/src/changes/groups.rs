@@ -1,9 +1,9 @@
 //! Differences that say the same or have one cause, told once with how often.
 use super::cause::{Cause, cause};
 use super::change::Change;
+use super::descriptions::{coordinates, short};
 use super::record::Record;
 use super::steps::{Step, near};
-use super::words::{coordinates, short};
 use crate::motion::{MAX_AXES, Position};
 
 /// Of a mode that is another one at the end as well.
@@ -42,7 +42,7 @@ pub(super) struct Groups<'a> {
 }
 
 /// The steps that something is told of, before and now.
-pub(super) type Sides<'a> = (Option<&'a Step>, Option<&'a Step>);
+pub(super) type StepRefs<'a> = (Option<&'a Step>, Option<&'a Step>);
 
 impl<'a> Groups<'a> {
     pub(super) fn new(old: &'a Record, new: &'a Record, tolerance: f64) -> Self {
@@ -50,7 +50,7 @@ impl<'a> Groups<'a> {
     }
 
     /// One difference more: `what` it is that is different, and how.
-    pub(super) fn tell(&mut self, code: &'static str, what: &'static str, text: String, sides: Sides<'_>) {
+    pub(super) fn add(&mut self, code: &'static str, what: &'static str, text: String, sides: StepRefs<'_>) {
         let place = |step: Option<&Step>| step.map(|step| step.place);
         let places = (place(sides.0), place(sides.1));
         let is_alone = matches!(code, "move-added" | "move-lost");
@@ -68,7 +68,7 @@ impl<'a> Groups<'a> {
 
     /// A move that ends elsewhere by `shift`. One that is there once only has no cause of its own.
     /// Gives the group's number for what is carried on from there.
-    pub(super) fn tell_shift(&mut self, what: &'static str, shift: &Position, sides: Sides<'_>) -> usize {
+    pub(super) fn add_shift(&mut self, what: &'static str, shift: &Position, sides: StepRefs<'_>) -> usize {
         let text = coordinates(shift, &self.old.axes, self.tolerance, true);
         let places = sides.0.zip(sides.1).map(|(old, new)| (old.place, new.place));
         let cause = places.map(|(old, new)| cause(&self.old.places[old], &self.new.places[new]));
@@ -105,7 +105,7 @@ impl<'a> Groups<'a> {
 
     /// The spindle at another speed, whichever way it turns: a tapping cycle turns it back.
     pub(super) fn tell_speed(&mut self, was: f64, is: f64, text: String, (old, new): (&Step, &Step)) {
-        let places = (Some(old.said_at()), Some(new.said_at()));
+        let places = (Some(old.editable_at()), Some(new.editable_at()));
         let is_alike = |group: &&mut Group| {
             group.speeds == Some((was, is)) && (group.text == text || (group.old, group.new) == places)
         };
@@ -126,11 +126,11 @@ impl<'a> Groups<'a> {
     }
 
     /// A move at another feed. Those of one block say the same: of G93 each is another.
-    pub(super) fn tell_feed(&mut self, was: f64, is: f64, (old, new): (&Step, &Step)) {
+    pub(super) fn add_feed(&mut self, was: f64, is: f64, (old, new): (&Step, &Step)) {
         let text = format!("feed F{} instead of F{}", short(is), short(was));
         let factor = is / was;
         let is_alike = |group: &&mut Group| {
-            let is_place = group.old == Some(old.said_at()) && group.new == Some(new.said_at());
+            let is_place = group.old == Some(old.editable_at()) && group.new == Some(new.editable_at());
             group.code == "feed" && (group.text == text || is_place)
         };
         match self.all.iter_mut().find(is_alike) {
@@ -148,12 +148,13 @@ impl<'a> Groups<'a> {
         code: &'static str,
         what: &'static str,
         text: String,
-        (old, new): Sides<'_>,
+        (old, new): StepRefs<'_>,
         factors: Option<(f64, f64)>,
     ) {
         // What is there once only stands in its own block.
         let is_said = code == "feed" || code == "tool" && old.is_some() && new.is_some();
-        let place = |step: Option<&Step>| step.map(|step| if is_said { step.said_at() } else { step.place });
+        let place =
+            |step: Option<&Step>| step.map(|step| if is_said { step.editable_at() } else { step.place });
         let counts = vec![(what, 1)];
         let (old, new) = (place(old), place(new));
         self.all.push(Group {
@@ -230,8 +231,8 @@ impl Group {
             _ => self.counted() + if self.stays { STAYS } else { "" },
         };
         Change::new(self.code, message)
-            .once_at(self.old.and_then(|place| old.places.get(place)))
-            .now_at(self.new.and_then(|place| new.places.get(place)))
+            .with_old(self.old.and_then(|place| old.places.get(place)))
+            .with_new(self.new.and_then(|place| new.places.get(place)))
     }
 
     fn counted(&self) -> String {

@@ -5,14 +5,14 @@ use nalgebra::Vector3;
 
 use super::cause::Cause;
 use super::change::listed;
+use super::descriptions::coordinates;
+use super::pass_changes::PassChange;
 use super::steps::near;
-use super::strayed::Strayed;
-use super::words::coordinates;
 use crate::motion::{Axes, Position};
 
 /// All that is different about one hole.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Aspects {
+pub(super) struct HoleDifference {
     /// Where it begins, mm.
     pub moved: Option<Vector3<f64>>,
     /// Degrees.
@@ -22,10 +22,10 @@ pub(super) struct Aspects {
     /// Its diameter and its tools: what they are called, and in words.
     pub others: Vec<(&'static str, String)>,
     /// Its passes that end elsewhere and not as the hole does.
-    pub strayed: Vec<Strayed>,
+    pub strayed: Vec<PassChange>,
 }
 
-impl Aspects {
+impl HoleDifference {
     /// What the change is called; nothing where nothing is different.
     pub(super) fn code(&self) -> Option<&'static str> {
         let place = self.moved.map(|_| "hole-moved").or(self.tilted.map(|_| "hole-tilted"));
@@ -51,9 +51,9 @@ impl Aspects {
 }
 
 /// A changed hole, by its number in the old run.
-pub(super) struct Changed {
+pub(super) struct ChangedHole {
     pub hole: usize,
-    pub aspects: Aspects,
+    pub aspects: HoleDifference,
     /// The feed that makes the difference, before and now: the finishing one, where that isn't as it was.
     pub feeds: (usize, usize),
     /// How far that feed ends from where it ended, in machine coordinates.
@@ -62,35 +62,36 @@ pub(super) struct Changed {
 }
 
 /// Some of them that are one entry.
-pub(super) struct Group {
+pub(super) struct HoleGroup {
     /// The first is what the group is known by.
-    pub all: Vec<Changed>,
+    pub all: Vec<ChangedHole>,
     text: String,
 }
 
 /// Holes that changed by the same numbers, that the machine makes elsewhere by the same, or that have one cause.
-pub(super) fn groups(changed: Vec<Changed>, axes: &Axes, tolerance: f64) -> Vec<Group> {
-    let mut groups: Vec<Group> = Vec::new();
+pub(super) fn groups(changed: Vec<ChangedHole>, axes: &Axes, tolerance: f64) -> Vec<HoleGroup> {
+    let mut groups: Vec<HoleGroup> = Vec::new();
     for one in changed {
         let text = one.aspects.text(axes, tolerance);
         let alike = groups.iter().position(|group| group.text == text);
         let found = alike.or_else(|| groups.iter().position(|group| group.is_with(&one, tolerance)));
         match found {
             Some(place) => groups[place].all.push(one),
-            None => groups.push(Group { all: vec![one], text }),
+            None => groups.push(HoleGroup { all: vec![one], text }),
         }
     }
     groups
 }
 
-impl Group {
-    fn is_with(&self, other: &Changed, tolerance: f64) -> bool {
+impl HoleGroup {
+    fn is_with(&self, other: &ChangedHole, tolerance: f64) -> bool {
         let first = &self.all[0];
         let is_strayed = !other.aspects.strayed.is_empty();
         let by_the_same = (other.aspects.is_elsewhere() || is_strayed)
             && !near(&other.shift, &Position::default(), tolerance)
             && near(&first.shift, &other.shift, tolerance);
-        let numbers = |one: &Changed| one.aspects.strayed.iter().map(Strayed::pass).collect::<Vec<_>>();
+        let numbers =
+            |one: &ChangedHole| one.aspects.strayed.iter().map(PassChange::pass).collect::<Vec<_>>();
         let is_alike = first.aspects.others == other.aspects.others && numbers(first) == numbers(other);
         is_alike && (by_the_same || first.cause == other.cause)
     }

@@ -3,16 +3,16 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{Point3, Vector3};
 
-use super::align::Link;
+use super::align::StepPair;
 use super::cause::cause;
 use super::change::Change;
-use super::hole_groups::{Aspects, Changed, Group, groups, named, plain, runs};
-use super::order::order;
+use super::hole_groups::{ChangedHole, HoleDifference, HoleGroup, groups, named, plain, runs};
+use super::hole_order::order;
+use super::pass_changes::pass_changes;
 use super::passes::{Passes, in_words, more_or_fewer};
-use super::record::{Record, Where};
+use super::record::{BlockLocation, Record};
 use super::steps::{Step, difference, near};
-use super::strayed::strayed;
-use crate::holes::Found;
+use crate::holes::DrilledHole;
 use crate::motion::Position;
 use crate::part::hole::Hole;
 use crate::source::Span;
@@ -20,10 +20,10 @@ use crate::units::Deg;
 use crate::verify::{Comparison, Tolerances};
 
 /// The changes of holes, which is which, and what of the motion they explain.
-pub(super) struct Compared {
+pub(super) struct HoleChanges {
     pub changes: Vec<Change>,
     pub pairs: Vec<Paired>,
-    pub moved: Explained,
+    pub moved: ExplainedSteps,
 }
 
 /// A hole of one revision and what has become of it in the other; both are counted from 0.
@@ -43,7 +43,7 @@ pub struct Paired {
 
 /// Steps that are different because a hole is: its feeds, by their numbers in either run.
 #[derive(Default)]
-pub(super) struct Explained {
+pub(super) struct ExplainedSteps {
     /// Of holes that are somewhere else now, each with how much deeper its hole is, mm.
     pub shifted: (BTreeMap<usize, f64>, BTreeMap<usize, f64>),
     /// Of holes that are lost, added, or made at another time.
@@ -56,17 +56,17 @@ pub(super) struct Explained {
 pub(super) fn compare(
     old: &Record,
     new: &Record,
-    links: &[Link],
+    links: &[StepPair],
     by_motion: bool,
     tolerance: f64,
-) -> Compared {
+) -> HoleChanges {
     let passes = (Passes::of(old), Passes::of(new));
     let (was, is) = (passes.0.firsts(), passes.1.firsts());
     let mut partner: Vec<Option<usize>> = vec![None; old.holes.len()];
     let mut extra: BTreeSet<usize> = is.iter().copied().collect();
     if !by_motion {
         let wanted: Vec<Hole> = was.iter().map(|hole| old.holes[*hole].hole(nowhere)).collect();
-        let found: Vec<Found> = is.iter().map(|hole| new.holes[*hole].clone()).collect();
+        let found: Vec<DrilledHole> = is.iter().map(|hole| new.holes[*hole].clone()).collect();
         let limits = Tolerances { position: 2.0 * tolerance, depth: tolerance, diameter: tolerance };
         let comparison = Comparison::new(&wanted, &found, limits, None);
         for pair in &comparison.pairs {
@@ -75,15 +75,15 @@ pub(super) fn compare(
         extra = comparison.extra.iter().map(|hole| is[*hole]).collect();
     }
     pair_by_motion(&mut partner, extra, links, &passes);
-    let mut told = Told { old, new, tolerance, passes, moved: Explained::default() };
+    let mut told = HoleComparer { old, new, tolerance, passes, moved: ExplainedSteps::default() };
     let mut changes = told.pairs(&partner);
     changes.extend(told.order(&partner, links));
     changes.extend(told.lost_and_added(&partner));
-    Compared { changes, pairs: told.all(&partner), moved: told.moved }
+    HoleChanges { changes, pairs: told.all(&partner), moved: told.moved }
 }
 
 /// The angle between their axes.
-fn tilt(old: &Found, new: &Found) -> Deg {
+fn tilt(old: &DrilledHole, new: &DrilledHole) -> Deg {
     Deg::atan2(old.axis.cross(&new.axis).norm(), old.axis.dot(&new.axis))
 }
 
@@ -95,12 +95,12 @@ fn nowhere(_: Span) -> (String, u32) {
 fn pair_by_motion(
     partner: &mut [Option<usize>],
     mut extra: BTreeSet<usize>,
-    links: &[Link],
+    links: &[StepPair],
     (old, new): &(Passes, Passes),
 ) {
     let (of_old, of_new) = (hole_of_step(old), hole_of_step(new));
     for link in links {
-        let (Link::Changed(i, j) | Link::Same(i, j)) = link else { continue };
+        let (StepPair::Changed(i, j) | StepPair::Same(i, j)) = link else { continue };
         if let (Some(hole), Some(other)) = (of_old.get(i), of_new.get(j))
             && partner[*hole].is_none()
             && extra.remove(other)
@@ -115,21 +115,21 @@ fn hole_of_step(passes: &Passes) -> BTreeMap<usize, usize> {
     holes.flat_map(|(hole, steps)| steps.iter().map(move |step| (*step, hole))).collect()
 }
 
-struct Told<'a> {
+struct HoleComparer<'a> {
     old: &'a Record,
     new: &'a Record,
     tolerance: f64,
     passes: (Passes, Passes),
-    moved: Explained,
+    moved: ExplainedSteps,
 }
 
-impl Told<'_> {
+impl HoleComparer<'_> {
     /// Holes that are there before and now, those that changed alike or for one reason in one entry.
     fn pairs(&mut self, partner: &[Option<usize>]) -> Vec<Change> {
         let mut changed = Vec::new();
         for (hole, other) in partner.iter().enumerate() {
             let Some(other) = *other else { continue };
-            let apart = Apart::new(&self.old.holes[hole], &self.new.holes[other]);
+            let apart = HoleOffset::new(&self.old.holes[hole], &self.new.holes[other]);
             let aspects = self.aspects(hole, other, &apart);
             if aspects.code().is_none() {
                 continue;
@@ -154,18 +154,18 @@ impl Told<'_> {
             let feeds =
                 std::iter::once(feeds).chain(others).find(|feeds| is_elsewhere(*feeds)).unwrap_or(feeds);
             let [was, is] = self.blocks(feeds);
-            changed.push(Changed { hole, aspects, feeds, shift: way(feeds), cause: cause(was, is) });
+            changed.push(ChangedHole { hole, aspects, feeds, shift: way(feeds), cause: cause(was, is) });
         }
-        let change = |group: Group| {
+        let change = |group: HoleGroup| {
             let message = group.message(&self.old.axes, self.tolerance);
             let [was, is] = self.blocks(group.all[0].feeds);
-            Change::new(group.code(), message).once_at(Some(was)).now_at(Some(is))
+            Change::new(group.code(), message).with_old(Some(was)).with_new(Some(is))
         };
         groups(changed, &self.old.axes, self.tolerance).into_iter().map(change).collect()
     }
 
     /// The blocks of two steps, before and now.
-    fn blocks(&self, (i, j): (usize, usize)) -> [&Where; 2] {
+    fn blocks(&self, (i, j): (usize, usize)) -> [&BlockLocation; 2] {
         [&self.old.places[self.old.steps[i].place], &self.new.places[self.new.steps[j].place]]
     }
 
@@ -188,7 +188,7 @@ impl Told<'_> {
                 continue;
             };
             let (was, is) = (&old.holes[hole], &new.holes[other]);
-            let apart = Apart::new(was, is);
+            let apart = HoleOffset::new(was, is);
             pairs.push(Paired {
                 old: Some(hole),
                 new: Some(other),
@@ -204,10 +204,10 @@ impl Told<'_> {
     }
 
     /// All that is different about one hole.
-    fn aspects(&mut self, hole: usize, other: usize, apart: &Apart) -> Aspects {
+    fn aspects(&mut self, hole: usize, other: usize, apart: &HoleOffset) -> HoleDifference {
         let (old, new) = (&self.old.holes[hole], &self.new.holes[other]);
         if self.old.unfinished.contains(&hole) || self.new.unfinished.contains(&other) {
-            return Aspects::default();
+            return HoleDifference::default();
         }
         let far = |mm: f64| mm.abs() > self.tolerance;
         let mut others = Vec::new();
@@ -238,17 +238,24 @@ impl Told<'_> {
                 others.push(("hole-tool", text));
             }
         }
-        Aspects {
+        HoleDifference {
             moved: far(apart.entry.norm()).then_some(apart.entry),
             tilted: far((apart.bottom - apart.entry).norm()).then(|| tilt(old, new).0),
             deeper: far(apart.deeper).then_some(apart.deeper),
             others,
-            strayed: strayed(self.old, self.new, (hole, other), &self.passes, apart.deeper, self.tolerance),
+            strayed: pass_changes(
+                self.old,
+                self.new,
+                (hole, other),
+                &self.passes,
+                apart.deeper,
+                self.tolerance,
+            ),
         }
     }
 
     /// Holes, or passes of them, made in another order.
-    fn order(&mut self, partner: &[Option<usize>], links: &[Link]) -> Vec<Change> {
+    fn order(&mut self, partner: &[Option<usize>], links: &[StepPair]) -> Vec<Change> {
         let order = order((self.old, self.new), links, &self.passes, partner);
         let (was, is): (Vec<usize>, Vec<usize>) = order.steps.into_iter().unzip();
         self.moved.elsewhen.0.extend(was);
@@ -266,8 +273,8 @@ impl Told<'_> {
             let rapid = self.rapid_to_bottom(run[0]);
             let lost = if rapid.is_some() { "a rapid goes to the bottom where a feed did" } else { "lost" };
             let message = format!("{}: {lost}, {first}{}", named(&run), described(&self.old.holes[run[0]]));
-            let change = Change::new("hole-lost", message).once_at(place(self.old, run[0]));
-            changes.push(change.now_at(rapid.and_then(|step| self.new.places.get(step.place))));
+            let change = Change::new("hole-lost", message).with_old(place(self.old, run[0]));
+            changes.push(change.with_new(rapid.and_then(|step| self.new.places.get(step.place))));
         }
         let known: BTreeSet<usize> = partner.iter().flatten().copied().collect();
         let more: Vec<usize> = of_new.iter().copied().filter(|hole| !known.contains(hole)).collect();
@@ -278,7 +285,7 @@ impl Told<'_> {
                 1 => format!("a hole added: {first}"),
                 n => format!("{n} holes added: the first {first}"),
             };
-            changes.push(Change::new("hole-added", message).now_at(place(self.new, run[0])));
+            changes.push(Change::new("hole-added", message).with_new(place(self.new, run[0])));
         }
         changes
     }
@@ -301,19 +308,19 @@ fn last_step(record: &Record, hole: usize) -> Option<&Step> {
 }
 
 /// The block that finishes a hole.
-fn place(record: &Record, hole: usize) -> Option<&Where> {
+fn place(record: &Record, hole: usize) -> Option<&BlockLocation> {
     record.places.get(last_step(record, hole)?.place)
 }
 
 /// How far the new hole is from the old one where the old one begins and ends.
-struct Apart {
+struct HoleOffset {
     entry: Vector3<f64>,
     bottom: Vector3<f64>,
     deeper: f64,
 }
 
-impl Apart {
-    fn new(old: &Found, new: &Found) -> Self {
+impl HoleOffset {
+    fn new(old: &DrilledHole, new: &DrilledHole) -> Self {
         let (bottom, deepest) = (old.bottom(), new.bottom());
         let slope = new.axis.dot(&old.axis);
         // Where the new axis crosses the plane through `p`, square to the old axis; axes that are square to one
@@ -332,7 +339,7 @@ impl Apart {
     }
 }
 
-fn described(found: &Found) -> String {
+fn described(found: &DrilledHole) -> String {
     let [x, y, z] = [found.entry.x, found.entry.y, found.entry.z].map(plain);
     let diameter = found.diameter.map(|d| format!("Φ{d} ")).unwrap_or_default();
     format!("{diameter}at {x:.3} {y:.3} {z:.3}, fed {:.3} mm", found.depth)

@@ -1,29 +1,29 @@
 //! Moves, feeds, tools, spindle and stops that are different and that no changed hole explains.
 use std::collections::BTreeSet;
 
-use super::align::Link;
+use super::align::StepPair;
 use super::arcs::reshaped;
 use super::cause::is_same_block;
 use super::change::Change;
-use super::conditions::{Conditions, Strokes};
-use super::displaced::Displaced;
-use super::elsewhen::{shifted, with_runs};
-use super::groups::{Groups, Sides};
-use super::holes::Explained;
-use super::left::mode;
+use super::condition_changes::{Conditions, Strokes};
+use super::descriptions::{code, describe, point};
+use super::end_state::mode;
+use super::groups::{Groups, StepRefs};
+use super::holes::ExplainedSteps;
 use super::record::Record;
-use super::repeated::{is_speed_alone, repeated, says_nothing};
-use super::returns::returns;
-use super::set_up::{relied_on, set_up};
-use super::steps::{Kind, Quiet, Step, difference, goes_with, near};
-use super::together::{with_code, with_moves};
-use super::words::{code, described, point};
+use super::redundant_commands::{is_redundant, is_speed_alone, redundant_commands};
+use super::reordered_cuts::ReorderedCuts;
+use super::return_rapids::find_return_rapids;
+use super::same_block::{steps_with_m_code, steps_with_moves};
+use super::shifted_events::{shifted_events, take_with_runs};
+use super::steps::{Step, StepKind, UnsimulatedKind, difference, goes_with, near};
+use super::tool_setup::{relied_on_changes, set_up};
 use crate::motion::{Axes, MAX_AXES, Position};
 
 pub(super) fn compare(
     (old, new): (&Record, &Record),
-    links: &[Link],
-    (explained, displaced): (&Explained, &Displaced<'_>),
+    links: &[StepPair],
+    (explained, displaced): (&ExplainedSteps, &ReorderedCuts<'_>),
     tolerance: f64,
     is_one_edit: bool,
 ) -> (Vec<Change>, BTreeSet<u32>) {
@@ -41,17 +41,17 @@ pub(super) fn compare(
         records,
     };
     for mut region in regions(links, &old.steps, &new.steps) {
-        region.retain(|(_, link)| !displaced.has(link));
+        region.retain(|(_, link)| !displaced.contains(link));
         motion.region(&region, links, explained);
     }
-    let mut shifted = shifted(links, (&old.steps, &new.steps), tolerance);
+    let mut shifted = shifted_events(links, (&old.steps, &new.steps), tolerance);
     let mut set_up = set_up(links, explained, (&old.steps, &new.steps));
-    set_up.extend(with_runs(&mut shifted, links, displaced));
+    set_up.extend(take_with_runs(&mut shifted, links, displaced));
     let untold = |k| set_up.contains(&k) && !shifted.contains_key(&k);
-    let relied = relied_on(links, untold, records, tolerance);
-    set_up.extend(with_code(links, &old.steps, &new.steps));
-    set_up.extend(with_moves(links, &old.steps, &new.steps));
-    set_up.extend(repeated(links, &old.steps, &new.steps));
+    let relied = relied_on_changes(links, untold, records, tolerance);
+    set_up.extend(steps_with_m_code(links, &old.steps, &new.steps));
+    set_up.extend(steps_with_moves(links, &old.steps, &new.steps));
+    set_up.extend(redundant_commands(links, &old.steps, &new.steps));
     for (k, link) in links.iter().enumerate() {
         match shifted.get(&k) {
             None if set_up.contains(&k) => {}
@@ -60,7 +60,7 @@ pub(super) fn compare(
             // Beside the rapids of another level the same block stands at another time, and so does the spindle's
             // turn in another cycle.
             Some(Some((i, j, _))) if motion.is_of_strokes(*i, *j) => {}
-            Some(Some((i, j, _))) if says_nothing(&old.steps, *i) && says_nothing(&new.steps, *j) => {}
+            Some(Some((i, j, _))) if is_redundant(&old.steps, *i) && is_redundant(&new.steps, *j) => {}
             Some(Some((i, j, word))) => motion.shifted(*i, *j, word),
         }
     }
@@ -87,14 +87,14 @@ const KINDS: [&str; 2] = ["a feed where a rapid was", "a rapid where a feed was"
 
 /// Moves next to one another that are all different, each with its place among the links; other steps between them
 /// don't part them.
-fn regions(links: &[Link], old: &[Step], new: &[Step]) -> Vec<Vec<(usize, Link)>> {
+fn regions(links: &[StepPair], old: &[Step], new: &[Step]) -> Vec<Vec<(usize, StepPair)>> {
     let mut regions = vec![Vec::new()];
     for (k, link) in links.iter().enumerate() {
         let (i, j) = link.sides();
         let is_move = i.map(|i| &old[i]).or(j.map(|j| &new[j])).is_some_and(Step::is_move);
         match (is_move, link) {
             (false, _) => {}
-            (true, Link::Same(..)) => regions.push(Vec::new()),
+            (true, StepPair::Same(..)) => regions.push(Vec::new()),
             (true, _) => regions.last_mut().into_iter().for_each(|region| region.push((k, *link))),
         }
     }
@@ -106,10 +106,10 @@ fn regions(links: &[Link], old: &[Step], new: &[Step]) -> Vec<Vec<(usize, Link)>
 const MOST_WAYS: usize = 64;
 
 /// By how much moves end elsewhere.
-fn elsewhere(links: &[Link], old: &[Step], new: &[Step], tolerance: f64) -> Vec<Position> {
+fn elsewhere(links: &[StepPair], old: &[Step], new: &[Step], tolerance: f64) -> Vec<Position> {
     let mut ways: Vec<Position> = Vec::new();
     for link in links {
-        let Link::Changed(i, j) = *link else { continue };
+        let StepPair::Changed(i, j) = *link else { continue };
         let way = difference(&new[j].to, &old[i].to);
         let is_known = |known: &Position| near(known, &way, tolerance);
         if old[i].is_move() && !is_known(&Position::default()) && !ways.iter().any(is_known) {
@@ -125,12 +125,12 @@ fn elsewhere(links: &[Link], old: &[Step], new: &[Step], tolerance: f64) -> Vec<
 /// A feed of a changed hole.
 #[derive(Clone, Copy)]
 pub(super) struct Feed {
-    link: Link,
+    link: StepPair,
     /// How much deeper the hole is, mm; `None` for one that is lost, added or made at another time.
     pub deeper: Option<f64>,
 }
 
-pub(super) fn feed_of(link: &Link, explained: &Explained) -> Option<Feed> {
+pub(super) fn feed_of(link: &StepPair, explained: &ExplainedSteps) -> Option<Feed> {
     let (old, new) = link.sides();
     let (shifted, elsewhen) = (&explained.shifted, &explained.elsewhen);
     let deeper = old.and_then(|i| shifted.0.get(&i)).or_else(|| new.and_then(|j| shifted.1.get(&j)));
@@ -145,8 +145,8 @@ pub(super) fn feed_of(link: &Link, explained: &Explained) -> Option<Feed> {
 
 /// For every link the last feed so far.
 fn nearest<'a>(
-    links: impl Iterator<Item = &'a Link>,
-    feed: impl Fn(&Link) -> Option<Feed>,
+    links: impl Iterator<Item = &'a StepPair>,
+    feed: impl Fn(&StepPair) -> Option<Feed>,
 ) -> Vec<Option<Feed>> {
     let mut last = None;
     links
@@ -180,19 +180,19 @@ fn is_carried(old: &Step, new: &Step, before: &Position, tolerance: f64) -> bool
                 && (shift[axis] - before[axis]).abs() <= tolerance
     };
     std::mem::discriminant(&old.kind) == std::mem::discriminant(&new.kind)
-        && !matches!(old.kind, Kind::Arc(..))
+        && !matches!(old.kind, StepKind::Arc(..))
         && (0..MAX_AXES).all(is_from_before)
 }
 
 /// The old revision's last move before a link.
-fn moves_before(links: &[Link], at: usize, old: &[Step]) -> Option<usize> {
+fn moves_before(links: &[StepPair], at: usize, old: &[Step]) -> Option<usize> {
     links[..at].iter().rev().filter_map(|link| link.sides().0).find(|i| old[*i].is_move())
 }
 
 impl<'a> Motion<'a> {
     /// Moves that are different, but for those of changed holes: the way there and back is part of the change.
-    fn region(&mut self, placed: &[(usize, Link)], links: &[Link], explained: &Explained) {
-        let region: Vec<Link> = placed.iter().map(|(_, link)| *link).collect();
+    fn region(&mut self, placed: &[(usize, StepPair)], links: &[StepPair], explained: &ExplainedSteps) {
+        let region: Vec<StepPair> = placed.iter().map(|(_, link)| *link).collect();
         let region = &region[..];
         // For every move the nearest feed of a changed hole before and behind it.
         let before = nearest(region.iter(), |link| feed_of(link, explained));
@@ -212,7 +212,7 @@ impl<'a> Motion<'a> {
         let parts: Vec<bool> = (0..region.len()).map(is_part).collect();
         let shifts = self.shifts(region, &parts);
         let ways: Vec<Position> = shifts.iter().map(|(way, _)| *way).collect();
-        let returns = returns(placed, links, (self.old, self.new), &ways, self.tolerance);
+        let returns = find_return_rapids(placed, links, (self.old, self.new), &ways, self.tolerance);
         // The last move that ends elsewhere: by how much, and where it is told; nowhere if it goes with its hole.
         let mut last: Option<(Position, Option<usize>)> = None;
         for (k, (link, is_back)) in region.iter().zip(returns).enumerate() {
@@ -221,7 +221,7 @@ impl<'a> Motion<'a> {
                 continue;
             }
             match *link {
-                Link::Changed(i, j) => {
+                StepPair::Changed(i, j) => {
                     let (old, new) = (&self.old[i], &self.new[j]);
                     let shift = difference(&new.to, &old.to);
                     let carried = last.filter(|(way, _)| is_carried(old, new, way, self.tolerance));
@@ -236,13 +236,13 @@ impl<'a> Motion<'a> {
                     };
                     last = Some((shift, told));
                 }
-                Link::Lost(i) if !(is_part && gone) => {
+                StepPair::Lost(i) if !(is_part && gone) => {
                     let step = &self.old[i];
                     let text =
                         format!("{} to {} is no longer there", step.kind.one(), point(step, self.axes));
                     self.alone(&shifts, "move-lost", text, (Some(step), None), false);
                 }
-                Link::Added(j) if !(is_part && gone) => {
+                StepPair::Added(j) if !(is_part && gone) => {
                     let step = &self.new[j];
                     let text = format!("{} to {} is new", step.kind.one(), point(step, self.axes));
                     let stand = moves_before(links, placed[k].0, self.old).map(|i| &self.old[i]);
@@ -262,7 +262,7 @@ impl<'a> Motion<'a> {
         shifts: &[(Position, bool)],
         code: &'static str,
         text: String,
-        sides: Sides<'a>,
+        sides: StepRefs<'a>,
         begins: bool,
     ) {
         let (Some(step), is_new) = (sides.0.or(sides.1), sides.1.is_some()) else { return };
@@ -271,21 +271,21 @@ impl<'a> Motion<'a> {
         let back = shifts.iter().any(|(shift, _)| self.near(&opposite(&way), shift));
         match with {
             Some((shift, false)) => {
-                self.groups.tell_shift(step.kind.name(), shift, sides);
+                self.groups.add_shift(step.kind.name(), shift, sides);
             }
             None if begins && self.elsewhere.iter().any(|shift| self.near(shift, &way)) => {
-                self.groups.tell_shift(step.kind.name(), &way, sides);
+                self.groups.add_shift(step.kind.name(), &way, sides);
             }
-            None if !back => self.groups.tell(code, "move", text, sides),
+            None if !back => self.groups.add(code, "move", text, sides),
             _ => {}
         }
     }
 
     /// How far moves of a region end from where they ended, and whether that is because a hole is moved.
-    fn shifts(&self, region: &[Link], parts: &[bool]) -> Vec<(Position, bool)> {
+    fn shifts(&self, region: &[StepPair], parts: &[bool]) -> Vec<(Position, bool)> {
         let mut shifts: Vec<(Position, bool)> = Vec::new();
         for (link, is_part) in region.iter().zip(parts) {
-            let Link::Changed(i, j) = link else { continue };
+            let StepPair::Changed(i, j) = link else { continue };
             let shift = difference(&self.new[*j].to, &self.old[*i].to);
             let is_none = self.near(&shift, &Position::default());
             match shifts.iter_mut().find(|(known, _)| self.near(known, &shift)) {
@@ -303,15 +303,15 @@ impl<'a> Motion<'a> {
 
     /// Whether a move belongs to the hole that `feed` cuts. Of a hole that is there before and now, it does what it
     /// did, seen from the hole; of a lost or added one it is a rapid next to it, or a feed on the same line.
-    fn is_part_of_hole(&self, link: &Link, feed: &Feed) -> bool {
-        if let (Link::Changed(i, j), Some(deeper)) = (*link, feed.deeper)
+    fn is_part_of_hole(&self, link: &StepPair, feed: &Feed) -> bool {
+        if let (StepPair::Changed(i, j), Some(deeper)) = (*link, feed.deeper)
             && let [Some(before), Some(now)] = self.sides(&feed.link)
         {
             return goes_with((&self.old[i], before), (&self.new[j], now), deeper, self.tolerance);
         }
         self.sides(link).into_iter().flatten().all(|step| {
             let feeds = self.sides(&feed.link).into_iter().flatten();
-            step.kind == Kind::Rapid || feeds.into_iter().any(|feed| step.is_on_line_of(feed))
+            step.kind == StepKind::Rapid || feeds.into_iter().any(|feed| step.is_on_line_of(feed))
         })
     }
 
@@ -320,15 +320,16 @@ impl<'a> Motion<'a> {
         let (old, new) = (self.old[i].place, self.new[j].place);
         let is_same_block = || is_same_block(&self.records.0.places[old], &self.records.1.places[new]);
         self.strokes.is_any()
-            && (is_same_block() || self.strokes.explain(&Link::Changed(i, j), self.records.0, self.records.1))
+            && (is_same_block()
+                || self.strokes.explain(&StepPair::Changed(i, j), self.records.0, self.records.1))
     }
 
     /// Whether a move that is there once only is on the line of a hole that is deeper now or less deep, made by its
     /// block.
-    fn is_peck_of(&self, link: &Link, feed: &Feed) -> bool {
+    fn is_peck_of(&self, link: &StepPair, feed: &Feed) -> bool {
         let alone = match link {
-            Link::Lost(_) | Link::Added(_) => self.sides(link),
-            Link::Same(..) | Link::Changed(..) => return false,
+            StepPair::Lost(_) | StepPair::Added(_) => self.sides(link),
+            StepPair::Same(..) | StepPair::Changed(..) => return false,
         };
         let is_deeper = feed.deeper.is_some_and(|mm| mm.abs() > self.tolerance);
         let mut both = alone.into_iter().zip(self.sides(&feed.link));
@@ -340,7 +341,7 @@ impl<'a> Motion<'a> {
     }
 
     /// The steps of a link, old and new.
-    fn sides(&self, link: &Link) -> [Option<&'a Step>; 2] {
+    fn sides(&self, link: &StepPair) -> [Option<&'a Step>; 2] {
         let (i, j) = link.sides();
         [i.map(|i| &self.old[i]), j.map(|j| &self.new[j])]
     }
@@ -350,24 +351,24 @@ impl<'a> Motion<'a> {
         let sides = (Some(old), Some(new));
         let (was, is) = (old.kind.one(), new.kind.one());
         if was != is {
-            self.groups.tell("move-kind", "move", format!("{is} where {was} was"), sides);
+            self.groups.add("move-kind", "move", format!("{is} where {was} was"), sides);
         }
         let way = difference(&new.to, &old.to);
         let is_moved = !self.near(&way, &Position::default());
-        if let (Kind::Arc(a, _), Kind::Arc(b, _)) = (&old.kind, &new.kind) {
+        if let (StepKind::Arc(a, _), StepKind::Arc(b, _)) = (&old.kind, &new.kind) {
             let is_moved = is_moved || !self.near(&new.from, &old.from);
             if let Some(text) = reshaped((old, a), (new, b), is_moved, self.tolerance) {
-                self.groups.tell("move-arc", "arc", text, sides);
+                self.groups.add("move-arc", "arc", text, sides);
             }
         }
-        is_moved.then(|| self.groups.tell_shift(new.kind.name(), &way, sides))
+        is_moved.then(|| self.groups.add_shift(new.kind.name(), &way, sides))
     }
 
     /// Feeds, and everything that is no move.
-    fn step(&mut self, link: Link, explained: &Explained) {
+    fn step(&mut self, link: StepPair, explained: &ExplainedSteps) {
         let is_stroke = self.strokes.explain(&link, self.records.0, self.records.1);
         match link {
-            Link::Same(i, j) | Link::Changed(i, j) => {
+            StepPair::Same(i, j) | StepPair::Changed(i, j) => {
                 let (old, new) = (&self.old[i], &self.new[j]);
                 if let (Some(was), Some(is)) = (old.kind.rate(), new.kind.rate())
                     && (was - is).abs() > 1e-6 * was.abs().max(is.abs())
@@ -376,39 +377,39 @@ impl<'a> Motion<'a> {
                     let (before, now) = (old.length() / was, new.length() / is);
                     let is_way = (old.length() - new.length()).abs() > 1e-9;
                     if !(is_way && (before - now).abs() <= 1e-5 * before) {
-                        self.groups.tell_feed(was, is, (old, new));
+                        self.groups.add_feed(was, is, (old, new));
                     }
                 }
-                if matches!(link, Link::Changed(..)) && !is_stroke {
+                if matches!(link, StepPair::Changed(..)) && !is_stroke {
                     self.swapped(old, new, explained);
                 }
             }
-            Link::Lost(_) | Link::Added(_) if is_stroke => {}
-            Link::Lost(i) if !self.old[i].is_move() => {
+            StepPair::Lost(_) | StepPair::Added(_) if is_stroke => {}
+            StepPair::Lost(i) if !self.old[i].is_move() => {
                 let step = &self.old[i];
                 if is_told_of_holes((Some(&step.kind), None), explained) {
                     return;
                 }
                 let text = format!("{} is no longer there", self.called(self.old, i));
-                self.groups.tell(code(&step.kind), step.kind.name(), text, (Some(step), None));
+                self.groups.add(code(&step.kind), step.kind.name(), text, (Some(step), None));
             }
-            Link::Added(j) if !self.new[j].is_move() => {
+            StepPair::Added(j) if !self.new[j].is_move() => {
                 let step = &self.new[j];
                 if is_told_of_holes((None, Some(&step.kind)), explained) {
                     return;
                 }
                 let text = format!("{} is new", self.called(self.new, j));
-                self.groups.tell(code(&step.kind), step.kind.name(), text, (None, Some(step)));
+                self.groups.add(code(&step.kind), step.kind.name(), text, (None, Some(step)));
             }
-            Link::Lost(_) | Link::Added(_) => {}
+            StepPair::Lost(_) | StepPair::Added(_) => {}
         }
     }
 
     /// What a step that is there once only says: where the spindle turns already, its speed.
     fn called(&self, steps: &[Step], step: usize) -> String {
         match steps[step].kind {
-            Kind::Spindle(_, speed) if is_speed_alone(steps, step) => format!("S{speed}"),
-            ref kind => described(kind, self.axes),
+            StepKind::Spindle(_, speed) if is_speed_alone(steps, step) => format!("S{speed}"),
+            ref kind => describe(kind, self.axes),
         }
     }
 
@@ -416,19 +417,19 @@ impl<'a> Motion<'a> {
     fn shifted(&mut self, i: usize, j: usize, word: &str) {
         let (old, new) = (&self.old[i], &self.new[j]);
         let text = format!("{} comes {word} than before", self.called(self.old, i));
-        self.groups.tell(code(&old.kind), old.kind.name(), text, (Some(old), Some(new)));
+        self.groups.add(code(&old.kind), old.kind.name(), text, (Some(old), Some(new)));
     }
 
     /// The same kind of step with other values.
-    fn swapped(&mut self, old: &'a Step, new: &'a Step, explained: &Explained) {
+    fn swapped(&mut self, old: &'a Step, new: &'a Step, explained: &ExplainedSteps) {
         if !old.is_move() && !is_told_of_holes((Some(&old.kind), Some(&new.kind)), explained) {
             let text =
-                format!("{} instead of {}", described(&new.kind, self.axes), described(&old.kind, self.axes));
+                format!("{} instead of {}", describe(&new.kind, self.axes), describe(&old.kind, self.axes));
             match (&old.kind, &new.kind) {
-                (Kind::Spindle(was, a), Kind::Spindle(is, b)) if was == is => {
+                (StepKind::Spindle(was, a), StepKind::Spindle(is, b)) if was == is => {
                     self.groups.tell_speed(*a, *b, text, (old, new));
                 }
-                _ => self.groups.tell(code(&old.kind), old.kind.name(), text, (Some(old), Some(new))),
+                _ => self.groups.add(code(&old.kind), old.kind.name(), text, (Some(old), Some(new))),
             }
         }
     }
@@ -440,13 +441,13 @@ fn opposite(way: &Position) -> Position {
 
 /// Entries about holes that are made by another tool name what is put in now and before. A change that is lost leaves
 /// another tool in the spindle, and its T may stay.
-fn is_told_of_holes((old, new): (Option<&Kind>, Option<&Kind>), explained: &Explained) -> bool {
-    let is_call = |kind: Option<&Kind>| matches!(kind, Some(Kind::Silent(Quiet::Tool, _)));
+fn is_told_of_holes((old, new): (Option<&StepKind>, Option<&StepKind>), explained: &ExplainedSteps) -> bool {
+    let is_call = |kind: Option<&StepKind>| matches!(kind, Some(StepKind::Silent(UnsimulatedKind::Tool, _)));
     let told = |is: &dyn Fn(&(u32, u32)) -> bool| explained.tools.iter().any(is);
     match (old, new) {
-        (Some(Kind::Tool(was)), Some(Kind::Tool(is))) => explained.tools.contains(&(*was, *is)),
-        (Some(Kind::Tool(was)), _) => told(&|(before, _)| before == was),
-        (_, Some(Kind::Tool(is))) => told(&|(_, now)| now == is),
+        (Some(StepKind::Tool(was)), Some(StepKind::Tool(is))) => explained.tools.contains(&(*was, *is)),
+        (Some(StepKind::Tool(was)), _) => told(&|(before, _)| before == was),
+        (_, Some(StepKind::Tool(is))) => told(&|(_, now)| now == is),
         _ => (is_call(old) || is_call(new)) && !explained.tools.is_empty(),
     }
 }

@@ -3,7 +3,7 @@ use std::collections::BTreeSet;
 
 use super::align::common;
 use super::record::Record;
-use super::steps::Kind;
+use super::steps::StepKind;
 
 /// What makes each hole of a record; nothing for one that only makes another one again.
 pub(super) struct Passes {
@@ -19,7 +19,7 @@ pub(super) struct Passes {
 
 impl Passes {
     pub(super) fn of(record: &Record) -> Self {
-        let first: Vec<usize> = record.holes.iter().map(|hole| hole.first).collect();
+        let first: Vec<usize> = record.holes.iter().map(|hole| hole.first_on_line).collect();
         let mut steps = vec![Vec::new(); record.holes.len()];
         let mut again = vec![Vec::new(); record.holes.len()];
         for (hole, feeds) in record.feeds.iter().enumerate() {
@@ -30,7 +30,7 @@ impl Passes {
         }
         steps.iter_mut().for_each(|steps| steps.sort_unstable());
         let in_spindle = record.steps.iter().scan(None, |tool, step| {
-            if let Kind::Tool(number) = step.kind {
+            if let StepKind::Tool(number) = step.kind {
                 *tool = Some(number);
             }
             Some(*tool)

@@ -3,11 +3,11 @@ use std::collections::BTreeSet;
 
 use nalgebra::Point3;
 
-use super::record::{Record, Where};
-use super::steps::{Kind, Step};
-use crate::machine::path::Travel;
+use super::record::{BlockLocation, Record};
+use super::steps::{Step, StepKind};
+use crate::machine::path::AxisMotion;
 use crate::machine::{HeadMessage, Machine, Setup};
-use crate::motion::{Arc2, MAX_AXES, Position, StopKind};
+use crate::motion::{MAX_AXES, PlanarArc, Position, StopKind};
 
 /// A curved way strays from the chords it is drawn with by no more than this, mm.
 const CHORD: f64 = 0.05;
@@ -31,7 +31,7 @@ pub struct Leg {
 
 impl Record {
     /// The blocks that [`Leg::place`] counts.
-    pub fn places(&self) -> &[Where] {
+    pub fn places(&self) -> &[BlockLocation] {
         &self.places
     }
 
@@ -52,7 +52,7 @@ impl Record {
             let to = step.at;
             if step.is_move() {
                 let arc = match &step.kind {
-                    Kind::Arc(arc, _) => Some(arc),
+                    StepKind::Arc(arc, _) => Some(arc),
                     _ => None,
                 };
                 let way = way(machine, &setup, &from, &to, arc);
@@ -80,11 +80,11 @@ fn is_back(before: &[Point3<f64>], way: &[Point3<f64>]) -> bool {
 }
 
 /// What other than an axis changes where the tool is.
-fn set_up(setup: &mut Setup, kind: &Kind) {
+fn set_up(setup: &mut Setup, kind: &StepKind) {
     match kind {
-        Kind::Tool(number) => setup.tool = Some(*number),
-        Kind::Length(offset) => setup.offset = *offset,
-        Kind::Stop(StopKind::Message, text, named) => {
+        StepKind::Tool(number) => setup.tool = Some(*number),
+        StepKind::Length(offset) => setup.offset = *offset,
+        StepKind::Stop(StopKind::Message, text, named) => {
             if let HeadMessage::Angle(angle) = HeadMessage::of(text, named) {
                 setup.head_angle = Some(angle);
             }
@@ -98,9 +98,9 @@ fn way(
     setup: &Setup,
     from: &Position,
     to: &Position,
-    arc: Option<&Arc2>,
+    arc: Option<&PlanarArc>,
 ) -> Vec<Point3<f64>> {
-    let travel = Travel { from, to, arc };
+    let travel = AxisMotion { from, to, arc };
     let Some(wheel) = &machine.wheel else {
         let mut points = Vec::new();
         machine.follow(&travel, setup, CHORD, |pose| points.push(pose.tip));

@@ -6,14 +6,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::begin::Begun;
-use super::in_force::Condition;
-use super::recorder::{Done, End, MOST_STEPS, Recorder, Shared};
-use super::steps::{Kind, Step};
+use super::initial_commands::FirstCommand;
+use super::modal_conditions::ModalConditions;
+use super::recorder::{EndCause, ExecutedBlocks, MOST_STEPS, Recorder, SharedRecorder};
+use super::steps::{Step, StepKind};
 use crate::diag::{Diagnostic, Severity};
-use crate::exec::{Control, Outcome, Remainder, RemainderKind, Watcher, mode_name};
-use crate::holes::Found;
-use crate::motion::{Axes, Calls, MAX_AXES, Place, Position};
+use crate::exec::{Control, Observer, Outcome, ResidualKind, ResidualValue, mode_name};
+use crate::holes::DrilledHole;
+use crate::motion::{Axes, Backtrace, CallChain, MAX_AXES, Position};
 use crate::part::surface::Surface;
 use crate::program::{Library, Program};
 use crate::session::{self, Request, Run, SessionError, Simulation};
@@ -25,20 +25,20 @@ pub struct Record {
     pub(super) axes: Axes,
     pub(super) steps: Vec<Step>,
     /// In the order in which they are begun.
-    pub(super) holes: Vec<Found>,
+    pub(super) holes: Vec<DrilledHole>,
     /// The steps that cut each hole, the finishing one last.
     pub(super) feeds: Vec<Vec<usize>>,
     /// Holes that a stop leaves unfinished: their depth and their tools aren't known.
     pub(super) unfinished: BTreeSet<usize>,
     /// The blocks that the steps come from: [`Step::place`] counts them.
-    pub(super) places: Vec<Where>,
-    /// What is in force while steps are made: [`Step::under`] counts them.
-    pub(super) conditions: Vec<Condition>,
+    pub(super) places: Vec<BlockLocation>,
+    /// What is in force while steps are made: [`Step::condition`] counts them.
+    pub(super) conditions: Vec<ModalConditions>,
     /// What the program commands, each at its first time; `None` where nobody has written that down.
-    pub(super) begun: Option<Vec<Begun>>,
+    pub(super) begun: Option<Vec<FirstCommand>>,
     /// The main program's name as a control shows it.
     pub(super) program: Option<String>,
-    pub(super) ending: Ending,
+    pub(super) ending: EndState,
     /// What was read; nothing of what was read from a file.
     pub(super) sources: Option<Sources>,
     pub totals: Totals,
@@ -47,7 +47,7 @@ pub struct Record {
 /// A block as people find it, and the calls that led to it, innermost first.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Where {
+pub struct BlockLocation {
     pub program: String,
     pub line: u32,
     pub block: String,
@@ -68,29 +68,29 @@ pub struct Totals {
 /// How a run ended and what it leaves behind.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Ending {
+pub(super) struct EndState {
     /// `end`, `alarm` or `limit`.
     pub outcome: String,
     /// In words that two revisions are compared by.
     pub words: String,
     /// The block that ended or stopped it; of one without an end the block that goes back.
-    pub stopped: Option<Where>,
+    pub stopped: Option<BlockLocation>,
     /// The lines of DPRNT and BPRNT; bytes that are no text as `\xNN`.
     pub output: Vec<String>,
     /// What the next program finds, by name: all that isn't vacant or 0.
-    pub left: BTreeMap<String, Left>,
+    pub left: BTreeMap<String, ResidualEntry>,
 }
 
 /// A value that outlives the run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Left {
+pub(super) struct ResidualEntry {
     /// What a change of it is called.
     pub code: String,
     pub value: f64,
     /// The block that has put a mode in force, or has written the value last.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub place: Option<Where>,
+    pub place: Option<BlockLocation>,
 }
 
 /// A run with its record.
@@ -98,7 +98,7 @@ pub(super) struct Left {
 pub struct Revision {
     pub simulation: Simulation,
     pub record: Record,
-    pub(super) done: Done,
+    pub(super) done: ExecutedBlocks,
 }
 
 impl Revision {
@@ -109,19 +109,20 @@ impl Revision {
         library: &mut impl Library,
         surface: Option<Surface>,
     ) -> Result<Self, SessionError> {
-        Self::watched(request, library, surface, &mut ())
+        Self::observed(request, library, surface, &mut ())
     }
 
     /// As [`Revision::of`], with somebody who looks on from block to block.
-    pub fn watched(
+    pub fn observed(
         request: &Request,
         library: &mut impl Library,
         surface: Option<Surface>,
-        watcher: &mut impl Watcher,
+        watcher: &mut impl Observer,
     ) -> Result<Self, SessionError> {
         let recorder = RefCell::new(Recorder::default());
-        let (mut told, mut beside) = (Shared(&recorder), Beside(Shared(&recorder), watcher));
-        let mut simulation = session::simulate_beside(request, library, surface, &mut told, &mut beside)?;
+        let (mut told, mut beside) =
+            (SharedRecorder(&recorder), ObserverPair(SharedRecorder(&recorder), watcher));
+        let mut simulation = session::simulate_observed(request, library, surface, &mut told, &mut beside)?;
         let mut recorder = recorder.into_inner();
         if recorder.too_many {
             let message = format!("more than {MOST_STEPS} moves: those behind them aren't compared");
@@ -132,7 +133,7 @@ impl Revision {
         Ok(Self { simulation, record, done })
     }
 
-    /// The files of the programs, by the names that [`Where`] gives them; those that stand for one file only.
+    /// The files of the programs, by the names that [`BlockLocation`] gives them; those that stand for one file only.
     pub fn files(&self) -> BTreeMap<String, String> {
         let memory = self.simulation.run.control.memory();
         let mut files: BTreeMap<String, Option<String>> = BTreeMap::new();
@@ -158,17 +159,17 @@ impl Revision {
 }
 
 /// Two that look on.
-struct Beside<A, B>(A, B);
+struct ObserverPair<A, B>(A, B);
 
-impl<A: Watcher, B: Watcher> Watcher for Beside<A, B> {
-    fn before(&mut self, control: &mut Control) {
-        self.0.before(control);
-        self.1.before(control);
+impl<A: Observer, B: Observer> Observer for ObserverPair<A, B> {
+    fn before_block(&mut self, control: &mut Control) {
+        self.0.before_block(control);
+        self.1.before_block(control);
     }
 
-    fn after(&mut self, control: &Control) {
-        self.0.after(control);
-        self.1.after(control);
+    fn after_block(&mut self, control: &Control) {
+        self.0.after_block(control);
+        self.1.after_block(control);
     }
 }
 
@@ -178,20 +179,20 @@ fn record(simulation: &Simulation, mut recorder: Recorder) -> Record {
     let feeds = feeds(&recorder, &holes);
     let Recorder { mut steps, places, mut conditions, mut set, assigned, written, begun, last, end, .. } =
         recorder;
-    let mut begun: Vec<Begun> = begun.into_values().collect();
+    let mut begun: Vec<FirstCommand> = begun.into_values().collect();
     if conditions.is_empty() {
-        conditions.push(Condition::default());
+        conditions.push(ModalConditions::default());
     }
     let words = conditions.iter_mut().flat_map(|condition| &mut condition.0);
     let named = words.filter_map(|word| word.place.as_mut()).chain(set.values_mut());
     let named = named.chain(begun.iter_mut().map(|begun| &mut begun.place));
-    let of_steps = steps.iter_mut().flat_map(|step| std::iter::once(&mut step.place).chain(&mut step.said));
+    let of_steps = steps.iter_mut().flat_map(|step| std::iter::once(&mut step.place).chain(&mut step.set_by));
     let places = resolve(run, &places, of_steps.chain(named));
     let modes = set.iter().map(|(group, place)| (mode_name(*group), places[*place].clone()));
-    let at = |place: &Place| Where::of(run, place);
+    let at = |place: &Backtrace| BlockLocation::of(run, place);
     let variables = assigned.iter().map(|(number, place)| (format!("#{number}"), at(place)));
     let tables = written.iter().map(|(name, place)| (name.clone(), at(place)));
-    let by: BTreeMap<String, Where> = modes.chain(variables).chain(tables).collect();
+    let by: BTreeMap<String, BlockLocation> = modes.chain(variables).chain(tables).collect();
     Record {
         axes: run.control.settings().axes.clone(),
         totals: Totals {
@@ -214,15 +215,15 @@ fn record(simulation: &Simulation, mut recorder: Recorder) -> Record {
 }
 
 /// A pass remembers its block and where the axes stood at its end; that is its step.
-fn feeds(recorder: &Recorder, holes: &[Found]) -> Vec<Vec<usize>> {
+fn feeds(recorder: &Recorder, holes: &[DrilledHole]) -> Vec<Vec<usize>> {
     let key = |block: Span, at: &Position| (block.source, block.start, at.0.map(f64::to_bits));
     let mut steps: BTreeMap<(_, u32, [u64; MAX_AXES]), Vec<usize>> = BTreeMap::new();
     for (index, step) in recorder.steps.iter().enumerate().rev().filter(|(_, step)| step.is_move()) {
         steps.entry(key(recorder.places[step.place].block, &step.at)).or_default().push(index);
     }
     // The steps stand in reverse, so that the earliest of those that end alike is taken first.
-    let of = |found: &Found| {
-        let passes = found.others.iter().map(|cut| key(cut.place.block, &cut.at));
+    let of = |found: &DrilledHole| {
+        let passes = found.earlier_passes.iter().map(|cut| key(cut.place.block, &cut.at));
         let all = passes.chain([key(found.place.block, &found.at)]);
         all.filter_map(|key| steps.get_mut(&key)?.pop()).collect()
     };
@@ -230,26 +231,30 @@ fn feeds(recorder: &Recorder, holes: &[Found]) -> Vec<Vec<usize>> {
 }
 
 /// Every place once, as people find it.
-fn resolve<'a>(run: &Run, places: &[Place], named: impl Iterator<Item = &'a mut usize>) -> Vec<Where> {
-    let mut numbers: BTreeMap<Where, usize> = BTreeMap::new();
+fn resolve<'a>(
+    run: &Run,
+    places: &[Backtrace],
+    named: impl Iterator<Item = &'a mut usize>,
+) -> Vec<BlockLocation> {
+    let mut numbers: BTreeMap<BlockLocation, usize> = BTreeMap::new();
     let resolved: Vec<usize> = places
         .iter()
         .map(|place| {
             let next = numbers.len();
-            *numbers.entry(Where::of(run, place)).or_insert(next)
+            *numbers.entry(BlockLocation::of(run, place)).or_insert(next)
         })
         .collect();
     named.for_each(|place| *place = resolved[*place]);
-    let mut all: Vec<(Where, usize)> = numbers.into_iter().collect();
+    let mut all: Vec<(BlockLocation, usize)> = numbers.into_iter().collect();
     all.sort_by_key(|(_, number)| *number);
     all.into_iter().map(|(place, _)| place).collect()
 }
 
 impl Record {
     /// Where the program waited for the operator, in order: the number of the step, and its block.
-    pub fn stops(&self) -> impl Iterator<Item = (usize, &Where)> {
+    pub fn stops(&self) -> impl Iterator<Item = (usize, &BlockLocation)> {
         let steps = self.steps.iter().enumerate();
-        let stops = steps.filter(|(_, step)| matches!(step.kind, Kind::Stop(..)));
+        let stops = steps.filter(|(_, step)| matches!(step.kind, StepKind::Stop(..)));
         stops.map(|(number, step)| (number, &self.places[step.place]))
     }
 
@@ -270,8 +275,8 @@ impl Record {
     }
 
     /// What is in force while a step is made.
-    pub(super) fn under(&self, step: usize) -> &Condition {
-        &self.conditions[self.steps[step].under]
+    pub(super) fn under(&self, step: usize) -> &ModalConditions {
+        &self.conditions[self.steps[step].condition]
     }
 
     /// `end`, `alarm` or `limit`.
@@ -290,8 +295,8 @@ impl Record {
     }
 }
 
-impl Where {
-    pub fn of(run: &Run, place: &Place) -> Self {
+impl BlockLocation {
+    pub fn of(run: &Run, place: &Backtrace) -> Self {
         let sources = run.control.memory().sources();
         let at = |span| {
             let (program, line) = run.locate(span);
@@ -304,29 +309,37 @@ impl Where {
 }
 
 /// `by` has the blocks that what is left behind comes from, by its name.
-fn ending(run: &Run, by: &BTreeMap<String, Where>, (last, end): (Option<&Place>, End)) -> Ending {
+fn ending(
+    run: &Run,
+    by: &BTreeMap<String, BlockLocation>,
+    (last, end): (Option<&Backtrace>, EndCause),
+) -> EndState {
     let (outcome, words, stopped) = match &run.outcome {
         Outcome::End => {
             let by = match end {
-                End::Code(2) => " by M02",
-                End::Code(_) => "",
-                End::Return => " by M99",
-                End::OfText => " where its text does, without M30",
+                EndCause::Code(2) => " by M02",
+                EndCause::Code(_) => "",
+                EndCause::Return => " by M99",
+                EndCause::OfText => " where its text does, without M30",
             };
-            ("end", format!("the program ends{by}"), last.map(|place| Where::of(run, place)))
+            ("end", format!("the program ends{by}"), last.map(|place| BlockLocation::of(run, place)))
         }
         Outcome::Alarm(stopped) => {
             let row = stopped.alarm.row();
-            let place = Where::of(run, &stopped.place);
+            let place = BlockLocation::of(run, &stopped.place);
             ("alarm", format!("alarm {} {}", row.code, row.message), Some(place))
         }
         Outcome::Limit => {
             let block = run.control.endless_loop().map_or(run.control.place().block, |(_, back)| back);
-            let place = Place { block, calls: Calls::default() };
-            ("limit", "the program doesn't end within the limits".to_owned(), Some(Where::of(run, &place)))
+            let place = Backtrace { block, calls: CallChain::default() };
+            (
+                "limit",
+                "the program doesn't end within the limits".to_owned(),
+                Some(BlockLocation::of(run, &place)),
+            )
         }
     };
-    Ending {
+    EndState {
         outcome: outcome.to_owned(),
         words,
         stopped,
@@ -336,23 +349,23 @@ fn ending(run: &Run, by: &BTreeMap<String, Where>, (last, end): (Option<&Place>,
 }
 
 /// What the next program finds, by name.
-fn left(run: &Run, by: &BTreeMap<String, Where>) -> BTreeMap<String, Left> {
-    let all = run.control.left_behind().into_iter();
-    let left = |r: Remainder| {
+fn left(run: &Run, by: &BTreeMap<String, BlockLocation>) -> BTreeMap<String, ResidualEntry> {
+    let all = run.control.residual_values().into_iter();
+    let left = |r: ResidualValue| {
         let place = by.get(&r.name).cloned();
-        (r.name, Left { code: code(r.kind).to_owned(), value: r.value, place })
+        (r.name, ResidualEntry { code: code(r.kind).to_owned(), value: r.value, place })
     };
     all.map(left).collect()
 }
 
-fn code(kind: RemainderKind) -> &'static str {
+fn code(kind: ResidualKind) -> &'static str {
     match kind {
-        RemainderKind::Variable => "variable",
-        RemainderKind::Mode => "mode",
-        RemainderKind::WorkOffset => "work-offset",
-        RemainderKind::ToolOffset => "tool-offset",
-        RemainderKind::Parameter => "parameter",
-        RemainderKind::Output => "signal",
-        RemainderKind::Counter => "counter",
+        ResidualKind::Variable => "variable",
+        ResidualKind::Mode => "mode",
+        ResidualKind::WorkOffset => "work-offset",
+        ResidualKind::ToolOffset => "tool-offset",
+        ResidualKind::Parameter => "parameter",
+        ResidualKind::Output => "signal",
+        ResidualKind::Counter => "counter",
     }
 }

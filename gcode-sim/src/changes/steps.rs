@@ -2,12 +2,12 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::motion::{Arc2, MAX_AXES, Position, Spindle, StopKind};
+use crate::motion::{MAX_AXES, PlanarArc, Position, SpindleDirection, StopKind};
 
 /// One thing the machine was told.
 #[derive(Clone, Debug)]
 pub(super) struct Step {
-    pub kind: Kind,
+    pub kind: StepKind,
     /// Where the axes stand before and after it, the tool length offset taken out: a longer tool is one difference, not
     /// one in every move.
     pub from: Position,
@@ -18,24 +18,24 @@ pub(super) struct Step {
     pub place: usize,
     /// The block that has said the T, the S or the feed that is taken up here, where that is another; nothing of what was read
     /// from a file.
-    pub said: Option<usize>,
+    pub set_by: Option<usize>,
     /// What is in force, by its number in the record.
-    pub under: usize,
+    pub condition: usize,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Kind {
+pub(super) enum StepKind {
     Rapid,
     /// With its feed in mm/min.
     Feed(f64),
-    Arc(Arc2, f64),
+    Arc(PlanarArc, f64),
     /// G31 with its feed.
     Probe(f64),
     /// Seconds.
     Dwell(f64),
     Tool(u32),
     Length(Position),
-    Spindle(Spindle, f64),
+    Spindle(SpindleDirection, f64),
     /// On or off, and by which M code; a file may not say by which.
     Coolant(bool, Option<u32>),
     /// An M code for the machine builder's logic.
@@ -43,13 +43,13 @@ pub(super) enum Kind {
     /// With its text, and the variables that the text names with their values.
     Stop(StopKind, String, Vec<(u32, f64)>),
     /// What a block says that moves nothing here.
-    Silent(Quiet, String),
+    Silent(UnsimulatedKind, String),
 }
 
 /// What moves nothing here and means something on a machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
-pub(super) enum Quiet {
+pub(super) enum UnsimulatedKind {
     /// A block skip in front of a block that is done, or inside.
     Skip,
     /// How exactly corners are cut in this block, how far is read ahead.
@@ -79,10 +79,10 @@ pub(super) enum Category {
     Coolant,
     Auxiliary,
     Stop,
-    Silent(Quiet),
+    Silent(UnsimulatedKind),
 }
 
-impl Kind {
+impl StepKind {
     pub(super) fn category(&self) -> Category {
         match self {
             Self::Rapid | Self::Feed(_) | Self::Arc(..) | Self::Probe(_) => Category::Move,
@@ -93,9 +93,9 @@ impl Kind {
             Self::Coolant(..) => Category::Coolant,
             Self::Auxiliary(_) => Category::Auxiliary,
             Self::Stop(..) => Category::Stop,
-            Self::Silent(Quiet::Tool, _) => Category::Tool,
-            Self::Silent(Quiet::Speed, _) => Category::Spindle,
-            Self::Silent(Quiet::MCode, _) => Category::Auxiliary,
+            Self::Silent(UnsimulatedKind::Tool, _) => Category::Tool,
+            Self::Silent(UnsimulatedKind::Speed, _) => Category::Spindle,
+            Self::Silent(UnsimulatedKind::MCode, _) => Category::Auxiliary,
             Self::Silent(what, _) => Category::Silent(*what),
         }
     }
@@ -128,21 +128,21 @@ impl Kind {
             Self::Coolant(..) => "coolant command",
             Self::Auxiliary(_) => "M code",
             Self::Stop(..) => "stop",
-            Self::Silent(Quiet::Skip, _) => "block skip",
-            Self::Silent(Quiet::Path | Quiet::GCode, _) => "G code",
-            Self::Silent(Quiet::MCode, _) => "M code",
-            Self::Silent(Quiet::Tool, _) => "tool call",
-            Self::Silent(Quiet::Speed, _) => "spindle speed",
-            Self::Silent(Quiet::Switch, _) => "switch",
-            Self::Silent(Quiet::Signal, _) => "output signal",
+            Self::Silent(UnsimulatedKind::Skip, _) => "block skip",
+            Self::Silent(UnsimulatedKind::Path | UnsimulatedKind::GCode, _) => "G code",
+            Self::Silent(UnsimulatedKind::MCode, _) => "M code",
+            Self::Silent(UnsimulatedKind::Tool, _) => "tool call",
+            Self::Silent(UnsimulatedKind::Speed, _) => "spindle speed",
+            Self::Silent(UnsimulatedKind::Switch, _) => "switch",
+            Self::Silent(UnsimulatedKind::Signal, _) => "output signal",
         }
     }
 }
 
 impl Step {
     /// The block that a reader changes for another tool, speed or feed.
-    pub(super) fn said_at(&self) -> usize {
-        self.said.unwrap_or(self.place)
+    pub(super) fn editable_at(&self) -> usize {
+        self.set_by.unwrap_or(self.place)
     }
 
     pub(super) fn is_move(&self) -> bool {
@@ -150,25 +150,25 @@ impl Step {
     }
 
     pub(super) fn is_rapid(&self) -> bool {
-        self.kind == Kind::Rapid
+        self.kind == StepKind::Rapid
     }
 
     /// The same thing done: a move to the same point in the same way, at whatever feed.
     pub(super) fn is_same(&self, other: &Self, tolerance: f64) -> bool {
         match (&self.kind, &other.kind) {
-            (Kind::Rapid, Kind::Rapid)
-            | (Kind::Feed(_), Kind::Feed(_))
-            | (Kind::Probe(_), Kind::Probe(_)) => near(&self.to, &other.to, tolerance),
-            (Kind::Arc(a, _), Kind::Arc(b, _)) => {
+            (StepKind::Rapid, StepKind::Rapid)
+            | (StepKind::Feed(_), StepKind::Feed(_))
+            | (StepKind::Probe(_), StepKind::Probe(_)) => near(&self.to, &other.to, tolerance),
+            (StepKind::Arc(a, _), StepKind::Arc(b, _)) => {
                 near(&self.to, &other.to, tolerance) && is_same_arc(a, b, tolerance)
             }
-            (Kind::Length(a), Kind::Length(b)) => near(a, b, tolerance),
-            (Kind::Stop(kind, text, named), Kind::Stop(other, words, values)) => {
+            (StepKind::Length(a), StepKind::Length(b)) => near(a, b, tolerance),
+            (StepKind::Stop(kind, text, named), StepKind::Stop(other, words, values)) => {
                 let same = |(a, b): (&(u32, f64), &(u32, f64))| a.0 == b.0 && (a.1 - b.1).abs() <= tolerance;
                 let alike = named.len() == values.len() && named.iter().zip(values).all(same);
                 kind == other && text == words && alike
             }
-            (Kind::Coolant(on, a), Kind::Coolant(is, b)) => {
+            (StepKind::Coolant(on, a), StepKind::Coolant(is, b)) => {
                 on == is && (a.is_none() || b.is_none() || a == b)
             }
             (a, b) => a == b,
@@ -223,7 +223,7 @@ pub(super) fn goes_with(
     let rounded = if near(&hole, &Position::default(), tolerance) { tolerance } else { ROUNDED };
     let with = |axis: usize| shift[axis].abs() <= tolerance || (shift[axis] - hole[axis]).abs() <= rounded;
     let is_on_line = old.is_on_line_of(feed_old) && new.is_on_line_of(feed_new);
-    let moved_alike = (0..MAX_AXES).all(with) && (is_on_line || old.kind == Kind::Rapid);
+    let moved_alike = (0..MAX_AXES).all(with) && (is_on_line || old.kind == StepKind::Rapid);
     moved_alike || is_as_far_above((old, feed_old), (new, feed_new), deeper)
 }
 
@@ -239,7 +239,7 @@ pub(super) fn is_as_far_above(
 }
 
 /// The same curve about the same centre.
-pub(super) fn is_same_arc(a: &Arc2, b: &Arc2, tolerance: f64) -> bool {
+pub(super) fn is_same_arc(a: &PlanarArc, b: &PlanarArc, tolerance: f64) -> bool {
     let off = (a.centre.0 - b.centre.0).abs().max((a.centre.1 - b.centre.1).abs());
     a.plane == b.plane && off <= tolerance && (a.sweep.0 - b.sweep.0).abs() <= 1e-3
 }

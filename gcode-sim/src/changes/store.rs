@@ -6,12 +6,12 @@ use nalgebra::{Point3, Unit, Vector3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::begin::Begun;
-use super::in_force::{Aspect, Condition, Word};
-use super::record::{Ending, Record, Totals, Where};
-use super::steps::{Kind, Quiet, Step, difference};
-use crate::holes::Found;
-use crate::motion::{Arc2, Axes, Place, Position, Spindle, StopKind};
+use super::initial_commands::FirstCommand;
+use super::modal_conditions::{ModalAspect, ModalConditions, ModalSetting};
+use super::record::{BlockLocation, EndState, Record, Totals};
+use super::steps::{Step, StepKind, UnsimulatedKind, difference};
+use crate::holes::DrilledHole;
+use crate::motion::{Axes, Backtrace, PlanarArc, Position, SpindleDirection, StopKind};
 use crate::units::Deg;
 
 /// What a file of this kind begins with; another number is another form of it.
@@ -19,26 +19,26 @@ const VERSION: u32 = 1;
 
 #[derive(Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct File {
+pub(crate) struct AcceptedFile {
     version: u32,
     axes: String,
     /// The main program's name as a control shows it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     program: Option<String>,
     totals: Totals,
-    ending: Ending,
-    places: Vec<Where>,
+    ending: EndState,
+    places: Vec<BlockLocation>,
     /// What the program commands, each at its first time.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    begun: Option<Vec<Begun>>,
-    steps: Vec<Line>,
+    begun: Option<Vec<FirstCommand>>,
+    steps: Vec<StepLine>,
     holes: Vec<Hole>,
 }
 
 /// A step: what is done, where the axes that it moves stand then (mm and degrees), and the number of its block.
 #[derive(Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "do", rename_all = "lowercase", deny_unknown_fields)]
-enum Line {
+enum StepLine {
     Rapid {
         to: BTreeMap<char, f64>,
         place: usize,
@@ -74,7 +74,7 @@ enum Line {
         place: usize,
     },
     Spindle {
-        turning: Turning,
+        turning: StoredSpindle,
         speed: f64,
         place: usize,
     },
@@ -89,27 +89,27 @@ enum Line {
         place: usize,
     },
     Stop {
-        kind: Waiting,
+        kind: StoredStop,
         text: String,
         named: Vec<(u32, f64)>,
         place: usize,
     },
     /// What a block says that moves nothing.
     Silent {
-        what: Quiet,
+        what: UnsimulatedKind,
         code: String,
         place: usize,
     },
     /// No step: what is in force from here on. Holes don't count it among their steps.
     Under {
-        what: Aspect,
+        what: ModalAspect,
         code: String,
         place: Option<usize>,
     },
 }
 
 #[derive(Clone, Copy, Serialize, Deserialize, JsonSchema)]
-enum Turning {
+enum StoredSpindle {
     #[serde(rename = "off")]
     Off,
     #[serde(rename = "M03")]
@@ -119,7 +119,7 @@ enum Turning {
 }
 
 #[derive(Clone, Copy, Serialize, Deserialize, JsonSchema)]
-enum Waiting {
+enum StoredStop {
     M00,
     M01,
     #[serde(rename = "#3006")]
@@ -151,12 +151,12 @@ impl Record {
     pub fn to_json(&self) -> Result<String, StoreError> {
         let mut at = Position::default();
         let mut steps = Vec::with_capacity(self.steps.len());
-        let mut under = Condition::default();
+        let mut under = ModalConditions::default();
         for (index, step) in self.steps.iter().enumerate() {
             let now = self.under(index);
-            for what in Aspect::ALL.into_iter().filter(|what| now.word(*what) != under.word(*what)) {
-                let Word { text, place } = now.word(what).clone();
-                steps.push(Line::Under { what, code: text, place });
+            for what in ModalAspect::ALL.into_iter().filter(|what| now.word(*what) != under.word(*what)) {
+                let ModalSetting { text, place } = now.word(what).clone();
+                steps.push(StepLine::Under { what, code: text, place });
             }
             under.clone_from(now);
             steps.push(self.line(step, &at));
@@ -169,7 +169,7 @@ impl Record {
             diameter: hole.diameter,
             tool: hole.tool,
             steps: steps.clone(),
-            again: (hole.first != number).then_some(hole.first),
+            again: (hole.first_on_line != number).then_some(hole.first_on_line),
         });
         let axes: String = self.axes.iter().map(|(_, letter)| letter).collect();
         let mut text = String::from("{\n");
@@ -193,7 +193,7 @@ impl Record {
     /// # Errors
     /// What isn't such a text, with the line where it isn't.
     pub fn from_json(text: &str) -> Result<Self, StoreError> {
-        let file: File = serde_json::from_str(text).map_err(|error| StoreError(error.to_string()))?;
+        let file: AcceptedFile = serde_json::from_str(text).map_err(|error| StoreError(error.to_string()))?;
         if file.version != VERSION {
             return Err(StoreError(format!("version {} is not known here, only {VERSION}", file.version)));
         }
@@ -202,7 +202,7 @@ impl Record {
             axes: &axes,
             at: Position::default(),
             length: Position::default(),
-            conditions: vec![Condition::default()],
+            conditions: vec![ModalConditions::default()],
         };
         let steps = file.steps.into_iter().filter_map(|line| reader.step(line).transpose());
         let steps = steps.collect::<Result<Vec<_>, _>>()?;
@@ -220,8 +220,9 @@ impl Record {
             if hole.steps.iter().any(|step| steps.len() <= *step) {
                 return Err(StoreError("a hole names a step that isn't there".to_owned()));
             }
-            if hole.again.is_some_and(|first| holes.get(first).is_none_or(|hole: &Found| hole.first != first))
-            {
+            if hole.again.is_some_and(|first| {
+                holes.get(first).is_none_or(|hole: &DrilledHole| hole.first_on_line != first)
+            }) {
                 return Err(StoreError("a hole makes one again that doesn't stand before it".to_owned()));
             }
             holes.push(hole.found(holes.len())?);
@@ -250,13 +251,13 @@ impl Record {
         })
     }
 
-    fn line(&self, step: &Step, before: &Position) -> Line {
+    fn line(&self, step: &Step, before: &Position) -> StepLine {
         let place = step.place;
         let to = moved(&self.axes, before, &step.at);
         match &step.kind {
-            Kind::Rapid => Line::Rapid { to, place },
-            Kind::Feed(f) => Line::Feed { to, f: *f, place },
-            Kind::Arc(arc, f) => Line::Arc {
+            StepKind::Rapid => StepLine::Rapid { to, place },
+            StepKind::Feed(f) => StepLine::Feed { to, f: *f, place },
+            StepKind::Arc(arc, f) => StepLine::Arc {
                 to,
                 plane: [self.axes.letter(arc.plane.0), self.axes.letter(arc.plane.1)],
                 centre: [arc.centre.0, arc.centre.1],
@@ -264,31 +265,31 @@ impl Record {
                 f: *f,
                 place,
             },
-            Kind::Probe(f) => Line::Probe { to, f: *f, place },
-            Kind::Dwell(seconds) => Line::Dwell { seconds: *seconds, place },
-            Kind::Tool(number) => Line::Tool { number: *number, place },
-            Kind::Length(offset) => {
-                Line::Length { offset: moved(&self.axes, &Position::default(), offset), place }
+            StepKind::Probe(f) => StepLine::Probe { to, f: *f, place },
+            StepKind::Dwell(seconds) => StepLine::Dwell { seconds: *seconds, place },
+            StepKind::Tool(number) => StepLine::Tool { number: *number, place },
+            StepKind::Length(offset) => {
+                StepLine::Length { offset: moved(&self.axes, &Position::default(), offset), place }
             }
-            Kind::Spindle(turning, speed) => {
+            StepKind::Spindle(turning, speed) => {
                 let turning = match turning {
-                    Spindle::Off => Turning::Off,
-                    Spindle::Clockwise => Turning::Clockwise,
-                    Spindle::Counterclockwise => Turning::Counterclockwise,
+                    SpindleDirection::Off => StoredSpindle::Off,
+                    SpindleDirection::Clockwise => StoredSpindle::Clockwise,
+                    SpindleDirection::Counterclockwise => StoredSpindle::Counterclockwise,
                 };
-                Line::Spindle { turning, speed: *speed, place }
+                StepLine::Spindle { turning, speed: *speed, place }
             }
-            Kind::Coolant(on, m) => Line::Coolant { on: *on, m: *m, place },
-            Kind::Auxiliary(m) => Line::Auxiliary { m: *m, place },
-            Kind::Stop(kind, text, named) => {
+            StepKind::Coolant(on, m) => StepLine::Coolant { on: *on, m: *m, place },
+            StepKind::Auxiliary(m) => StepLine::Auxiliary { m: *m, place },
+            StepKind::Stop(kind, text, named) => {
                 let kind = match kind {
-                    StopKind::M00 => Waiting::M00,
-                    StopKind::M01 => Waiting::M01,
-                    StopKind::Message => Waiting::Message,
+                    StopKind::M00 => StoredStop::M00,
+                    StopKind::M01 => StoredStop::M01,
+                    StopKind::Message => StoredStop::Message,
                 };
-                Line::Stop { kind, text: text.clone(), named: named.clone(), place }
+                StepLine::Stop { kind, text: text.clone(), named: named.clone(), place }
             }
-            Kind::Silent(what, code) => Line::Silent { what: *what, code: code.clone(), place },
+            StepKind::Silent(what, code) => StepLine::Silent { what: *what, code: code.clone(), place },
         }
     }
 }
@@ -314,59 +315,67 @@ struct Steps<'a> {
     axes: &'a Axes,
     at: Position,
     length: Position,
-    conditions: Vec<Condition>,
+    conditions: Vec<ModalConditions>,
 }
 
 impl Steps<'_> {
     /// `None` where the line is no step.
-    fn step(&mut self, line: Line) -> Result<Option<Step>, StoreError> {
+    fn step(&mut self, line: StepLine) -> Result<Option<Step>, StoreError> {
         let before = self.at;
         let (kind, place) = match line {
-            Line::Rapid { to, place } => (self.go(&to, Kind::Rapid)?, place),
-            Line::Feed { to, f, place } => (self.go(&to, Kind::Feed(f))?, place),
-            Line::Probe { to, f, place } => (self.go(&to, Kind::Probe(f))?, place),
-            Line::Arc { to, plane: [first, second], centre, sweep, f, place } => {
+            StepLine::Rapid { to, place } => (self.go(&to, StepKind::Rapid)?, place),
+            StepLine::Feed { to, f, place } => (self.go(&to, StepKind::Feed(f))?, place),
+            StepLine::Probe { to, f, place } => (self.go(&to, StepKind::Probe(f))?, place),
+            StepLine::Arc { to, plane: [first, second], centre, sweep, f, place } => {
                 let plane = (self.axis(first)?, self.axis(second)?);
-                let arc = Arc2 { plane, centre: (centre[0], centre[1]), sweep: Deg(sweep) };
-                (self.go(&to, Kind::Arc(arc, f))?, place)
+                let arc = PlanarArc { plane, centre: (centre[0], centre[1]), sweep: Deg(sweep) };
+                (self.go(&to, StepKind::Arc(arc, f))?, place)
             }
-            Line::Dwell { seconds, place } => (Kind::Dwell(seconds), place),
-            Line::Tool { number, place } => (Kind::Tool(number), place),
-            Line::Length { offset, place } => {
+            StepLine::Dwell { seconds, place } => (StepKind::Dwell(seconds), place),
+            StepLine::Tool { number, place } => (StepKind::Tool(number), place),
+            StepLine::Length { offset, place } => {
                 self.length = self.put(&offset, Position::default())?;
-                (Kind::Length(self.length), place)
+                (StepKind::Length(self.length), place)
             }
-            Line::Spindle { turning, speed, place } => {
+            StepLine::Spindle { turning, speed, place } => {
                 let turning = match turning {
-                    Turning::Off => Spindle::Off,
-                    Turning::Clockwise => Spindle::Clockwise,
-                    Turning::Counterclockwise => Spindle::Counterclockwise,
+                    StoredSpindle::Off => SpindleDirection::Off,
+                    StoredSpindle::Clockwise => SpindleDirection::Clockwise,
+                    StoredSpindle::Counterclockwise => SpindleDirection::Counterclockwise,
                 };
-                (Kind::Spindle(turning, speed), place)
+                (StepKind::Spindle(turning, speed), place)
             }
-            Line::Coolant { on, m, place } => (Kind::Coolant(on, m), place),
-            Line::Auxiliary { m, place } => (Kind::Auxiliary(m), place),
-            Line::Stop { kind, text, named, place } => {
+            StepLine::Coolant { on, m, place } => (StepKind::Coolant(on, m), place),
+            StepLine::Auxiliary { m, place } => (StepKind::Auxiliary(m), place),
+            StepLine::Stop { kind, text, named, place } => {
                 let kind = match kind {
-                    Waiting::M00 => StopKind::M00,
-                    Waiting::M01 => StopKind::M01,
-                    Waiting::Message => StopKind::Message,
+                    StoredStop::M00 => StopKind::M00,
+                    StoredStop::M01 => StopKind::M01,
+                    StoredStop::Message => StopKind::Message,
                 };
-                (Kind::Stop(kind, text, named), place)
+                (StepKind::Stop(kind, text, named), place)
             }
-            Line::Silent { what, code, place } => (Kind::Silent(what, code), place),
-            Line::Under { what, code, place } => {
+            StepLine::Silent { what, code, place } => (StepKind::Silent(what, code), place),
+            StepLine::Under { what, code, place } => {
                 let mut next = self.conditions.last().cloned().unwrap_or_default();
-                next.set(what, Word { text: code, place });
+                next.set(what, ModalSetting { text: code, place });
                 self.conditions.push(next);
                 return Ok(None);
             }
         };
         let (from, to) = (difference(&before, &self.length), difference(&self.at, &self.length));
-        Ok(Some(Step { kind, from, to, at: self.at, place, said: None, under: self.conditions.len() - 1 }))
+        Ok(Some(Step {
+            kind,
+            from,
+            to,
+            at: self.at,
+            place,
+            set_by: None,
+            condition: self.conditions.len() - 1,
+        }))
     }
 
-    fn go(&mut self, to: &BTreeMap<char, f64>, kind: Kind) -> Result<Kind, StoreError> {
+    fn go(&mut self, to: &BTreeMap<char, f64>, kind: StepKind) -> Result<StepKind, StoreError> {
         self.at = self.put(to, self.at)?;
         Ok(kind)
     }
@@ -385,23 +394,23 @@ impl Steps<'_> {
 }
 
 impl Hole {
-    fn found(&self, number: usize) -> Result<Found, StoreError> {
+    fn found(&self, number: usize) -> Result<DrilledHole, StoreError> {
         let axis = Vector3::from(self.axis);
         if (axis.norm() - 1.0).abs() > 1e-9 {
             return Err(StoreError("a hole's axis is no unit vector".to_owned()));
         }
-        Ok(Found {
+        Ok(DrilledHole {
             entry: Point3::from(self.entry),
             // Made of length 1 once more it would not be the number that was written.
             axis: Unit::new_unchecked(axis),
             depth: self.depth,
             diameter: self.diameter,
             tool: self.tool,
-            place: Place::default(),
+            place: Backtrace::default(),
             at: Position::default(),
-            off_tool: Deg::ZERO,
-            others: Vec::new(),
-            first: self.again.unwrap_or(number),
+            tool_axis_deviation: Deg::ZERO,
+            earlier_passes: Vec::new(),
+            first_on_line: self.again.unwrap_or(number),
         })
     }
 }

@@ -1,7 +1,7 @@
 //! Who calls whom: G65, G66, M98 and the codes that call macros, with the locals that their arguments set.
 use crate::control::{CodeCallKind, Settings};
 use crate::program::{
-    ArgumentLocals, CallTarget, Calling, Coded, Input, Memory, OpIndex, OpKind, Program, Words,
+    ArgumentLocals, CallCode, CallTarget, LoweredWord, Memory, OpIndex, OpKind, Program, WordOperand, Words,
 };
 use crate::source::Span;
 
@@ -58,8 +58,8 @@ pub(super) fn sites(program: &Program, settings: &Settings) -> Vec<CallSite> {
 
 fn site(block: OpIndex, words: &Words, settings: &Settings) -> Option<CallSite> {
     let Some(call) = words.call() else { return by_code(block, words, settings) };
-    let subprogram = matches!(call.kind, Calling::Subprogram | Calling::File | Calling::Local);
-    if matches!(call.kind, Calling::Return | Calling::Cancel) {
+    let subprogram = matches!(call.kind, CallCode::Subprogram | CallCode::File | CallCode::Local);
+    if matches!(call.kind, CallCode::Return | CallCode::Cancel) {
         return None;
     }
     let target = match &call.target {
@@ -68,7 +68,7 @@ fn site(block: OpIndex, words: &Words, settings: &Settings) -> Option<CallSite> 
         CallTarget::Number(word) => match literal::count(word) {
             // M98 P with more than four digits: repeats in front of a four-digit program number.
             Some(number)
-                if call.kind == Calling::Subprogram
+                if call.kind == CallCode::Subprogram
                     && settings.repeats_in_p
                     && call.repeats.is_none()
                     && number > 9999 =>
@@ -82,10 +82,10 @@ fn site(block: OpIndex, words: &Words, settings: &Settings) -> Option<CallSite> 
     Some(CallSite {
         block,
         own_locals: !subprogram,
-        modal: matches!(call.kind, Calling::AfterMoves | Calling::EveryBlock),
+        modal: matches!(call.kind, CallCode::AfterMoves | CallCode::EveryBlock),
         target,
         start: call.start.as_ref().and_then(literal::count),
-        arguments: arguments(&call.arguments, call.kind == Calling::EveryBlock, settings),
+        arguments: arguments(&call.arguments, call.kind == CallCode::EveryBlock, settings),
         span: call.span,
     })
 }
@@ -96,7 +96,7 @@ fn by_code(block: OpIndex, words: &Words, settings: &Settings) -> Option<CallSit
     if settings.code_calls.is_empty() {
         return None;
     }
-    let site = |word: &Coded, program, own_locals, modal, arguments| CallSite {
+    let site = |word: &LoweredWord, program, own_locals, modal, arguments| CallSite {
         block,
         own_locals,
         modal,
@@ -107,7 +107,7 @@ fn by_code(block: OpIndex, words: &Words, settings: &Settings) -> Option<CallSit
     };
     words.list.iter().enumerate().find_map(|(place, word)| {
         let called = match (word.letter, word.value) {
-            (b'G', Input::G(code, _)) => settings.code_calls.find(b'G', code),
+            (b'G', WordOperand::G(code, _)) => settings.code_calls.find(b'G', code),
             (b'M', _) => settings.code_calls.find(b'M', literal::count(word)?.checked_mul(10)?),
             (letter, _) => {
                 let called = settings.code_calls.by_address(letter)?;
@@ -126,7 +126,7 @@ fn by_code(block: OpIndex, words: &Words, settings: &Settings) -> Option<CallSit
     })
 }
 
-fn arguments(words: &[Coded], every: bool, settings: &Settings) -> Vec<Argument> {
+fn arguments(words: &[LoweredWord], every: bool, settings: &Settings) -> Vec<Argument> {
     let mut letters = ArgumentLocals::new(settings.plain_ijk, every);
     let dealt = words.iter().filter_map(|word| {
         let local = letters.next(word.letter).ok().flatten()?;

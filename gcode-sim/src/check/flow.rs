@@ -1,20 +1,20 @@
 //! The ways from block to block: falling through, jumps, loops, ends; and which blocks anything reaches.
 use crate::alarm::Alarm;
-use crate::program::{CallTarget, Calling, OpIndex, OpKind, Operand, Program, Statement, Words};
+use crate::program::{CallCode, CallTarget, OpIndex, OpKind, Operand, Program, Statement, Words};
 
 use super::literal;
 
 /// Where a block can go.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Ways {
+pub(crate) struct Successors {
     /// To the next block.
-    pub(crate) falls: bool,
+    pub(crate) falls_through: bool,
     /// By a jump, a loop, or a return from a call.
     pub(crate) jumps: Vec<OpIndex>,
     /// A computed jump: to any numbered block.
     pub(crate) anywhere: bool,
     /// The program ends here, returns, or stops with an alarm of its own (`#3000`).
-    pub(crate) leaves: bool,
+    pub(crate) is_exit: bool,
 }
 
 /// A sequence number that a block goes to, and whether it is there.
@@ -28,13 +28,13 @@ pub(crate) struct Jump {
 }
 
 #[derive(Debug)]
-pub(crate) struct Flow {
-    pub(crate) ways: Vec<Ways>,
+pub(crate) struct ControlFlowGraph {
+    pub(crate) ways: Vec<Successors>,
     pub(crate) jumps: Vec<Jump>,
     numbered: Vec<OpIndex>,
 }
 
-impl Flow {
+impl ControlFlowGraph {
     pub(super) fn new(program: &Program) -> Self {
         let mut flow = Self { ways: Vec::new(), jumps: Vec::new(), numbered: Vec::new() };
         for (block, op) in program.ops().iter().enumerate() {
@@ -43,37 +43,41 @@ impl Flow {
             }
             let mut ways = flow.of_block(program, block, op.kind());
             if op.skip().is_some() {
-                ways.falls = true;
+                ways.falls_through = true;
             }
             flow.ways.push(ways);
         }
         flow
     }
 
-    fn of_block(&mut self, program: &Program, block: OpIndex, kind: &OpKind) -> Ways {
+    fn of_block(&mut self, program: &Program, block: OpIndex, kind: &OpKind) -> Successors {
         match kind {
             // An alarm stops the control; what stands behind it is looked at as if it had been mended.
-            OpKind::Empty | OpKind::Compute(_) | OpKind::Alarm(_) => Ways { falls: true, ..Ways::default() },
+            OpKind::Empty | OpKind::Compute(_) | OpKind::Alarm(_) => {
+                Successors { falls_through: true, ..Successors::default() }
+            }
             OpKind::Words(words) => {
                 let mut ways = self.of_words(program, block, words);
                 if let Some((_, short)) = words.short() {
                     let other = self.of_words(program, block, short);
-                    ways.falls |= other.falls;
-                    ways.leaves |= other.leaves;
+                    ways.falls_through |= other.falls_through;
+                    ways.is_exit |= other.is_exit;
                     ways.jumps.extend(other.jumps);
                 }
                 ways
             }
             OpKind::Statement(statement) => self.of_statement(program, block, statement),
-            OpKind::If { then, .. } => Ways { falls: true, ..self.of_block(program, block, then) },
+            OpKind::If { then, .. } => {
+                Successors { falls_through: true, ..self.of_block(program, block, then) }
+            }
         }
     }
 
-    fn of_words(&mut self, program: &Program, block: OpIndex, words: &Words) -> Ways {
-        let mut ways = Ways { falls: true, ..Ways::default() };
+    fn of_words(&mut self, program: &Program, block: OpIndex, words: &Words) -> Successors {
+        let mut ways = Successors { falls_through: true, ..Successors::default() };
         let codes = || words.list.iter().filter(|w| w.letter == b'M').filter_map(literal::count);
         if codes().any(|m| matches!(m, 2 | 30)) {
-            ways = Ways { leaves: true, ..Ways::default() };
+            ways = Successors { is_exit: true, ..Successors::default() };
         }
         // Haas: a subprogram at a sequence number of the same program.
         if codes().any(|m| m == 97)
@@ -81,9 +85,9 @@ impl Flow {
         {
             ways.jumps.extend(program.find_number(number, block + 1));
         }
-        if let Some(call) = words.call().filter(|call| call.kind == Calling::Return) {
-            ways.falls = false;
-            ways.leaves = true;
+        if let Some(call) = words.call().filter(|call| call.kind == CallCode::Return) {
+            ways.falls_through = false;
+            ways.is_exit = true;
             if let CallTarget::Number(word) = &call.target {
                 match literal::count(word) {
                     Some(number) => {
@@ -98,15 +102,25 @@ impl Flow {
         ways
     }
 
-    fn of_statement(&mut self, program: &Program, block: OpIndex, statement: &Statement) -> Ways {
+    fn of_statement(&mut self, program: &Program, block: OpIndex, statement: &Statement) -> Successors {
         match statement {
             Statement::Goto(to) => self.goto(program, block, &to.node),
-            Statement::IfGoto { to, .. } => Ways { falls: true, ..self.goto(program, block, &to.node) },
-            Statement::IfThen { then, .. } => Ways { falls: true, ..self.of_statement(program, block, then) },
-            Statement::While { end, .. } => Ways { falls: true, jumps: vec![end + 1], ..Ways::default() },
-            Statement::End { start, .. } => Ways { jumps: vec![*start], ..Ways::default() },
-            Statement::Assign { target, .. } if target.is(3000) => Ways { leaves: true, ..Ways::default() },
-            Statement::Several(all) if all.iter().any(is_raise) => Ways { leaves: true, ..Ways::default() },
+            Statement::IfGoto { to, .. } => {
+                Successors { falls_through: true, ..self.goto(program, block, &to.node) }
+            }
+            Statement::IfThen { then, .. } => {
+                Successors { falls_through: true, ..self.of_statement(program, block, then) }
+            }
+            Statement::While { end, .. } => {
+                Successors { falls_through: true, jumps: vec![end + 1], ..Successors::default() }
+            }
+            Statement::End { start, .. } => Successors { jumps: vec![*start], ..Successors::default() },
+            Statement::Assign { target, .. } if target.is(3000) => {
+                Successors { is_exit: true, ..Successors::default() }
+            }
+            Statement::Several(all) if all.iter().any(is_raise) => {
+                Successors { is_exit: true, ..Successors::default() }
+            }
             Statement::Assign { .. }
             | Statement::Compute(_)
             | Statement::Several(_)
@@ -115,19 +129,19 @@ impl Flow {
             | Statement::Print { .. }
             | Statement::OpenOutput
             | Statement::CloseOutput
-            | Statement::Alarm(_) => Ways { falls: true, ..Ways::default() },
+            | Statement::Alarm(_) => Successors { falls_through: true, ..Successors::default() },
         }
     }
 
-    fn goto(&mut self, program: &Program, block: OpIndex, to: &Operand) -> Ways {
+    fn goto(&mut self, program: &Program, block: OpIndex, to: &Operand) -> Successors {
         let Some(number) = literal::of_operand(to).and_then(literal::whole) else {
             let computed = literal::of_operand(to).is_none();
-            return Ways { anywhere: computed, ..Ways::default() };
+            return Successors { anywhere: computed, ..Successors::default() };
         };
         let to = program.find_number(number, block + 1);
         self.jumps.push(Jump { block, number, to, returns: false });
         // A jump to nowhere is told by a rule; what stands behind it is no second fault.
-        Ways { falls: to.is_none(), jumps: to.into_iter().collect(), ..Ways::default() }
+        Successors { falls_through: to.is_none(), jumps: to.into_iter().collect(), ..Successors::default() }
     }
 
     /// A called program may return to these blocks.
@@ -141,28 +155,28 @@ impl Flow {
 
     /// How many places there are: the blocks, the end of the program one past the last of them, and behind it one that
     /// computed jumps lead to and that leads to every numbered block, which keeps the ways few.
-    pub(crate) fn places(&self) -> usize {
+    pub(crate) fn block_count(&self) -> usize {
         self.ways.len() + 2
     }
 
     /// The places that can follow a place.
-    pub(crate) fn after(&self, place: OpIndex) -> impl Iterator<Item = OpIndex> + '_ {
+    pub(crate) fn successors(&self, place: OpIndex) -> impl Iterator<Item = OpIndex> + '_ {
         let anywhere = self.ways.len() + 1;
         let ways = self.ways.get(place);
         let jumps = ways.map_or(&[][..], |ways| &ways.jumps);
-        let next = ways.filter(|ways| ways.falls).map(|_| place + 1);
+        let next = ways.filter(|ways| ways.falls_through).map(|_| place + 1);
         let computed = ways.filter(|ways| ways.anywhere).map(|_| anywhere);
         let numbered = if place == anywhere { &self.numbered[..] } else { &[] };
         jumps.iter().copied().chain(next).chain(computed).chain(numbered.iter().copied())
     }
 
     /// Whether anything reaches each block from one of `starts`.
-    pub(crate) fn reached(&self, starts: impl IntoIterator<Item = OpIndex>) -> Vec<bool> {
-        let mut reached = vec![false; self.places()];
+    pub(crate) fn reachable(&self, starts: impl IntoIterator<Item = OpIndex>) -> Vec<bool> {
+        let mut reached = vec![false; self.block_count()];
         let mut open: Vec<OpIndex> = starts.into_iter().collect();
         while let Some(place) = open.pop() {
             if !std::mem::replace(&mut reached[place], true) {
-                open.extend(self.after(place));
+                open.extend(self.successors(place));
             }
         }
         reached.truncate(self.ways.len());

@@ -1,19 +1,19 @@
 //! Numbers that a program writes out: what a word, an operand or an expression is without running anything.
-use crate::program::{Coded, Input, Operand, names};
+use crate::program::{LoweredWord, Operand, WordOperand, names};
 use crate::syntax::ast::{BinaryOp, Decimal, Expr, ExprKind, Name};
 
 /// The number a word writes out, point or not; `None` where it is computed.
-pub(super) fn of_word(word: &Coded) -> Option<f64> {
+pub(super) fn of_word(word: &LoweredWord) -> Option<f64> {
     match word.value {
-        Input::Literal(number) => Some(number.value()),
-        Input::Number(number) => Some(number),
-        Input::G(code, _) => Some(f64::from(code) / 10.0),
-        Input::Variable { .. } | Input::Code(_) => None,
+        WordOperand::Literal(number) => Some(number.value()),
+        WordOperand::Number(number) => Some(number),
+        WordOperand::G(code, _) => Some(f64::from(code) / 10.0),
+        WordOperand::Variable { .. } | WordOperand::Code(_) => None,
     }
 }
 
 /// The whole number a word writes out.
-pub(super) fn count(word: &Coded) -> Option<u32> {
+pub(super) fn count(word: &LoweredWord) -> Option<u32> {
     of_word(word).and_then(whole)
 }
 
@@ -31,9 +31,9 @@ pub(super) fn whole(value: f64) -> Option<u32> {
 }
 
 /// A literal without a point that isn't 0: increments where a control has no calculator-type input.
-pub(super) fn without_point(word: &Coded) -> Option<Decimal> {
+pub(super) fn without_point(word: &LoweredWord) -> Option<Decimal> {
     match word.value {
-        Input::Literal(number) if number.places.is_none() && number.digits != 0 => Some(number),
+        WordOperand::Literal(number) if number.places.is_none() && number.digits != 0 => Some(number),
         _ => None,
     }
 }

@@ -5,15 +5,15 @@
 //! there (`unset`). The rules, a file each in [`rules`], look at that and say what they find. A comment
 //! `(CHECK-OFF NAME)` on a block, or at the head of a program for all of it, silences a rule there (`silence`).
 mod calls;
-mod circles;
+mod components;
 mod expressions;
-mod first;
+mod first_reach;
 mod flow;
 mod literal;
 mod parameters;
 pub mod rules;
-mod silence;
 mod subject;
+mod suppression;
 mod unset;
 mod vacancy;
 mod variables;
@@ -26,7 +26,7 @@ use crate::control::Settings;
 use crate::diag::{Diagnostic, Severity};
 use crate::program::{Library, Memory, Program, ProgramId};
 use crate::source::{Bytes, Span};
-use subject::Subject;
+use subject::CheckContext;
 pub(crate) use variables::variables_read;
 
 /// What was found, and the texts it was found in.
@@ -55,7 +55,7 @@ pub fn check(
 /// As [`check`], of programs that have been loaded.
 pub fn check_loaded(mut memory: Memory, settings: &Settings, library: &mut impl Library) -> Checked {
     let programs = gather(&mut memory, settings, library);
-    let subject = Subject::new(&memory, settings, &programs, rules::names());
+    let subject = CheckContext::new(&memory, settings, &programs, rules::names());
     let findings = rules::findings(&subject);
     Checked { programs: programs.len(), memory, findings }
 }
@@ -81,7 +81,7 @@ fn gather(memory: &mut Memory, settings: &Settings, library: &mut impl Library) 
 
 impl Checked {
     /// Whether something stands against the program; notes don't.
-    pub fn stands(&self) -> bool {
+    pub fn has_findings(&self) -> bool {
         self.count(Severity::Warning) + self.count(Severity::Error) > 0
     }
 

@@ -1,5 +1,5 @@
 //! Blocks between G10 L50 or L52 and G11: their words are parameters, their N is a parameter's number.
-use crate::program::{Input, OpKind, Program, Words};
+use crate::program::{OpKind, Program, WordOperand, Words};
 
 use super::literal;
 
@@ -27,5 +27,5 @@ fn enters(words: &Words) -> bool {
 }
 
 fn has_g(words: &Words, code: u32) -> bool {
-    words.list.iter().any(|word| matches!(word.value, Input::G(c, _) if c == code))
+    words.list.iter().any(|word| matches!(word.value, WordOperand::G(c, _) if c == code))
 }

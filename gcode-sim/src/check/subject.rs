@@ -3,20 +3,20 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::control::Settings;
 use crate::diag::{Diagnostic, Severity};
-use crate::motion::Place;
-use crate::program::{Calling, Memory, Op, OpIndex, OpKind, Program, ProgramId};
+use crate::motion::Backtrace;
+use crate::program::{CallCode, Memory, Op, OpIndex, OpKind, Program, ProgramId};
 use crate::source::{SourceId, Span};
 use crate::syntax::{self, ast};
 
 use super::calls::{self, CallSite};
-use super::flow::Flow;
+use super::flow::ControlFlowGraph;
 
 /// Everything a rule may look at.
 #[derive(Debug)]
-pub(crate) struct Subject<'a> {
+pub(crate) struct CheckContext<'a> {
     pub(crate) memory: &'a Memory,
     pub(crate) settings: &'a Settings,
-    pub(crate) units: Vec<Unit<'a>>,
+    pub(crate) units: Vec<ProgramUnit<'a>>,
     /// The names of all rules, as CHECK-OFF may have them.
     pub(crate) rules: Vec<&'static str>,
     places: BTreeMap<ProgramId, usize>,
@@ -24,12 +24,12 @@ pub(crate) struct Subject<'a> {
 
 /// One program.
 #[derive(Debug)]
-pub(crate) struct Unit<'a> {
+pub(crate) struct ProgramUnit<'a> {
     /// As written: the tree keeps comments and points.
     pub(crate) blocks: Vec<ast::Block>,
     /// As it will run; block and operation have the same index.
     pub(crate) program: &'a Program,
-    pub(crate) flow: Flow,
+    pub(crate) flow: ControlFlowGraph,
     pub(crate) calls: Vec<CallSite>,
     /// Who calls it: unit and place in its calls.
     pub(crate) callers: Vec<(usize, usize)>,
@@ -51,7 +51,7 @@ pub(crate) enum Role {
     Resident,
 }
 
-impl<'a> Subject<'a> {
+impl<'a> CheckContext<'a> {
     pub(super) fn new(
         memory: &'a Memory,
         settings: &'a Settings,
@@ -64,9 +64,9 @@ impl<'a> Subject<'a> {
             .iter()
             .map(|id| {
                 let program = memory.get(*id);
-                Unit {
+                ProgramUnit {
                     blocks: trees.remove(id).unwrap_or_default(),
-                    flow: Flow::new(program),
+                    flow: ControlFlowGraph::new(program),
                     calls: calls::sites(program, settings),
                     callers: Vec::new(),
                     starts: vec![0],
@@ -98,7 +98,7 @@ impl<'a> Subject<'a> {
                     self.units[called].starts.extend(start);
                 }
                 let returns = &self.units[called].flow;
-                let anywhere = returns.ways.iter().any(|ways| ways.leaves && ways.anywhere);
+                let anywhere = returns.ways.iter().any(|ways| ways.is_exit && ways.anywhere);
                 let numbers: Vec<u32> =
                     returns.jumps.iter().filter(|jump| jump.returns).map(|jump| jump.number).collect();
                 let to: Vec<_> =
@@ -114,7 +114,7 @@ impl<'a> Subject<'a> {
         }
         for unit in &mut self.units {
             unit.role = unit.role();
-            unit.reached = unit.flow.reached(unit.starts.iter().copied());
+            unit.reached = unit.flow.reachable(unit.starts.iter().copied());
         }
     }
 
@@ -141,18 +141,18 @@ fn trees(memory: &Memory, programs: &[ProgramId]) -> BTreeMap<ProgramId, Vec<ast
     found
 }
 
-impl Unit<'_> {
+impl ProgramUnit<'_> {
     fn role(&self) -> Role {
         if !self.callers.is_empty() {
             return Role::Called;
         }
         let returns = self.program.ops().iter().any(|op| match op.kind() {
-            OpKind::Words(words) => words.call().is_some_and(|call| call.kind == Calling::Return),
+            OpKind::Words(words) => words.call().is_some_and(|call| call.kind == CallCode::Return),
             _ => false,
         });
         let ends = self.flow.ways.iter().zip(self.program.ops()).any(|(ways, op)| {
             let returns = matches!(op.kind(), OpKind::Words(words) if words.call().is_some());
-            ways.leaves && matches!(op.kind(), OpKind::Words(_)) && !returns
+            ways.is_exit && matches!(op.kind(), OpKind::Words(_)) && !returns
         });
         if returns && !ends { Role::Resident } else { Role::Main }
     }
@@ -174,32 +174,42 @@ impl Unit<'_> {
         code: &'static str,
         block: OpIndex,
         message: impl Into<String>,
-    ) -> Finding {
-        let place = Place { block: self.op(block).span, calls: None };
-        Finding { block, diagnostic: Diagnostic::new(severity, code, message).at(place) }
+    ) -> RuleFinding {
+        let place = Backtrace { block: self.op(block).span, calls: None };
+        RuleFinding { block, diagnostic: Diagnostic::new(severity, code, message).at(place) }
     }
 
-    pub(crate) fn error(&self, code: &'static str, block: OpIndex, message: impl Into<String>) -> Finding {
+    pub(crate) fn error(
+        &self,
+        code: &'static str,
+        block: OpIndex,
+        message: impl Into<String>,
+    ) -> RuleFinding {
         self.finding(Severity::Error, code, block, message)
     }
 
-    pub(crate) fn warning(&self, code: &'static str, block: OpIndex, message: impl Into<String>) -> Finding {
+    pub(crate) fn warning(
+        &self,
+        code: &'static str,
+        block: OpIndex,
+        message: impl Into<String>,
+    ) -> RuleFinding {
         self.finding(Severity::Warning, code, block, message)
     }
 
-    pub(crate) fn note(&self, code: &'static str, block: OpIndex, message: impl Into<String>) -> Finding {
+    pub(crate) fn note(&self, code: &'static str, block: OpIndex, message: impl Into<String>) -> RuleFinding {
         self.finding(Severity::Note, code, block, message)
     }
 }
 
 /// What a rule says of a block.
 #[derive(Debug)]
-pub(crate) struct Finding {
+pub(crate) struct RuleFinding {
     pub(crate) block: OpIndex,
     pub(crate) diagnostic: Diagnostic,
 }
 
-impl Finding {
+impl RuleFinding {
     /// The exact part of the block.
     pub(crate) fn on(mut self, span: Span) -> Self {
         self.diagnostic.span = Some(span);

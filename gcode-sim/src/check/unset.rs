@@ -6,9 +6,9 @@ use crate::source::Span;
 use crate::syntax::ast::{Expr, Statement};
 
 use super::calls::CallSite;
-use super::first::First;
+use super::first_reach::FirstReach;
 use super::literal::variable;
-use super::subject::Unit;
+use super::subject::ProgramUnit;
 use super::vacancy::{ANYTHING, Locals, NUMBER, States, guards};
 use super::variables::{self, Read, Use};
 
@@ -23,16 +23,16 @@ pub(super) fn entry(call: &CallSite) -> Locals {
 
 /// The reads of locals that are surely unset there, each block's local once.
 pub(super) fn reads<'a>(
-    unit: &'a Unit<'a>,
+    unit: &'a ProgramUnit<'a>,
     states: &'a States,
 ) -> impl Iterator<Item = ((OpIndex, u32), (Span, Use))> + 'a {
-    let first = Rc::new(First::new(unit, states));
+    let first = Rc::new(FirstReach::new(unit, states));
     let reached = unit.blocks.iter().enumerate().filter(|(block, _)| states[*block].is_some());
     reached.flat_map(move |(block, written)| {
         let itself = variables::assignment(written)
             .filter(|(target, value)| target.kind == value.kind || same_variable(target, value));
         let reads = variables::of_block(written).reads;
-        let minded = minded(unit, block, &reads);
+        let minded = guarded_locals(unit, block, &reads);
         let plain = reads.into_iter().filter(move |read| {
             // `#1=#1` says nothing.
             (1..=33).contains(&read.number)
@@ -49,7 +49,7 @@ pub(super) fn reads<'a>(
 
 /// The locals whose vacancy a condition minds: what is behind it reads them only where they are set, and what stands
 /// beside the test in it means no harm.
-fn minded(unit: &Unit<'_>, block: OpIndex, reads: &[Read]) -> Vec<u32> {
+fn guarded_locals(unit: &ProgramUnit<'_>, block: OpIndex, reads: &[Read]) -> Vec<u32> {
     use Statement::{IfGoto, IfThen, While};
     let Some(IfThen { condition, .. } | IfGoto { condition, .. } | While { condition, .. }) =
         variables::statement(&unit.blocks, block)

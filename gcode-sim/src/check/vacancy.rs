@@ -6,7 +6,7 @@
 use crate::program::{OpIndex, OpKind};
 use crate::syntax::ast::{BinaryOp, CallForm, Condition, Expr, ExprKind, Function, Relation, Statement};
 
-use super::subject::Unit;
+use super::subject::ProgramUnit;
 use super::{literal, variables};
 
 /// What a local may be, as bits.
@@ -47,8 +47,8 @@ impl Locals {
 pub(crate) type States = Vec<Option<Locals>>;
 
 /// Follows a program from its first block with what its locals are there.
-pub(crate) fn states(unit: &Unit<'_>, entry: Locals) -> States {
-    let mut states: States = vec![None; unit.flow.places()];
+pub(crate) fn states(unit: &ProgramUnit<'_>, entry: Locals) -> States {
+    let mut states: States = vec![None; unit.flow.block_count()];
     let mut open = unit.starts.clone();
     // A call that starts elsewhere brings its own locals.
     for (place, start) in unit.starts.iter().enumerate() {
@@ -74,8 +74,8 @@ pub(crate) fn states(unit: &Unit<'_>, entry: Locals) -> States {
 }
 
 /// Where a place leads and with which state.
-pub(super) fn steps(unit: &Unit<'_>, block: OpIndex, state: &Locals) -> Vec<(OpIndex, Locals)> {
-    let to = || unit.flow.after(block);
+pub(super) fn steps(unit: &ProgramUnit<'_>, block: OpIndex, state: &Locals) -> Vec<(OpIndex, Locals)> {
+    let to = || unit.flow.successors(block);
     let both = |state: Locals| to().map(|to| (to, state)).collect::<Vec<_>>();
     let Some(op) = unit.program.ops().get(block) else { return both(*state) };
     let mut after = *state;

@@ -4,10 +4,10 @@ use clap::{Parser, Subcommand};
 
 use super::budget::BudgetArguments;
 use super::check::CheckArguments;
+use super::common::Colours;
 use super::compare::CompareArguments;
 use super::diff::DiffArguments;
 use super::explain::ExplainArguments;
-use super::front::Colours;
 use super::holes::HolesArguments;
 use super::packaging::{ManArguments, ShellArguments};
 use super::readings::ReadingsArguments;

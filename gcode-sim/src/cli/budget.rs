@@ -6,11 +6,11 @@ use std::sync::atomic::AtomicUsize;
 use clap::Args;
 
 use super::format::TextFormat;
-use super::{Refusal, Status, apart, input, options, output, progress};
+use super::{ExitStatus, UsageError, input, options, output, overwrite_guard, progress};
 use crate::budget::{MOST_SAMPLES, Question, budget};
 use crate::job::Job;
 use crate::machine::{Machine, error_file};
-use crate::part::wanted::Wanted;
+use crate::part::nominal::NominalPart;
 use crate::picture::Size;
 use crate::report::budget::BudgetReport;
 use crate::verify::Tolerances;
@@ -54,21 +54,21 @@ pub(super) struct BudgetArguments {
     format: TextFormat,
 }
 
-pub(super) fn run(arguments: &BudgetArguments) -> Result<Status, Refusal> {
+pub(super) fn run(arguments: &BudgetArguments) -> Result<ExitStatus, UsageError> {
     let named = |path: &std::path::Path, error: &dyn std::fmt::Display| {
-        Refusal::new(format!("{}, {error}", path.display()))
+        UsageError::new(format!("{}, {error}", path.display()))
     };
     let asked = options::tolerance("--tolerance", arguments.tolerance)?;
     if !(1..=MOST_SAMPLES).contains(&arguments.samples) {
-        return Err(Refusal::new(format!("--samples {}: 1 to {MOST_SAMPLES}", arguments.samples)));
+        return Err(UsageError::new(format!("--samples {}: 1 to {MOST_SAMPLES}", arguments.samples)));
     }
     if let Some(path) = &arguments.picture {
         let machine = arguments.machine.as_deref();
         let files = [arguments.job.as_path(), arguments.errors.as_path()].into_iter().chain(machine);
-        apart::keep(path, &files.collect::<Vec<_>>())?;
+        overwrite_guard::keep(path, &files.collect::<Vec<_>>())?;
     }
     let job = Job::parse(&input::text(&arguments.job)?).map_err(|e| named(&arguments.job, &e))?;
-    let reference = Wanted::of_job(&job).map_err(|e| named(&arguments.job, &e))?.into_holes();
+    let reference = NominalPart::of_job(&job).map_err(|e| named(&arguments.job, &e))?.into_holes();
     let Some(reference) = reference else {
         return Err(named(&arguments.job, &"a budget is of holes, and this family's part gets none"));
     };
@@ -80,7 +80,7 @@ pub(super) fn run(arguments: &BudgetArguments) -> Result<Status, Refusal> {
     if !machine.is_exact() {
         let message =
             "--machine: it has errors or a misplaced part; a budget takes those from --errors alone";
-        return Err(Refusal::new(message));
+        return Err(UsageError::new(message));
     }
     let sources = error_file(&input::text(&arguments.errors)?, &machine)
         .map_err(|error| named(&arguments.errors, &error))?;
@@ -107,12 +107,12 @@ pub(super) fn run(arguments: &BudgetArguments) -> Result<Status, Refusal> {
     if let Some(path) = &arguments.picture {
         // As high as its bars are many.
         let height = 120 + 25 * sources.len() as u32;
-        let size = Size::new(1200, height.max(360)).map_err(|error| Refusal::new(error.to_string()))?;
-        let png = report.bars().draw(size).map_err(|error| Refusal::new(error.to_string()))?;
+        let size = Size::new(1200, height.max(360)).map_err(|error| UsageError::new(error.to_string()))?;
+        let png = report.bars().draw(size).map_err(|error| UsageError::new(error.to_string()))?;
         output::write(path, &png)?;
         if arguments.format == TextFormat::Text {
             output::print(&format!("picture: {}\n", path.display()))?;
         }
     }
-    Ok(Status::Holds)
+    Ok(ExitStatus::Holds)
 }

@@ -5,7 +5,7 @@ use clap::Args;
 
 use super::conditions::RunConditions;
 use super::format::FindingFormat;
-use super::{Refusal, Status, options, output, unused_machine};
+use super::{ExitStatus, UsageError, options, output, unused_machine};
 use crate::check::check;
 use crate::report::check::{CheckReport, text};
 use crate::report::sarif::{self, Finding};
@@ -45,7 +45,7 @@ pub(super) struct CheckArguments {
     format: FindingFormat,
 }
 
-pub(super) fn run(arguments: &CheckArguments) -> Result<Status, Refusal> {
+pub(super) fn run(arguments: &CheckArguments) -> Result<ExitStatus, UsageError> {
     let conditions = RunConditions {
         libraries: arguments.libraries.clone(),
         dialect: arguments.dialect.clone(),
@@ -60,7 +60,7 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<Status, Refusal> {
     unused_machine::tell_of_control(&program, &request);
     let checked = check(request.name.clone(), request.bytes, &request.settings, &mut folders);
     if checked.programs == 0 {
-        return Err(Refusal::new(format!("{} holds no program", request.name)));
+        return Err(UsageError::new(format!("{} holds no program", request.name)));
     }
     match arguments.format {
         FindingFormat::Text => output::print(&text(&checked))?,
@@ -71,5 +71,5 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<Status, Refusal> {
             output::json(&sarif::log(&findings, &options::started_in()))?;
         }
     }
-    Ok(if checked.stands() { Status::Fails } else { Status::Holds })
+    Ok(if checked.has_findings() { ExitStatus::Fails } else { ExitStatus::Holds })
 }

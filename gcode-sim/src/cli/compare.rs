@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::format::TextFormat;
-use super::{Refusal, Status, apart, input, output};
+use super::{ExitStatus, UsageError, input, output, overwrite_guard};
 use crate::picture;
 use crate::report::pictures::CompareReport;
 
@@ -31,12 +31,12 @@ pub(super) struct CompareArguments {
     format: TextFormat,
 }
 
-pub(super) fn run(arguments: &CompareArguments) -> Result<Status, Refusal> {
+pub(super) fn run(arguments: &CompareArguments) -> Result<ExitStatus, UsageError> {
     if let Some(path) = &arguments.output {
-        apart::keep(path, &[&arguments.left, &arguments.right])?;
+        overwrite_guard::keep(path, &[&arguments.left, &arguments.right])?;
     }
     let (left, right) = (input::bytes(&arguments.left)?, input::bytes(&arguments.right)?);
-    let refused = |error: picture::PictureError| Refusal::new(error.to_string());
+    let refused = |error: picture::PictureError| UsageError::new(error.to_string());
     let difference = picture::compare(&left, &right, arguments.tolerance).map_err(refused)?;
     let picture = arguments.output.as_ref().filter(|_| !difference.is_none());
     if let Some(path) = picture {
@@ -47,5 +47,5 @@ pub(super) fn run(arguments: &CompareArguments) -> Result<Status, Refusal> {
         TextFormat::Text => output::print(&report.text())?,
         TextFormat::Json => output::json(&report)?,
     }
-    Ok(if report.same { Status::Holds } else { Status::Fails })
+    Ok(if report.same { ExitStatus::Holds } else { ExitStatus::Fails })
 }

@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::{Refusal, apart};
+use super::{UsageError, overwrite_guard};
 
 /// The program, and everything its run depends on.
 #[derive(Debug, Default, Args)]
@@ -70,10 +70,10 @@ pub(super) struct RunConditions {
 
 impl ProgramArguments {
     /// The files that are read, called programs aside; a reference is one more. Standard input is among them once.
-    pub(super) fn files<'a>(&'a self, reference: Option<&'a Path>) -> Result<Vec<&'a Path>, Refusal> {
+    pub(super) fn files<'a>(&'a self, reference: Option<&'a Path>) -> Result<Vec<&'a Path>, UsageError> {
         let files = std::iter::once(self.program.as_path()).chain(self.conditions.files());
         let files: Vec<&Path> = files.chain(reference).collect();
-        apart::one_pipe(&files)?;
+        overwrite_guard::one_pipe(&files)?;
         Ok(files)
     }
 }

@@ -5,14 +5,14 @@ use clap::Args;
 
 use super::conditions::RunConditions;
 use super::format::FindingFormat;
-use super::{Refusal, Status, apart, options, output, page, render, unused_machine};
-use crate::changes::{Compared, Revision, unexecuted};
+use super::{ExitStatus, UsageError, options, output, overwrite_guard, page, render, unused_machine};
+use crate::changes::{Revision, RevisionDiff, unexecuted};
+use crate::part::nominal::NominalPart;
 use crate::part::reference::Reference;
-use crate::part::wanted::Wanted;
 use crate::picture;
 use crate::report::changes::{ChangesReport, change_found};
-use crate::report::page::{Difference, Page, Seen};
-use crate::report::sarif::{self, At, Finding};
+use crate::report::page::{Difference, ObservedProgram, Page};
+use crate::report::sarif::{self, FileLocation, Finding};
 use crate::report::{changed_view, diagnostic};
 use crate::session::Trace;
 use crate::verify::Tolerances;
@@ -56,14 +56,14 @@ pub(super) struct DiffArguments {
     format: FindingFormat,
 }
 
-pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
+pub(super) fn run(arguments: &DiffArguments) -> Result<ExitStatus, UsageError> {
     let tolerance = options::tolerance("--tolerance", Some(arguments.tolerance))?.unwrap_or_default();
     let programs = [arguments.old.as_path(), arguments.new.as_path()];
     let files: Vec<&Path> =
         programs.into_iter().chain(arguments.run.files()).chain(arguments.reference.as_deref()).collect();
-    apart::one_pipe(&files)?;
+    overwrite_guard::one_pipe(&files)?;
     for result in [&arguments.picture, &arguments.page].into_iter().flatten() {
-        apart::keep(result, &files)?;
+        overwrite_guard::keep(result, &files)?;
     }
     arguments.page.as_deref().map(page::is_html).transpose()?;
     let mut before = arguments.run.clone();
@@ -78,12 +78,12 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
     for request in [&mut old_request, &mut new_request] {
         request.conduct = reference.as_ref().map(|reference| reference.conduct.clone()).unwrap_or_default();
     }
-    let refused = |error: crate::session::SessionError| Refusal::new(error.to_string());
+    let refused = |error: crate::session::SessionError| UsageError::new(error.to_string());
     let trace = || arguments.page.as_ref().map(|_| Trace::default());
     let (mut old_trace, mut new_trace) = (trace(), trace());
-    let old = Revision::watched(&old_request, &mut old_folders, surface, &mut old_trace).map_err(refused)?;
-    let new = Revision::watched(&new_request, &mut new_folders, surface, &mut new_trace).map_err(refused)?;
-    let compared = Compared::new(&old.record, &new.record, tolerance);
+    let old = Revision::observed(&old_request, &mut old_folders, surface, &mut old_trace).map_err(refused)?;
+    let new = Revision::observed(&new_request, &mut new_folders, surface, &mut new_trace).map_err(refused)?;
+    let compared = RevisionDiff::new(&old.record, &new.record, tolerance);
     let unexecuted = unexecuted(&old, &new);
     let report = ChangesReport::new(
         (&old_request.name, &old.record),
@@ -126,7 +126,7 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
             reference.as_ref().map(verify)
         };
         let (old_verdict, new_verdict) = (judged(&old), judged(&new));
-        let seen = |request, revision, trace, verdict| Seen { request, revision, trace, verdict };
+        let seen = |request, revision, trace, verdict| ObservedProgram { request, revision, trace, verdict };
         let difference = Difference { compared: &compared, unexecuted: &unexecuted, tolerance };
         let of_old = arguments.old_libraries.iter().map(|folder| format!("--old-lib {}", folder.display()));
         let flags: Vec<String> = page::flags(&arguments.run).into_iter().chain(of_old).collect();
@@ -141,22 +141,22 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<Status, Refusal> {
         page::write(&review, path)?;
         page::tell(path, arguments.format == FindingFormat::Text)?;
     }
-    let mut status = if compared.changes.is_empty() { Status::Holds } else { Status::Fails };
+    let mut status = if compared.changes.is_empty() { ExitStatus::Holds } else { ExitStatus::Fails };
     for revision in [&old, &new] {
         let sources = revision.simulation.run.control.memory().sources();
         for finding in revision.stopped() {
             output::tell(&diagnostic::render(finding, sources));
-            status = Status::Stopped;
+            status = ExitStatus::Stopped;
         }
     }
     Ok(status)
 }
 
 /// For a code review: what changes, at its place in the new revision, and why that stops if it does.
-fn findings(compared: &Compared, new: &Revision, file: &str) -> Vec<Finding> {
+fn findings(compared: &RevisionDiff, new: &Revision, file: &str) -> Vec<Finding> {
     let (files, sources) = (new.files(), new.simulation.run.control.memory().sources());
     // A result without a place is taken by none.
-    let first = At { file: file.to_owned(), line: Some(1), column: None };
+    let first = FileLocation { file: file.to_owned(), line: Some(1), column: None };
     let found = |change| {
         let found = change_found(change, "", &files);
         Finding { at: found.at.or_else(|| Some(first.clone())), ..found }
@@ -166,10 +166,10 @@ fn findings(compared: &Compared, new: &Revision, file: &str) -> Vec<Finding> {
 }
 
 /// The page's reference.
-fn wanted_holes(path: &Path) -> Result<Reference, Refusal> {
+fn wanted_holes(path: &Path) -> Result<Reference, UsageError> {
     match options::wanted(path)? {
-        Wanted::Holes(reference) => Ok(reference),
-        Wanted::Flutes(_) => Err(Refusal::new(format!(
+        NominalPart::Holes(reference) => Ok(reference),
+        NominalPart::Flutes(_) => Err(UsageError::new(format!(
             "--reference {}: a page has verdicts on holes, and this is a burr: leave the reference out",
             path.display()
         ))),

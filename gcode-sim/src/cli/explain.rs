@@ -2,7 +2,7 @@
 use clap::Args;
 
 use super::format::TextFormat;
-use super::{Refusal, Status, output};
+use super::{ExitStatus, UsageError, output};
 use crate::report::explained::ExplainReport;
 
 #[derive(Debug, Args)]
@@ -20,11 +20,11 @@ pub(super) struct ExplainArguments {
     format: TextFormat,
 }
 
-pub(super) fn run(arguments: &ExplainArguments) -> Result<Status, Refusal> {
+pub(super) fn run(arguments: &ExplainArguments) -> Result<ExitStatus, UsageError> {
     let report = match &arguments.code {
         None => ExplainReport::list(),
         Some(code) => ExplainReport::of(code).ok_or_else(|| {
-            Refusal::new(format!(
+            UsageError::new(format!(
                 "{code} is none of this simulator's alarms and findings: gcode-sim explain --list names them"
             ))
         })?,
@@ -33,5 +33,5 @@ pub(super) fn run(arguments: &ExplainArguments) -> Result<Status, Refusal> {
         TextFormat::Text => output::print(&report.text())?,
         TextFormat::Json => output::json(&report)?,
     }
-    Ok(Status::Holds)
+    Ok(ExitStatus::Holds)
 }

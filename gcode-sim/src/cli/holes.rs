@@ -5,7 +5,7 @@ use clap::Args;
 
 use super::conditions::ProgramArguments;
 use super::format::ListFormat;
-use super::{Refusal, Status, apart, options, output, page, progress, unused_machine};
+use super::{ExitStatus, UsageError, options, output, overwrite_guard, page, progress, unused_machine};
 use crate::part::hole::HoleList;
 use crate::report::holes as report;
 use crate::session::{self, Simulation};
@@ -25,10 +25,10 @@ pub(super) struct HolesArguments {
     format: ListFormat,
 }
 
-pub(super) fn run(arguments: &HolesArguments) -> Result<Status, Refusal> {
+pub(super) fn run(arguments: &HolesArguments) -> Result<ExitStatus, UsageError> {
     let files = arguments.program.files(None)?;
     if let Some(page) = &arguments.page {
-        apart::keep(page, &files)?;
+        overwrite_guard::keep(page, &files)?;
         page::is_html(page)?;
     }
     let (mut request, mut folders) = options::request(&arguments.program)?;
@@ -41,17 +41,17 @@ pub(super) fn run(arguments: &HolesArguments) -> Result<Status, Refusal> {
         return Ok(status);
     }
     let simulation = progress::of_run(&mut request, |request| session::simulate(request, &mut folders, None))
-        .map_err(|e| Refusal::new(e.to_string()))?;
+        .map_err(|e| UsageError::new(e.to_string()))?;
     tell(arguments, &simulation)
 }
 
-fn tell(arguments: &HolesArguments, simulation: &Simulation) -> Result<Status, Refusal> {
+fn tell(arguments: &HolesArguments, simulation: &Simulation) -> Result<ExitStatus, UsageError> {
     print(&simulation.list(), arguments.format)?;
     Ok(super::findings(&simulation.extracted.findings, &simulation.run))
 }
 
 /// A list of holes in the format asked for.
-pub(super) fn print(list: &HoleList, format: ListFormat) -> Result<(), Refusal> {
+pub(super) fn print(list: &HoleList, format: ListFormat) -> Result<(), UsageError> {
     match format {
         ListFormat::Text => output::print(&report::text(list)),
         ListFormat::Json => output::json(list),

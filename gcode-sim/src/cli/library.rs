@@ -2,10 +2,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use super::{Refusal, input};
+use super::{UsageError, input};
 use crate::program::Library;
 use crate::source::SourceId;
-use crate::syntax::{self, Piece, ast::ProgramName};
+use crate::syntax::{self, FileItem, ast::ProgramName};
 
 /// The folders to look in, the first that has a program wins.
 pub struct Folders {
@@ -25,9 +25,9 @@ struct Contents {
 
 impl Folders {
     /// `folders` must exist: a misspelt one would look like a missing program later.
-    pub fn new(program: &Path, folders: &[PathBuf]) -> Result<Self, Refusal> {
+    pub fn new(program: &Path, folders: &[PathBuf]) -> Result<Self, UsageError> {
         if let Some(missing) = folders.iter().find(|folder| !folder.is_dir()) {
-            return Err(Refusal::new(format!("--lib {}: no such folder", missing.display())));
+            return Err(UsageError::new(format!("--lib {}: no such folder", missing.display())));
         }
         let own = match program.parent() {
             Some(parent) if parent.as_os_str().is_empty() => PathBuf::from("."),
@@ -132,8 +132,8 @@ impl Library for Folders {
 
 /// The programs in a file that have a number or a name.
 fn programs_in(bytes: &[u8]) -> impl Iterator<Item = ProgramName> + '_ {
-    syntax::Pieces::new(SourceId::default(), bytes).filter_map(|piece| match piece {
-        Piece::Program { name, .. } => Some(name),
+    syntax::FileItems::new(SourceId::default(), bytes).filter_map(|piece| match piece {
+        FileItem::Program { name, .. } => Some(name),
         _ => None,
     })
 }

@@ -1,19 +1,19 @@
 //! The only place that prints and opens files: arguments in, exit status out.
-pub mod apart;
 mod args;
 mod budget;
 mod check;
+pub mod common;
 mod compare;
 mod conditions;
 mod diff;
 mod explain;
 pub mod format;
-pub mod front;
 mod holes;
 pub mod input;
 pub mod library;
 mod options;
 pub mod output;
+pub mod overwrite_guard;
 pub mod packaging;
 mod page;
 mod progress;
@@ -38,7 +38,7 @@ use crate::session::Run;
 
 /// How a request ended, the same for both programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Status {
+pub enum ExitStatus {
     /// Done, and what was asked about holds.
     Holds,
     /// Done, and the answer is no.
@@ -49,13 +49,13 @@ pub enum Status {
     Stopped,
 }
 
-impl From<Status> for ExitCode {
-    fn from(status: Status) -> Self {
+impl From<ExitStatus> for ExitCode {
+    fn from(status: ExitStatus) -> Self {
         Self::from(match status {
-            Status::Holds => 0,
-            Status::Fails => 1,
-            Status::Refused => 2,
-            Status::Stopped => 3,
+            ExitStatus::Holds => 0,
+            ExitStatus::Fails => 1,
+            ExitStatus::Refused => 2,
+            ExitStatus::Stopped => 3,
         })
     }
 }
@@ -63,17 +63,17 @@ impl From<Status> for ExitCode {
 /// Why a request can't be used, in one sentence with its remedy.
 #[derive(Debug, thiserror::Error)]
 #[error("{0}")]
-pub struct Refusal(String);
+pub struct UsageError(String);
 
-impl Refusal {
+impl UsageError {
     pub fn new(message: impl Into<String>) -> Self {
         Self(message.into())
     }
 }
 
 /// Does what the command line asks for.
-pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Status {
-    let arguments: Arguments = match front::parse(arguments) {
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitStatus {
+    let arguments: Arguments = match common::parse(arguments) {
         Ok(arguments) => arguments,
         Err(status) => return status,
     };
@@ -98,28 +98,28 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> Status {
     };
     done.unwrap_or_else(|refusal| {
         output::tell(&format!("error: {refusal}\n"));
-        Status::Refused
+        ExitStatus::Refused
     })
 }
 
 /// Tells what a run did in silence, and why it stopped before its end, if it did.
-fn stopped(run: &Run) -> Option<Status> {
+fn stopped(run: &Run) -> Option<ExitStatus> {
     let sources = run.control.memory().sources();
     run.notes().for_each(|note| output::tell(&diagnostic::render(&note, sources)));
     let finding = run.stopped()?;
     output::tell(&diagnostic::render(&finding, sources));
-    Some(Status::Stopped)
+    Some(ExitStatus::Stopped)
 }
 
 /// Tells what was found, and what that means for the exit status.
-fn findings(all: &[Diagnostic], run: &Run) -> Status {
+fn findings(all: &[Diagnostic], run: &Run) -> ExitStatus {
     let sources = run.control.memory().sources();
     for finding in all {
         output::tell(&diagnostic::render(finding, sources));
     }
     match all.iter().map(|finding| finding.severity).max() {
-        Some(Severity::Alarm) => Status::Stopped,
-        Some(Severity::Error) => Status::Fails,
-        _ => Status::Holds,
+        Some(Severity::Alarm) => ExitStatus::Stopped,
+        Some(Severity::Error) => ExitStatus::Fails,
+        _ => ExitStatus::Holds,
     }
 }

@@ -3,16 +3,16 @@ use std::path::Path;
 
 use super::conditions::ProgramArguments;
 use super::library::Folders;
-use super::{Refusal, input};
+use super::{UsageError, input};
 use crate::exec::Limits;
 use crate::job::{Rotary, control_file};
 use crate::machine::{Machine, Probe};
-use crate::part::probed::Probed;
-use crate::part::wanted::Wanted;
+use crate::part::nominal::NominalPart;
+use crate::part::probed::ProbedPart;
 use crate::session::Request;
 
 /// Reads the program and the machine, and resolves every setting.
-pub(super) fn request(program: &ProgramArguments) -> Result<(Request, Folders), Refusal> {
+pub(super) fn request(program: &ProgramArguments) -> Result<(Request, Folders), UsageError> {
     let ProgramArguments { program, conditions: arguments } = program;
     let machine = match &arguments.machine {
         Some(path) => machine(path)?,
@@ -23,7 +23,7 @@ pub(super) fn request(program: &ProgramArguments) -> Result<(Request, Folders), 
     let name = if piped { "standard input".to_owned() } else { program.display().to_string() };
     let mut request = Request::new(name, input::program(program)?, machine);
     if let Some(path) = &arguments.control_file {
-        let refused = |error| Refusal::new(format!("{}, {error}", path.display()));
+        let refused = |error| UsageError::new(format!("{}, {error}", path.display()));
         control_file::apply(&input::text(path)?, &mut request.settings).map_err(refused)?;
     }
     let mut settings: Vec<(&str, String)> = Vec::new();
@@ -36,10 +36,10 @@ pub(super) fn request(program: &ProgramArguments) -> Result<(Request, Folders), 
     settings.extend(arguments.skip.iter().map(|part| ("--skip", format!("SKIP={part}"))));
     for (flag, text) in settings {
         let Some((key, value)) = text.split_once('=') else {
-            return Err(Refusal::new(format!("{flag} {text}: write KEY=VALUE, for example NAT=1")));
+            return Err(UsageError::new(format!("{flag} {text}: write KEY=VALUE, for example NAT=1")));
         };
         let taken = request.settings.set(key.trim(), value.trim());
-        taken.map_err(|error| Refusal::new(format!("{flag}: {error}")))?;
+        taken.map_err(|error| UsageError::new(format!("{flag}: {error}")))?;
     }
     for text in &arguments.set {
         request.variables.push(assignment(text)?);
@@ -52,20 +52,20 @@ pub(super) fn request(program: &ProgramArguments) -> Result<(Request, Folders), 
 }
 
 /// Puts a part on the machine that can be probed; `file` is the machine's.
-fn probed(request: &mut Request, path: &Path, file: Option<&Path>) -> Result<(), Refusal> {
-    let refused = |why: &dyn std::fmt::Display| Refusal::new(format!("{}, {why}", path.display()));
+fn probed(request: &mut Request, path: &Path, file: Option<&Path>) -> Result<(), UsageError> {
+    let refused = |why: &dyn std::fmt::Display| UsageError::new(format!("{}, {why}", path.display()));
     if request.settings.skip_signal.is_some() {
-        return Err(Refusal::new(
+        return Err(UsageError::new(
             "--part: SKIP says already where the skip signal comes: leave one of them out",
         ));
     }
-    let part = Probed::parse(&input::text(path)?).map_err(|error| refused(&error))?;
+    let part = ProbedPart::parse(&input::text(path)?).map_err(|error| refused(&error))?;
     match (&request.machine.probe, part.radius) {
         (None, Some(radius)) => request.machine.probe = Some(Probe::new(radius)),
         (None, None) => {
             let message =
                 "--part: how large is the stylus ball? Give [probe] with its radius in the machine file";
-            return Err(Refusal::new(message));
+            return Err(UsageError::new(message));
         }
         (Some(probe), Some(radius)) if probe.radius != radius => {
             return Err(refused(&format!(
@@ -105,13 +105,15 @@ fn same_rotary(rotary: Rotary, machine: &Machine, file: &str) -> Result<(), Stri
 }
 
 /// A machine file.
-pub(super) fn machine(path: &Path) -> Result<Machine, Refusal> {
-    Machine::parse(&input::text(path)?).map_err(|error| Refusal::new(format!("{}, {error}", path.display())))
+pub(super) fn machine(path: &Path) -> Result<Machine, UsageError> {
+    Machine::parse(&input::text(path)?)
+        .map_err(|error| UsageError::new(format!("{}, {error}", path.display())))
 }
 
 /// A hole list or a job file.
-pub(super) fn wanted(path: &Path) -> Result<Wanted, Refusal> {
-    Wanted::parse(&input::text(path)?).map_err(|error| Refusal::new(format!("{}, {error}", path.display())))
+pub(super) fn wanted(path: &Path) -> Result<NominalPart, UsageError> {
+    NominalPart::parse(&input::text(path)?)
+        .map_err(|error| UsageError::new(format!("{}, {error}", path.display())))
 }
 
 /// The folder that the program was started in, which results name files from.
@@ -120,27 +122,27 @@ pub(super) fn started_in() -> String {
 }
 
 /// A tolerance that somebody asked for.
-pub(super) fn tolerance(flag: &str, value: Option<f64>) -> Result<Option<f64>, Refusal> {
+pub(super) fn tolerance(flag: &str, value: Option<f64>) -> Result<Option<f64>, UsageError> {
     match value {
         Some(mm) if !(mm.is_finite() && mm > 0.0) => {
-            Err(Refusal::new(format!("{flag} {mm}: a length above 0 mm")))
+            Err(UsageError::new(format!("{flag} {mm}: a length above 0 mm")))
         }
         value => Ok(value),
     }
 }
 
 /// `#500=12.5`.
-fn assignment(text: &str) -> Result<(u32, f64), Refusal> {
+fn assignment(text: &str) -> Result<(u32, f64), UsageError> {
     let parsed = text.trim().strip_prefix('#').and_then(|rest| {
         let (number, value) = rest.split_once('=')?;
         let value = value.trim().parse::<f64>().ok().filter(|v| v.is_finite())?;
         Some((number.trim().parse().ok()?, value))
     });
-    parsed.ok_or_else(|| Refusal::new(format!("--set {text}: write a variable and a number, '#500=12.5'")))
+    parsed.ok_or_else(|| UsageError::new(format!("--set {text}: write a variable and a number, '#500=12.5'")))
 }
 
 /// `#5041`.
-pub(super) fn variable(text: &str) -> Result<u32, Refusal> {
+pub(super) fn variable(text: &str) -> Result<u32, UsageError> {
     let number = text.trim().strip_prefix('#').and_then(|digits| digits.parse().ok());
-    number.ok_or_else(|| Refusal::new(format!("--show {text}: write a variable, '#5041'")))
+    number.ok_or_else(|| UsageError::new(format!("--show {text}: write a variable, '#5041'")))
 }

@@ -5,7 +5,7 @@ use clap::Args;
 
 use super::conditions::ProgramArguments;
 use super::format::ListFormat;
-use super::{Refusal, Status, apart, options, output, render, unused_machine};
+use super::{ExitStatus, UsageError, options, output, overwrite_guard, render, unused_machine};
 use crate::picture::Size;
 use crate::report::readings::ReadingsReport;
 use crate::session;
@@ -33,19 +33,19 @@ pub(super) struct ReadingsArguments {
     format: ListFormat,
 }
 
-pub(super) fn run(arguments: &ReadingsArguments) -> Result<Status, Refusal> {
+pub(super) fn run(arguments: &ReadingsArguments) -> Result<ExitStatus, UsageError> {
     let files = arguments.program.files(None)?;
     if let Some(picture) = &arguments.picture {
-        apart::keep(picture, &files)?;
+        overwrite_guard::keep(picture, &files)?;
     }
     let (request, mut folders) = options::request(&arguments.program)?;
     unused_machine::tell(&arguments.program, &request);
     let tolerance = options::tolerance("--tolerance", arguments.tolerance)?;
     let (Some(surface), Some(probe)) = (request.part, &request.machine.probe) else {
-        return Err(Refusal::new("readings are of a part: --part JOB.toml says which"));
+        return Err(UsageError::new("readings are of a part: --part JOB.toml says which"));
     };
     let following = session::follow(&request, &mut folders, surface, probe.radius)
-        .map_err(|e| Refusal::new(e.to_string()))?;
+        .map_err(|e| UsageError::new(e.to_string()))?;
     let report = ReadingsReport::new(&render::name(&request), &following, probe.radius, tolerance);
     match arguments.format {
         ListFormat::Text => output::print(&report.text())?,
@@ -53,7 +53,7 @@ pub(super) fn run(arguments: &ReadingsArguments) -> Result<Status, Refusal> {
         ListFormat::Csv => output::print(&report.csv())?,
     }
     if let Some(path) = &arguments.picture {
-        let refused = |error: crate::picture::PictureError| Refusal::new(error.to_string());
+        let refused = |error: crate::picture::PictureError| UsageError::new(error.to_string());
         let size: Size = arguments.size.parse().map_err(refused)?;
         output::write(path, &report.plot().draw(size).map_err(refused)?)?;
         if arguments.format == ListFormat::Text {
@@ -61,17 +61,17 @@ pub(super) fn run(arguments: &ReadingsArguments) -> Result<Status, Refusal> {
         }
     }
     let found = super::findings(&following.followed.findings, &following.run);
-    if found != Status::Holds {
+    if found != ExitStatus::Holds {
         return Ok(found);
     }
     if report.is_empty() {
         output::tell(
             "error: no feed of the program goes along the part's surface, at most 5 mm away from it\n",
         );
-        return Ok(Status::Fails);
+        return Ok(ExitStatus::Fails);
     }
     Ok(match report.verdict() {
-        Some(Answer::Fail) => Status::Fails,
-        Some(Answer::Pass) | None => Status::Holds,
+        Some(Answer::Fail) => ExitStatus::Fails,
+        Some(Answer::Pass) | None => ExitStatus::Holds,
     })
 }

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::format::ListFormat;
-use super::{Refusal, Status, holes, input, output};
+use super::{ExitStatus, UsageError, holes, input, output};
 use crate::job::Job;
-use crate::part::wanted::Wanted;
+use crate::part::nominal::NominalPart;
 use crate::report::flute_table;
 use crate::verify::flutes::WantedFlutes;
 
@@ -21,23 +21,24 @@ pub(super) struct ReferenceArguments {
     format: ListFormat,
 }
 
-pub(super) fn run(arguments: &ReferenceArguments) -> Result<Status, Refusal> {
-    let named = |error: &dyn std::fmt::Display| Refusal::new(format!("{}, {error}", arguments.job.display()));
+pub(super) fn run(arguments: &ReferenceArguments) -> Result<ExitStatus, UsageError> {
+    let named =
+        |error: &dyn std::fmt::Display| UsageError::new(format!("{}, {error}", arguments.job.display()));
     let job = Job::parse(&input::text(&arguments.job)?).map_err(|e| named(&e))?;
-    match Wanted::of_job(&job).map_err(|e| named(&e))? {
-        Wanted::Holes(reference) => holes::print(&reference.list(), arguments.format)?,
-        Wanted::Flutes(wanted) => {
+    match NominalPart::of_job(&job).map_err(|e| named(&e))? {
+        NominalPart::Holes(reference) => holes::print(&reference.list(), arguments.format)?,
+        NominalPart::Flutes(wanted) => {
             let burr = WantedFlutes::of(&wanted);
             match arguments.format {
                 ListFormat::Json => output::json(&burr)?,
                 ListFormat::Text => output::print(&flute_table::wanted(&burr))?,
                 ListFormat::Csv => {
-                    return Err(Refusal::new(
+                    return Err(UsageError::new(
                         "--format csv is a list of holes, and a burr has none: text or json",
                     ));
                 }
             }
         }
     }
-    Ok(Status::Holds)
+    Ok(ExitStatus::Holds)
 }

@@ -5,10 +5,10 @@ use clap::{Args, ValueEnum};
 
 use super::conditions::ProgramArguments;
 use super::format::TextFormat;
-use super::{Refusal, Status, apart, options, output, progress, unused_machine};
+use super::{ExitStatus, UsageError, options, output, overwrite_guard, progress, unused_machine};
 use crate::part::flutes::Flutes;
+use crate::part::nominal::NominalPart;
 use crate::part::reference::Reference;
-use crate::part::wanted::Wanted;
 use crate::picture::{self, Scene, Size, TopView};
 use crate::report::pictures::RenderReport;
 use crate::report::{flute_view, top};
@@ -72,16 +72,16 @@ impl View {
     }
 }
 
-pub(super) fn run(arguments: &RenderArguments) -> Result<Status, Refusal> {
-    apart::keep(&arguments.output, &arguments.program.files(arguments.reference.as_deref())?)?;
+pub(super) fn run(arguments: &RenderArguments) -> Result<ExitStatus, UsageError> {
+    overwrite_guard::keep(&arguments.output, &arguments.program.files(arguments.reference.as_deref())?)?;
     match arguments.reference.as_deref().map(options::wanted).transpose()? {
-        Some(Wanted::Holes(reference)) => holes(arguments, Some(reference)),
-        Some(Wanted::Flutes(wanted)) => flutes(arguments, wanted),
+        Some(NominalPart::Holes(reference)) => holes(arguments, Some(reference)),
+        Some(NominalPart::Flutes(wanted)) => flutes(arguments, wanted),
         None => holes(arguments, None),
     }
 }
 
-fn holes(arguments: &RenderArguments, reference: Option<Reference>) -> Result<Status, Refusal> {
+fn holes(arguments: &RenderArguments, reference: Option<Reference>) -> Result<ExitStatus, UsageError> {
     let (mut request, mut folders) = options::request(&arguments.program)?;
     unused_machine::tell(&arguments.program, &request);
     let asked = options::tolerance("--tolerance", arguments.tolerance)?;
@@ -89,7 +89,7 @@ fn holes(arguments: &RenderArguments, reference: Option<Reference>) -> Result<St
     request.conduct = reference.as_ref().map(|r| r.conduct.clone()).unwrap_or_default();
     let simulation =
         progress::of_run(&mut request, |request| session::simulate(request, &mut folders, surface))
-            .map_err(|e| Refusal::new(e.to_string()))?;
+            .map_err(|e| UsageError::new(e.to_string()))?;
     let drawn = match &reference {
         Some(reference) => {
             let verdict = simulation.verify(reference, Tolerances::of(reference, asked), &request.machine);
@@ -103,25 +103,25 @@ fn holes(arguments: &RenderArguments, reference: Option<Reference>) -> Result<St
         View::Side | View::Tip | View::Helix => {
             let message =
                 "the views side, tip and helix are of a burr: --reference JOB.toml of that family is needed";
-            return Err(Refusal::new(message));
+            return Err(UsageError::new(message));
         }
         View::Development => picture::development(&drawn).ok_or_else(|| {
             let message = "--view development unrolls a cylinder: it needs --reference with a job of one";
-            Refusal::new(message)
+            UsageError::new(message)
         })?,
     };
     write(&scene, &arguments.size, &arguments.output)?;
     tell(arguments, asked)?;
-    Ok(super::stopped(&simulation.run).unwrap_or(Status::Holds))
+    Ok(super::stopped(&simulation.run).unwrap_or(ExitStatus::Holds))
 }
 
-fn flutes(arguments: &RenderArguments, mut wanted: Flutes) -> Result<Status, Refusal> {
+fn flutes(arguments: &RenderArguments, mut wanted: Flutes) -> Result<ExitStatus, UsageError> {
     let (mut request, mut folders) = options::request(&arguments.program)?;
     unused_machine::tell(&arguments.program, &request);
     let asked = options::tolerance("--tolerance", arguments.tolerance)?;
     wanted.surface_tolerance = asked.unwrap_or(wanted.surface_tolerance);
     let grinding = progress::of_run(&mut request, |request| session::grind(request, &mut folders, &wanted))
-        .map_err(|e| Refusal::new(e.to_string()))?;
+        .map_err(|e| UsageError::new(e.to_string()))?;
     let verdict = grinding.verify();
     let view = flute_view::of(&name(&request), &grinding, &verdict);
     let asked = arguments.view.unwrap_or(View::Side);
@@ -130,16 +130,16 @@ fn flutes(arguments: &RenderArguments, mut wanted: Flutes) -> Result<Status, Ref
         View::Tip => picture::tip_view(&view),
         View::Helix => picture::helix_graph(&view),
         View::Top | View::Development => {
-            return Err(Refusal::new("that view is of holes; a burr has the views side, tip and helix"));
+            return Err(UsageError::new("that view is of holes; a burr has the views side, tip and helix"));
         }
     };
     write(&scene, &arguments.size, &arguments.output)?;
     tell(arguments, asked)?;
-    Ok(super::stopped(&grinding.run).unwrap_or(Status::Holds))
+    Ok(super::stopped(&grinding.run).unwrap_or(ExitStatus::Holds))
 }
 
 /// Says what was drawn, and where it is.
-fn tell(arguments: &RenderArguments, view: View) -> Result<(), Refusal> {
+fn tell(arguments: &RenderArguments, view: View) -> Result<(), UsageError> {
     let report = RenderReport { picture: arguments.output.display().to_string(), view: view.name() };
     match arguments.format {
         TextFormat::Text => output::print(&report.text()),
@@ -158,17 +158,17 @@ pub(super) fn view(
 }
 
 /// Draws a scene to a file of exactly the size asked for.
-pub(super) fn write(scene: &Scene, size: &str, path: &Path) -> Result<(), Refusal> {
+pub(super) fn write(scene: &Scene, size: &str, path: &Path) -> Result<(), UsageError> {
     let is_other = |extension: &std::ffi::OsStr| !extension.eq_ignore_ascii_case("png");
     if path.extension().is_some_and(is_other) {
         let png = path.with_extension("png");
-        return Err(Refusal::new(format!(
+        return Err(UsageError::new(format!(
             "{}: a picture is a PNG file: name it {}",
             path.display(),
             png.display()
         )));
     }
-    let refused = |error: picture::PictureError| Refusal::new(error.to_string());
+    let refused = |error: picture::PictureError| UsageError::new(error.to_string());
     let size: Size = size.parse().map_err(refused)?;
     let png = picture::draw(scene, size).map_err(refused)?;
     output::write(path, &png)

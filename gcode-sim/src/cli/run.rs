@@ -5,8 +5,8 @@ use clap::Args;
 
 use super::conditions::ProgramArguments;
 use super::format::TextFormat;
-use super::{Refusal, Status, apart, options, output, progress, unused_machine};
-use crate::holes::Extractor;
+use super::{ExitStatus, UsageError, options, output, overwrite_guard, progress, unused_machine};
+use crate::holes::HoleExtractor;
 use crate::report::run::{MOST_MOVES, Moves, RunReport};
 use crate::session::{self, SessionError};
 use crate::stylus::Rapids;
@@ -33,10 +33,10 @@ pub(super) struct RunArguments {
     format: TextFormat,
 }
 
-pub(super) fn run(arguments: &RunArguments) -> Result<Status, Refusal> {
+pub(super) fn run(arguments: &RunArguments) -> Result<ExitStatus, UsageError> {
     let files = arguments.program.files(None)?;
     if let Some(path) = &arguments.output {
-        apart::keep(path, &files)?;
+        overwrite_guard::keep(path, &files)?;
     }
     let (mut request, mut folders) = options::request(&arguments.program)?;
     unused_machine::tell(&arguments.program, &request);
@@ -44,23 +44,24 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Status, Refusal> {
     let mut moves = arguments.moves.then(Moves::default);
     let done = progress::of_run(&mut request, |request| {
         // Follows the tool only where there is a part that it could touch.
-        let follow = |part| Extractor::new(&request.machine).with_surface(Some(part));
+        let follow = |part| HoleExtractor::new(&request.machine).with_surface(Some(part));
         let mut probe = request.part.map(follow);
         let ball = request.part.zip(request.machine.probe.as_ref());
         let mut rapids = ball.map(|(part, probe)| Rapids::new(&request.machine, part, probe.radius));
         let run = session::run(request, &mut folders, &mut (&mut moves, &mut (&mut probe, &mut rapids)))?;
         Ok::<_, SessionError>((run, rapids.map_or_else(Vec::new, Rapids::finish)))
     });
-    let (run, rapids) = done.map_err(|error| Refusal::new(error.to_string()))?;
+    let (run, rapids) = done.map_err(|error| UsageError::new(error.to_string()))?;
     let mut system = Vec::new();
     for number in wanted {
         let value = run.control.variable(number);
-        system.push((number, value.map_err(|alarm| Refusal::new(format!("--show '#{number}': {alarm}")))?));
+        system
+            .push((number, value.map_err(|alarm| UsageError::new(format!("--show '#{number}': {alarm}")))?));
     }
     if let Some(path) = &arguments.output {
         // Called programs are known only now.
         let called = run.control.memory().sources().iter().map(|(_, source)| Path::new(&source.name));
-        apart::keep(path, &called.collect::<Vec<_>>())?;
+        overwrite_guard::keep(path, &called.collect::<Vec<_>>())?;
         let lines = run.control.output().iter();
         let bytes: Vec<u8> = lines.flat_map(|line| line.iter().copied().chain([b'\n'])).collect();
         output::write(path, &bytes)?;
@@ -76,7 +77,7 @@ pub(super) fn run(arguments: &RunArguments) -> Result<Status, Refusal> {
         output::tell(&format!(
             "error: --moves: more than {MOST_MOVES} moves; those behind aren't in the list\n"
         ));
-        return Ok(Status::Stopped);
+        return Ok(ExitStatus::Stopped);
     }
     Ok(stopped.unwrap_or(in_part))
 }

@@ -2,7 +2,7 @@
 use clap::Args;
 
 use super::format::TextFormat;
-use super::{Refusal, Status, output};
+use super::{ExitStatus, UsageError, output};
 use crate::report::settings::SettingsReport;
 
 #[derive(Debug, Args)]
@@ -12,11 +12,11 @@ pub(super) struct SettingsArguments {
     format: TextFormat,
 }
 
-pub(super) fn run(arguments: &SettingsArguments) -> Result<Status, Refusal> {
+pub(super) fn run(arguments: &SettingsArguments) -> Result<ExitStatus, UsageError> {
     let report = SettingsReport::new();
     match arguments.format {
         TextFormat::Text => output::print(&report.text())?,
         TextFormat::Json => output::json(&report)?,
     }
-    Ok(Status::Holds)
+    Ok(ExitStatus::Holds)
 }

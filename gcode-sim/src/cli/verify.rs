@@ -6,11 +6,13 @@ use clap::Args;
 use super::conditions::ProgramArguments;
 use super::format::FindingFormat;
 use super::library::Folders;
-use super::{Refusal, Status, apart, options, output, page, progress, render, unused_machine};
+use super::{
+    ExitStatus, UsageError, options, output, overwrite_guard, page, progress, render, unused_machine,
+};
 use crate::diag::Diagnostic;
 use crate::part::flutes::Flutes;
+use crate::part::nominal::NominalPart;
 use crate::part::reference::Reference;
-use crate::part::wanted::Wanted;
 use crate::picture;
 use crate::report::sarif::{self, Finding};
 use crate::report::verdict_table::{Layout, table};
@@ -58,23 +60,23 @@ pub(super) struct VerifyArguments {
     format: FindingFormat,
 }
 
-pub(super) fn run(arguments: &VerifyArguments) -> Result<Status, Refusal> {
+pub(super) fn run(arguments: &VerifyArguments) -> Result<ExitStatus, UsageError> {
     let asked = options::tolerance("--tolerance", arguments.tolerance)?;
     let depth = options::tolerance("--depth-tolerance", arguments.depth_tolerance)?;
     let files = arguments.program.files(Some(&arguments.reference))?;
     for result in [&arguments.picture, &arguments.page].into_iter().flatten() {
-        apart::keep(result, &files)?;
+        overwrite_guard::keep(result, &files)?;
     }
     arguments.page.as_deref().map(page::is_html).transpose()?;
     let (mut request, folders) = options::request(&arguments.program)?;
     unused_machine::tell(&arguments.program, &request);
     match options::wanted(&arguments.reference)? {
-        Wanted::Holes(reference) => {
+        NominalPart::Holes(reference) => {
             let mut tolerances = Tolerances::of(&reference, asked);
             tolerances.depth = depth.unwrap_or(tolerances.depth);
             holes(arguments, &mut request, folders, &reference, tolerances)
         }
-        Wanted::Flutes(mut wanted) => {
+        NominalPart::Flutes(mut wanted) => {
             let of_holes = [
                 ("--depth-tolerance", depth.is_some()),
                 ("--worst-first", arguments.worst_first),
@@ -82,7 +84,7 @@ pub(super) fn run(arguments: &VerifyArguments) -> Result<Status, Refusal> {
                 ("--page", arguments.page.is_some()),
             ];
             if let Some((flag, _)) = of_holes.iter().find(|(_, given)| *given) {
-                return Err(Refusal::new(format!("{flag} is about holes, and the reference is a burr")));
+                return Err(UsageError::new(format!("{flag} is about holes, and the reference is a burr")));
             }
             wanted.surface_tolerance = asked.unwrap_or(wanted.surface_tolerance);
             flutes(arguments, &mut request, folders, &wanted)
@@ -95,9 +97,9 @@ fn flutes(
     request: &mut Request,
     mut folders: Folders,
     wanted: &Flutes,
-) -> Result<Status, Refusal> {
+) -> Result<ExitStatus, UsageError> {
     let grinding = progress::of_run(request, |request| session::grind(request, &mut folders, wanted))
-        .map_err(|error| Refusal::new(error.to_string()))?;
+        .map_err(|error| UsageError::new(error.to_string()))?;
     let verdict = grinding.verify();
     match arguments.format {
         FindingFormat::Json => output::json(&verdict)?,
@@ -115,15 +117,15 @@ fn flutes(
 }
 
 /// The findings for a code review.
-fn sarif(findings: &[Diagnostic], run: &Run) -> Result<(), Refusal> {
+fn sarif(findings: &[Diagnostic], run: &Run) -> Result<(), UsageError> {
     let sources = run.control.memory().sources();
     let findings: Vec<_> = findings.iter().map(|finding| Finding::of(finding, sources)).collect();
     output::json(&sarif::log(&findings, &options::started_in()))
 }
 
-fn judged(status: Status, answer: Answer) -> Status {
+fn judged(status: ExitStatus, answer: Answer) -> ExitStatus {
     match answer {
-        Answer::Fail if status == Status::Holds => Status::Fails,
+        Answer::Fail if status == ExitStatus::Holds => ExitStatus::Fails,
         _ => status,
     }
 }
@@ -134,7 +136,7 @@ fn holes(
     mut folders: Folders,
     reference: &Reference,
     tolerances: Tolerances,
-) -> Result<Status, Refusal> {
+) -> Result<ExitStatus, UsageError> {
     request.conduct = reference.conduct.clone();
     if let Some(path) = &arguments.page {
         let watched = page::watched(request, &mut folders, reference.surface)?;
@@ -148,7 +150,7 @@ fn holes(
     }
     let simulation =
         progress::of_run(request, |request| session::simulate(request, &mut folders, reference.surface))
-            .map_err(|error| Refusal::new(error.to_string()))?;
+            .map_err(|error| UsageError::new(error.to_string()))?;
     let verdict = simulation.verify(reference, tolerances, &request.machine);
     tell(arguments, request, reference, &simulation, &verdict)
 }
@@ -159,7 +161,7 @@ fn tell(
     reference: &Reference,
     simulation: &Simulation,
     verdict: &Verdict,
-) -> Result<Status, Refusal> {
+) -> Result<ExitStatus, UsageError> {
     match arguments.format {
         FindingFormat::Json => output::json(verdict)?,
         FindingFormat::Text => {

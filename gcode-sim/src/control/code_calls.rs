@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 /// What a code calls, and as what.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Called {
+pub struct CalledProgram {
     pub program: u32,
     pub kind: CodeCallKind,
 }
@@ -21,7 +21,7 @@ pub enum CodeCallKind {
 
 /// Parameters that hold one code each: the first of them calls `program`, the next the program after it.
 #[derive(Debug)]
-pub struct Family {
+pub struct SequentialCodes {
     pub letter: u8,
     pub first: u16,
     pub last: u16,
@@ -29,14 +29,14 @@ pub struct Family {
     pub kind: CodeCallKind,
 }
 
-impl Family {
+impl SequentialCodes {
     /// What each of its parameters may hold: a G code below 0 is a modal call.
     pub fn codes(&self) -> RangeInclusive<i64> {
         if self.letter == b'G' { -9999..=9999 } else { 0..=99_999_999 }
     }
 
     /// The parameter that makes a code of this letter such a call.
-    fn parameter(&self, letter: u8, called: Called) -> Option<u16> {
+    fn parameter(&self, letter: u8, called: CalledProgram) -> Option<u16> {
         let same = (self.kind == CodeCallKind::Subprogram) == (called.kind == CodeCallKind::Subprogram);
         let place = u16::try_from(called.program.checked_sub(self.program)?).ok()?;
         let number = self.first.checked_add(place)?;
@@ -44,11 +44,11 @@ impl Family {
     }
 }
 
-const fn family(letter: u8, first: u16, last: u16, program: u32, kind: CodeCallKind) -> Family {
-    Family { letter, first, last, program, kind }
+const fn family(letter: u8, first: u16, last: u16, program: u32, kind: CodeCallKind) -> SequentialCodes {
+    SequentialCodes { letter, first, last, program, kind }
 }
 
-pub const FAMILIES: [Family; 3] = [
+pub const FAMILIES: [SequentialCodes; 3] = [
     family(b'G', 6050, 6059, 9010, CodeCallKind::Macro),
     family(b'M', 6071, 6079, 9001, CodeCallKind::Subprogram),
     family(b'M', 6080, 6089, 9020, CodeCallKind::Macro),
@@ -56,16 +56,16 @@ pub const FAMILIES: [Family; 3] = [
 
 /// Three parameters that make calls of a range of codes: the first code, its program, how many.
 #[derive(Debug)]
-pub struct RangeFamily {
+pub struct CodeRange {
     pub letter: u8,
     pub first: u16,
     pub kind: CodeCallKind,
 }
 
-pub const RANGES: [RangeFamily; 3] = [
-    RangeFamily { letter: b'G', first: 6038, kind: CodeCallKind::Macro },
-    RangeFamily { letter: b'M', first: 6044, kind: CodeCallKind::Subprogram },
-    RangeFamily { letter: b'M', first: 6047, kind: CodeCallKind::Macro },
+pub const RANGES: [CodeRange; 3] = [
+    CodeRange { letter: b'G', first: 6038, kind: CodeCallKind::Macro },
+    CodeRange { letter: b'M', first: 6044, kind: CodeCallKind::Subprogram },
+    CodeRange { letter: b'M', first: 6047, kind: CodeCallKind::Macro },
 ];
 
 /// A subprogram call by an address whatever its number, which a common variable gets.
@@ -111,7 +111,7 @@ struct CodeCall {
     letter: u8,
     /// × 10, as G codes are counted everywhere.
     code: u32,
-    called: Called,
+    called: CalledProgram,
 }
 
 /// Every code that calls. `Default` is none.
@@ -144,13 +144,13 @@ impl CodeCalls {
 
     /// What a G or M code × 10 calls. A code of its own goes before a range, and of several parameters with the same
     /// code the first.
-    pub fn find(&self, letter: u8, code: u32) -> Option<Called> {
+    pub fn find(&self, letter: u8, code: u32) -> Option<CalledProgram> {
         let same = self.codes.iter().filter(|call| (call.letter, call.code) == (letter, code));
         let own = same.min_by_key(|call| call.parameter);
         own.map(|call| call.called).or_else(|| self.in_range(letter, code))
     }
 
-    fn in_range(&self, letter: u8, code: u32) -> Option<Called> {
+    fn in_range(&self, letter: u8, code: u32) -> Option<CalledProgram> {
         let number = code.is_multiple_of(10).then_some(i64::from(code / 10))?;
         if TAKEN.contains(&(letter, code)) {
             return None;
@@ -161,7 +161,7 @@ impl CodeCalls {
                 return None;
             }
             let kind = if *first < 0 { CodeCallKind::Modal } else { family.kind };
-            Some(Called { program: u32::try_from(program + place).ok()?, kind })
+            Some(CalledProgram { program: u32::try_from(program + place).ok()?, kind })
         })
     }
 
@@ -218,7 +218,7 @@ impl CodeCalls {
             self.codes.retain(|call| call.parameter != Some(number));
             if value != 0 {
                 let program = family.program + u32::from(number - family.first);
-                let called = Called { program, kind };
+                let called = CalledProgram { program, kind };
                 self.codes.push(CodeCall { parameter: Some(number), letter: family.letter, code, called });
             }
             return Some(());
@@ -255,7 +255,7 @@ impl CodeCalls {
             },
             _ => return None,
         };
-        self.add(letter, tenths as u32, Called { program, kind })
+        self.add(letter, tenths as u32, CalledProgram { program, kind })
     }
 
     fn set_address(&mut self, letter: u8, program: u32) -> Option<()> {
@@ -271,7 +271,7 @@ impl CodeCalls {
         Some(())
     }
 
-    fn add(&mut self, letter: u8, code: u32, called: Called) -> Option<()> {
+    fn add(&mut self, letter: u8, code: u32, called: CalledProgram) -> Option<()> {
         if TAKEN.contains(&(letter, code)) {
             return None;
         }
@@ -283,7 +283,7 @@ impl CodeCalls {
 }
 
 /// The family that a parameter belongs to.
-fn family_of(number: u16) -> Option<&'static Family> {
+fn family_of(number: u16) -> Option<&'static SequentialCodes> {
     FAMILIES.iter().find(|family| (family.first..=family.last).contains(&number))
 }
 
@@ -299,8 +299,8 @@ fn range_of(number: u16) -> Option<(usize, usize)> {
 mod tests {
     use super::*;
 
-    fn called(program: u32, kind: CodeCallKind) -> Option<Called> {
-        Some(Called { program, kind })
+    fn called(program: u32, kind: CodeCallKind) -> Option<CalledProgram> {
+        Some(CalledProgram { program, kind })
     }
 
     #[test]

@@ -3,16 +3,16 @@ mod code_calls;
 mod dialect;
 mod parameters;
 mod table;
-mod unsure;
+mod undocumented;
 
-use crate::motion::{Axes, Axis, MAX_AXES, Position};
+use crate::motion::{Axes, AxisIndex, MAX_AXES, Position};
 use crate::units::{MmPerMin, nearest};
 
-pub use code_calls::{ADDRESSES, AddressCall, Called, CodeCallKind, CodeCalls, FAMILIES, RANGES};
+pub use code_calls::{ADDRESSES, AddressCall, CalledProgram, CodeCallKind, CodeCalls, FAMILIES, RANGES};
 pub use dialect::{DIALECTS, DialectRow};
-pub use parameters::{ParameterError, ParameterPlace, is_without_effect};
-pub use table::{ROWS, Row, SettingError, Values};
-pub use unsure::{ArgumentScale, Unsure};
+pub use parameters::{ParameterError, ParameterId, is_without_effect};
+pub use table::{ROWS, SettingError, SettingRow, SettingValues};
+pub use undocumented::{ArgumentScale, UndocumentedChoices};
 
 /// The least input increment (parameter 1013).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -116,9 +116,9 @@ impl OffsetVariables {
 
 /// Stroke limits in machine coordinates; an axis without one has no end there.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Stroke {
-    pub most: [Option<f64>; MAX_AXES],
-    pub least: [Option<f64>; MAX_AXES],
+pub struct StrokeLimits {
+    pub max: [Option<f64>; MAX_AXES],
+    pub min: [Option<f64>; MAX_AXES],
 }
 
 /// Everything a run depends on besides the programs. `Default` is a 30i / 0i-F class mill, metric, IS-B.
@@ -210,7 +210,7 @@ pub struct Settings {
     /// 1241 to 1243: the second, third and fourth reference position, in machine coordinates.
     pub references: [Position; 3],
     /// 1320 and 1321: stroke limits; without any, axes have no ends.
-    pub stroke: Option<Stroke>,
+    pub stroke: Option<StrokeLimits>,
     /// Additional work coordinate systems: G54.1 P1…, G154 P1….
     pub work_systems: usize,
     /// `#10100` is `#100`, `#10500` to `#10999` are `#500` to `#999`.
@@ -247,7 +247,7 @@ pub struct Settings {
     pub date: u32,
     /// #3012 as hhmmss at the start of the run.
     pub time: u32,
-    pub unsure: Unsure,
+    pub unsure: UndocumentedChoices,
 }
 
 impl Default for Settings {
@@ -317,14 +317,14 @@ impl Default for Settings {
             call_levels: 15,
             date: 20_260_101,
             time: 120_000,
-            unsure: Unsure::default(),
+            unsure: UndocumentedChoices::default(),
         }
     }
 }
 
 impl Settings {
     /// The axes that roll over: mostly none.
-    pub fn rolling(&self) -> impl Iterator<Item = Axis> + '_ {
+    pub fn rolling(&self) -> impl Iterator<Item = AxisIndex> + '_ {
         let some = self.roll_over != [false; MAX_AXES];
         (0..if some { self.axes.len() } else { 0 }).filter(|axis| self.roll_over[*axis])
     }

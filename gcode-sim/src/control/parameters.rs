@@ -1,6 +1,6 @@
 //! Parameters by their numbers: what PRM reads and G10 L52 writes of the settings.
 use super::{Increment, Settings};
-use crate::motion::Axis;
+use crate::motion::AxisIndex;
 
 /// Why a parameter can't be read or written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,23 +23,23 @@ pub enum ParameterError {
 
 /// Which parameter: a bit of a byte or all of a number, of an axis or of all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct ParameterPlace {
+pub struct ParameterId {
     pub number: u16,
     pub bit: Option<u8>,
-    pub axis: Option<Axis>,
+    pub axis: Option<AxisIndex>,
 }
 
-type SetAxis = fn(&mut Settings, Axis, f64) -> Option<()>;
+type SetAxis = fn(&mut Settings, AxisIndex, f64) -> Option<()>;
 
 enum Access {
     /// A setting by its key.
     Key(&'static str, fn(&Settings) -> f64),
     /// A value for each axis, and how it is set; without that, it is fixed.
-    Axes(fn(&Settings, Axis) -> f64, Option<SetAxis>),
+    Axes(fn(&Settings, AxisIndex) -> f64, Option<SetAxis>),
     Fixed(fn(&Settings) -> f64),
 }
 
-struct Row {
+struct ParameterRow {
     number: u16,
     bit: Option<u8>,
     /// A length in mm, which a point has to say.
@@ -47,16 +47,16 @@ struct Row {
     access: Access,
 }
 
-const fn bit(number: u16, bit: u8, access: Access) -> Row {
-    Row { number, bit: Some(bit), length: false, access }
+const fn bit(number: u16, bit: u8, access: Access) -> ParameterRow {
+    ParameterRow { number, bit: Some(bit), length: false, access }
 }
 
-const fn length(number: u16, access: Access) -> Row {
-    Row { number, bit: None, length: true, access }
+const fn length(number: u16, access: Access) -> ParameterRow {
+    ParameterRow { number, bit: None, length: true, access }
 }
 
-const fn number(number: u16, access: Access) -> Row {
-    Row { number, bit: None, length: false, access }
+const fn number(number: u16, access: Access) -> ParameterRow {
+    ParameterRow { number, bit: None, length: false, access }
 }
 
 /// What a stroke limit reads that isn't there, mm.
@@ -64,7 +64,7 @@ const NO_END: f64 = 99_999.999;
 
 /// What the parameters are here, by number and bit. Those of calls by codes are in [`super::CodeCalls`].
 #[rustfmt::skip]
-const ROWS: &[Row] = &[
+const ROWS: &[ParameterRow] = &[
     bit(1008, 0, Access::Axes(|s, axis| f64::from(s.roll_over[axis]), Some(set_roll_over))),
     bit(1013, 0, Access::Axes(|s, _| f64::from(s.increment == Increment::IsA), None)),
     bit(1013, 1, Access::Axes(|s, _| f64::from(s.increment == Increment::IsC), None)),
@@ -73,8 +73,8 @@ const ROWS: &[Row] = &[
     length(1241, Access::Axes(|s, axis| s.references[0][axis], Some(|s, axis, v| { s.references[0][axis] = v; Some(()) }))),
     length(1242, Access::Axes(|s, axis| s.references[1][axis], Some(|s, axis, v| { s.references[1][axis] = v; Some(()) }))),
     length(1243, Access::Axes(|s, axis| s.references[2][axis], Some(|s, axis, v| { s.references[2][axis] = v; Some(()) }))),
-    length(1320, Access::Axes(|s, axis| s.stroke.and_then(|l| l.most[axis]).unwrap_or(NO_END), Some(|s, axis, v| { s.stroke.get_or_insert_default().most[axis] = Some(v); Some(()) }))),
-    length(1321, Access::Axes(|s, axis| s.stroke.and_then(|l| l.least[axis]).unwrap_or(-NO_END), Some(|s, axis, v| { s.stroke.get_or_insert_default().least[axis] = Some(v); Some(()) }))),
+    length(1320, Access::Axes(|s, axis| s.stroke.and_then(|l| l.max[axis]).unwrap_or(NO_END), Some(|s, axis, v| { s.stroke.get_or_insert_default().max[axis] = Some(v); Some(()) }))),
+    length(1321, Access::Axes(|s, axis| s.stroke.and_then(|l| l.min[axis]).unwrap_or(-NO_END), Some(|s, axis, v| { s.stroke.get_or_insert_default().min[axis] = Some(v); Some(()) }))),
     bit(1401, 1, Access::Fixed(|_| 1.0)),
     number(1420, Access::Axes(|s, axis| if s.axes.is_rotary(axis) { s.rapid_rotary } else { s.rapid.0 }, None)),
     bit(3401, 0, Access::Key("DPI", |s| f64::from(s.calculator_input))),
@@ -119,7 +119,7 @@ pub fn is_without_effect(number: u16) -> bool {
     WITHOUT_EFFECT.contains(&number)
 }
 
-fn set_roll_over(settings: &mut Settings, axis: Axis, value: f64) -> Option<()> {
+fn set_roll_over(settings: &mut Settings, axis: AxisIndex, value: f64) -> Option<()> {
     if !settings.axes.is_rotary(axis) {
         return None;
     }
@@ -127,7 +127,7 @@ fn set_roll_over(settings: &mut Settings, axis: Axis, value: f64) -> Option<()> 
     Some(())
 }
 
-fn row(place: ParameterPlace) -> Result<&'static Row, ParameterError> {
+fn row(place: ParameterId) -> Result<&'static ParameterRow, ParameterError> {
     let mut of_number = ROWS.iter().filter(|row| row.number == place.number).peekable();
     let first = of_number.peek().ok_or(ParameterError::Unknown)?;
     match (place.bit, first.bit) {
@@ -145,7 +145,7 @@ fn row(place: ParameterPlace) -> Result<&'static Row, ParameterError> {
 
 impl Settings {
     /// The value of a parameter; lengths in mm.
-    pub fn parameter(&self, place: ParameterPlace) -> Result<f64, ParameterError> {
+    pub fn parameter(&self, place: ParameterId) -> Result<f64, ParameterError> {
         if let Some(code) = self.code_calls.parameter(place.number) {
             return code_call(place).map(|()| code as f64);
         }
@@ -158,7 +158,7 @@ impl Settings {
     }
 
     /// Sets a parameter; a length in mm.
-    pub fn set_parameter(&mut self, place: ParameterPlace, value: f64) -> Result<(), ParameterError> {
+    pub fn set_parameter(&mut self, place: ParameterId, value: f64) -> Result<(), ParameterError> {
         if place.bit.is_some() && value != 0.0 && value != 1.0 {
             return Err(ParameterError::Value);
         }
@@ -177,13 +177,13 @@ impl Settings {
     }
 
     /// Whether a parameter is a length, of which a point must say the unit.
-    pub fn is_length_parameter(place: ParameterPlace) -> bool {
+    pub fn is_length_parameter(place: ParameterId) -> bool {
         row(place).is_ok_and(|row| row.length)
     }
 }
 
 /// The parameters of calls by codes are numbers for all axes.
-fn code_call(place: ParameterPlace) -> Result<(), ParameterError> {
+fn code_call(place: ParameterId) -> Result<(), ParameterError> {
     match (place.bit, place.axis) {
         (None, None) => Ok(()),
         (Some(_), _) => Err(ParameterError::NoBit),

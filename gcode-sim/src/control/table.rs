@@ -13,17 +13,17 @@ pub enum SettingError {
 }
 
 /// One setting that has a name.
-pub struct Row {
+pub struct SettingRow {
     pub key: &'static str,
     /// What it decides, with the parameter's number where a control has one.
     pub meaning: &'static str,
-    pub values: Values,
+    pub values: SettingValues,
     set: fn(&mut Settings, &str) -> Option<()>,
 }
 
 /// What values a setting takes.
 #[derive(Clone, Copy)]
-pub enum Values {
+pub enum SettingValues {
     /// On or off, 1 or 0.
     Switch,
     /// One of a few words.
@@ -36,14 +36,14 @@ pub enum Values {
     Text(&'static str, &'static str),
 }
 
-impl Row {
+impl SettingRow {
     pub fn is_switch(&self) -> bool {
-        matches!(self.values, Values::Switch)
+        matches!(self.values, SettingValues::Switch)
     }
 }
 
 /// As a message and the list of settings say it.
-impl std::fmt::Display for Values {
+impl std::fmt::Display for SettingValues {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Switch => f.write_str(SWITCH),
@@ -63,29 +63,34 @@ const LENGTH: &str = "a length in mm, 0 or more";
 
 /// `X10,Z-5.5`.
 const POINT: &str = "^ *[A-Ca-cU-Zu-z][+-]?([0-9]+[.]?[0-9]*|[.][0-9]+)( *, *[A-Ca-cU-Zu-z][+-]?([0-9]+[.]?[0-9]*|[.][0-9]+))* *$";
-const PLACE: Values = Values::Text(POINT, "axes and their machine coordinates, as in X10,Z-5");
+const PLACE: SettingValues = SettingValues::Text(POINT, "axes and their machine coordinates, as in X10,Z-5");
 
 macro_rules! switch {
     ($key:literal, $meaning:literal, $($field:ident).+) => {
         switch!($key, $meaning, |s, on| s.$($field).+ = on)
     };
     ($key:literal, $meaning:literal, |$s:ident, $on:ident| $set:expr) => {
-        row!($key, $meaning, Values::Switch, |$s, text| { let $on = switch(text)?; $set; })
+        row!($key, $meaning, SettingValues::Switch, |$s, text| { let $on = switch(text)?; $set; })
     };
 }
 
 macro_rules! choice {
     ($key:literal, $meaning:literal, $all:expr, |$s:ident, $v:ident| $set:expr) => {
-        row!($key, $meaning, Values::Words(|| $all.iter().map(|(name, _)| *name).collect()), |$s, text| {
-            let $v = choice(text, &$all)?;
-            $set;
-        })
+        row!(
+            $key,
+            $meaning,
+            SettingValues::Words(|| $all.iter().map(|(name, _)| *name).collect()),
+            |$s, text| {
+                let $v = choice(text, &$all)?;
+                $set;
+            }
+        )
     };
 }
 
 macro_rules! whole {
     ($key:literal, $meaning:literal, $least:literal, $most:literal, |$s:ident, $v:ident| $set:expr) => {
-        row!($key, $meaning, Values::Whole($least, $most), |$s, text| {
+        row!($key, $meaning, SettingValues::Whole($least, $most), |$s, text| {
             let $v = whole(text, $least, $most)?;
             $set;
         })
@@ -94,7 +99,7 @@ macro_rules! whole {
 
 macro_rules! number {
     ($key:literal, $meaning:literal, $least:expr, $most:expr, $said:expr, |$s:ident, $v:ident| $set:expr) => {
-        row!($key, $meaning, Values::Number($least, $most, $said), |$s, text| {
+        row!($key, $meaning, SettingValues::Number($least, $most, $said), |$s, text| {
             let $v = between(text, $least, $most)?;
             $set;
         })
@@ -103,7 +108,7 @@ macro_rules! number {
 
 macro_rules! row {
     ($key:literal, $meaning:literal, $values:expr, |$s:ident, $text:ident| $set:expr) => {
-        Row {
+        SettingRow {
             key: $key,
             meaning: $meaning,
             values: $values,
@@ -119,7 +124,7 @@ const REPEATS: [(&str, u8); 2] = [("K", b'K'), ("L", b'L')];
 
 /// Every setting with a name, in the order they are listed.
 #[rustfmt::skip]
-pub const ROWS: &[Row] = &[
+pub const ROWS: &[SettingRow] = &[
     choice!("DIALECT", "the family of controls", Dialect::ALL, |s, v| s.become_dialect(v)),
     choice!("CODES", "whose G and M codes there are", CodeSet::ALL, |s, v| s.codes = v),
     choice!("INCREMENT", "1013: the least input increment", Increment::ALL, |s, v| s.increment = v),
@@ -141,12 +146,12 @@ pub const ROWS: &[Row] = &[
     row!("1241", "the second reference position", PLACE, |s, v| s.references[0] = point(s, v)?),
     row!("1242", "the third reference position", PLACE, |s, v| s.references[1] = point(s, v)?),
     row!("1243", "the fourth reference position", PLACE, |s, v| s.references[2] = point(s, v)?),
-    row!("1320", "stroke limits on the plus side: OT0500 beyond them", PLACE, |s, v| s.stroke.get_or_insert_default().most = limits(&s.axes, v)?),
-    row!("1321", "stroke limits on the minus side: OT0501 beyond them", PLACE, |s, v| s.stroke.get_or_insert_default().least = limits(&s.axes, v)?),
+    row!("1320", "stroke limits on the plus side: OT0500 beyond them", PLACE, |s, v| s.stroke.get_or_insert_default().max = limits(&s.axes, v)?),
+    row!("1321", "stroke limits on the minus side: OT0501 beyond them", PLACE, |s, v| s.stroke.get_or_insert_default().min = limits(&s.axes, v)?),
     switch!("MCA", "6008#1: #3000=n shows MC n", |s, on| (s.macro_alarm_base, s.macro_alarm_most) = if on { (0, 4095) } else { (3000, 200) }),
     whole!("ALARM-BASE", "what #3000=n adds to n", 0, 9000, |s, v| s.macro_alarm_base = v as u16),
     whole!("ALARM-MOST", "the largest n that the manual names for #3000=n", 1, 4095, |s, v| s.macro_alarm_most = v as u16),
-    row!("MORE-COMMONS", "common variables beyond #999", Values::Text("^(0|[0-9]{4,5} *- *[0-9]{4,6})$", "a range as 98000-98499, or 0"), |s, v| s.more_commons = range(v)?),
+    row!("MORE-COMMONS", "common variables beyond #999", SettingValues::Text("^(0|[0-9]{4,5} *- *[0-9]{4,6})$", "a range as 98000-98499, or 0"), |s, v| s.more_commons = range(v)?),
     choice!("OFFSET-VARIABLES", "how the variables of tool offsets are numbered", OffsetVariables::ALL, |s, v| s.offset_variables = v),
     switch!("PLAIN-IF", "IF[..] takes an assignment or words without THEN", plain_if),
     switch!("THEN-WORDS", "IF[..]THEN takes words", then_takes_words),
@@ -159,8 +164,8 @@ pub const ROWS: &[Row] = &[
     switch!("SUP", "5003#0: cutter compensation starts and ends by type B", start_up_b),
     whole!("19625", "blocks read in cutter compensation", 3, 8, |s, v| s.blocks_read = v),
     switch!("SCR", "5400#7: G51 counts in 0.001", coarse_scaling),
-    row!("ROA", "1008#0: axes that roll over at 360 degrees", Values::Text("^[A-Ca-c+]*$", "letters of axes that turn"), |s, v| roll_over(s, v)?),
-    row!("BDT", "block skip switches that are on", Values::Text("^[1-9]([+][1-9])*$", "switches 1 to 9, as in 1+2"), |s, v| skip_switches(s, v)?),
+    row!("ROA", "1008#0: axes that roll over at 360 degrees", SettingValues::Text("^[A-Ca-c+]*$", "letters of axes that turn"), |s, v| roll_over(s, v)?),
+    row!("BDT", "block skip switches that are on", SettingValues::Text("^[1-9]([+][1-9])*$", "switches 1 to 9, as in 1+2"), |s, v| skip_switches(s, v)?),
     switch!("OPTIONAL-STOP", "M01 stops", optional_stop),
     number!("SKIP", "the skip signal comes after this part of a G31 path", 0.0, 1.0, "0 to 1", |s, v| s.skip_signal = Some(v)),
     switch!("SKIP-ALARM", "a G31 that ends without its signal alarms", missed_skip_alarms),
@@ -168,7 +173,7 @@ pub const ROWS: &[Row] = &[
     number!("RAPID", "1420: rapid rate of sliding axes, mm/min", f64::MIN_POSITIVE, 1e9, "more than 0", |s, v| s.rapid = MmPerMin(v)),
     number!("RAPID-ROTARY", "1420: rapid rate of turning axes, degrees/min", f64::MIN_POSITIVE, 1e9, "more than 0", |s, v| s.rapid_rotary = v),
     number!("3410", "how far an arc's end may be off its radius", 0.0, 1e6, LENGTH, |s, v| s.arc_tolerance = v),
-    row!("5440", "the last way of G60, with the sign of its direction", Values::Text(POINT, "axes and lengths, as in X0.5,Z-0.2"), |s, v| s.overrun = point(s, v)?),
+    row!("5440", "the last way of G60, with the sign of its direction", SettingValues::Text(POINT, "axes and lengths, as in X0.5,Z-0.2"), |s, v| s.overrun = point(s, v)?),
     switch!("M97-CALLS", "M97 P calls the subprogram at N of its own program", local_calls),
     number!("5114", "retract of G73; setting 22 of a Haas", 0.0, 1e6, LENGTH, |s, v| s.g73_retract = v),
     number!("5115", "clearance of G83", 0.0, 1e6, LENGTH, |s, v| s.g83_clearance = v),
@@ -237,7 +242,7 @@ impl Settings {
         if let Some(number) = key.strip_prefix('#') {
             let bit = number.parse().ok().filter(|n| (1000..=1031).contains(n)).map(|n: u32| n - 1000);
             let bit = bit.ok_or_else(|| SettingError::Unknown { key: key.to_owned() })?;
-            let on = switch(value).ok_or_else(|| bad(&Values::Switch))?;
+            let on = switch(value).ok_or_else(|| bad(&SettingValues::Switch))?;
             self.inputs = if on { self.inputs | 1 << bit } else { self.inputs & !(1 << bit) };
             return Ok(());
         }

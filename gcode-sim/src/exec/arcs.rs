@@ -1,18 +1,24 @@
 //! G02 and G03: centre and sweep from I J K or from R, in all planes, with any other axes along.
-use super::Core;
+use super::Executor;
 use super::eval::{Checked, at};
-use super::plan::Plan;
-use super::travel::Goal;
-use super::words::Given;
+use super::linear_motion::Endpoint;
+use super::plan::BlockPlan;
+use super::words::BlockWords;
 use crate::alarm::Alarm;
-use crate::motion::{Arc2, EventKind};
+use crate::motion::{EventKind, PlanarArc};
 use crate::program::modes::{Motion, Plane};
 use crate::source::Span;
 use crate::units::Deg;
 
-impl Core {
+impl Executor {
     /// Tells an arc to `goal`.
-    pub(super) fn arc(&self, plan: &mut Plan, given: &Given, goal: &Goal, span: Span) -> Checked<()> {
+    pub(super) fn arc(
+        &self,
+        plan: &mut BlockPlan,
+        given: &BlockWords,
+        goal: &Endpoint,
+        span: Span,
+    ) -> Checked<()> {
         let state = &plan.state;
         let plane = at(self.plane_axes(state.modal.plane), span)?;
         let (first, second, stray) = match state.modal.plane {
@@ -75,9 +81,9 @@ impl Core {
     #[expect(clippy::too_many_arguments, reason = "an arc is all of this")]
     fn tell_arc(
         &self,
-        plan: &mut Plan,
-        given: &Given,
-        goal: &Goal,
+        plan: &mut BlockPlan,
+        given: &BlockWords,
+        goal: &Endpoint,
         plane: (usize, usize),
         centre: (f64, f64),
         sweep: f64,
@@ -111,7 +117,7 @@ impl Core {
             Alarm::FeedZero | Alarm::NoSpeedForFeed => Alarm::ArcFeedZero.at(span),
             other => other.at(span),
         })?;
-        let arc = Arc2 { plane, centre, sweep: Deg(sweep) };
+        let arc = PlanarArc { plane, centre, sweep: Deg(sweep) };
         plan.events.push((EventKind::Arc { to: goal.machine, arc, rate }, seconds));
         plan.state.machine = goal.machine;
         Ok(())

@@ -1,18 +1,18 @@
 //! The words of a macro call to the locals they set.
-use super::Core;
-use super::eval::{Checked, RoundsTo};
+use super::Executor;
+use super::eval::{Checked, RoundingTarget};
 use super::quantities::POWERS;
 use super::vars::{Locals, VACANT, Value};
-use super::words::Raw;
+use super::words::WordNumber;
 use crate::alarm::Alarm;
 use crate::control::ArgumentScale;
-use crate::program::{ArgumentLocals, Coded, Input, Words};
+use crate::program::{ArgumentLocals, LoweredWord, WordOperand, Words};
 use crate::syntax::ast::Decimal;
 
-impl Core {
+impl Executor {
     /// Words of a block, one by one in the order they stand in; a vacant value leaves its local vacant. `every` is
     /// G66.1, which takes G, L, N and P as well.
-    pub(super) fn arguments(&self, words: &Words, list: &[Coded], every: bool) -> Checked<Locals> {
+    pub(super) fn arguments(&self, words: &Words, list: &[LoweredWord], every: bool) -> Checked<Locals> {
         let mut locals = VACANT;
         let mut letters = ArgumentLocals::new(self.settings.plain_ijk, every);
         for word in list {
@@ -30,11 +30,11 @@ impl Core {
     }
 
     /// The value of a word that is an argument of a macro.
-    fn raw_argument(&self, words: &Words, word: &Coded) -> Checked<Option<Raw>> {
+    fn raw_argument(&self, words: &Words, word: &LoweredWord) -> Checked<Option<WordNumber>> {
         match word.value {
-            Input::Code(place) => {
-                let value = self.run_code(words.code(place), RoundsTo::Whole)?;
-                Ok(value.given().map(Raw::Computed))
+            WordOperand::Code(place) => {
+                let value = self.run_code(words.code(place), RoundingTarget::Whole)?;
+                Ok(value.as_number().map(WordNumber::Computed))
             }
             _ => self.raw(words, word),
         }
@@ -42,21 +42,21 @@ impl Core {
 
     /// An argument of a macro call: computed values and points as they are, otherwise counted in the increments of
     /// the address (6007#4 CVA = 0).
-    pub(super) fn argument(&self, raw: Raw, letter: u8) -> f64 {
+    pub(super) fn argument(&self, raw: WordNumber, letter: u8) -> f64 {
         match raw {
-            Raw::Computed(value) => value,
-            Raw::Literal(number) => number.value() / POWERS[self.counted_decimals(raw, letter)],
+            WordNumber::Computed(value) => value,
+            WordNumber::Literal(number) => number.value() / POWERS[self.counted_decimals(raw, letter)],
         }
     }
 
     /// The decimals that ADP takes back from an argument: none with CVA 6007#4.
-    fn argument_decimals(&self, raw: Raw, letter: u8) -> u8 {
+    fn argument_decimals(&self, raw: WordNumber, letter: u8) -> u8 {
         if self.settings.converts_arguments { 0 } else { self.counted_decimals(raw, letter) as u8 }
     }
 
     /// How many decimals an argument without a point has that counts the increments of its address.
-    fn counted_decimals(&self, raw: Raw, letter: u8) -> usize {
-        let Raw::Literal(Decimal { places: None, .. }) = raw else { return 0 };
+    fn counted_decimals(&self, raw: WordNumber, letter: u8) -> usize {
+        let WordNumber::Literal(Decimal { places: None, .. }) = raw else { return 0 };
         let scale = match letter {
             b'D' | b'G' | b'H' | b'L' | b'M' | b'N' | b'P' | b'S' | b'T' => ArgumentScale::Whole,
             b'E' => self.settings.unsure.argument_e,

@@ -10,22 +10,22 @@
 //!  6. stop, end;
 //!  7. call or return.
 //!
-//! Most blocks of long programs are plain moves, for which six of these have nothing to do: see [`super::step`].
-use super::Core;
+//! Most blocks of long programs are plain moves, for which six of these have nothing to do: see [`super::plain_move`].
+use super::Executor;
 use super::code_calls::CallingWord;
 use super::eval::Checked;
 use super::notes::Note;
-use super::plan::Plan;
+use super::plan::BlockPlan;
 use super::state::State;
-use super::words::Given;
+use super::words::BlockWords;
 use crate::alarm::Alarm;
 use crate::program::modes::CutterSide;
-use crate::program::{Calling, Words};
+use crate::program::{CallCode, Words};
 use crate::source::Span;
 
-impl Core {
+impl Executor {
     /// Checks a block of words and makes the plan of it. An alarm leaves no trace.
-    pub(super) fn words(&self, words: &Words, given: &mut Given, plan: &mut Plan) -> Checked<()> {
+    pub(super) fn words(&self, words: &Words, given: &mut BlockWords, plan: &mut BlockPlan) -> Checked<()> {
         let words = self.unskipped(words);
         plan.begin(&self.state);
         let mut calling = None;
@@ -44,7 +44,7 @@ impl Core {
     fn unskipped<'a>(&self, words: &'a Words) -> &'a Words {
         let Some((switch, short)) = words.short() else { return words };
         let is_on = self.skips(*switch);
-        self.aftermath.tell(Note::BlockSkip { switch: (*switch).max(1), is_on });
+        self.aftermath.record_note(Note::BlockSkip { switch: (*switch).max(1), is_on });
         if is_on { short } else { words }
     }
 
@@ -53,8 +53,8 @@ impl Core {
         &self,
         words: &Words,
         calling: Option<CallingWord>,
-        given: &Given,
-        plan: &mut Plan,
+        given: &BlockWords,
+        plan: &mut BlockPlan,
     ) -> Checked<()> {
         let span = self.block;
         self.beside_return(words)?;
@@ -79,7 +79,7 @@ impl Core {
         if let Some(calling) = calling {
             self.plan_calling_word(words, &calling, plan)?;
         }
-        if plan.moved {
+        if plan.commands_axes {
             plan.state.ended = None;
             self.check_modal_call(&plan.flow, span)?;
         }
@@ -95,9 +95,9 @@ impl Core {
 
     /// Whether a block has anything else than axis words and codes of group 01, or the state depends on D and F alone.
     #[inline]
-    fn has_codes(&self, given: &Given, state: &State) -> bool {
+    fn has_codes(&self, given: &BlockWords, state: &State) -> bool {
         given.has_of(!self.settings.axes.mask())
-            || given.has_more_than_moves()
+            || given.has_non_motion_words()
             || given.m_count > 0
             || state.modal.cutter != CutterSide::Off
     }
@@ -105,7 +105,7 @@ impl Core {
     /// What nothing has read may still mean something to a control: it isn't passed over in silence. In a block
     /// without axes such words go to the machine builder's logic with his M code.
     #[inline(always)]
-    fn check_unread(&self, given: &Given, plan: &mut Plan) -> Checked<()> {
+    fn check_unread(&self, given: &BlockWords, plan: &mut BlockPlan) -> Checked<()> {
         match given.unread() {
             Some(unread) => self.pass_on(unread, given, plan),
             None => Ok(()),
@@ -113,7 +113,7 @@ impl Core {
     }
 
     #[inline(never)]
-    fn pass_on(&self, (letter, span): (char, Span), given: &Given, plan: &mut Plan) -> Checked<()> {
+    fn pass_on(&self, (letter, span): (char, Span), given: &BlockWords, plan: &mut BlockPlan) -> Checked<()> {
         match plan.passed_on.last() {
             Some(code) if !self.names_axis(given) => {
                 plan.notes.push(Note::WordsPassedOn { code: *code, letter });
@@ -125,7 +125,7 @@ impl Core {
 
     /// Only N, P and L may stand beside M99 while G66 is on.
     fn beside_return(&self, words: &Words) -> Checked<()> {
-        let returns = words.call().is_some_and(|call| call.kind == Calling::Return);
+        let returns = words.call().is_some_and(|call| call.kind == CallCode::Return);
         if !returns || self.modal_calls.is_empty() {
             return Ok(());
         }

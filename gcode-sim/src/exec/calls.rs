@@ -1,57 +1,57 @@
 //! Calls and returns as a block commands them: prepared, resolved, made.
 use super::eval::{Checked, at};
-use super::frames::{ByCodes, Frame, FrameKind};
+use super::frames::{CallOrigins, Frame, FrameKind};
 use super::modal_calls::ModalCall;
 use super::notes::Note;
-use super::plan::{CallKind, CallPlan, Flow, Plan, Target};
+use super::plan::{BlockFlow, BlockPlan, CallKind, CallPlan, Target};
 use super::words::count;
-use super::{Control, Core};
+use super::{Control, Executor};
 use crate::alarm::Alarm;
 use crate::program::m_codes;
-use crate::program::{CallOp, CallTarget, Calling, Coded, Library, Words};
+use crate::program::{CallCode, CallOp, CallTarget, Library, LoweredWord, Words};
 use crate::source::Span;
 
-impl Core {
-    pub(super) fn coded_count(&self, words: &Words, word: &Coded) -> Checked<Option<u32>> {
+impl Executor {
+    pub(super) fn coded_count(&self, words: &Words, word: &LoweredWord) -> Checked<Option<u32>> {
         let Some(raw) = self.raw(words, word)? else { return Ok(None) };
         at(count(raw, word.letter), word.span).map(Some)
     }
 
     /// 7. The call or return of a block.
-    pub(super) fn prepare_call(&self, words: &Words, call: &CallOp, plan: &mut Plan) -> Checked<()> {
+    pub(super) fn prepare_call(&self, words: &Words, call: &CallOp, plan: &mut BlockPlan) -> Checked<()> {
         let kind = match call.kind {
-            Calling::Return => {
+            CallCode::Return => {
                 let to = match &call.target {
                     CallTarget::Number(word) => self.coded_count(words, word)?,
                     CallTarget::Name(_) | CallTarget::None => None,
                 };
-                plan.flow = Flow::Return { number: to, target: None };
+                plan.flow = BlockFlow::Return { number: to, target: None };
                 return Ok(());
             }
-            Calling::Cancel => {
-                plan.flow = Flow::CancelModal;
+            CallCode::Cancel => {
+                plan.flow = BlockFlow::CancelModal;
                 if self.modal_calls.is_empty() && self.settings.unsure.g67_alarms {
                     return Err(Alarm::CancelWithoutModalCall.at(call.span));
                 }
                 return Ok(());
             }
             // Its moves trigger the calls before its own, and a new one would stand behind those it can't.
-            Calling::EveryBlock | Calling::AfterMoves if self.frame.modal < self.modal_calls.len() => {
+            CallCode::EveryBlock | CallCode::AfterMoves if self.frame.modal < self.modal_calls.len() => {
                 let what = "a modal call inside a macro that a modal call runs".into();
                 return Err(Alarm::NotSimulated { what }.at(call.span));
             }
-            Calling::EveryBlock => CallKind::EveryBlock,
-            Calling::Macro => CallKind::Macro,
-            Calling::AfterMoves => CallKind::Modal,
-            Calling::Local if !self.settings.local_calls => {
+            CallCode::EveryBlock => CallKind::EveryBlock,
+            CallCode::Macro => CallKind::Macro,
+            CallCode::AfterMoves => CallKind::Modal,
+            CallCode::Local if !self.settings.local_calls => {
                 let what =
                     "M97 with P (a part of its own program that some controls call: M97-CALLS=1)".into();
                 return Err(Alarm::NotSimulated { what }.at(call.span));
             }
-            Calling::File if m_codes::find(198, self.settings.codes).is_none() => {
+            CallCode::File if m_codes::find(198, self.settings.codes).is_none() => {
                 return Err(Alarm::NotSimulated { what: "M198 on this control".into() }.at(call.span));
             }
-            Calling::Subprogram | Calling::File | Calling::Local => CallKind::Subprogram,
+            CallCode::Subprogram | CallCode::File | CallCode::Local => CallKind::Subprogram,
         };
         let start = match &call.start {
             Some(word) => self.coded_count(words, word)?,
@@ -74,7 +74,7 @@ impl Core {
             CallTarget::Number(word) => {
                 let number = self.coded_count(words, word)?.ok_or(missing)?;
                 // M98 P with more than four digits: repeats in front of a four-digit program number.
-                if call.kind == Calling::Subprogram
+                if call.kind == CallCode::Subprogram
                     && self.settings.repeats_in_p
                     && repeats.is_none()
                     && number > 9999
@@ -91,15 +91,15 @@ impl Core {
         let own = self.settings.unsure.every_block_calls_itself && !call.arguments.is_empty();
         let calls_now = !every || own;
         let repeats = repeats.unwrap_or(1);
-        plan.flow = Flow::Call(Box::new(CallPlan {
+        plan.flow = BlockFlow::Call(Box::new(CallPlan {
             kind,
             target,
             repeats,
             start,
             locals,
             calls_now,
-            by_code: ByCodes::default(),
-            external: call.kind == Calling::File,
+            by_code: CallOrigins::default(),
+            external: call.kind == CallCode::File,
             span: call.span,
         }));
         Ok(())
@@ -141,12 +141,12 @@ impl Control {
     }
 }
 
-impl Core {
+impl Executor {
     /// Makes a call that [`Control::resolve`] has found.
     pub(super) fn enter(&mut self, call: &CallPlan, block: Span) {
         let Target::Found(program, start) = call.target else { return };
         if call.repeats == 0 {
-            self.notes.entry(Note::NoPass).or_insert(block);
+            self.notes.entry(Note::CallRepeatsZero).or_insert(block);
             return;
         }
         let kind = match call.kind {

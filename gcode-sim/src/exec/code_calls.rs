@@ -1,13 +1,13 @@
 //! Calls by codes and addresses that parameters make calls of.
-use super::Core;
+use super::Executor;
 use super::eval::{Checked, at};
-use super::frames::ByCodes;
-use super::plan::{CallKind, CallPlan, Flow, Plan, Target, Write};
+use super::frames::CallOrigins;
+use super::plan::{BlockFlow, BlockPlan, CallKind, CallPlan, TableWrite, Target};
 use super::vars::{VACANT, Value};
-use super::words::{Raw, count};
+use super::words::{WordNumber, count};
 use crate::alarm::Alarm;
-use crate::control::{Called, CodeCallKind};
-use crate::program::{Coded, Words};
+use crate::control::{CalledProgram, CodeCallKind};
+use crate::program::{LoweredWord, Words};
 
 /// A word that calls a subprogram, taken out of its block.
 #[derive(Clone, Copy, Debug)]
@@ -23,14 +23,14 @@ pub(super) struct CallingWord {
 
 impl CallingWord {
     /// Whether a word of the block belongs to the call and not to what acts first.
-    pub(super) fn takes(&self, place: usize, word: &Coded) -> bool {
+    pub(super) fn takes(&self, place: usize, word: &LoweredWord) -> bool {
         place == self.place || self.repeats && word.letter == b'L'
     }
 }
 
-impl Core {
+impl Executor {
     /// A code that calls a macro: it stands first, and the block's other words are the arguments.
-    pub(super) fn macro_by_code(&self, words: &Words, plan: &mut Plan) -> Checked<bool> {
+    pub(super) fn macro_by_code(&self, words: &Words, plan: &mut BlockPlan) -> Checked<bool> {
         for (place, word) in words.list.iter().enumerate() {
             let Some(called) = self.called_by(words, word)? else { continue };
             if called.kind == CodeCallKind::Subprogram {
@@ -44,13 +44,13 @@ impl Core {
                 return Err(Alarm::TwoMacroCalls.at(second.span));
             }
             let call = self.macro_call(called, words, word)?;
-            plan.flow = Flow::Call(Box::new(call));
+            plan.flow = BlockFlow::Call(Box::new(call));
             return Ok(true);
         }
         Ok(false)
     }
 
-    fn macro_call(&self, called: Called, words: &Words, code: &Coded) -> Checked<CallPlan> {
+    fn macro_call(&self, called: CalledProgram, words: &Words, code: &LoweredWord) -> Checked<CallPlan> {
         let arguments = &words.list[1..];
         let every = called.kind == CodeCallKind::Modal && self.settings.code_calls.every_block;
         for word in arguments.iter().filter(|_| !every) {
@@ -99,7 +99,7 @@ impl Core {
         Ok(found)
     }
 
-    fn calling_word(&self, words: &Words, place: usize, word: &Coded) -> Checked<Option<CallingWord>> {
+    fn calling_word(&self, words: &Words, place: usize, word: &LoweredWord) -> Checked<Option<CallingWord>> {
         let by_address = self.settings.code_calls.by_address(word.letter);
         if let Some(call) =
             by_address.filter(|_| self.code_may_call(word.letter) && !self.is_axis(word.letter))
@@ -122,7 +122,7 @@ impl Core {
         &self,
         words: &Words,
         calling: &CallingWord,
-        plan: &mut Plan,
+        plan: &mut BlockPlan,
     ) -> Checked<()> {
         let word = &words.list[calling.place];
         let repeats = match words.list.iter().find(|other| calling.repeats && other.letter == b'L') {
@@ -130,9 +130,9 @@ impl Core {
             None => 1,
         };
         if let Some((number, value)) = calling.value {
-            plan.writes.push(Write::Variable { number, value: Value::Number(value) });
+            plan.writes.push(TableWrite::Variable { number, value: Value::Number(value) });
         }
-        plan.flow = Flow::Call(Box::new(CallPlan {
+        plan.flow = BlockFlow::Call(Box::new(CallPlan {
             kind: CallKind::Subprogram,
             target: Target::Number(calling.program),
             repeats,
@@ -147,14 +147,14 @@ impl Core {
     }
 
     /// What a G or M code calls here; inside a program that a code called it is an ordinary one.
-    fn called_by(&self, words: &Words, word: &Coded) -> Checked<Option<Called>> {
+    fn called_by(&self, words: &Words, word: &LoweredWord) -> Checked<Option<CalledProgram>> {
         if !matches!(word.letter, b'G' | b'M') || !self.code_may_call(word.letter) {
             return Ok(None);
         }
         let Some(raw) = self.raw(words, word)? else { return Ok(None) };
         let tenths = match (word.letter, raw) {
-            (b'G', Raw::Computed(value)) => (value * 10.0).round(),
-            (b'G', Raw::Literal(number)) => number.value() * 10.0,
+            (b'G', WordNumber::Computed(value)) => (value * 10.0).round(),
+            (b'G', WordNumber::Literal(number)) => number.value() * 10.0,
             _ => 10.0 * f64::from(at(count(raw, b'M'), word.span)?),
         };
         let code = (0.0..=f64::from(u32::MAX)).contains(&tenths).then_some(tenths as u32);
@@ -162,7 +162,7 @@ impl Core {
     }
 
     fn code_may_call(&self, letter: u8) -> bool {
-        self.frame.by_code.let_call(letter == b'G', self.settings.code_calls.inside_others)
+        self.frame.by_code.allows_call(letter == b'G', self.settings.code_calls.inside_others)
     }
 
     fn is_axis(&self, letter: u8) -> bool {
@@ -170,8 +170,8 @@ impl Core {
     }
 }
 
-fn by_code(letter: u8) -> ByCodes {
-    ByCodes { g: letter == b'G', other: letter != b'G' }
+fn by_code(letter: u8) -> CallOrigins {
+    CallOrigins { g: letter == b'G', other: letter != b'G' }
 }
 
 #[cfg(test)]

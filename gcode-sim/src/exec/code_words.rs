@@ -1,17 +1,17 @@
 //! Words with a code in a block: F S T D H, and the letters that have no use there.
-use super::Core;
+use super::Executor;
 use super::eval::Checked;
 use super::patterns::takes_l;
-use super::plan::Plan;
-use super::words::{Given, letters};
+use super::plan::BlockPlan;
+use super::words::{BlockWords, letters};
 use crate::alarm::Alarm;
 use crate::program::codes::{Effect, OneShot};
 use crate::program::modes::{CutterSide, Scaling, StrokeCheck};
 use crate::source::Span;
 
-impl Core {
+impl Executor {
     /// 1. F S T D H, and the radius that D asks for.
-    pub(super) fn codes(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<()> {
+    pub(super) fn codes(&self, given: &BlockWords, plan: &mut BlockPlan, span: Span) -> Checked<()> {
         if let Some(f) = self.feed_word(given, &plan.state)? {
             plan.state.codes.f = f;
         }
@@ -43,7 +43,7 @@ impl Core {
     }
 
     /// Words that need a code which the block doesn't have, or must not stand beside one it has.
-    fn misplaced_words(&self, given: &Given, plan: &Plan, span: Span) -> Checked<()> {
+    fn misplaced_words(&self, given: &BlockWords, plan: &BlockPlan, span: Span) -> Checked<()> {
         let smooth = given.has_code_beyond_moves(|effect| effect == Effect::Smoothness);
         if let Some(letter) = given.first_of(letters(if smooth { b"NO" } else { b"ENO" })) {
             return Err(Alarm::ImproperAddress { letter: char::from(letter) }.at(given.span(letter)));

@@ -1,48 +1,48 @@
 //! Carries out what a block has planned, and tells the machine.
-use super::drill::Drill;
-use super::plan::{Plan, Write};
-use super::run::Over;
-use super::vars::Kind;
-use super::{Core, STOPS, Stop};
+use super::drill::CyclePlan;
+use super::plan::{BlockPlan, TableWrite};
+use super::run::RunEnd;
+use super::vars::VariableClass;
+use super::{Executor, OperatorStop, STOPS};
 use crate::alarm::Alarm;
-use crate::motion::{Event, EventKind, Sink, StopKind};
+use crate::motion::{Event, EventKind, EventSink, StopKind};
 use crate::units::Seconds;
 
-impl Core {
+impl Executor {
     /// Everything a plan says, in the order it says it.
-    pub(super) fn commit<S: Sink>(&mut self, plan: &mut Plan, sink: &mut S) {
+    pub(super) fn commit<S: EventSink>(&mut self, plan: &mut BlockPlan, sink: &mut S) {
         std::mem::swap(&mut self.state, &mut plan.state);
-        self.note_work(plan.state.modal.work, plan.moved);
-        let before = plan.state.unplaced;
+        self.note_work(plan.state.modal.work, plan.commands_axes);
+        let before = plan.state.work_zero_unknown;
         // What a cycle does along its axis it tells itself.
-        let still = before & plan.drill.as_ref().map_or(self.state.unplaced, Drill::unplaced);
+        let still = before & plan.drill.as_ref().map_or(self.state.work_zero_unknown, CyclePlan::unplaced);
         if still != before {
-            self.tell(&EventKind::Unplaced { axes: still }, 0.0, sink);
+            self.emit(&EventKind::WorkZeroUnknown { axes: still }, 0.0, sink);
         }
         if plan.reads_ahead {
             self.advance(&mut plan.ahead, sink);
         }
         for (kind, seconds) in &plan.events {
-            self.tell(kind, *seconds, sink);
+            self.emit(kind, *seconds, sink);
         }
         if let Some(drill) = plan.drill.take() {
-            self.tell_drill(&drill, sink);
+            self.emit_cycle(&drill, sink);
         }
-        for (kind, seconds) in &plan.after {
-            self.tell(kind, *seconds, sink);
+        for (kind, seconds) in &plan.events_after_motion {
+            self.emit(kind, *seconds, sink);
         }
         for write in &plan.writes {
             match *write {
-                Write::Work { system, axis, value } => {
+                TableWrite::Work { system, axis, value } => {
                     self.offsets.work_mut(system)[axis] = value;
                     self.note_set(system);
                 }
-                Write::Tool { register, number, value } => {
+                TableWrite::Tool { register, number, value } => {
                     self.offsets.register(register)[number as usize] = value;
                 }
-                Write::Parameter { place, value, kept } => self.set_parameter(place, value, kept),
-                Write::Variable { number, value } => {
-                    if let Kind::Common(place) = self.vars.kind(number) {
+                TableWrite::Parameter { place, value, kept } => self.set_parameter(place, value, kept),
+                TableWrite::Variable { number, value } => {
+                    if let VariableClass::Common(place) = self.vars.kind(number) {
                         self.vars.set(place, value);
                     }
                 }
@@ -51,7 +51,7 @@ impl Core {
         }
         for kind in &plan.stops {
             let stop = EventKind::Stop { kind: *kind, text: String::new(), named: Vec::new() };
-            self.tell(&stop, 0.0, sink);
+            self.emit(&stop, 0.0, sink);
         }
         for note in &plan.notes {
             self.notes.entry(*note).or_insert(self.block);
@@ -59,14 +59,14 @@ impl Core {
         for code in &plan.passed_on {
             self.passed_on.entry(*code).or_insert(self.block);
         }
-        self.see_if_plain();
+        self.update_is_plain();
     }
 
-    fn tell_drill<S: Sink>(&mut self, drill: &Drill, sink: &mut S) {
+    fn emit_cycle<S: EventSink>(&mut self, drill: &CyclePlan, sink: &mut S) {
         let (mut seconds, mut moves) = (0.0, 0);
         let block = self.block;
         let calls = self.frame.calls.clone();
-        self.drill(drill, &mut |kind, time| {
+        self.expand_cycle(drill, &mut |kind, time| {
             seconds += time;
             moves += u64::from(kind.end().is_some());
             sink.event(&Event { kind: &kind, seconds: Seconds(time), block, calls: &calls });
@@ -77,7 +77,7 @@ impl Core {
 
     /// Tells the machine one thing and counts it.
     #[inline(always)]
-    pub(super) fn tell<S: Sink>(&mut self, kind: &EventKind, seconds: f64, sink: &mut S) {
+    pub(super) fn emit<S: EventSink>(&mut self, kind: &EventKind, seconds: f64, sink: &mut S) {
         self.count(kind, seconds);
         let block = self.block;
         sink.event(&Event { kind, seconds: Seconds(seconds), block, calls: &self.frame.calls });
@@ -104,14 +104,14 @@ impl Core {
     fn count_moves(&mut self, moves: u64) {
         self.moves += moves;
         if self.moves > self.most_moves {
-            self.aftermath.end(Over::Moves);
+            self.aftermath.end_run(RunEnd::MoveLimit);
         }
     }
 
     #[inline(never)]
     fn count_stop(&mut self, kind: StopKind, text: &str, named: &[(u32, f64)]) {
         if self.stops.len() < STOPS {
-            self.stops.push(Stop { kind, text: text.to_owned(), named: named.to_vec() });
+            self.stops.push(OperatorStop { kind, text: text.to_owned(), named: named.to_vec() });
         }
     }
 

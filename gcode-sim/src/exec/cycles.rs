@@ -1,28 +1,28 @@
 //! Checks a drilling block: its axis, its words, its repeats, and where it ends.
-use super::Core;
-use super::drill::{Circle, Drill};
+use super::Executor;
+use super::drill::{CyclePlan, PolarRepeats};
 use super::eval::{Checked, at};
 use super::notes::Note;
 use super::patterns::Pattern;
 use super::pecks::are_too_many;
-use super::plan::Plan;
-use super::state::{Level, State};
-use super::words::Given;
+use super::plan::BlockPlan;
+use super::state::{CycleLevel, State};
+use super::words::BlockWords;
 use crate::alarm::Alarm;
-use crate::motion::{Axis, Position};
+use crate::motion::{AxisIndex, Position};
 use crate::program::cycles::{Cycle, Step};
 use crate::program::modes::{Distance, Plane, Polar, ReturnTo};
 use crate::source::Span;
 
-impl Core {
+impl Executor {
     /// Whether a block drills: it names an axis or R.
-    pub(super) fn drills(&self, given: &Given) -> bool {
+    pub(super) fn drills(&self, given: &BlockWords) -> bool {
         given.has(b'R') || self.names_axis(given)
     }
 
     /// Z; with FXY 5101#0 the plane's normal or the axis beside it that the block names, which stays the same until
     /// G80.
-    pub(super) fn drilling_axis(&self, given: &Given, state: &State) -> Result<Axis, Alarm> {
+    pub(super) fn drilling_axis(&self, given: &BlockWords, state: &State) -> Result<AxisIndex, Alarm> {
         let find = |letter: u8| {
             let missing = Alarm::ImproperAddress { letter: char::from(letter) };
             self.settings.axes.find(letter).ok_or(missing)
@@ -51,8 +51,8 @@ impl Core {
     /// Checks a drilling block and works out where it ends.
     pub(super) fn prepare_drill(
         &self,
-        plan: &mut Plan,
-        given: &Given,
+        plan: &mut BlockPlan,
+        given: &BlockWords,
         cycle: &'static Cycle,
         pattern: Option<Pattern>,
         span: Span,
@@ -65,12 +65,12 @@ impl Core {
         // The block's own depth words are not a move.
         let mut goal = self.goal(given, &mut plan.state)?.programmed;
         goal[axis] = from.programmed[axis];
-        plan.state.set_unplaced(axis, from.unplaced >> axis & 1 == 1);
+        plan.state.set_unplaced(axis, from.work_zero_unknown >> axis & 1 == 1);
         self.drilling_words(plan, given, axis, incremental)?;
         let data = &plan.state.drilling;
         for (level, letter) in [(data.r, 'R'), (data.z, self.settings.axes.letter(axis))] {
             if !level.commanded {
-                plan.notes.push(Note::LevelMissing { letter });
+                plan.notes.push(Note::CycleLevelMissing { letter });
             }
         }
         if !self.settings.drills_by_plane && plan.state.modal.plane != Plane::Xy {
@@ -80,18 +80,19 @@ impl Core {
             self.peck_words(plan, given, pattern, span)?;
         }
         let (rate, _) = at(self.time_along(&plan.state, 1.0, given.has(b'F')), span)?;
-        plan.moved = true;
+        plan.commands_axes = true;
         if cycle.needs_q && are_too_many(&plan.state.drilling.unscaled(stretch), repeats) {
             let what = "more than a million pecks in one block".into();
             return Err(Alarm::NotSimulated { what }.at(span));
         }
-        let rolls = |(axis, letter): (Axis, char)| self.settings.roll_over[axis] && given.has(letter as u8);
+        let rolls =
+            |(axis, letter): (AxisIndex, char)| self.settings.roll_over[axis] && given.has(letter as u8);
         if incremental && self.settings.axes.iter().any(rolls) {
             let what = "a drilling cycle with an incremental axis that rolls over".into();
             return Err(Alarm::NotSimulated { what }.at(span));
         }
         if repeats == 0 && !self.settings.unsure.k0_positions {
-            plan.notes.push(Note::NoRepeats);
+            plan.notes.push(Note::CycleRepeatsZero);
             return Ok(());
         }
         let mut step = Position::default();
@@ -103,7 +104,7 @@ impl Core {
         let first = self.plane_axes(plan.state.modal.plane).map_or(0, |(first, _)| first);
         let shift = plan.state.drilling.q.unwrap_or(0.0).abs();
         let circle = self.circle(plan, given, incremental, repeats)?;
-        let drill = Drill {
+        let drill = CyclePlan {
             cycle,
             from: State { machine: from.machine, ..*plan.state },
             hole: goal,
@@ -139,7 +140,7 @@ impl Core {
         Ok(())
     }
 
-    fn cycle_repeats(&self, given: &Given, pattern: Option<Pattern>) -> Checked<u32> {
+    fn cycle_repeats(&self, given: &BlockWords, pattern: Option<Pattern>) -> Checked<u32> {
         let letter = self.settings.cycle_repeats;
         let repeats = match pattern {
             Some(pattern) => pattern.count,
@@ -151,8 +152,8 @@ impl Core {
     /// A cycle with pecks needs their depth.
     fn peck_words(
         &self,
-        plan: &mut Plan,
-        given: &Given,
+        plan: &mut BlockPlan,
+        given: &BlockWords,
         pattern: Option<Pattern>,
         span: Span,
     ) -> Checked<()> {
@@ -168,11 +169,11 @@ impl Core {
     /// last of them.
     fn circle(
         &self,
-        plan: &mut Plan,
-        given: &Given,
+        plan: &mut BlockPlan,
+        given: &BlockWords,
         incremental: bool,
         repeats: u32,
-    ) -> Checked<Option<Circle>> {
+    ) -> Checked<Option<PolarRepeats>> {
         let state = &mut plan.state;
         let Ok(plane) = self.plane_axes(state.modal.plane) else { return Ok(None) };
         if state.modal.polar == Polar::Off || !incremental {
@@ -181,22 +182,28 @@ impl Core {
         let turn = self.angle(given, self.settings.axes.letter(plane.1) as u8)?.unwrap_or(0.0);
         let first = state.polar;
         state.polar.angle += f64::from(repeats.max(1) - 1) * turn;
-        Ok(Some(Circle { plane, first, turn }))
+        Ok(Some(PolarRepeats { plane, first, angle_step: turn }))
     }
 
-    fn other_axis(&self, axis: Axis) -> Axis {
+    fn other_axis(&self, axis: AxisIndex) -> AxisIndex {
         self.settings.axes.find(b'X').filter(|x| *x != axis).unwrap_or_default()
     }
 
     /// The depth, R, P and Q stay in force from hole to hole.
-    fn drilling_words(&self, plan: &mut Plan, given: &Given, axis: Axis, incremental: bool) -> Checked<()> {
+    fn drilling_words(
+        &self,
+        plan: &mut BlockPlan,
+        given: &BlockWords,
+        axis: AxisIndex,
+        incremental: bool,
+    ) -> Checked<()> {
         let state = &plan.state;
         let mut data = state.drilling;
         if let Some(value) = self.dimension(given, b'R', state)? {
-            data.r = Level { value, incremental, commanded: true };
+            data.r = CycleLevel { value, incremental, commanded: true };
         }
         if let Some(value) = self.dimension(given, self.settings.axes.letter(axis) as u8, state)? {
-            data.z = Level { value, incremental, commanded: true };
+            data.z = CycleLevel { value, incremental, commanded: true };
         }
         if let Some(value) = self.dimension(given, b'Q', state)? {
             // Its sign is ignored.
@@ -211,7 +218,7 @@ impl Core {
 }
 
 /// What G51 makes of a millimetre along the drilling axis; an alarm for what isn't simulated.
-fn stretch_along(plan: &Plan, cycle: &Cycle, axis: Axis) -> Result<f64, Alarm> {
+fn stretch_along(plan: &BlockPlan, cycle: &Cycle, axis: AxisIndex) -> Result<f64, Alarm> {
     let transform = &plan.state.transform;
     let stretch = transform.scaling.map_or(1.0, |s| s.factor[axis]);
     let turned = stretch < 0.0 || transform.mirrored >> axis & 1 == 1;

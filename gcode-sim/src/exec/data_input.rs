@@ -1,18 +1,18 @@
 //! G10: offsets, parameters and variables that a program writes.
-use super::Core;
+use super::Executor;
 use super::eval::{Checked, at};
 use super::offsets::Register;
-use super::plan::{Plan, Write};
-use super::vars::{Kind, Value};
-use super::words::Given;
+use super::plan::{BlockPlan, TableWrite};
+use super::vars::{Value, VariableClass};
+use super::words::BlockWords;
 use crate::alarm::Alarm;
 use crate::program::modes::Distance;
 use crate::source::Span;
 
-impl Core {
+impl Executor {
     /// G10: L2 and L20 work offsets, L10 to L13 tool offsets, L50 and L52 parameters, L85
     /// variables.
-    pub(super) fn data_input(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<()> {
+    pub(super) fn data_input(&self, given: &BlockWords, plan: &mut BlockPlan, span: Span) -> Checked<()> {
         let format = |what: &str| format(what).at(span);
         let p = given.count(b'P')?;
         let l = given.count(b'L')?.ok_or_else(|| format("L is missing"))?;
@@ -37,7 +37,14 @@ impl Core {
     }
 
     /// L2 P0 to P6, L20 P1 and up: work offsets.
-    fn write_work(&self, l: u32, p: u32, given: &Given, plan: &mut Plan, span: Span) -> Checked<()> {
+    fn write_work(
+        &self,
+        l: u32,
+        p: u32,
+        given: &BlockWords,
+        plan: &mut BlockPlan,
+        span: Span,
+    ) -> Checked<()> {
         let p = p as usize;
         let adds = plan.state.modal.distance == Distance::Incremental;
         let system = match l {
@@ -48,7 +55,7 @@ impl Core {
         for (axis, letter) in self.settings.axes.iter() {
             let Some(value) = self.dimension(given, letter as u8, &plan.state)? else { continue };
             let old = if adds { self.offsets.work(system)[axis] } else { 0.0 };
-            plan.writes.push(Write::Work {
+            plan.writes.push(TableWrite::Work {
                 system,
                 axis,
                 value: at(self.offset_in_range(self.clean(old + value)), span)?,
@@ -58,7 +65,14 @@ impl Core {
     }
 
     /// L1 and L10 to L13: tool offsets.
-    fn write_tool(&self, l: u32, number: u32, given: &Given, plan: &mut Plan, span: Span) -> Checked<()> {
+    fn write_tool(
+        &self,
+        l: u32,
+        number: u32,
+        given: &BlockWords,
+        plan: &mut BlockPlan,
+        span: Span,
+    ) -> Checked<()> {
         let register = match l {
             10 => Register::HGeometry,
             12 => Register::DGeometry,
@@ -73,13 +87,19 @@ impl Core {
         let value =
             self.dimension(given, b'R', &plan.state)?.ok_or_else(|| format("R is missing").at(span))?;
         let value = at(self.offset_in_range(self.clean(if adds { old + value } else { value })), span)?;
-        plan.writes.push(Write::Tool { register, number, value });
+        plan.writes.push(TableWrite::Tool { register, number, value });
         Ok(())
     }
 
     /// L85: a variable, from the bits of its value.
-    fn write_punched(&self, number: u32, given: &Given, plan: &mut Plan, span: Span) -> Checked<()> {
-        if !matches!(self.vars.kind(number), Kind::Common(_)) {
+    fn write_punched(
+        &self,
+        number: u32,
+        given: &BlockWords,
+        plan: &mut BlockPlan,
+        span: Span,
+    ) -> Checked<()> {
+        if !matches!(self.vars.kind(number), VariableClass::Common(_)) {
             return Err(Alarm::NoSuchVariable { number: i64::from(number) }.at(given.span(b'P')));
         }
         let bits = given.punched.ok_or_else(|| format("L85 needs sixteen digits in brackets").at(span))?;
@@ -89,7 +109,7 @@ impl Core {
             _ if bits == u64::MAX => Value::Vacant,
             _ => return Err(format("the digits are no number").at(span)),
         };
-        plan.writes.push(Write::Variable { number, value });
+        plan.writes.push(TableWrite::Variable { number, value });
         Ok(())
     }
 }

@@ -1,26 +1,26 @@
 //! A drilling block, checked: where its holes are, and its moves one by one, the steps of the cycle at every hole.
-use super::Core;
+use super::Executor;
 use super::patterns::Pattern;
 use super::state::{PolarPoint, State};
-use crate::motion::{Axis, EventKind, Position, Spindle, StopKind};
+use crate::motion::{AxisIndex, EventKind, Position, SpindleDirection, StopKind};
 use crate::program::cycles::{Cycle, Step};
 use crate::program::modes::ReturnTo;
 use crate::units::{Deg, MmPerMin, Rpm, Seconds};
 
 /// A drilling block, checked: telling it can't fail.
 #[derive(Clone, Debug)]
-pub(super) struct Drill {
+pub(super) struct CyclePlan {
     pub(super) cycle: &'static Cycle,
     /// Where the block begins; after it the plan's state stands where it ends.
     pub(super) from: State,
     /// The first hole, as programmed, and from hole to hole.
     pub(super) hole: Position,
     pub(super) step: Position,
-    pub(super) circle: Option<Circle>,
+    pub(super) circle: Option<PolarRepeats>,
     pub(super) pattern: Option<Pattern>,
     pub(super) repeats: u32,
-    pub(super) axis: Axis,
-    pub(super) shift: (Axis, f64),
+    pub(super) axis: AxisIndex,
+    pub(super) shift: (AxisIndex, f64),
     pub(super) rate: MmPerMin,
     /// Seconds.
     pub(super) dwell: f64,
@@ -30,18 +30,24 @@ pub(super) struct Drill {
 
 /// Holes that K repeats in polar coordinates.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Circle {
-    pub(super) plane: (Axis, Axis),
+pub(super) struct PolarRepeats {
+    pub(super) plane: (AxisIndex, AxisIndex),
     pub(super) first: PolarPoint,
     /// Degrees from hole to hole.
-    pub(super) turn: f64,
+    pub(super) angle_step: f64,
 }
 
-impl Core {
+impl Executor {
     /// Tells a drilling block move by move.
-    pub(super) fn drill(&self, drill: &Drill, tell: &mut impl FnMut(EventKind, f64)) {
+    pub(super) fn expand_cycle(&self, drill: &CyclePlan, tell: &mut impl FnMut(EventKind, f64)) {
         let state = &drill.from;
-        let mut way = Way { core: self, at: state.machine, unplaced: state.unplaced, rate: drill.rate, tell };
+        let mut way = CycleMotion {
+            core: self,
+            at: state.machine,
+            unplaced: state.work_zero_unknown,
+            rate: drill.rate,
+            tell,
+        };
         let data = &state.drilling;
         let (r, z) = (data.r_level(), data.z_level());
         let mut hole = drill.hole;
@@ -56,7 +62,7 @@ impl Core {
             over[drill.axis] = way.at[drill.axis];
             way.rapid(over);
             if drill.cycle.starts_at_r {
-                way.stand(drill.axis, data.r_unplaced());
+                way.set_work_zero(drill.axis, data.r_unplaced());
                 way.rapid(level(r));
             }
             for step in drill.cycle.steps {
@@ -68,10 +74,10 @@ impl Core {
     fn drill_step<T: FnMut(EventKind, f64)>(
         &self,
         step: Step,
-        drill: &Drill,
+        drill: &CyclePlan,
         level: &impl Fn(f64) -> Position,
         (r, z): (f64, f64),
-        way: &mut Way<'_, T>,
+        way: &mut CycleMotion<'_, T>,
     ) {
         let state = &drill.from;
         let initial = state.drilling.initial;
@@ -83,7 +89,7 @@ impl Core {
             _ => false,
         };
         if goes_back {
-            way.stand(drill.axis, state.drilling.initial_unplaced);
+            way.set_work_zero(drill.axis, state.drilling.initial_unplaced);
         }
         match step {
             Step::FeedToBottom => way.feed(level(z)),
@@ -127,9 +133,9 @@ impl Core {
                 to[drill.shift.0] = self.clean(to[drill.shift.0] - drill.shift.1);
                 way.rapid(to);
             }
-            Step::SpindleStop => (way.tell)(turning(Spindle::Off), 0.0),
-            Step::SpindleForward => (way.tell)(turning(Spindle::Clockwise), 0.0),
-            Step::SpindleReverse => (way.tell)(turning(Spindle::Counterclockwise), 0.0),
+            Step::SpindleStop => (way.tell)(turning(SpindleDirection::Off), 0.0),
+            Step::SpindleForward => (way.tell)(turning(SpindleDirection::Clockwise), 0.0),
+            Step::SpindleReverse => (way.tell)(turning(SpindleDirection::Counterclockwise), 0.0),
             Step::ManualRetract => {
                 let stop = EventKind::Stop {
                     kind: StopKind::M00,
@@ -143,9 +149,9 @@ impl Core {
     }
 }
 
-impl Drill {
+impl CyclePlan {
     /// From a hole to the one that K repeats as number `turn`; 0 is the block's own.
-    fn advance(&self, core: &Core, turn: u32, hole: &mut Position) {
+    fn advance(&self, core: &Executor, turn: u32, hole: &mut Position) {
         if let Some(Pattern { radius, start, turn: angle, .. }) = self.pattern {
             let angle = Deg(start + f64::from(turn) * angle);
             hole[0] = core.clean(self.hole[0] + radius * angle.cos());
@@ -159,7 +165,7 @@ impl Drill {
         for (place, _) in core.settings.axes.iter() {
             hole[place] = core.clean(self.hole[place] + f64::from(turn) * self.step[place]);
         }
-        if let Some(Circle { plane, first, turn: angle }) = self.circle {
+        if let Some(PolarRepeats { plane, first, angle_step: angle }) = self.circle {
             (hole[plane.0], hole[plane.1]) = (from[plane.0], from[plane.1]);
             let here = PolarPoint { angle: first.angle + f64::from(turn) * angle, ..first };
             core.polar_point(&here, plane, hole);
@@ -168,7 +174,7 @@ impl Drill {
 
     /// The axes whose place on the part isn't known when it begins.
     pub(super) fn unplaced(&self) -> u8 {
-        self.from.unplaced
+        self.from.work_zero_unknown
     }
 
     /// The tool comes from here.
@@ -177,7 +183,7 @@ impl Drill {
     }
 
     /// Where the last hole is.
-    pub(super) fn last(&self, core: &Core) -> Position {
+    pub(super) fn last(&self, core: &Executor) -> Position {
         let mut hole = self.hole;
         for turn in 0..self.repeats {
             self.advance(core, turn, &mut hole);
@@ -187,21 +193,21 @@ impl Drill {
 }
 
 /// The tool on its way through a cycle, in machine coordinates.
-struct Way<'c, T> {
-    core: &'c Core,
+struct CycleMotion<'c, T> {
+    core: &'c Executor,
     at: Position,
     unplaced: u8,
     rate: MmPerMin,
     tell: &'c mut T,
 }
 
-impl<T: FnMut(EventKind, f64)> Way<'_, T> {
+impl<T: FnMut(EventKind, f64)> CycleMotion<'_, T> {
     /// From the next move's end on the axis stands where its place on the part is known, or isn't.
-    fn stand(&mut self, axis: Axis, unplaced: bool) {
+    fn set_work_zero(&mut self, axis: AxisIndex, unplaced: bool) {
         let axes = self.unplaced & !(1 << axis) | u8::from(unplaced) << axis;
         if axes != self.unplaced {
             self.unplaced = axes;
-            (self.tell)(EventKind::Unplaced { axes }, 0.0);
+            (self.tell)(EventKind::WorkZeroUnknown { axes }, 0.0);
         }
     }
 
@@ -213,7 +219,7 @@ impl<T: FnMut(EventKind, f64)> Way<'_, T> {
     }
 
     /// Along the drilling axis only: the plane keeps its shift.
-    fn shifted_to(&mut self, to: Position, axis: Axis) {
+    fn shifted_to(&mut self, to: Position, axis: AxisIndex) {
         let mut there = self.at;
         there[axis] = to[axis];
         self.rapid(there);

@@ -1,34 +1,34 @@
 //! Evaluates expressions and conditions.
 use std::cell::Cell;
 
-use super::Core;
+use super::Executor;
 use super::functions::{angle, atan2, binary, compare, is_finite, no_value, power, value_of};
 use super::notes::Note;
-use super::vars::{Kind, Last, Value};
-use crate::alarm::{Alarm, Placed};
-use crate::program::{Computed, Instruction, Operand, Operation, Rare, STACK, Slot, Source};
+use super::vars::{Accumulator, Value, VariableClass};
+use crate::alarm::{Alarm, LocatedAlarm};
+use crate::program::{Computed, Instruction, Operand, OperandSource, Operation, STACK, Slot, UncommonOp};
 use crate::source::Span;
 use crate::syntax::ast::{BinaryOp, Function};
 use crate::units::round;
 
-pub(super) type Checked<T> = Result<T, Placed>;
+pub(super) type Checked<T> = Result<T, LocatedAlarm>;
 
 /// The values that wait for their operators, in as many places as [`crate::program`] lets an expression need. They
 /// are part of the control, so that an evaluation has none to clear. Going round in them saves the question at every
 /// step whether there is a place, and what an alarm has left behind.
 #[derive(Clone, Debug)]
-pub(super) struct Waiting {
+pub(super) struct OperandStack {
     places: [Cell<Value>; STACK],
     used: Cell<usize>,
 }
 
-impl Default for Waiting {
+impl Default for OperandStack {
     fn default() -> Self {
         Self { places: [const { Cell::new(Value::Vacant) }; STACK], used: Cell::new(0) }
     }
 }
 
-impl Waiting {
+impl OperandStack {
     fn push(&self, value: Value) {
         let used = self.used.get();
         self.places[used % STACK].set(value);
@@ -45,27 +45,27 @@ impl Waiting {
 
 /// What ROUND in a word rounds to.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum RoundsTo {
+pub(super) enum RoundingTarget {
     Increment,
     Whole,
 }
 
-impl Core {
+impl Executor {
     #[inline]
     pub(super) fn operand(&self, operand: &Operand) -> Checked<Value> {
         match operand {
             Operand::Number(number) => Ok(Value::Number(*number)),
             Operand::Variable { slot, span } => self.load(*slot, span),
-            Operand::Code(code) => self.run_code(code, RoundsTo::Increment),
+            Operand::Code(code) => self.run_code(code, RoundingTarget::Increment),
         }
     }
 
     /// Whether a condition holds; most are one comparison.
     #[inline]
-    pub(super) fn holds(&self, condition: &[Instruction]) -> Checked<bool> {
+    pub(super) fn evaluate_condition(&self, condition: &[Instruction]) -> Checked<bool> {
         match self.compared(condition) {
             Some(holds) => Ok(holds),
-            None => self.run_code(condition, RoundsTo::Whole).map(is_true),
+            None => self.run_code(condition, RoundingTarget::Whole).map(is_true),
         }
     }
 
@@ -75,29 +75,29 @@ impl Core {
         let [Instruction { operation: Operation::Compare(relation, [left, right]), .. }] = condition else {
             return None;
         };
-        let left = self.fetch(left, Last::VACANT);
-        Some(compare(*relation, left, self.fetch(right, Last::VACANT)))
+        let left = self.fetch(left, Accumulator::VACANT);
+        Some(compare(*relation, left, self.fetch(right, Accumulator::VACANT)))
     }
 
     /// A value that an operator needs; `last` is what the instruction before has given.
     #[inline(always)]
-    fn fetch(&self, source: &Source, last: Last) -> Value {
+    fn fetch(&self, source: &OperandSource, last: Accumulator) -> Value {
         match source {
-            Source::Number(number) => Value::Number(*number),
-            Source::Free(place) => self.vars.free(*place),
-            Source::Computed(Computed::Last) => last.into(),
-            Source::Computed(Computed::Waiting) => self.waiting.pop(),
+            OperandSource::Number(number) => Value::Number(*number),
+            OperandSource::Free(place) => self.vars.free(*place),
+            OperandSource::Computed(Computed::Last) => last.into(),
+            OperandSource::Computed(Computed::Waiting) => self.waiting.pop(),
         }
     }
 
-    /// As [`Core::fetch`], where only the number is asked for.
+    /// As [`Executor::fetch`], where only the number is asked for.
     #[inline(always)]
-    fn number(&self, source: &Source, last: Last) -> f64 {
+    fn number(&self, source: &OperandSource, last: Accumulator) -> f64 {
         match source {
-            Source::Free(place) => self.vars.number(*place),
-            Source::Number(number) => *number,
-            Source::Computed(Computed::Last) => last.number,
-            Source::Computed(Computed::Waiting) => self.waiting.pop().number(),
+            OperandSource::Free(place) => self.vars.number(*place),
+            OperandSource::Number(number) => *number,
+            OperandSource::Computed(Computed::Last) => last.number,
+            OperandSource::Computed(Computed::Waiting) => self.waiting.pop().number(),
         }
     }
 
@@ -112,25 +112,25 @@ impl Core {
     /// The value of a variable of any kind.
     pub(super) fn read(&self, number: u32) -> Result<Value, Alarm> {
         match self.vars.kind(number) {
-            Kind::Local(place) | Kind::Common(place) => Ok(self.vars.get(place)),
-            Kind::Vacant => Ok(Value::Vacant),
-            Kind::System => self.read_system(number),
+            VariableClass::Local(place) | VariableClass::Common(place) => Ok(self.vars.get(place)),
+            VariableClass::Vacant => Ok(Value::Vacant),
+            VariableClass::System => self.read_system(number),
         }
     }
 
     /// What code gives; `rounds` is what ROUND in it rounds to: in a word to the increment of its address, in statements and
     /// arguments to whole numbers.
     #[inline(never)]
-    pub(super) fn run_code(&self, code: &[Instruction], rounds: RoundsTo) -> Checked<Value> {
+    pub(super) fn run_code(&self, code: &[Instruction], rounds: RoundingTarget) -> Checked<Value> {
         self.evaluate(code, rounds).map(Value::from)
     }
 
-    /// As [`Core::run_code`], in the loop over the blocks itself: most expressions are those of assignments.
+    /// As [`Executor::run_code`], in the loop over the blocks itself: most expressions are those of assignments.
     #[inline(always)]
-    pub(super) fn evaluate(&self, code: &[Instruction], rounds: RoundsTo) -> Checked<Last> {
-        let mut last = Last::VACANT;
+    pub(super) fn evaluate(&self, code: &[Instruction], rounds: RoundingTarget) -> Checked<Accumulator> {
+        let mut last = Accumulator::VACANT;
         for Instruction { operation, span } in code {
-            last = Last::of(match operation {
+            last = Accumulator::of(match operation {
                 Operation::Add(values) => self.binary(BinaryOp::Add, values, last, span)?,
                 Operation::Subtract(values) => self.binary(BinaryOp::Sub, values, last, span)?,
                 Operation::Multiply(values) => self.binary(BinaryOp::Mul, values, last, span)?,
@@ -147,7 +147,7 @@ impl Core {
                     self.atan(y, self.number(x, last), span)?
                 }
                 Operation::Rare(rare) => {
-                    last = at(self.rare(rare, last, rounds), *span)?.into();
+                    last = at(self.uncommon_op(rare, last, rounds), *span)?.into();
                     continue;
                 }
             });
@@ -157,7 +157,13 @@ impl Core {
 
     /// + − * /. Where there is no value, it is worked out why.
     #[inline(always)]
-    fn binary(&self, op: BinaryOp, [left, right]: &[Source; 2], last: Last, span: &Span) -> Checked<f64> {
+    fn binary(
+        &self,
+        op: BinaryOp,
+        [left, right]: &[OperandSource; 2],
+        last: Accumulator,
+        span: &Span,
+    ) -> Checked<f64> {
         let left = self.number(left, last);
         let right = self.number(right, last);
         let value = match op {
@@ -179,7 +185,7 @@ impl Core {
             return Err(no_value(name, argument).at(*span));
         }
         if name == Function::Tan && (argument % 180.0).abs() == 90.0 {
-            self.aftermath.tell(Note::TangentOf90);
+            self.aftermath.record_note(Note::TangentOf90);
         }
         Ok(value)
     }
@@ -192,47 +198,52 @@ impl Core {
             return at(atan2(y, x, &self.settings), *span);
         }
         if y == 0.0 && x == 0.0 {
-            self.aftermath.tell(Note::AtanOf0);
+            self.aftermath.record_note(Note::AtanOf0);
         }
         Ok(value)
     }
 
     /// What only some expressions contain. It stands apart so that the others needn't carry it.
     #[inline(never)]
-    fn rare(&self, operation: &Rare, before: Last, rounds: RoundsTo) -> Result<Value, Alarm> {
+    fn uncommon_op(
+        &self,
+        operation: &UncommonOp,
+        before: Accumulator,
+        rounds: RoundingTarget,
+    ) -> Result<Value, Alarm> {
         let (last, unsure) = (Value::from(before), &self.settings.unsure);
         Ok(match *operation {
-            Rare::Load(ref source) => self.fetch(source, before),
-            Rare::Wait => {
+            UncommonOp::Load(ref source) => self.fetch(source, before),
+            UncommonOp::Wait => {
                 self.waiting.push(last);
                 last
             }
-            Rare::Plus => last,
-            Rare::Read(number) => self.read(number)?,
-            Rare::LoadIndirect => self.read(index(last)?)?,
-            Rare::Negate => match last {
+            UncommonOp::Plus => last,
+            UncommonOp::Read(number) => self.read(number)?,
+            UncommonOp::LoadIndirect => self.read(index(last)?)?,
+            UncommonOp::Negate => match last {
                 Value::Vacant if unsure.minus_keeps_vacancy => Value::Vacant,
                 value => Value::Number(-value.number()),
             },
-            Rare::Reverse => match last {
+            UncommonOp::Reverse => match last {
                 Value::Vacant => Value::Vacant,
                 Value::Number(number) => Value::Number(-number),
             },
-            Rare::Bracket => match last {
+            UncommonOp::Bracket => match last {
                 Value::Vacant if !unsure.brackets_keep_vacancy => Value::Number(0.0),
                 value => value,
             },
-            Rare::Whole(op, [ref left, ref right]) => {
+            UncommonOp::Whole(op, [ref left, ref right]) => {
                 let left = self.number(left, before);
                 Value::Number(binary(op, left, self.number(right, before), unsure)?)
             }
-            Rare::Power([ref base, ref exponent]) => {
+            UncommonOp::Power([ref base, ref exponent]) => {
                 let base = self.number(base, before);
                 Value::Number(power(base, self.number(exponent, before))?)
             }
-            Rare::RoundTo(_) if rounds == RoundsTo::Whole => Value::Number(round(last.number())),
-            Rare::RoundTo(letter) => Value::Number(self.round_to(letter, last.number())),
-            Rare::Logic(op) => {
+            UncommonOp::RoundTo(_) if rounds == RoundingTarget::Whole => Value::Number(round(last.number())),
+            UncommonOp::RoundTo(letter) => Value::Number(self.round_to(letter, last.number())),
+            UncommonOp::Logic(op) => {
                 let (left, right) = (is_true(self.waiting.pop()), is_true(last));
                 let holds = match op {
                     BinaryOp::And => left && right,
@@ -241,7 +252,7 @@ impl Core {
                 };
                 Value::Number(truth(holds))
             }
-            Rare::Parameter { bit, axis } => {
+            UncommonOp::Parameter { bit, axis } => {
                 let mut part = last;
                 let mut wait = |is_there: bool| {
                     is_there.then(|| std::mem::replace(&mut part, self.waiting.pop()).number())
@@ -249,20 +260,20 @@ impl Core {
                 let (axis, bit) = (wait(axis), wait(bit));
                 Value::Number(self.parameter(part.number(), bit, axis)?)
             }
-            Rare::AxisNumber(letter) => {
+            UncommonOp::AxisNumber(letter) => {
                 let axis = self.settings.axes.find(letter);
                 let unknown = || Alarm::AxisAddress { text: char::from(letter).into() };
                 Value::Number(axis.ok_or_else(unknown)? as f64 + 1.0)
             }
-            Rare::AddPoint => {
+            UncommonOp::AddPoint => {
                 let number = index(last)?;
                 match self.vars.kind(number) {
-                    Kind::Local(local) => Value::Number(self.vars.with_point(local)),
+                    VariableClass::Local(local) => Value::Number(self.vars.with_point(local)),
                     _ => return Err(Alarm::ArgumentFormat { function: "ADP".into() }),
                 }
             }
-            Rare::NameNumber(ref name) => Value::Number(f64::from(self.named(name)?)),
-            Rare::SystemNumber(row) => {
+            UncommonOp::NameNumber(ref name) => Value::Number(f64::from(self.named(name)?)),
+            UncommonOp::SystemNumber(row) => {
                 let number = if self.settings.series_15_offsets { row.series_15 } else { row.number };
                 let place = match row.suffix {
                     None => 0,

@@ -1,11 +1,11 @@
 //! The programs on the way to the block at hand: frames, nesting, returns.
 use std::sync::Arc;
 
-use super::run::Over;
+use super::run::RunEnd;
 use super::vars::Locals;
-use super::{Control, Core};
+use super::{Control, Executor};
 use crate::alarm::Alarm;
-use crate::motion::{Call, Calls};
+use crate::motion::{Call, CallChain};
 use crate::program::{OpIndex, ProgramId};
 use crate::source::Span;
 
@@ -22,31 +22,31 @@ pub(super) struct Frame {
     /// The arguments, for repetitions that set them anew.
     pub(super) arguments: Option<Box<Locals>>,
     /// The calls that led here.
-    pub(super) calls: Calls,
+    pub(super) calls: CallChain,
     /// DO1 to DO3 that are open: their first and last operation.
     pub(super) loops: [Option<(OpIndex, OpIndex)>; 3],
     /// How many of the modal calls its moves can trigger.
     pub(super) modal: usize,
-    pub(super) by_code: ByCodes,
+    pub(super) by_code: CallOrigins,
     /// Called by M198, itself or one of its callers.
     pub(super) external: bool,
 }
 
 /// The kinds of codes that a program was called by, itself or one of its callers: inside it they are ordinary ones.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct ByCodes {
+pub(super) struct CallOrigins {
     pub(super) g: bool,
     /// M, T, S, B and the addresses of 6090 and 6091.
     pub(super) other: bool,
 }
 
-impl ByCodes {
+impl CallOrigins {
     fn and(self, more: Self) -> Self {
         Self { g: self.g || more.g, other: self.other || more.other }
     }
 
     /// Whether a code still calls: GMP 6008#6 lets G codes call where another kind has called, and the other way round.
-    pub(super) fn let_call(self, g: bool, inside_others: bool) -> bool {
+    pub(super) fn allows_call(self, g: bool, inside_others: bool) -> bool {
         match (inside_others, g) {
             (false, _) => self == Self::default(),
             (true, true) => !self.g,
@@ -76,7 +76,7 @@ impl Frame {
             calls: None,
             loops: [None; 3],
             modal: usize::MAX,
-            by_code: ByCodes::default(),
+            by_code: CallOrigins::default(),
             external: false,
         }
     }
@@ -114,7 +114,7 @@ impl Frame {
     }
 }
 
-impl Core {
+impl Executor {
     pub(super) fn check_levels(&self, is_macro: bool) -> Result<(), Alarm> {
         if is_macro && self.vars.level() >= self.settings.macro_levels {
             return Err(Alarm::TooManyMacroCalls { limit: self.settings.macro_levels });
@@ -131,7 +131,7 @@ impl Core {
         start: OpIndex,
         kind: FrameKind,
         repeats: u32,
-        by_code: ByCodes,
+        by_code: CallOrigins,
         block: Span,
     ) -> Frame {
         let calls = Some(Arc::new(Call { from: block, outer: self.frame.calls.clone() }));
@@ -152,7 +152,7 @@ impl Core {
     }
 
     /// Back from a subprogram or macro to the program that called it.
-    pub(super) fn leave(&mut self) {
+    pub(super) fn pop(&mut self) {
         match self.frame.kind {
             FrameKind::Macro => self.vars.leave(),
             FrameKind::Modal(index) => {
@@ -175,7 +175,7 @@ impl Core {
     pub(super) fn repeat_or_leave(&mut self) {
         let frame = &mut self.frame;
         if frame.repeats == 0 {
-            return self.leave();
+            return self.pop();
         }
         frame.repeats -= 1;
         let start = frame.start;
@@ -211,14 +211,14 @@ impl Control {
     }
 
     /// M99, and M99 P with its number and the place that [`Control::find_return`] has found.
-    pub(super) fn go_back(&mut self, to: Option<(u32, OpIndex)>) -> Option<Over> {
+    pub(super) fn return_to(&mut self, to: Option<(u32, OpIndex)>) -> Option<RunEnd> {
         let main = self.core.frame.kind == FrameKind::Main;
         let ends = self.is_last_pass();
         if main {
             self.core.cycles += 1;
         }
         if ends {
-            return Some(Over::End);
+            return Some(RunEnd::End);
         }
         let Some((number, target)) = to else {
             if main {
@@ -230,9 +230,9 @@ impl Control {
         };
         let program = self.memory.get(self.returns_to().program);
         if !main {
-            self.core.leave();
+            self.core.pop();
         }
-        self.core.tell_jump(program, number, target);
+        self.core.note_ambiguous_jump(program, number, target);
         self.core.frame.jump(target);
         None
     }

@@ -1,7 +1,7 @@
 //! What operators, comparisons and functions compute, with their domains and alarms.
 use super::vars::Value;
 use crate::alarm::Alarm;
-use crate::control::{Settings, Unsure};
+use crate::control::{Settings, UndocumentedChoices};
 use crate::syntax::ast::{BinaryOp, Function, Relation};
 use crate::units::{Deg, round};
 
@@ -17,7 +17,12 @@ fn finite(value: f64) -> Result<f64, Alarm> {
 }
 
 #[inline(never)]
-pub(crate) fn binary(op: BinaryOp, left: f64, right: f64, unsure: &Unsure) -> Result<f64, Alarm> {
+pub(crate) fn binary(
+    op: BinaryOp,
+    left: f64,
+    right: f64,
+    unsure: &UndocumentedChoices,
+) -> Result<f64, Alarm> {
     finite(match op {
         BinaryOp::Add => left + right,
         BinaryOp::Sub => left - right,
@@ -30,7 +35,7 @@ pub(crate) fn binary(op: BinaryOp, left: f64, right: f64, unsure: &Unsure) -> Re
 
 /// The operators on whole numbers.
 #[inline(never)]
-fn whole(op: BinaryOp, left: f64, right: f64, unsure: &Unsure) -> Result<f64, Alarm> {
+fn whole(op: BinaryOp, left: f64, right: f64, unsure: &UndocumentedChoices) -> Result<f64, Alarm> {
     if op == BinaryOp::Mod {
         let (left, right) = (round(left), round(right));
         // The remainder has the sign of the dividend.
@@ -45,7 +50,7 @@ fn whole(op: BinaryOp, left: f64, right: f64, unsure: &Unsure) -> Result<f64, Al
 }
 
 /// AND, OR and XOR work on 32-bit integers.
-fn bits(value: f64, unsure: &Unsure) -> Result<i32, Alarm> {
+fn bits(value: f64, unsure: &UndocumentedChoices) -> Result<i32, Alarm> {
     let value = round(value);
     if value < 0.0 && unsure.negative_bits_alarm {
         return Err(Alarm::OutOfRange { function: "AND, OR, XOR".into(), value });

@@ -1,24 +1,24 @@
 //! What the M codes of a block do, each at its time, and a new S.
-use super::Core;
+use super::Executor;
 use super::eval::Checked;
 use super::notes::Note;
-use super::plan::{Flow, Plan};
-use super::words::Given;
+use super::plan::{BlockFlow, BlockPlan};
+use super::words::BlockWords;
 use crate::alarm::Alarm;
-use crate::motion::{EventKind, Spindle, StopKind};
+use crate::motion::{EventKind, SpindleDirection, StopKind};
 use crate::program::m_codes::{self, MEffect};
 use crate::units::Rpm;
 
-impl Core {
+impl Executor {
     /// 2., 5. and 6. What M codes do, each at its time.
-    pub(super) fn m_codes(&self, given: &Given, plan: &mut Plan) -> Checked<()> {
+    pub(super) fn m_codes(&self, given: &BlockWords, plan: &mut BlockPlan) -> Checked<()> {
         plan.notes.extend(given.lost_m.iter().map(|code| Note::MCodeLost { code: *code }));
         for (code, span) in given.m[..given.m_count].iter().flatten().copied() {
             plan.state.codes.m = code;
             let speed = Rpm(plan.state.codes.s);
             let Some(effect) = m_codes::find(code, self.settings.codes) else {
                 plan.passed_on.push(code);
-                plan.tell(EventKind::Auxiliary { code });
+                plan.push_event(EventKind::Auxiliary { code });
                 if code > 9999 {
                     plan.notes.push(Note::LongMCode { code });
                 }
@@ -28,31 +28,32 @@ impl Core {
                 MEffect::Stop => plan.stops.push(StopKind::M00),
                 MEffect::OptionalStop if self.settings.optional_stop => plan.stops.push(StopKind::M01),
                 MEffect::OptionalStop | MEffect::NoEffect => {}
-                MEffect::End => plan.flow = Flow::End,
-                MEffect::SpindleForward => self.turn(plan, Spindle::Clockwise, speed),
-                MEffect::SpindleReverse => self.turn(plan, Spindle::Counterclockwise, speed),
+                MEffect::End => plan.flow = BlockFlow::End,
+                MEffect::SpindleForward => self.turn(plan, SpindleDirection::Clockwise, speed),
+                MEffect::SpindleReverse => self.turn(plan, SpindleDirection::Counterclockwise, speed),
                 MEffect::SpindleStop | MEffect::Orient => {
                     if effect == MEffect::Orient {
                         given.accept(b"PR");
                     }
-                    plan.state.spindle = Spindle::Off;
-                    plan.after.push((EventKind::Spindle { turning: Spindle::Off, speed }, 0.0));
+                    plan.state.spindle = SpindleDirection::Off;
+                    plan.events_after_motion
+                        .push((EventKind::Spindle { turning: SpindleDirection::Off, speed }, 0.0));
                 }
                 MEffect::ToolChange => {
                     let stops = self.settings.unsure.tool_change_stops_spindle;
-                    if stops && plan.state.spindle != Spindle::Off {
-                        self.turn(plan, Spindle::Off, speed);
+                    if stops && plan.state.spindle != SpindleDirection::Off {
+                        self.turn(plan, SpindleDirection::Off, speed);
                     }
                     plan.state.tool = plan.state.codes.t;
-                    plan.tell(EventKind::Tool { number: plan.state.codes.t });
+                    plan.push_event(EventKind::ToolChange { number: plan.state.codes.t });
                 }
                 MEffect::CoolantOn => {
                     plan.state.coolant = true;
-                    plan.tell(EventKind::Coolant { on: true, code });
+                    plan.push_event(EventKind::Coolant { on: true, code });
                 }
                 MEffect::CoolantOff => {
                     plan.state.coolant = false;
-                    plan.after.push((EventKind::Coolant { on: false, code }, 0.0));
+                    plan.events_after_motion.push((EventKind::Coolant { on: false, code }, 0.0));
                 }
                 MEffect::InterruptOn => {
                     given.accept(b"P");
@@ -65,14 +66,14 @@ impl Core {
             }
         }
         let told = || plan.events.iter().any(|(kind, _)| matches!(kind, EventKind::Spindle { .. }));
-        if given.has(b'S') && plan.state.spindle != Spindle::Off && !told() {
+        if given.has(b'S') && plan.state.spindle != SpindleDirection::Off && !told() {
             self.turn(plan, plan.state.spindle, Rpm(plan.state.codes.s));
         }
         Ok(())
     }
 
-    fn turn(&self, plan: &mut Plan, turning: Spindle, speed: Rpm) {
+    fn turn(&self, plan: &mut BlockPlan, turning: SpindleDirection, speed: Rpm) {
         plan.state.spindle = turning;
-        plan.tell(EventKind::Spindle { turning, speed });
+        plan.push_event(EventKind::Spindle { turning, speed });
     }
 }

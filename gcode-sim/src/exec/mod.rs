@@ -1,87 +1,87 @@
 //! Operations to events: a control that can be stepped block by block, held and looked at.
-mod aftermath;
-mod ahead;
 mod arcs;
 mod arguments;
 mod block;
+mod block_commands;
+mod block_effects;
 mod calls;
 mod code_calls;
 mod code_words;
-mod commanded;
 mod commit;
 mod cycles;
 mod data_input;
 mod drill;
-mod endless;
 mod eval;
 mod frames;
 mod functions;
-pub(crate) mod known;
-mod left;
+mod linear_motion;
+mod lookahead;
+mod loop_detection;
 mod m_codes;
 mod modal;
 mod modal_calls;
 mod modal_codes;
 mod moves;
 mod notes;
+mod observer;
 mod offsets;
 mod one_shot;
 mod outcome;
 mod parameters;
 mod patterns;
 mod pecks;
+mod plain_move;
 mod plan;
 mod pockets;
 mod print;
 mod probing;
 mod quantities;
 mod reference;
+mod residual_state;
 mod run;
-mod silent;
 mod state;
 mod statements;
-mod step;
-mod stroke;
+pub(crate) mod static_eval;
+mod stroke_limits;
 mod system_vars;
 mod thread;
 mod transform;
 mod transform_codes;
 mod transform_order;
-mod travel;
+mod unsimulated;
 mod vars;
 mod view;
-mod watch;
 mod words;
-mod work_use;
+mod work_offset_use;
 
 use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-pub use commanded::{Commanded, modal_code};
-pub use left::{Remainder, RemainderKind, mode_name};
+pub use block_commands::{BlockCommands, modal_code};
 pub use modal::Modal;
 pub use notes::Note;
-pub use outcome::{Limits, Outcome, Progress, Stop, Stopped};
+pub use observer::Observer;
+pub use outcome::{AlarmStop, Limits, OperatorStop, Outcome, Progress};
 pub use print::printable;
-pub use silent::Silent;
+pub use residual_state::{ResidualKind, ResidualValue, mode_name};
 pub use state::{Codes, State};
+pub use unsimulated::UnsimulatedCodes;
 pub use vars::{Value, Vars};
-pub use watch::Watcher;
 
-use self::aftermath::Aftermath;
-use self::ahead::Ahead;
-use self::endless::Watch;
-use self::eval::Waiting;
+use self::block_effects::BlockEffects;
+use self::eval::OperandStack;
 use self::frames::Frame;
+use self::linear_motion::CoordinateBasis;
+use self::lookahead::Lookahead;
+use self::loop_detection::LoopDetector;
 use self::modal_calls::ModalCall;
 use self::offsets::Offsets;
-use self::plan::Plan;
-use self::travel::Counting;
-use self::words::Given;
-use self::work_use::WorkUse;
+use self::plan::BlockPlan;
+use self::words::BlockWords;
+use self::work_offset_use::WorkOffsetUse;
 use crate::alarm::Alarm;
-use crate::control::{ParameterPlace, Settings};
+use crate::control::{ParameterId, Settings};
 use crate::program::{Memory, ProgramId, Slot};
 use crate::source::Span;
 
@@ -92,26 +92,26 @@ const STOPS: usize = 10_000;
 #[derive(Debug)]
 pub struct Control {
     memory: Memory,
-    core: Core,
-    plan: Plan,
-    given: Given,
+    core: Executor,
+    plan: BlockPlan,
+    given: BlockWords,
     main: ProgramId,
     outcome: Option<Outcome>,
-    watch: Watch,
+    watch: LoopDetector,
     progress: Option<Arc<Progress>>,
 }
 
 /// Everything but the programs.
 #[derive(Clone, Debug)]
-pub(crate) struct Core {
+pub(crate) struct Executor {
     settings: Settings,
     state: Box<State>,
     /// While a block can be a plain move: what its axis words count from.
-    plain: Option<Counting>,
+    plain: Option<CoordinateBasis>,
     vars: Vars,
     offsets: Offsets,
     /// What has been read and waits for the next move.
-    ahead: Ahead,
+    ahead: Lookahead,
     /// The program at hand.
     frame: Frame,
     /// The programs that wait for it, the main program first.
@@ -134,20 +134,20 @@ pub(crate) struct Core {
     /// A clock was read since the last jump back.
     clock_read: Cell<bool>,
     /// For values that wait for their operators.
-    waiting: Waiting,
-    aftermath: Aftermath,
+    waiting: OperandStack,
+    aftermath: BlockEffects,
     blocks: u64,
     moves: u64,
     /// Beyond so many the run ends.
     most_moves: u64,
-    stops: Vec<Stop>,
+    stops: Vec<OperatorStop>,
     printed: print::Printed,
     /// M codes that went to the machine builder's logic, with the block of the first of each.
     passed_on: BTreeMap<u32, Span>,
     notes: BTreeMap<Note, Span>,
-    work_use: WorkUse,
+    work_use: WorkOffsetUse,
     /// Parameters that the program has written and that have no effect.
-    parameters: BTreeMap<ParameterPlace, f64>,
+    parameters: BTreeMap<ParameterId, f64>,
     block: Span,
 }
 
@@ -156,13 +156,13 @@ impl Control {
     pub fn new(memory: Memory, settings: Settings) -> Self {
         let offsets = Offsets::new(settings.tool_offsets, settings.work_systems);
         let vars = Vars::new(settings.more_commons, settings.aliased_commons);
-        let core = Core {
+        let core = Executor {
             settings,
             state: Box::default(),
             plain: None,
             vars,
             offsets,
-            ahead: Ahead::default(),
+            ahead: Lookahead::default(),
             frame: Frame::main(ProgramId::default()),
             callers: Vec::new(),
             modal_calls: Vec::new(),
@@ -175,8 +175,8 @@ impl Control {
             seconds: 0.0,
             idle: 0.0,
             clock_read: Cell::new(false),
-            waiting: Waiting::default(),
-            aftermath: Aftermath::default(),
+            waiting: OperandStack::default(),
+            aftermath: BlockEffects::default(),
             blocks: 0,
             moves: 0,
             most_moves: u64::MAX,
@@ -184,18 +184,18 @@ impl Control {
             printed: print::Printed::default(),
             passed_on: BTreeMap::new(),
             notes: BTreeMap::new(),
-            work_use: WorkUse::default(),
+            work_use: WorkOffsetUse::default(),
             parameters: BTreeMap::new(),
             block: Span::default(),
         };
         let mut control = Self {
             memory,
             core,
-            plan: Plan::default(),
-            given: Given::default(),
+            plan: BlockPlan::default(),
+            given: BlockWords::default(),
             main: ProgramId::default(),
             outcome: None,
-            watch: Watch::default(),
+            watch: LoopDetector::default(),
             progress: None,
         };
         control.select(ProgramId::default());

@@ -1,5 +1,5 @@
 //! The modal state: one typed field per group, so that it cannot contradict itself; `Default` is power-on.
-use crate::program::codes::{Effect, Row};
+use crate::program::codes::{Effect, GCodeRow};
 use crate::program::cycles::Cycle;
 use crate::program::modes::{
     CutterSide, CuttingMode, Distance, FeedMode, Length, Mirror, ModalCall, Motion, Plane, Polar, ReturnTo,
@@ -31,7 +31,7 @@ pub struct Modal {
 
 impl Modal {
     /// Puts a modal code in force. One-shot codes and those with words of their own are the block's business.
-    pub(super) fn apply(&mut self, row: &Row) {
+    pub(super) fn apply(&mut self, row: &GCodeRow) {
         match row.effect {
             Effect::Plane(plane) => self.plane = plane,
             Effect::Distance(distance) => self.distance = distance,
@@ -50,7 +50,7 @@ impl Modal {
             Effect::Polar(polar) => self.polar = polar,
             Effect::Mirror(mirror) => self.mirror = mirror,
             Effect::NumberedWork(number) => self.work = WorkSystem::Additional(number),
-            // See [`State::move_by`](super::State).
+            // See [`State::set_motion_mode`](super::State).
             Effect::Motion(_)
             | Effect::AdditionalWork
             | Effect::OneShot(_)

@@ -1,11 +1,11 @@
 //! G66, G66.1 and G67: macro calls that wait for moves, or are made by every block.
-use super::Core;
+use super::Executor;
 use super::eval::Checked;
-use super::frames::{ByCodes, Frame, FrameKind};
-use super::plan::Flow;
+use super::frames::{CallOrigins, Frame, FrameKind};
+use super::plan::BlockFlow;
 use super::vars::{Locals, Value};
 use crate::alarm::Alarm;
-use crate::program::{Calling, ProgramId, Words};
+use crate::program::{CallCode, ProgramId, Words};
 use crate::source::Span;
 
 /// G66: waits for moves.
@@ -17,10 +17,10 @@ pub(super) struct ModalCall {
     /// G66.1: every block calls, and its words are the arguments.
     pub(super) every: bool,
     /// The kind of code that stored it, where it is no G66 or G66.1.
-    pub(super) by_code: ByCodes,
+    pub(super) by_code: CallOrigins,
 }
 
-impl Core {
+impl Executor {
     /// Whether a block with motion may make the modal call that waits for it.
     pub(super) fn check_call_after_move(&self) -> Result<(), Alarm> {
         self.waiting_call().map_or(Ok(()), |_| self.check_levels(true))
@@ -47,13 +47,13 @@ impl Core {
 
     /// What comes first after a move is settled where its block does nothing else with the flow of the program.
     #[inline(always)]
-    pub(super) fn check_modal_call(&self, flow: &Flow, block: Span) -> Checked<()> {
+    pub(super) fn check_modal_call(&self, flow: &BlockFlow, block: Span) -> Checked<()> {
         let what = match flow {
             _ if self.waiting_call().is_none() => return Ok(()),
-            Flow::Next | Flow::Return { .. } => return Ok(()),
-            Flow::Call(_) => "a modal macro call after a block that moves and calls as well",
-            Flow::CancelModal => "a modal macro call after a block that moves and has G67",
-            Flow::End => "a modal macro call after a block that moves and ends the program",
+            BlockFlow::Next | BlockFlow::Return { .. } => return Ok(()),
+            BlockFlow::Call(_) => "a modal macro call after a block that moves and calls as well",
+            BlockFlow::CancelModal => "a modal macro call after a block that moves and has G67",
+            BlockFlow::End => "a modal macro call after a block that moves and ends the program",
         };
         let what = format!("{what} (give the move a block of its own)");
         Err(Alarm::NotSimulated { what }.at(block))
@@ -78,7 +78,7 @@ impl Core {
     #[inline(never)]
     fn call_by_words(&mut self, words: &Words, number: Option<u32>, block: Span) -> Checked<bool> {
         match words.call() {
-            Some(call) if matches!(call.kind, Calling::Cancel | Calling::Return) => return Ok(false),
+            Some(call) if matches!(call.kind, CallCode::Cancel | CallCode::Return) => return Ok(false),
             Some(call) => {
                 return Err(Alarm::NotSimulated { what: "a call while G66.1 is on".into() }.at(call.span));
             }

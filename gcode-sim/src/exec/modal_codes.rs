@@ -1,18 +1,18 @@
 //! The G codes of a block put in force, and what else than a move uses its axis words.
-use super::Core;
+use super::Executor;
 use super::eval::{Checked, at};
-use super::plan::Plan;
-use super::state::{Drilling, PolarPoint};
+use super::plan::BlockPlan;
+use super::state::{CycleState, PolarPoint};
 use super::transform_order;
-use super::words::Given;
+use super::words::BlockWords;
 use crate::alarm::Alarm;
-use crate::program::codes::{Effect, OneShot, Row, spelled};
+use crate::program::codes::{Effect, GCodeRow, OneShot, spelled};
 use crate::program::modes::{CutterSide, Mirror, Polar, Rotation, Scaling};
 use crate::source::Span;
 
 /// What uses the axis words of a block that doesn't simply move.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Act {
+pub(super) enum AxisWordUse {
     OneShot(OneShot),
     AdditionalWork,
     Scale,
@@ -22,29 +22,39 @@ pub(super) enum Act {
     Tilt,
 }
 
-impl Core {
+impl Executor {
     /// 1. Modal G codes in the order they stand in; the answer is what uses the axis words instead of a move.
     #[inline]
-    pub(super) fn modal_codes(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<Option<Act>> {
-        if given.has_more_than_moves() {
+    pub(super) fn modal_codes(
+        &self,
+        given: &BlockWords,
+        plan: &mut BlockPlan,
+        span: Span,
+    ) -> Checked<Option<AxisWordUse>> {
+        if given.has_non_motion_words() {
             return self.codes_in_force(given, plan, span);
         }
         if let Some(motion) = given.motion {
-            plan.state.move_by(motion);
+            plan.state.set_motion_mode(motion);
         }
         Ok(None)
     }
 
-    /// As [`Core::modal_codes`], of a block with other codes than those of group 01.
+    /// As [`Executor::modal_codes`], of a block with other codes than those of group 01.
     #[inline(never)]
-    fn codes_in_force(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<Option<Act>> {
+    fn codes_in_force(
+        &self,
+        given: &BlockWords,
+        plan: &mut BlockPlan,
+        span: Span,
+    ) -> Checked<Option<AxisWordUse>> {
         let state = &mut plan.state;
         let before = state.modal;
         let mut act = None;
         let mut latched = before.cycle.is_some();
         for row in given.g_codes() {
             if let Effect::Motion(motion) = row.effect {
-                state.move_by(motion);
+                state.set_motion_mode(motion);
                 latched = false;
                 continue;
             }
@@ -56,12 +66,12 @@ impl Core {
             act = new.or(act);
             state.modal.apply(row);
             if row.effect == Effect::Cycle(None) {
-                state.drilling = Drilling::default();
+                state.drilling = CycleState::default();
                 latched = false;
             }
         }
         let modal = state.modal;
-        if modal.plane != before.plane && self.ahead.is_beside() {
+        if modal.plane != before.plane && self.ahead.is_offset() {
             return Err(Alarm::PlaneInCompensation.at(span));
         }
         if modal.plane != before.plane && state.transform.rotation.is_some() {
@@ -94,19 +104,19 @@ impl Core {
             let axis = at(self.drilling_axis(given, state), span)?;
             state.drilling.axis = Some(axis);
             state.drilling.initial = state.programmed[axis];
-            state.drilling.initial_unplaced = state.unplaced >> axis & 1 == 1;
+            state.drilling.initial_unplaced = state.work_zero_unknown >> axis & 1 == 1;
         }
         // G54 P is G54.1 P.
         let additional = given.has(b'P')
             && act.is_none()
             && modal.cycle.is_none()
             && given.has_code_beyond_moves(|effect| effect == Effect::Work(1));
-        Ok(if additional { Some(Act::AdditionalWork) } else { act })
+        Ok(if additional { Some(AxisWordUse::AdditionalWork) } else { act })
     }
 }
 
 /// What uses the axis words because of a code, if anything.
-fn act_of(row: &Row, given: &Given, cutter: CutterSide) -> Result<Option<Act>, Alarm> {
+fn act_of(row: &GCodeRow, given: &BlockWords, cutter: CutterSide) -> Result<Option<AxisWordUse>, Alarm> {
     Ok(match row.effect {
         Effect::NotSimulated if (450..=480).contains(&row.code) && cutter != CutterSide::Off => {
             return Err(Alarm::ToolOffsetInCompensation);
@@ -120,13 +130,13 @@ fn act_of(row: &Row, given: &Given, cutter: CutterSide) -> Result<Option<Act>, A
             given.accept(b"EP");
             None
         }
-        Effect::OneShot(one) => Some(Act::OneShot(one)),
-        Effect::AdditionalWork => Some(Act::AdditionalWork),
-        Effect::Scaling(Scaling::On) => Some(Act::Scale),
-        Effect::Mirror(Mirror::On) => Some(Act::MirrorOn),
-        Effect::Mirror(Mirror::Off) => Some(Act::MirrorOff),
-        Effect::Rotation(Rotation::On) => Some(Act::Rotate),
-        Effect::Rotation(Rotation::Tilted) => Some(Act::Tilt),
+        Effect::OneShot(one) => Some(AxisWordUse::OneShot(one)),
+        Effect::AdditionalWork => Some(AxisWordUse::AdditionalWork),
+        Effect::Scaling(Scaling::On) => Some(AxisWordUse::Scale),
+        Effect::Mirror(Mirror::On) => Some(AxisWordUse::MirrorOn),
+        Effect::Mirror(Mirror::Off) => Some(AxisWordUse::MirrorOff),
+        Effect::Rotation(Rotation::On) => Some(AxisWordUse::Rotate),
+        Effect::Rotation(Rotation::Tilted) => Some(AxisWordUse::Tilt),
         Effect::Scaling(Scaling::Off)
         | Effect::Rotation(Rotation::Off)
         | Effect::Motion(_)

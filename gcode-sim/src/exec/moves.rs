@@ -1,19 +1,19 @@
 //! A move by the modal codes: the tool length that it takes in, a drilling cycle, or group 01.
-use super::Core;
+use super::Executor;
 use super::eval::{Checked, at};
 use super::notes::Note;
-use super::plan::Plan;
-use super::words::{Given, letters};
+use super::plan::BlockPlan;
+use super::words::{BlockWords, letters};
 use crate::alarm::Alarm;
 use crate::motion::EventKind;
-use crate::program::codes::{Effect, Row};
+use crate::program::codes::{Effect, GCodeRow};
 use crate::program::modes::{CutterSide, Length, Motion};
 use crate::source::Span;
 
-impl Core {
+impl Executor {
     /// 3. G43, G44, G49 and a new H; whether the offset changed.
     #[inline]
-    pub(super) fn length(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<bool> {
+    pub(super) fn length(&self, given: &BlockWords, plan: &mut BlockPlan, span: Span) -> Checked<bool> {
         let commanded =
             given.has(b'H') || given.has_code_beyond_moves(|effect| matches!(effect, Effect::Length(_)));
         if !commanded || (plan.state.modal.length == Length::Off && self.state.modal.length == Length::Off) {
@@ -23,25 +23,31 @@ impl Core {
     }
 
     #[inline(never)]
-    fn lengthen(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<bool> {
-        let on = |row: &&Row| matches!(row.effect, Effect::Length(Length::Plus | Length::Minus));
+    fn lengthen(&self, given: &BlockWords, plan: &mut BlockPlan, span: Span) -> Checked<bool> {
+        let on = |row: &&GCodeRow| matches!(row.effect, Effect::Length(Length::Plus | Length::Minus));
         if let Some(row) = given.g_codes().find(on)
             && plan.state.codes.h == 0
             && !given.has(b'H')
         {
-            plan.notes.push(Note::LengthOfNothing { code: row.code });
+            plan.notes.push(Note::LengthOffsetZero { code: row.code });
         }
         let offset = at(self.length_offset(&plan.state), span)?;
         let (changed, by) = (offset != plan.state.length, plan.state.lengthening());
         if changed || by != self.state.lengthening() {
-            plan.tell(EventKind::ToolLength { offset, by });
+            plan.push_event(EventKind::ToolLength { offset, by });
         }
         plan.state.length = offset;
         Ok(changed)
     }
 
     /// 4. A move by the modal codes: a drilling cycle, or group 01.
-    pub(super) fn motion(&self, given: &Given, plan: &mut Plan, lengthened: bool, span: Span) -> Checked<()> {
+    pub(super) fn motion(
+        &self,
+        given: &BlockWords,
+        plan: &mut BlockPlan,
+        lengthened: bool,
+        span: Span,
+    ) -> Checked<()> {
         if let Some(cycle) = plan.state.modal.cycle {
             if self.drills(given) {
                 return self.prepare_drill(plan, given, cycle, None, span);
@@ -89,12 +95,12 @@ impl Core {
             Motion::Clockwise | Motion::Counterclockwise => self.arc(plan, given, &goal, span)?,
         }
         plan.state.programmed = goal.programmed;
-        plan.moved = true;
+        plan.commands_axes = true;
         Ok(())
     }
 
     /// The tool length changed in a block without an axis: the axis moves by the offset at once, or keeps still.
-    fn settle(&self, given: &Given, plan: &mut Plan, lengthened: bool, span: Span) -> Checked<()> {
+    fn settle(&self, given: &BlockWords, plan: &mut BlockPlan, lengthened: bool, span: Span) -> Checked<()> {
         if !lengthened {
             return Ok(());
         }

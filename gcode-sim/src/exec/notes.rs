@@ -22,13 +22,13 @@ pub enum Note {
     CornerIgnored,
     /// A drilling block with K0 stores its data and drills nothing, which is what K0 is for; whether its X and Y are
     /// gone to differs between controls.
-    NoRepeats,
+    CycleRepeatsZero,
     /// A call with L0 calls nothing.
-    NoPass,
+    CallRepeatsZero,
     /// A code that acts on axes, in a block that names none. G53 so only waits.
     NoAxis { code: u32 },
     /// G51 or G68 without axes: about the point where the program stands.
-    CentreHere { code: u32 },
+    CentreDefaulted { code: u32 },
     /// G68 without R: it turns by nothing, or by 5410 where that is set.
     NoAngle,
     /// GOTO or M99 P found one of several blocks with this number.
@@ -46,15 +46,15 @@ pub enum Note {
     /// An M code of more than four digits that is left to the machine builder: M981000 was M98 P1000.
     LongMCode { code: u32 },
     /// #5001… are read behind a switch of G51.1, G51 or G68, when the program's coordinates of the tool are others.
-    EndBeforeSwitch,
+    EndPointBeforeTransform,
     /// The first move behind such a switch leaves out an axis whose coordinate it has changed.
     AxisLeftOut,
     /// DPRNT has printed the lower digits of a number only.
     DigitsLost,
     /// A drilling cycle drills though its R or its depth was never commanded.
-    LevelMissing { letter: char },
+    CycleLevelMissing { letter: char },
     /// G43 or G44 with H0, which is no offset.
-    LengthOfNothing { code: u32 },
+    LengthOffsetZero { code: u32 },
     /// A block, or the rest of one, behind `/`, which a switch of block skip leaves out.
     BlockSkip { switch: u8, is_on: bool },
     /// A drilling cycle goes along Z while G18 or G19 has another plane's normal, as FXY 5101#0 = 0 has it.
@@ -65,7 +65,7 @@ pub enum Note {
 
 impl Note {
     /// A stable name, what happened, and what to do.
-    pub fn parts(self) -> (&'static str, String, &'static str) {
+    pub fn describe(self) -> (&'static str, String, &'static str) {
         match self {
             Self::MachineMoveIgnored => {
                 let message = "G53 in G91 is ignored: the axes of the block don't move".to_owned();
@@ -100,18 +100,18 @@ impl Note {
                 let message = ",R and ,C are ignored: the block is no cutting move".to_owned();
                 ("corner-ignored", message, "write them in a block of G01, G02 or G03")
             }
-            Self::NoRepeats => {
+            Self::CycleRepeatsZero => {
                 let message = "K0 stores the cycle without going to the block's X and Y".to_owned();
                 ("no-repeats", message, "K0-MOVES=1 is for a control that goes there")
             }
-            Self::NoPass => {
+            Self::CallRepeatsZero => {
                 ("no-pass", "L0: the program is not called".to_owned(), "leave L out for one pass")
             }
             Self::NoAxis { code } => {
                 let message = format!("G{} names no axis: nothing moves or is set", spelled(code));
                 ("no-axis", message, "name the axes it is for")
             }
-            Self::CentreHere { code } => {
+            Self::CentreDefaulted { code } => {
                 let message =
                     format!("G{} names no axis: its centre is where the program stands", spelled(code));
                 ("centre-here", message, "name the centre's axes")
@@ -155,7 +155,7 @@ impl Note {
                 let message = format!("M{code} calls nothing: it is one M code, left to the machine builder");
                 ("long-m-code", message, "write P before the program's number: M98 P1000")
             }
-            Self::EndBeforeSwitch => {
+            Self::EndPointBeforeTransform => {
                 let message =
                     "#5001 and on show the end of the last move as it was programmed, before the switch of \
                      G51.1, G51 or G68"
@@ -177,11 +177,11 @@ impl Note {
                     "give the format more places; PRINT-EXPANDS=1 is for a control that makes room",
                 )
             }
-            Self::LevelMissing { letter } => {
+            Self::CycleLevelMissing { letter } => {
                 let message = format!("the cycle drills with {letter} at 0: none was commanded");
                 ("level-missing", message, "write R and the depth in the block that begins the cycle")
             }
-            Self::LengthOfNothing { code } => {
+            Self::LengthOffsetZero { code } => {
                 let message = format!("G{} with H0: no tool length is in force", spelled(code));
                 ("length-of-nothing", message, "write H with the tool's number")
             }

@@ -1,9 +1,9 @@
 //! The offset tables: work coordinate systems and tool offsets, held in increments as a control holds them.
-use super::Core;
-use super::state::{Ended, State};
-use super::travel::shorter_way;
+use super::Executor;
+use super::linear_motion::shortest_rotation;
+use super::state::{EndPoint, State};
 use crate::alarm::Alarm;
-use crate::motion::{Axis, MAX_AXES, Position};
+use crate::motion::{AxisIndex, MAX_AXES, Position};
 use crate::program::modes::{Length, Unit, WorkSystem};
 use crate::units::nearest;
 use crate::units::round;
@@ -83,7 +83,7 @@ impl Offsets {
     }
 
     /// The zero of a work coordinate system in machine coordinates.
-    fn zero(&self, system: &Position, state: &State, axis: Axis) -> f64 {
+    fn zero(&self, system: &Position, state: &State, axis: AxisIndex) -> f64 {
         self.external[axis] + system[axis] + state.local[axis] + state.shift[axis]
     }
 
@@ -95,13 +95,13 @@ impl Offsets {
     }
 }
 
-impl Core {
+impl Executor {
     /// The zero of the active work coordinate system in machine coordinates.
-    pub(super) fn zero(&self, state: &State, axis: Axis) -> f64 {
+    pub(super) fn zero(&self, state: &State, axis: AxisIndex) -> f64 {
         self.offsets.zero(self.offsets.system(state.modal.work), state, axis)
     }
 
-    /// As [`Core::zero`], of all axes.
+    /// As [`Executor::zero`], of all axes.
     pub(super) fn zeros(&self, state: &State) -> Position {
         let system = self.offsets.system(state.modal.work);
         let mut zeros = Position::default();
@@ -122,7 +122,7 @@ impl Core {
         for axis in self.settings.rolling() {
             // From where the axis stands, the shorter way: turns already made stay made.
             let from = state.machine[axis] - self.zero(state, axis) - state.length[axis];
-            machine[axis] = self.clean(state.machine[axis] + shorter_way(from, work[axis]));
+            machine[axis] = self.clean(state.machine[axis] + shortest_rotation(from, work[axis]));
         }
         machine
     }
@@ -156,12 +156,12 @@ impl Core {
     pub(super) fn transform_changed(&self, state: &mut State) {
         let (programmed, work) = (self.move_end(state), self.work_point(state));
         self.recompute(state);
-        state.ended = (state.programmed != programmed).then_some(Ended { programmed, work });
+        state.ended = (state.programmed != programmed).then_some(EndPoint { programmed, work });
     }
 
     /// The end of the last move as it was programmed.
     pub(super) fn move_end(&self, state: &State) -> Position {
-        let Some(Ended { mut programmed, work }) = state.ended else { return state.programmed };
+        let Some(EndPoint { mut programmed, work }) = state.ended else { return state.programmed };
         let now = self.work_point(state);
         for axis in 0..self.settings.axes.len() {
             programmed[axis] = self.clean(programmed[axis] + now[axis] - work[axis]);
@@ -188,18 +188,18 @@ impl Core {
     }
 
     /// A work coordinate from 0 to 360 on an axis that rolls over.
-    pub(super) fn rolled(&self, axis: Axis, value: f64) -> f64 {
+    pub(super) fn rolled(&self, axis: AxisIndex, value: f64) -> f64 {
         if self.settings.roll_over[axis] { self.clean(value.rem_euclid(360.0)) } else { value }
     }
 
     /// Where an axis ends that is sent to machine coordinates: one that rolls over goes there by the shorter way and
     /// unwinds no turns.
-    pub(super) fn turned_to(&self, axis: Axis, from: f64, to: f64) -> f64 {
-        if self.settings.roll_over[axis] { self.clean(from + shorter_way(from, to)) } else { to }
+    pub(super) fn turned_to(&self, axis: AxisIndex, from: f64, to: f64) -> f64 {
+        if self.settings.roll_over[axis] { self.clean(from + shortest_rotation(from, to)) } else { to }
     }
 
     /// What is stored of an offset that is written in the unit in force: mm, a multiple of the increment.
-    pub(super) fn stored(&self, state: &State, axis: Option<Axis>, value: f64) -> f64 {
+    pub(super) fn stored(&self, state: &State, axis: Option<AxisIndex>, value: f64) -> f64 {
         let turns = axis.is_some_and(|axis| self.settings.axes.is_rotary(axis));
         let increment = self.settings.increment;
         match state.modal.unit {
@@ -218,7 +218,7 @@ impl Core {
     }
 
     /// A length in mm as a program reads it: in the unit in force.
-    pub(super) fn shown(&self, state: &State, axis: Option<Axis>, value: f64) -> f64 {
+    pub(super) fn shown(&self, state: &State, axis: Option<AxisIndex>, value: f64) -> f64 {
         let turns = axis.is_some_and(|axis| self.settings.axes.is_rotary(axis));
         if state.modal.unit == Unit::Inch && !turns { value / 25.4 } else { value }
     }

@@ -1,12 +1,12 @@
 //! What a block does instead of moving by its modal codes, code by code: dwell, coordinate systems, G53, G60.
-use super::Core;
+use super::Executor;
 
 use super::eval::Checked;
-use super::modal_codes::{Act, not_simulated};
+use super::modal_codes::{AxisWordUse, not_simulated};
 use super::notes::Note;
-use super::plan::Plan;
+use super::plan::BlockPlan;
 use super::state::State;
-use super::words::Given;
+use super::words::BlockWords;
 use crate::alarm::Alarm;
 use crate::motion::{EventKind, Position};
 use crate::program::codes::OneShot;
@@ -14,15 +14,21 @@ use crate::program::modes::{Distance, WorkSystem};
 use crate::source::Span;
 use crate::units::Seconds;
 
-impl Core {
+impl Executor {
     /// 4. What a block does instead of moving by its modal codes.
-    pub(super) fn act(&self, act: Act, given: &Given, plan: &mut Plan, span: Span) -> Checked<()> {
+    pub(super) fn act(
+        &self,
+        act: AxisWordUse,
+        given: &BlockWords,
+        plan: &mut BlockPlan,
+        span: Span,
+    ) -> Checked<()> {
         if !self.names_axis(given) {
             plan.notes.extend(without_axis(act));
         }
         match act {
-            Act::OneShot(one) => self.one_shot(one, given, plan, span),
-            Act::AdditionalWork => {
+            AxisWordUse::OneShot(one) => self.one_shot(one, given, plan, span),
+            AxisWordUse::AdditionalWork => {
                 let number = given.count(b'P')?.unwrap_or(1);
                 if number == 0 || number as usize > self.offsets.additional.len() {
                     return Err(Alarm::OffsetNumber { number: i64::from(number) }.at(span));
@@ -31,14 +37,16 @@ impl Core {
                 self.recompute(&mut plan.state);
                 self.motion(given, plan, false, span)
             }
-            Act::Scale => self.scale(given, plan, span),
-            Act::Rotate => self.rotate(given, plan, span),
-            Act::Tilt => self.tilt(given, plan, span),
-            Act::MirrorOn | Act::MirrorOff => self.mirror(act == Act::MirrorOn, given, plan),
+            AxisWordUse::Scale => self.scale(given, plan, span),
+            AxisWordUse::Rotate => self.rotate(given, plan, span),
+            AxisWordUse::Tilt => self.tilt(given, plan, span),
+            AxisWordUse::MirrorOn | AxisWordUse::MirrorOff => {
+                self.mirror(act == AxisWordUse::MirrorOn, given, plan)
+            }
         }
     }
 
-    fn one_shot(&self, one: OneShot, given: &Given, plan: &mut Plan, span: Span) -> Checked<()> {
+    fn one_shot(&self, one: OneShot, given: &BlockWords, plan: &mut BlockPlan, span: Span) -> Checked<()> {
         let cycle = plan.state.modal.cycle.is_some();
         match one {
             OneShot::Dwell => self.dwell(given, plan),
@@ -106,8 +114,8 @@ impl Core {
     /// Every axis the block names, with its value.
     fn each_axis(
         &self,
-        given: &Given,
-        plan: &mut Plan,
+        given: &BlockWords,
+        plan: &mut BlockPlan,
         mut with: impl FnMut(&Self, &mut State, usize, f64),
     ) -> Checked<()> {
         for (axis, letter) in self.settings.axes.iter() {
@@ -118,7 +126,7 @@ impl Core {
         Ok(())
     }
 
-    fn dwell(&self, given: &Given, plan: &mut Plan) -> Checked<()> {
+    fn dwell(&self, given: &BlockWords, plan: &mut BlockPlan) -> Checked<()> {
         self.skip_signals(given, b'Q')?;
         if given.has(b'Q') {
             return Err(not_simulated(40, "dwell until a skip signal").at(given.span(b'Q')));
@@ -139,7 +147,7 @@ impl Core {
     }
 
     /// G60: by rapid to a point before the end by 5440, whose sign is the side, and on to the end.
-    fn one_side(&self, given: &Given, plan: &mut Plan) -> Checked<()> {
+    fn one_side(&self, given: &BlockWords, plan: &mut BlockPlan) -> Checked<()> {
         let goal = self.goal(given, &mut plan.state)?;
         let mut before = goal.machine;
         for (axis, letter) in self.settings.axes.iter() {
@@ -150,12 +158,12 @@ impl Core {
         self.rapid(plan, &before);
         self.rapid(plan, &goal.machine);
         plan.state.programmed = goal.programmed;
-        plan.moved = self.names_axis(given);
+        plan.commands_axes = self.names_axis(given);
         Ok(())
     }
 
     /// G53: by rapid to machine coordinates, without the length offset.
-    fn machine_system(&self, given: &Given, plan: &mut Plan) -> Checked<()> {
+    fn machine_system(&self, given: &BlockWords, plan: &mut BlockPlan) -> Checked<()> {
         let mut to = plan.state.machine;
         let incremental = plan.state.modal.distance == Distance::Incremental;
         if incremental && !self.settings.unsure.g53_moves_in_g91 {
@@ -176,18 +184,18 @@ impl Core {
         self.leave_work(plan, named);
         self.rapid(plan, &to);
         self.recompute(&mut plan.state);
-        plan.moved = true;
+        plan.commands_axes = true;
         Ok(())
     }
 }
 
 /// What there is to tell of a code in a block that names no axis.
-fn without_axis(act: Act) -> Option<Note> {
+fn without_axis(act: AxisWordUse) -> Option<Note> {
     let code = match act {
-        Act::Scale => return Some(Note::CentreHere { code: 510 }),
-        Act::Rotate => return Some(Note::CentreHere { code: 680 }),
-        Act::MirrorOn => 511,
-        Act::OneShot(one) => match one {
+        AxisWordUse::Scale => return Some(Note::CentreDefaulted { code: 510 }),
+        AxisWordUse::Rotate => return Some(Note::CentreDefaulted { code: 680 }),
+        AxisWordUse::MirrorOn => 511,
+        AxisWordUse::OneShot(one) => match one {
             OneShot::CheckReference => 270,
             OneShot::FromReference => 290,
             OneShot::Skip => 310,
@@ -198,7 +206,7 @@ fn without_axis(act: Act) -> Option<Note> {
             OneShot::PresetSystem => 921,
             _ => return None,
         },
-        Act::AdditionalWork | Act::MirrorOff | Act::Tilt => return None,
+        AxisWordUse::AdditionalWork | AxisWordUse::MirrorOff | AxisWordUse::Tilt => return None,
     };
     Some(Note::NoAxis { code })
 }

@@ -2,7 +2,7 @@
 use std::sync::atomic::{AtomicBool, AtomicU64};
 
 use crate::alarm::Alarm;
-use crate::motion::{Place, StopKind};
+use crate::motion::{Backtrace, StopKind};
 use crate::source::Span;
 
 /// How long a run may take.
@@ -32,24 +32,24 @@ pub struct Progress {
 pub enum Outcome {
     /// M02, M30, the M99 that ends the run, or the program's end.
     End,
-    Alarm(Stopped),
+    Alarm(AlarmStop),
     /// The limit of blocks or of moves, [`Progress::stop`], or a loop that provably never ends ([`Control::endless_loop`](super::Control::endless_loop)).
     Limit,
 }
 
 /// Where and why the control stopped.
 #[derive(Clone, Debug)]
-pub struct Stopped {
+pub struct AlarmStop {
     pub alarm: Alarm,
     /// The part of the block it is about.
     pub span: Span,
     /// The block, and the calls that led to it.
-    pub place: Place,
+    pub place: Backtrace,
 }
 
 /// An operator stop.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Stop {
+pub struct OperatorStop {
     pub kind: StopKind,
     pub text: String,
     /// The variables that the text names, with their values.

@@ -1,23 +1,23 @@
 //! Parameters in a program: PRM reads them, the blocks between G10 L52 and G11 write them.
-use super::Core;
+use super::Executor;
 use super::eval::{Checked, integer};
 use super::notes::Note;
-use super::plan::{Plan, Write};
-use super::words::{Given, Raw};
+use super::plan::{BlockPlan, TableWrite};
+use super::words::{BlockWords, WordNumber};
 use crate::alarm::Alarm;
-use crate::control::{ParameterError, ParameterPlace, Settings, is_without_effect};
-use crate::motion::Axis;
+use crate::control::{ParameterError, ParameterId, Settings, is_without_effect};
+use crate::motion::AxisIndex;
 use crate::program::Words;
 use crate::program::codes::{Effect, OneShot};
 use crate::source::Span;
 
-impl Core {
+impl Executor {
     /// `PRM[n]`, `PRM[n,bit]`, `PRM[n]/[axis]`, `PRM[n,bit]/[axis]`.
     pub(super) fn parameter(&self, number: f64, bit: Option<f64>, axis: Option<f64>) -> Result<f64, Alarm> {
         let format = || Alarm::ArgumentFormat { function: "PRM".into() };
         let known = integer(number)?;
         let unknown = || Alarm::NotSimulated { what: format!("PRM[{known}]") };
-        let place = ParameterPlace {
+        let place = ParameterId {
             number: u16::try_from(known).map_err(|_| unknown())?,
             bit: bit.map(|bit| self.bit(bit).ok_or_else(format)).transpose()?,
             axis: axis.map(|axis| self.axis_of(axis).map_err(|_| format())).transpose()?,
@@ -36,7 +36,7 @@ impl Core {
     }
 
     /// An axis by its number from 1 on.
-    pub(super) fn axis_of(&self, number: f64) -> Result<Axis, Alarm> {
+    pub(super) fn axis_of(&self, number: f64) -> Result<AxisIndex, Alarm> {
         let number = integer(number)?;
         let axis = usize::try_from(number - 1).ok().filter(|axis| *axis < self.settings.axes.len());
         axis.ok_or(Alarm::AxisNumber { number })
@@ -46,8 +46,8 @@ impl Core {
     pub(super) fn prepare_parameter(
         &self,
         (words, number): (&Words, Option<u32>),
-        given: &mut Given,
-        plan: &mut Plan,
+        given: &mut BlockWords,
+        plan: &mut BlockPlan,
         span: Span,
     ) -> Checked<()> {
         plan.begin(&self.state);
@@ -82,8 +82,8 @@ impl Core {
         if given.unread().is_some() {
             return Err(wrong("other words than N P Q R"));
         }
-        let place = ParameterPlace { number, bit, axis };
-        if let Raw::Literal(literal) = raw
+        let place = ParameterId { number, bit, axis };
+        if let WordNumber::Literal(literal) = raw
             && literal.places.is_none()
             && literal.digits != 0
             && Settings::is_length_parameter(place)
@@ -92,8 +92,8 @@ impl Core {
             return Err(Alarm::NotSimulated { what }.at(given.span(b'R')));
         }
         let value = match raw {
-            Raw::Literal(literal) => literal.value(),
-            Raw::Computed(value) => value,
+            WordNumber::Literal(literal) => literal.value(),
+            WordNumber::Computed(value) => value,
         };
         let known = self.settings.clone().set_parameter(place, value);
         let kept = known == Err(ParameterError::Unknown) && is_without_effect(number);
@@ -113,12 +113,12 @@ impl Core {
                 return Err(Alarm::NotSimulated { what }.at(span));
             }
         }
-        plan.writes.push(Write::Parameter { place, value, kept });
+        plan.writes.push(TableWrite::Parameter { place, value, kept });
         Ok(())
     }
 
-    /// Carries out what [`Core::prepare_parameter`] has checked.
-    pub(super) fn set_parameter(&mut self, place: ParameterPlace, value: f64, kept: bool) {
+    /// Carries out what [`Executor::prepare_parameter`] has checked.
+    pub(super) fn set_parameter(&mut self, place: ParameterId, value: f64, kept: bool) {
         self.parameters.insert(place, value);
         if kept {
             return;

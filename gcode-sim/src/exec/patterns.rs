@@ -1,10 +1,10 @@
 //! G70 and G71 of a Haas: the drilling cycle in force, at holes round a centre.
-use super::Core;
+use super::Executor;
 use super::eval::Checked;
-use super::plan::Plan;
-use super::words::Given;
+use super::plan::BlockPlan;
+use super::words::BlockWords;
 use crate::alarm::Alarm;
-use crate::program::codes::{Holes, Row};
+use crate::program::codes::{GCodeRow, HolePattern};
 use crate::program::modes::Plane;
 use crate::source::Span;
 
@@ -19,13 +19,19 @@ pub(super) struct Pattern {
     pub(super) turn: f64,
 }
 
-impl Core {
+impl Executor {
     /// I is the radius, J the angle of the first hole, L their number, K the angle between holes on an arc. The hole
     /// in the centre is not drilled (Haas Mill Operator's Manual, G70 and G71).
-    pub(super) fn bolt_holes(&self, holes: Holes, given: &Given, plan: &mut Plan, span: Span) -> Checked<()> {
+    pub(super) fn bolt_holes(
+        &self,
+        holes: HolePattern,
+        given: &BlockWords,
+        plan: &mut BlockPlan,
+        span: Span,
+    ) -> Checked<()> {
         let code = match holes {
-            Holes::Circle => "G70",
-            Holes::Arc => "G71",
+            HolePattern::Circle => "G70",
+            HolePattern::Arc => "G71",
         };
         let Some(cycle) = plan.state.modal.cycle else {
             return Err(Alarm::NoCycle { code }.at(span));
@@ -39,10 +45,10 @@ impl Core {
         let count = given.count(b'L')?.filter(|count| *count > 0).ok_or_else(|| missing('L'))?;
         let turn = match holes {
             // A negative radius goes round clockwise.
-            Holes::Circle => (360.0 / f64::from(count)).copysign(radius),
-            Holes::Arc => self.angle(given, b'K')?.ok_or_else(|| missing('K'))?,
+            HolePattern::Circle => (360.0 / f64::from(count)).copysign(radius),
+            HolePattern::Arc => self.angle(given, b'K')?.ok_or_else(|| missing('K'))?,
         };
-        if radius == 0.0 || radius < 0.0 && holes == Holes::Arc {
+        if radius == 0.0 || radius < 0.0 && holes == HolePattern::Arc {
             return Err(Alarm::OutOfRange { function: format!("I of {code}"), value: radius }.at(span));
         }
         let pattern = Pattern { count, radius: radius.abs(), start, turn };
@@ -51,7 +57,7 @@ impl Core {
 }
 
 /// Whether L of a block belongs to one of its codes.
-pub(super) fn takes_l(row: &Row) -> bool {
+pub(super) fn takes_l(row: &GCodeRow) -> bool {
     use crate::program::codes::{Effect, OneShot};
     matches!(
         row.effect,

@@ -1,26 +1,31 @@
 //! The pecks of G73 and G83: all of Q, or becoming shorter by I, J and K.
-use super::Core;
+use super::Executor;
 use super::eval::Checked;
-use super::plan::Plan;
-use super::state::{Drilling, Pecks};
-use super::words::Given;
+use super::plan::BlockPlan;
+use super::state::{CycleState, PeckSchedule};
+use super::words::BlockWords;
 use crate::alarm::Alarm;
 use crate::source::Span;
 
 /// A block with more pecks than this alarms: nobody drills so, and a run must end.
 const PECKS: f64 = 1e6;
 
-impl Core {
+impl Executor {
     /// G73 and G83 of a Haas: the first peck is I, each next one J less, none less than K.
-    pub(super) fn shrinking_pecks(&self, plan: &mut Plan, given: &Given, span: Span) -> Checked<()> {
+    pub(super) fn shrinking_pecks(
+        &self,
+        plan: &mut BlockPlan,
+        given: &BlockWords,
+        span: Span,
+    ) -> Checked<()> {
         let state = &plan.state;
         let first = self.dimension(given, b'I', state)?;
         let less = self.dimension(given, b'J', state)?;
         let least = self.dimension(given, b'K', state)?;
         let pecks = match (first, less, least) {
             (None, None, None) => return Ok(()),
-            (Some(first), None, None) => Pecks { first, less: 0.0, least: first },
-            (Some(first), Some(less), Some(least)) => Pecks { first, less, least },
+            (Some(first), None, None) => PeckSchedule { first, less: 0.0, least: first },
+            (Some(first), Some(less), Some(least)) => PeckSchedule { first, less, least },
             _ => {
                 let what = "I, J and K of G73 and G83 in part, or K with Q".into();
                 return Err(Alarm::NotSimulated { what }.at(span));
@@ -37,7 +42,7 @@ impl Core {
     }
 
     /// From R peck by peck until Z; the last peck is what is left.
-    pub(super) fn peck(&self, (r, z): (f64, f64), data: &Drilling, mut each: impl FnMut(f64, f64, bool)) {
+    pub(super) fn peck(&self, (r, z): (f64, f64), data: &CycleState, mut each: impl FnMut(f64, f64, bool)) {
         let pecks = pecks(r, z, data);
         let mut last = r;
         let mut count = 1.0;
@@ -52,8 +57,8 @@ impl Core {
 }
 
 /// How deep below R so many pecks lead.
-fn depth(data: &Drilling, count: f64) -> f64 {
-    let Some(Pecks { first, less, least }) = data.pecks else {
+fn depth(data: &CycleState, count: f64) -> f64 {
+    let Some(PeckSchedule { first, less, least }) = data.pecks else {
         return count * data.q.unwrap_or(0.0).abs();
     };
     // As many pecks as are longer than the shortest, then all as short as that.
@@ -63,7 +68,7 @@ fn depth(data: &Drilling, count: f64) -> f64 {
 }
 
 /// How many pecks a hole from R to Z takes.
-fn pecks(r: f64, z: f64, data: &Drilling) -> f64 {
+fn pecks(r: f64, z: f64, data: &CycleState) -> f64 {
     let deep = (z - r).abs();
     if data.pecks.is_none() {
         return match data.q {
@@ -79,6 +84,6 @@ fn pecks(r: f64, z: f64, data: &Drilling) -> f64 {
 }
 
 /// Whether a block with so many holes has more pecks than anybody drills.
-pub(super) fn are_too_many(data: &Drilling, holes: u32) -> bool {
+pub(super) fn are_too_many(data: &CycleState, holes: u32) -> bool {
     pecks(data.r_level(), data.z_level(), data) * f64::from(holes.max(1)) > PECKS
 }

@@ -1,13 +1,13 @@
 //! What a block is going to do: made without touching the control, carried out afterwards without failing.
-use super::ahead::Ahead;
-use super::drill::Drill;
-use super::frames::ByCodes;
+use super::drill::CyclePlan;
+use super::frames::CallOrigins;
+use super::lookahead::Lookahead;
 use super::notes::Note;
 use super::offsets::Register;
 use super::state::State;
 use super::vars::{Locals, Value};
 use crate::contour::Blend;
-use crate::control::ParameterPlace;
+use crate::control::ParameterId;
 use crate::motion::{EventKind, Position, StopKind};
 use crate::program::{OpIndex, ProgramId};
 use crate::source::Span;
@@ -15,35 +15,35 @@ use crate::units::MmPerMin;
 
 /// Everything one block of words changes. Kept between blocks, so that none of them allocates.
 #[derive(Debug, Default)]
-pub(super) struct Plan {
+pub(super) struct BlockPlan {
     pub(super) state: Box<State>,
     /// What the machine is told, with the seconds it takes.
     pub(super) events: Vec<(EventKind, f64)>,
     /// G31: its motion is planned to the end and may stop before.
-    pub(super) probing: Option<Probing>,
+    pub(super) probing: Option<SkipPlan>,
     /// Told after the motion: spindle and coolant off.
-    pub(super) after: Vec<(EventKind, f64)>,
+    pub(super) events_after_motion: Vec<(EventKind, f64)>,
     /// A drilling cycle is expanded while it is told: its length has no bound.
-    pub(super) drill: Option<Drill>,
-    pub(super) writes: Vec<Write>,
+    pub(super) drill: Option<CyclePlan>,
+    pub(super) writes: Vec<TableWrite>,
     /// The word `,R` or `,C` of a cutting move.
     pub(super) corner: Option<Blend>,
     /// The block goes by way of what is read ahead, which will be this.
     pub(super) reads_ahead: bool,
-    pub(super) ahead: Ahead,
+    pub(super) ahead: Lookahead,
     /// Axes were commanded: what a modal macro call waits for.
-    pub(super) moved: bool,
+    pub(super) commands_axes: bool,
     /// In the order of their M codes.
     pub(super) stops: Vec<StopKind>,
     /// M codes for the machine builder's logic.
     pub(super) passed_on: Vec<u32>,
     pub(super) notes: Vec<Note>,
-    pub(super) flow: Flow,
+    pub(super) flow: BlockFlow,
 }
 
 /// What G10 and codes that call write.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Write {
+pub(super) enum TableWrite {
     /// System 0 is the external one, 1 to 6 are G54 to G59, 7 and up G54.1 P1….
     Work {
         system: usize,
@@ -57,7 +57,7 @@ pub(super) enum Write {
     },
     /// G10 L52; `kept` where it has no effect.
     Parameter {
-        place: ParameterPlace,
+        place: ParameterId,
         value: f64,
         kept: bool,
     },
@@ -70,7 +70,7 @@ pub(super) enum Write {
 
 /// A G31 that is planned.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Probing {
+pub(super) struct SkipPlan {
     /// Its place among the plan's events.
     pub(super) event: usize,
     pub(super) from: Position,
@@ -82,7 +82,7 @@ pub(super) struct Probing {
 
 /// Where the program goes after the block.
 #[derive(Clone, Debug, Default)]
-pub(super) enum Flow {
+pub(super) enum BlockFlow {
     #[default]
     Next,
     Call(Box<CallPlan>),
@@ -108,7 +108,7 @@ pub(super) struct CallPlan {
     /// G66.1: its own words are arguments at once. Other calls always are.
     pub(super) calls_now: bool,
     /// The kind of code that calls, where it is no G65, G66 or M98.
-    pub(super) by_code: ByCodes,
+    pub(super) by_code: CallOrigins,
     /// M198.
     pub(super) external: bool,
     pub(super) span: Span,
@@ -132,20 +132,20 @@ pub(super) enum Target {
     Found(ProgramId, OpIndex),
 }
 
-impl Plan {
+impl BlockPlan {
     pub(super) fn begin(&mut self, state: &State) {
         let Self {
             state: own,
             events,
             probing,
-            after,
+            events_after_motion: after,
             drill,
             writes,
             corner,
             reads_ahead,
             // Taken from the control where it is read.
             ahead: _,
-            moved,
+            commands_axes: moved,
             stops,
             passed_on,
             notes,
@@ -160,10 +160,10 @@ impl Plan {
         stops.clear();
         passed_on.clear();
         notes.clear();
-        *flow = Flow::Next;
+        *flow = BlockFlow::Next;
     }
 
-    pub(super) fn tell(&mut self, kind: EventKind) {
+    pub(super) fn push_event(&mut self, kind: EventKind) {
         self.events.push((kind, 0.0));
     }
 }

@@ -1,10 +1,10 @@
 //! G12 and G13 of a Haas: a circular pocket, milled from its centre.
-use super::Core;
+use super::Executor;
 use super::eval::{Checked, at};
-use super::plan::Plan;
-use super::words::Given;
+use super::plan::BlockPlan;
+use super::words::BlockWords;
 use crate::alarm::Alarm;
-use crate::motion::{Arc2, EventKind};
+use crate::motion::{EventKind, PlanarArc};
 use crate::program::modes::{CutterSide, Motion, Plane};
 use crate::source::Span;
 use crate::units::Deg;
@@ -12,15 +12,15 @@ use crate::units::Deg;
 /// More circles than this in one block are a slip.
 const CIRCLES: f64 = 10_000.0;
 
-impl Core {
+impl Executor {
     /// At the centre the tool feeds to Z; then it mills a circle of radius I, and with K and Q wider ones up to K; all
     /// of that L times. The radius of D stays inside. Which circles are milled is in the manual; that the tool goes out
     /// to X+ and back by half circles is a choice of this interpreter.
     pub(super) fn circle_pocket(
         &self,
         motion: Motion,
-        given: &Given,
-        plan: &mut Plan,
+        given: &BlockWords,
+        plan: &mut BlockPlan,
         span: Span,
     ) -> Checked<()> {
         let clockwise = motion == Motion::Clockwise;
@@ -53,12 +53,18 @@ impl Core {
                 self.round(plan, given, centre.0, half, radius / 2.0, 180.0 * sense, span)?;
             }
         }
-        plan.moved = true;
+        plan.commands_axes = true;
         Ok(())
     }
 
     /// The radii of the tool's centre, from the inside out.
-    fn radii(&self, code: &'static str, given: &Given, plan: &Plan, span: Span) -> Checked<Vec<f64>> {
+    fn radii(
+        &self,
+        code: &'static str,
+        given: &BlockWords,
+        plan: &BlockPlan,
+        span: Span,
+    ) -> Checked<Vec<f64>> {
         let missing = |letter| Alarm::MissingWord { code, letter }.at(span);
         let state = &plan.state;
         let first = self.dimension(given, b'I', state)?.ok_or_else(|| missing('I'))?;
@@ -97,8 +103,8 @@ impl Core {
     #[expect(clippy::too_many_arguments, reason = "an arc is all of this")]
     fn round(
         &self,
-        plan: &mut Plan,
-        given: &Given,
+        plan: &mut BlockPlan,
+        given: &BlockWords,
         to: f64,
         centre: (f64, f64),
         radius: f64,
@@ -110,7 +116,7 @@ impl Core {
         let (rate, seconds) = timed.map_err(|_| Alarm::ArcFeedZero.at(span))?;
         let mut end = plan.state.machine;
         end[0] = to;
-        let arc = Arc2 { plane: (0, 1), centre, sweep: Deg(sweep) };
+        let arc = PlanarArc { plane: (0, 1), centre, sweep: Deg(sweep) };
         plan.events.push((EventKind::Arc { to: end, arc, rate }, seconds));
         plan.state.machine = end;
         Ok(())

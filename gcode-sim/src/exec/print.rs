@@ -1,5 +1,5 @@
 //! POPEN, DPRNT, BPRNT and PCLOS: lines that a program sends to the control's output device.
-use super::Core;
+use super::Executor;
 use super::eval::Checked;
 use super::notes::Note;
 use crate::alarm::Alarm;
@@ -21,7 +21,7 @@ pub(super) struct Printed {
     pub(super) open: bool,
 }
 
-impl Core {
+impl Executor {
     pub(super) fn open_output(&mut self, open: bool) {
         self.printed.open = open;
     }
@@ -46,7 +46,7 @@ impl Core {
                         PrintKind::Binary => binary(number, *decimals, &mut line).map(|()| true),
                     };
                     if !printed.map_err(|alarm| alarm.at(span))? {
-                        self.aftermath.tell(Note::DigitsLost);
+                        self.aftermath.record_note(Note::DigitsLost);
                     }
                 }
             }

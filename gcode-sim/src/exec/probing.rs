@@ -1,21 +1,21 @@
 //! G31 and the machine's answer to it: where the skip signal comes, and where the axes stand then.
-use super::Core;
+use super::Executor;
 use super::eval::{Checked, at};
 use super::modal_codes::not_simulated;
 use super::notes::Note;
-use super::plan::{Plan, Probing};
-use super::words::Given;
-use crate::alarm::{Alarm, Placed};
-use crate::motion::{EventKind, MAX_AXES, Position, Signal, Sink, SkipFeed};
+use super::plan::{BlockPlan, SkipPlan};
+use super::words::BlockWords;
+use crate::alarm::{Alarm, LocatedAlarm};
+use crate::motion::{EventKind, EventSink, MAX_AXES, Position, SkipMove, SkipSignal};
 use crate::program::modes::CutterSide;
 use crate::source::Span;
 use crate::units::Seconds;
 
-impl Core {
+impl Executor {
     /// G31: a straight cut that ends where the skip signal comes. It is planned to its end; whether the signal comes
     /// is asked when everything is known to be in order.
-    pub(super) fn skip(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<()> {
-        if plan.state.modal.cutter != CutterSide::Off || self.ahead.is_beside() {
+    pub(super) fn skip(&self, given: &BlockWords, plan: &mut BlockPlan, span: Span) -> Checked<()> {
+        if plan.state.modal.cutter != CutterSide::Off || self.ahead.is_offset() {
             return Err(Alarm::SkipInCompensation.at(span));
         }
         self.skip_signals(given, b'P')?;
@@ -28,17 +28,17 @@ impl Core {
         let goal = self.goal(given, &mut plan.state)?;
         let (from, to) = (plan.state.machine, goal.machine);
         let (rate, seconds) = at(self.feed_seconds(&plan.state, &from, &to, given.has(b'F')), span)?;
-        plan.probing = Some(Probing { event: plan.events.len(), from, to, rate, seconds, span });
+        plan.probing = Some(SkipPlan { event: plan.events.len(), from, to, rate, seconds, span });
         plan.events.push((EventKind::Skip { to, rate, touched: false }, seconds));
         plan.state.machine = to;
         plan.state.skip = to;
         plan.state.programmed = goal.programmed;
-        plan.moved = true;
+        plan.commands_axes = true;
         Ok(())
     }
 
     /// G31 P and G04 Q name a set of skip signals.
-    pub(super) fn skip_signals(&self, given: &Given, letter: u8) -> Checked<()> {
+    pub(super) fn skip_signals(&self, given: &BlockWords, letter: u8) -> Checked<()> {
         match given.count(letter)? {
             Some(set) if !(1..=4).contains(&set) => {
                 Err(Alarm::SkipSignals { letter: char::from(letter) }.at(given.span(letter)))
@@ -48,29 +48,35 @@ impl Core {
     }
 
     /// Asks where the signal comes and ends the planned motion there. The alarm, if any, is raised after the motion.
-    pub(super) fn ask_for_signal<S: Sink>(&self, plan: &mut Plan, sink: &mut S) -> Option<Placed> {
+    pub(super) fn ask_for_signal<S: EventSink>(
+        &self,
+        plan: &mut BlockPlan,
+        sink: &mut S,
+    ) -> Option<LocatedAlarm> {
         let probing = plan.probing.take()?;
-        let Probing { from, to, rate, seconds, span, .. } = probing;
+        let SkipPlan { from, to, rate, seconds, span, .. } = probing;
         let signal = match self.settings.skip_signal {
-            Some(part) => Signal::At { noted: part, stopped: part },
-            None => match sink.signal(&SkipFeed { from: &from, to: &to, rate, seconds: Seconds(seconds) }) {
-                Some(signal) => {
-                    // The next touch may come elsewhere, so a loop round this block may end.
-                    self.clock_read.set(true);
-                    signal
+            Some(part) => SkipSignal::At { latched: part, stopped: part },
+            None => {
+                match sink.skip_signal(&SkipMove { from: &from, to: &to, rate, seconds: Seconds(seconds) }) {
+                    Some(signal) => {
+                        // The next touch may come elsewhere, so a loop round this block may end.
+                        self.clock_read.set(true);
+                        signal
+                    }
+                    None => {
+                        plan.notes.push(Note::NoSignal);
+                        SkipSignal::Missed
+                    }
                 }
-                None => {
-                    plan.notes.push(Note::NoSignal);
-                    Signal::Missed
-                }
-            },
+            }
         };
         let (noted, stopped, alarm) = match signal {
-            Signal::At { noted, stopped } => (noted, stopped, None),
-            Signal::Missed => {
+            SkipSignal::At { latched: noted, stopped } => (noted, stopped, None),
+            SkipSignal::Missed => {
                 return self.settings.missed_skip_alarms.then(|| Alarm::SkipMissed.at(span));
             }
-            Signal::Broken { stopped, pushed, give } => {
+            SkipSignal::Broken { stopped, pushed, give } => {
                 (stopped, stopped, Some(Alarm::StylusBroken { pushed, give }.at(span)))
             }
         };

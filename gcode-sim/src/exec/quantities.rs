@@ -1,10 +1,10 @@
 //! What the number of a word is at its address: a length, an angle, a time, a feed.
 use std::hint::cold_path;
 
-use super::Core;
+use super::Executor;
 use super::eval::{Checked, at};
 use super::state::State;
-use super::words::{Given, Raw};
+use super::words::{BlockWords, WordNumber};
 use crate::alarm::Alarm;
 use crate::contour::Blend;
 use crate::control::Increment;
@@ -12,7 +12,7 @@ use crate::program::modes::{FeedMode, Unit};
 use crate::syntax::ast::Decimal;
 use crate::units::{nearest, nearest_within};
 
-/// What [`Core::measure`] finds out once for all axes of a block.
+/// What [`Executor::measure`] finds out once for all axes of a block.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Measure {
     /// Of the least increment in mm and degrees; inches have one more.
@@ -57,7 +57,7 @@ fn computed(value: f64, scale: f64) -> Option<f64> {
     nearest_within(value, scale, MOST as f64).map(|number| number + 0.0)
 }
 
-impl Core {
+impl Executor {
     /// How many decimals the least increment of an address has in the unit in force.
     #[inline]
     pub(super) fn decimals(&self, letter: u8, unit: Unit) -> usize {
@@ -70,10 +70,10 @@ impl Core {
     }
 
     /// Whole increments.
-    fn increments(&self, raw: &Raw, decimals: usize) -> Result<f64, Alarm> {
+    fn increments(&self, raw: &WordNumber, decimals: usize) -> Result<f64, Alarm> {
         let number = match raw {
-            Raw::Computed(value) => computed(*value, POWERS[decimals]),
-            Raw::Literal(number) => self.literal(number, decimals),
+            WordNumber::Computed(value) => computed(*value, POWERS[decimals]),
+            WordNumber::Literal(number) => self.literal(number, decimals),
         };
         number.ok_or(Alarm::TooManyDigits)
     }
@@ -107,7 +107,7 @@ impl Core {
     }
 
     /// A length in mm or an angle in degrees, a multiple of the increment of its address.
-    pub(super) fn dimension(&self, given: &Given, letter: u8, state: &State) -> Checked<Option<f64>> {
+    pub(super) fn dimension(&self, given: &BlockWords, letter: u8, state: &State) -> Checked<Option<f64>> {
         let Some((raw, span)) = given.get(letter) else { return Ok(None) };
         at(self.dimension_of(&raw, letter, &self.measure(state.modal.unit)), span).map(Some)
     }
@@ -119,16 +119,16 @@ impl Core {
         Measure { decimals, scale: POWERS[decimals], inch: unit == Unit::Inch }
     }
 
-    /// As [`Core::dimension`], of a word's value.
-    pub(super) fn dimension_of(&self, raw: &Raw, letter: u8, measure: &Measure) -> Result<f64, Alarm> {
+    /// As [`Executor::dimension`], of a word's value.
+    pub(super) fn dimension_of(&self, raw: &WordNumber, letter: u8, measure: &Measure) -> Result<f64, Alarm> {
         let value = match raw {
-            Raw::Literal(number) => self.written(number, letter, measure),
-            Raw::Computed(value) => self.rounded(*value, letter, measure),
+            WordNumber::Literal(number) => self.written(number, letter, measure),
+            WordNumber::Computed(value) => self.rounded(*value, letter, measure),
         };
         value.ok_or(Alarm::TooManyDigits)
     }
 
-    /// As [`Core::dimension_of`], of a literal; `None` where it has too many digits.
+    /// As [`Executor::dimension_of`], of a literal; `None` where it has too many digits.
     #[inline(always)]
     pub(super) fn written(&self, number: &Decimal, letter: u8, measure: &Measure) -> Option<f64> {
         if measure.is_inch(letter) {
@@ -138,7 +138,7 @@ impl Core {
         Some(self.literal(number, measure.decimals)? / measure.scale)
     }
 
-    /// As [`Core::written`], of a computed value.
+    /// As [`Executor::written`], of a computed value.
     #[inline(always)]
     pub(super) fn rounded(&self, value: f64, letter: u8, measure: &Measure) -> Option<f64> {
         if measure.is_inch(letter) {
@@ -149,14 +149,14 @@ impl Core {
     }
 
     /// An angle at an address that is a length elsewhere: R of G68.
-    pub(super) fn angle(&self, given: &Given, letter: u8) -> Checked<Option<f64>> {
+    pub(super) fn angle(&self, given: &BlockWords, letter: u8) -> Checked<Option<f64>> {
         let Some((raw, span)) = given.get(letter) else { return Ok(None) };
         let decimals = self.decimals(b'A', Unit::Metric);
         Ok(Some(at(self.increments(&raw, decimals), span)? / POWERS[decimals]))
     }
 
     /// `,R` or `,C` of a cutting move.
-    pub(super) fn corner_word(&self, given: &Given, state: &State) -> Checked<Option<Blend>> {
+    pub(super) fn corner_word(&self, given: &BlockWords, state: &State) -> Checked<Option<Blend>> {
         let Some((letter, raw, span)) = given.corner else { return Ok(None) };
         let decimals = self.decimals(b'X', state.modal.unit);
         let value = at(self.increments(&raw, decimals), span)? / POWERS[decimals];
@@ -168,19 +168,19 @@ impl Core {
     }
 
     /// A whole number with a sign: I J K of G51.
-    pub(super) fn factor(&self, given: &Given, letter: u8) -> Checked<Option<f64>> {
+    pub(super) fn factor(&self, given: &BlockWords, letter: u8) -> Checked<Option<f64>> {
         let Some((raw, span)) = given.get(letter) else { return Ok(None) };
         match raw {
-            Raw::Literal(number) if number.places.is_some() => {
+            WordNumber::Literal(number) if number.places.is_some() => {
                 Err(Alarm::IllegalPoint { letter: Some(char::from(letter)) }.at(span))
             }
-            Raw::Literal(number) => Ok(Some(number.value())),
-            Raw::Computed(value) => Ok(Some(value.round())),
+            WordNumber::Literal(number) => Ok(Some(number.value())),
+            WordNumber::Computed(value) => Ok(Some(value.round())),
         }
     }
 
     /// A time in seconds: X and U count increments of 0.001 s without a point.
-    pub(super) fn seconds(&self, given: &Given, letter: u8) -> Checked<Option<f64>> {
+    pub(super) fn seconds(&self, given: &BlockWords, letter: u8) -> Checked<Option<f64>> {
         let Some((raw, span)) = given.get(letter) else { return Ok(None) };
         let decimals = self.decimals(b'A', Unit::Metric);
         let value = at(self.increments(&raw, decimals), span)? / POWERS[decimals];
@@ -191,17 +191,17 @@ impl Core {
     }
 
     /// P of a dwell in seconds: milliseconds, or on some controls seconds where it has a point.
-    pub(super) fn pause(&self, given: &Given) -> Checked<Option<f64>> {
+    pub(super) fn pause(&self, given: &BlockWords) -> Checked<Option<f64>> {
         let Some((raw, span)) = given.get(b'P') else { return Ok(None) };
         match raw {
-            Raw::Literal(number) if self.settings.dwell_in_seconds && number.places.is_some() => {
+            WordNumber::Literal(number) if self.settings.dwell_in_seconds && number.places.is_some() => {
                 if number.negative {
                     Err(Alarm::IllegalMinus { letter: 'P' }.at(span))
                 } else {
                     Ok(Some(number.value()))
                 }
             }
-            Raw::Computed(_) if self.settings.dwell_in_seconds => {
+            WordNumber::Computed(_) if self.settings.dwell_in_seconds => {
                 Err(Alarm::NotSimulated { what: "a computed P of a dwell".into() }.at(span))
             }
             _ => Ok(given.count(b'P')?.map(|milliseconds| f64::from(milliseconds) / 1000.0)),
@@ -209,17 +209,17 @@ impl Core {
     }
 
     /// F in the unit of the feed mode.
-    pub(super) fn feed_word(&self, given: &Given, state: &State) -> Checked<Option<f64>> {
+    pub(super) fn feed_word(&self, given: &BlockWords, state: &State) -> Checked<Option<f64>> {
         let Some((raw, span)) = given.get(b'F') else { return Ok(None) };
         at(self.feed_of(&raw, state), span).map(Some)
     }
 
     /// The same of the value of the word.
-    pub(super) fn feed_of(&self, raw: &Raw, state: &State) -> Result<f64, Alarm> {
+    pub(super) fn feed_of(&self, raw: &WordNumber, state: &State) -> Result<f64, Alarm> {
         let value = match raw {
-            Raw::Literal(number) if number.places.is_some() => number.value(),
-            Raw::Literal(number) => number.value() / POWERS[self.feed_decimals(state)],
-            Raw::Computed(value) => *value,
+            WordNumber::Literal(number) if number.places.is_some() => number.value(),
+            WordNumber::Literal(number) => number.value() / POWERS[self.feed_decimals(state)],
+            WordNumber::Computed(value) => *value,
         };
         if value < 0.0 { Err(Alarm::IllegalMinus { letter: 'F' }) } else { Ok(value) }
     }

@@ -1,16 +1,21 @@
 //! The reference position: G27 checks it, G28 and G30 go there, G29 comes back.
-use super::Core;
+use super::Executor;
 use super::eval::Checked;
 use super::notes::Note;
-use super::plan::Plan;
-use super::words::Given;
+use super::plan::BlockPlan;
+use super::words::BlockWords;
 use crate::alarm::Alarm;
-use crate::motion::{EventKind, Lengthening, Position};
+use crate::motion::{EventKind, LengthCompensation, Position};
 use crate::program::modes::Length;
 use crate::source::Span;
 
-impl Core {
-    pub(super) fn check_reference(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<()> {
+impl Executor {
+    pub(super) fn check_reference(
+        &self,
+        given: &BlockWords,
+        plan: &mut BlockPlan,
+        span: Span,
+    ) -> Checked<()> {
         let goal = self.goal(given, &mut plan.state)?;
         self.rapid(plan, &goal.machine);
         plan.state.programmed = goal.programmed;
@@ -19,12 +24,17 @@ impl Core {
                 return Err(Alarm::NotAtReference { letter }.at(span));
             }
         }
-        plan.moved = true;
+        plan.commands_axes = true;
         Ok(())
     }
 
     /// G28 and G30: by rapid over the intermediate point to the reference position, the named axes only.
-    pub(super) fn reference(&self, given: &Given, plan: &mut Plan, reference: Position) -> Checked<()> {
+    pub(super) fn reference(
+        &self,
+        given: &BlockWords,
+        plan: &mut BlockPlan,
+        reference: Position,
+    ) -> Checked<()> {
         if !self.names_axis(given) {
             let code = given.g_codes().find(|row| row.code == 300).map_or(280, |row| row.code);
             plan.notes.push(Note::NoAxis { code });
@@ -49,12 +59,12 @@ impl Core {
             end_length(plan);
         }
         self.recompute(&mut plan.state);
-        plan.moved = true;
+        plan.commands_axes = true;
         Ok(())
     }
 
     /// G28 of a Haas without an axis: all of them straight home, and no length offset any more.
-    pub(super) fn home_all(&self, plan: &mut Plan) {
+    pub(super) fn home_all(&self, plan: &mut BlockPlan) {
         let mut home = plan.state.machine;
         for (axis, _) in self.settings.axes.iter() {
             home[axis] = self.turned_to(axis, home[axis], 0.0);
@@ -63,11 +73,16 @@ impl Core {
         self.rapid(plan, &home);
         end_length(plan);
         self.recompute(&mut plan.state);
-        plan.moved = true;
+        plan.commands_axes = true;
     }
 
     /// G29: over the intermediate point of the last G28 to the given point.
-    pub(super) fn leave_reference(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<()> {
+    pub(super) fn leave_reference(
+        &self,
+        given: &BlockWords,
+        plan: &mut BlockPlan,
+        span: Span,
+    ) -> Checked<()> {
         let mut over = plan.state.machine;
         for (axis, letter) in self.settings.axes.iter() {
             if !given.has(letter as u8) {
@@ -77,22 +92,22 @@ impl Core {
                 return Err(Alarm::NoIntermediatePoint.at(span));
             }
             over[axis] = self.clean(plan.state.intermediate[axis] + self.zero(&plan.state, axis));
-            plan.state.unplaced &= !(1 << axis);
+            plan.state.work_zero_unknown &= !(1 << axis);
         }
         self.rapid(plan, &over);
         self.recompute(&mut plan.state);
         let goal = self.goal(given, &mut plan.state)?;
         self.rapid(plan, &goal.machine);
         plan.state.programmed = goal.programmed;
-        plan.moved = true;
+        plan.commands_axes = true;
         Ok(())
     }
 }
 
 /// No tool length offset any more, nor G43 or G44.
-fn end_length(plan: &mut Plan) {
+fn end_length(plan: &mut BlockPlan) {
     if plan.state.modal.length != Length::Off {
-        plan.tell(EventKind::ToolLength { offset: Position::default(), by: Lengthening::Off });
+        plan.push_event(EventKind::ToolLength { offset: Position::default(), by: LengthCompensation::Off });
     }
     plan.state.length = Position::default();
     plan.state.modal.length = Length::Off;

@@ -4,11 +4,11 @@ use std::sync::atomic::Ordering;
 use super::eval::Checked;
 use super::frames::FrameKind;
 use super::notes::Note;
-use super::plan::Flow;
-use super::{Control, Core, Limits, Outcome, Stopped, Watcher};
+use super::plan::BlockFlow;
+use super::{AlarmStop, Control, Executor, Limits, Observer, Outcome};
 use crate::alarm::Alarm;
-use crate::motion::{Place, Sink};
-use crate::program::{Act, Asked, Form, Library, Memory, OpKind};
+use crate::motion::{Backtrace, EventSink};
+use crate::program::{DialectSyntax, GuardedOp, Library, Memory, OpBody, OpKind};
 use crate::source::Span;
 
 /// A run ends after so many moves, and so many for every block that it may execute: a cycle with K or with small
@@ -16,31 +16,31 @@ use crate::source::Span;
 const MOVES: u64 = 1_000_000;
 const MOVES_PER_BLOCK: u64 = 20;
 /// [`super::Progress`] is told after so many blocks.
-const TOLD: u64 = 4096;
+const PROGRESS_INTERVAL: u64 = 4096;
 
 /// How a block can end the run without an alarm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Over {
+pub(super) enum RunEnd {
     End,
     /// It is in a loop that never ends.
-    Never,
+    EndlessLoop,
     /// It has made more moves than it may.
-    Moves,
+    MoveLimit,
 }
 
 impl Control {
     /// Runs to the end, to an alarm, or to a limit.
-    pub fn run<S: Sink>(&mut self, limits: Limits, library: &mut impl Library, sink: &mut S) -> Outcome {
+    pub fn run<S: EventSink>(&mut self, limits: Limits, library: &mut impl Library, sink: &mut S) -> Outcome {
         self.run_watched(limits, library, sink, &mut ())
     }
 
     /// As [`Control::run`], with somebody who looks on from block to block.
-    pub fn run_watched<S: Sink>(
+    pub fn run_watched<S: EventSink>(
         &mut self,
         limits: Limits,
         library: &mut impl Library,
         sink: &mut S,
-        watcher: &mut impl Watcher,
+        watcher: &mut impl Observer,
     ) -> Outcome {
         if let Some(outcome) = self.over() {
             return outcome;
@@ -48,21 +48,21 @@ impl Control {
         self.watch.begin();
         self.core.most_moves = limits.blocks.saturating_mul(MOVES_PER_BLOCK).max(MOVES);
         while self.core.blocks < limits.blocks && self.core.moves <= self.core.most_moves {
-            if self.core.blocks.is_multiple_of(TOLD) && self.is_told_to_stop() {
+            if self.core.blocks.is_multiple_of(PROGRESS_INTERVAL) && self.is_cancelled() {
                 break;
             }
-            let until = limits.blocks.min((self.core.blocks / TOLD + 1) * TOLD);
+            let until = limits.blocks.min((self.core.blocks / PROGRESS_INTERVAL + 1) * PROGRESS_INTERVAL);
             while self.core.blocks < until {
-                watcher.before(self);
-                let until = if watcher.looks() { self.core.blocks + 1 } else { until };
+                watcher.before_block(self);
+                let until = if watcher.is_active() { self.core.blocks + 1 } else { until };
                 let done = self.block(until, library, sink);
                 if !self.is_uneventful(&done)
                     && let Some(outcome) = self.conclude(done, sink)
                 {
-                    watcher.after(self);
+                    watcher.after_block(self);
                     return *outcome;
                 }
-                watcher.after(self);
+                watcher.after_block(self);
             }
         }
         self.outcome = Some(Outcome::Limit);
@@ -70,7 +70,7 @@ impl Control {
     }
 
     /// Tells who watches how far the run is; whether it should end.
-    pub fn is_told_to_stop(&self) -> bool {
+    pub fn is_cancelled(&self) -> bool {
         self.progress.as_ref().is_some_and(|progress| {
             progress.blocks.store(self.core.blocks, Ordering::Relaxed);
             progress.stop.load(Ordering::Relaxed)
@@ -78,7 +78,7 @@ impl Control {
     }
 
     /// Does one block; `Some` when the run is over. A block that alarms has changed nothing.
-    pub fn step<S: Sink>(&mut self, library: &mut impl Library, sink: &mut S) -> Option<Outcome> {
+    pub fn step<S: EventSink>(&mut self, library: &mut impl Library, sink: &mut S) -> Option<Outcome> {
         if let Some(outcome) = self.over() {
             return Some(outcome);
         }
@@ -100,9 +100,9 @@ impl Control {
 
     /// Takes note of what a block has to tell, and of the end of the run.
     #[inline(never)]
-    fn conclude<S: Sink>(&mut self, mut done: Checked<()>, sink: &mut S) -> Option<Box<Outcome>> {
+    fn conclude<S: EventSink>(&mut self, mut done: Checked<()>, sink: &mut S) -> Option<Box<Outcome>> {
         let (note, over) = self.core.aftermath.take();
-        if over == Some(Over::End)
+        if over == Some(RunEnd::End)
             && let Err(alarm) = self.core.end_ahead(sink)
         {
             done = Err(alarm);
@@ -112,14 +112,14 @@ impl Control {
         }
         let outcome = match done {
             Ok(()) => match over? {
-                Over::End => Outcome::End,
-                Over::Never | Over::Moves => Outcome::Limit,
+                RunEnd::End => Outcome::End,
+                RunEnd::EndlessLoop | RunEnd::MoveLimit => Outcome::Limit,
             },
             Err(alarm) => {
                 self.core.complete(&alarm, sink);
                 let calls = self.core.frame.calls.clone();
-                let place = Place { block: self.core.block, calls };
-                Outcome::Alarm(Stopped { alarm: alarm.node, span: alarm.span, place })
+                let place = Backtrace { block: self.core.block, calls };
+                Outcome::Alarm(AlarmStop { alarm: alarm.node, span: alarm.span, place })
             }
         };
         // What was told at the end may have left something behind as well.
@@ -131,7 +131,7 @@ impl Control {
     /// Reads the next block and does what it says. A statement never leads into another program: behind one the next block
     /// is done at once, as long as there are fewer than `until`.
     #[inline(always)]
-    fn block<S: Sink>(&mut self, until: u64, library: &mut impl Library, sink: &mut S) -> Checked<()> {
+    fn block<S: EventSink>(&mut self, until: u64, library: &mut impl Library, sink: &mut S) -> Checked<()> {
         let Self { memory, core, plan, given, watch, .. } = self;
         let Some(program) = memory.get_mut(core.frame.program) else { return core.behind_last(memory) };
         let (program, op) = loop {
@@ -140,9 +140,9 @@ impl Control {
             core.block = op.span;
             core.blocks += 1;
             core.frame.next = place + 1;
-            match op.act() {
-                Act::Plain(OpKind::Compute(compute)) => core.compute(compute)?,
-                Act::Plain(OpKind::Statement(statement)) => {
+            match op.body() {
+                OpBody::Plain(OpKind::Compute(compute)) => core.compute(compute)?,
+                OpBody::Plain(OpKind::Statement(statement)) => {
                     core.statement(program, statement, watch, sink)?;
                 }
                 _ => break (program, op),
@@ -152,18 +152,18 @@ impl Control {
             }
         };
         // In a long file most blocks are plain moves.
-        if let Act::Plain(OpKind::Words(words)) = op.act()
+        if let OpBody::Plain(OpKind::Words(words)) = op.body()
             && core.plain_move(op, words, sink).is_some()
         {
             return Ok(());
         }
-        let mut kind = match op.act() {
-            Act::Plain(kind) => kind,
-            Act::Asked(asked) if core.passes_over(asked)? => return Ok(()),
-            Act::Asked(asked) => &asked.kind,
+        let mut kind = match op.body() {
+            OpBody::Plain(kind) => kind,
+            OpBody::Asked(asked) if core.check_guards(asked)? => return Ok(()),
+            OpBody::Asked(asked) => &asked.kind,
         };
         if let OpKind::If { condition, then } = kind
-            && core.holds(condition)?
+            && core.evaluate_condition(condition)?
         {
             kind = then;
         }
@@ -201,21 +201,21 @@ impl Control {
     }
 
     /// Carries out the plan of a block of words. What can still alarm comes first.
-    fn finish<S: Sink>(&mut self, library: &mut impl Library, sink: &mut S) -> Checked<()> {
+    fn finish<S: EventSink>(&mut self, library: &mut impl Library, sink: &mut S) -> Checked<()> {
         let span = self.core.block;
         let mut flow = std::mem::take(&mut self.plan.flow);
         match &mut flow {
-            Flow::Call(call) => {
+            BlockFlow::Call(call) => {
                 let at = call.span;
                 self.resolve(call, library).map_err(|alarm| alarm.at(at))?;
             }
-            Flow::Return { number, target } => {
+            BlockFlow::Return { number, target } => {
                 *target = self.find_return(*number).map_err(|alarm| alarm.at(span))?;
             }
-            Flow::Next if self.plan.moved => {
+            BlockFlow::Next if self.plan.commands_axes => {
                 self.core.check_call_after_move().map_err(|alarm| alarm.at(span))?;
             }
-            Flow::Next | Flow::CancelModal | Flow::End => {}
+            BlockFlow::Next | BlockFlow::CancelModal | BlockFlow::End => {}
         }
         let broken_off = self.core.ask_for_signal(&mut self.plan, sink);
         self.core.commit(&mut self.plan, sink);
@@ -223,34 +223,34 @@ impl Control {
             return Err(alarm);
         }
         match flow {
-            Flow::Next if self.plan.moved => self.core.call_after_move(span),
-            Flow::Next => {}
-            Flow::Call(call) => {
+            BlockFlow::Next if self.plan.commands_axes => self.core.call_after_move(span),
+            BlockFlow::Next => {}
+            BlockFlow::Call(call) => {
                 self.core.enter(&call, span);
                 let program = self.core.frame.program;
                 self.core.state.codes.o = self.memory.get(program).shown_number();
             }
-            Flow::Return { number, target } => {
-                if let Some(over) = self.go_back(number.zip(target)) {
-                    self.core.aftermath.end(over);
+            BlockFlow::Return { number, target } => {
+                if let Some(over) = self.return_to(number.zip(target)) {
+                    self.core.aftermath.end_run(over);
                 }
                 let program = self.core.frame.program;
                 self.core.state.codes.o = self.memory.get(program).shown_number();
-                if !self.core.aftermath.is_over() {
+                if !self.core.aftermath.is_run_ended() {
                     self.watch.jumped(&mut self.core);
                 }
             }
-            Flow::CancelModal => self.core.cancel_modal(),
-            Flow::End => {
+            BlockFlow::CancelModal => self.core.cancel_modal(),
+            BlockFlow::End => {
                 self.core.parts[0] += 1.0;
-                self.core.aftermath.end(Over::End);
+                self.core.aftermath.end_run(RunEnd::End);
             }
         }
         Ok(())
     }
 }
 
-impl Core {
+impl Executor {
     /// There is no block any more. A text may just stop; running into `%` or another program is running off the tape.
     #[cold]
     fn behind_last(&mut self, memory: &Memory) -> Checked<()> {
@@ -261,7 +261,7 @@ impl Core {
         };
         self.block = Span { start: program.span.end, ..program.span };
         if main && !program.closed {
-            self.aftermath.end(Over::End);
+            self.aftermath.end_run(RunEnd::End);
             return Ok(());
         }
         Err(Alarm::EndOfRecord.at(self.block))
@@ -269,7 +269,7 @@ impl Core {
 
     /// Block skip, and ways of writing that not every control reads; whether the block isn't done.
     #[inline(never)]
-    fn passes_over(&mut self, asked: &Asked) -> Checked<bool> {
+    fn check_guards(&mut self, asked: &GuardedOp) -> Checked<bool> {
         if let Some(switch) = asked.skip {
             let is_on = self.skips(switch);
             self.notes.entry(Note::BlockSkip { switch: switch.max(1), is_on }).or_insert(self.block);
@@ -281,7 +281,7 @@ impl Core {
             if !form.node.is_taken(&self.settings) {
                 return Err(form.node.alarm().at(form.span));
             }
-            if form.node == Form::LowerCase {
+            if form.node == DialectSyntax::LowerCase {
                 self.notes.entry(Note::LowerCase).or_insert(self.block);
             }
         }

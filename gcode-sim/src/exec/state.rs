@@ -2,7 +2,7 @@
 //! leaves no trace.
 use super::modal::Modal;
 use super::transform::Transform;
-use crate::motion::{Axis, Lengthening, Position, Spindle};
+use crate::motion::{AxisIndex, LengthCompensation, Position, SpindleDirection};
 use crate::program::modes::{Length, Motion};
 
 /// The control between two blocks. Lengths in mm, whatever G20 says.
@@ -13,7 +13,7 @@ pub struct State {
     /// tool length.
     pub programmed: Position,
     /// Until the next move after G51.1, G51, G68 or their end: what #5001… show.
-    pub ended: Option<Ended>,
+    pub ended: Option<EndPoint>,
     /// The same in machine coordinates, tool length included.
     pub machine: Position,
     /// G52.
@@ -27,16 +27,16 @@ pub struct State {
     pub intermediate: Position,
     pub has_intermediate: u8,
     /// The axes that stand where machine coordinates have sent them while nothing had set the work offset in effect.
-    pub unplaced: u8,
+    pub work_zero_unknown: u8,
     /// #5061…: where the last G31 ended, in machine coordinates.
     pub skip: Position,
     /// The radius of cutter compensation, as D or G41, G42 have found it; negative where it swaps sides.
     pub radius: f64,
     pub transform: Transform,
-    pub drilling: Drilling,
+    pub drilling: CycleState,
     pub codes: Codes,
     pub polar: PolarPoint,
-    pub spindle: Spindle,
+    pub spindle: SpindleDirection,
     pub coolant: bool,
     /// Between G10 L52 and G11.
     pub parameter_input: bool,
@@ -46,25 +46,25 @@ pub struct State {
 
 impl State {
     /// Notes whether the place of an axis on the part is known.
-    pub(super) fn set_unplaced(&mut self, axis: Axis, unplaced: bool) {
-        self.unplaced = self.unplaced & !(1 << axis) | u8::from(unplaced) << axis;
+    pub(super) fn set_unplaced(&mut self, axis: AxisIndex, unplaced: bool) {
+        self.work_zero_unknown = self.work_zero_unknown & !(1 << axis) | u8::from(unplaced) << axis;
     }
 
     /// Puts a code of group 01 in force, which ends a drilling cycle (operator's manual, canned cycle for drilling).
     #[inline]
-    pub(super) fn move_by(&mut self, motion: Motion) {
+    pub(super) fn set_motion_mode(&mut self, motion: Motion) {
         self.modal.motion = motion;
         if self.modal.cycle.take().is_some() {
-            self.drilling = Drilling::default();
+            self.drilling = CycleState::default();
         }
     }
 
     /// What the tool length offset comes of.
-    pub fn lengthening(&self) -> Lengthening {
+    pub fn lengthening(&self) -> LengthCompensation {
         match self.modal.length {
-            Length::Off => Lengthening::Off,
-            Length::Plus => Lengthening::Plus(self.codes.h),
-            Length::Minus => Lengthening::Minus(self.codes.h),
+            Length::Off => LengthCompensation::Off,
+            Length::Plus => LengthCompensation::Plus(self.codes.h),
+            Length::Minus => LengthCompensation::Minus(self.codes.h),
         }
     }
 }
@@ -72,7 +72,7 @@ impl State {
 /// Where the last move ended, as it was programmed, while the program stands elsewhere in its coordinates because a
 /// transform was switched.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Ended {
+pub struct EndPoint {
     pub programmed: Position,
     /// The tool in the work coordinate system when the transform was switched: an offset that changes later moves both.
     pub work: Position,
@@ -86,7 +86,7 @@ pub struct PolarPoint {
     /// Degrees.
     pub angle: f64,
     /// The radius was commanded in G91: it is measured from where the tool stands, not from the work zero.
-    pub from_here: bool,
+    pub is_incremental: bool,
 }
 
 /// Codes with a number that stays: #4107…#4130.
@@ -106,24 +106,24 @@ pub struct Codes {
 
 /// The modal data of a drilling cycle; G80 and group 01 clear it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Drilling {
+pub struct CycleState {
     /// The axis that the cycle drills along, from its first block on.
-    pub axis: Option<Axis>,
+    pub axis: Option<AxisIndex>,
     /// Where that axis stood when the cycle began.
     pub initial: f64,
-    /// There it stood in machine coordinates, as in [`State::unplaced`].
+    /// There it stood in machine coordinates, as in [`State::work_zero_unknown`].
     pub initial_unplaced: bool,
-    pub r: Level,
-    pub z: Level,
+    pub r: CycleLevel,
+    pub z: CycleLevel,
     pub p: f64,
     pub q: Option<f64>,
     /// I, J and K of a Haas.
-    pub pecks: Option<Pecks>,
+    pub pecks: Option<PeckSchedule>,
 }
 
 /// Pecks that become shorter, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pecks {
+pub struct PeckSchedule {
     pub first: f64,
     pub less: f64,
     pub least: f64,
@@ -131,17 +131,17 @@ pub struct Pecks {
 
 /// A level as commanded: G91 counts R from the initial level and Z from R.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Level {
+pub struct CycleLevel {
     pub value: f64,
     pub incremental: bool,
     /// It was, in this cycle.
     pub commanded: bool,
 }
 
-impl Drilling {
+impl CycleState {
     /// With pecks that come out as written where G51 makes `stretch` of each millimetre of the levels.
     pub(super) fn unscaled(self, stretch: f64) -> Self {
-        let pecks = self.pecks.map(|pecks| Pecks {
+        let pecks = self.pecks.map(|pecks| PeckSchedule {
             first: pecks.first / stretch,
             less: pecks.less / stretch,
             least: pecks.least / stretch,

@@ -1,49 +1,49 @@
 //! Macro statements: assignments, branches and loops. They never tell the machine anything, but for #3000 and #3006.
-use super::Core;
-use super::endless::Watch;
-use super::eval::{Checked, RoundsTo, at, index, integer};
+use super::Executor;
+use super::eval::{Checked, RoundingTarget, at, index, integer};
+use super::loop_detection::LoopDetector;
 use super::notes::Note;
-use super::vars::{Kind, Value};
+use super::vars::{Value, VariableClass};
 use crate::alarm::Alarm;
-use crate::motion::{EventKind, Place, Sink, StopKind};
-use crate::program::{Compute, OpIndex, Operand, Program, Slot, Statement, Target};
+use crate::motion::{Backtrace, EventKind, EventSink, StopKind};
+use crate::program::{Assign, OpIndex, Operand, Program, Slot, Statement, Target};
 use crate::source::{Span, Spanned};
 
 /// No control has numbers beyond this for alarms of its programs.
 const MOST_RAISED: u16 = 4095;
 
-impl Core {
+impl Executor {
     /// An assignment of what code gives, in the loop over the blocks itself.
     #[inline(always)]
-    pub(super) fn compute(&mut self, Compute { place, code }: &Compute) -> Checked<()> {
-        let value = self.evaluate(code, RoundsTo::Increment)?;
+    pub(super) fn compute(&mut self, Assign { place, code }: &Assign) -> Checked<()> {
+        let value = self.evaluate(code, RoundingTarget::Increment)?;
         self.vars.set_free(*place, value);
         Ok(())
     }
 
-    /// As [`Core::compute`], elsewhere.
+    /// As [`Executor::compute`], elsewhere.
     #[inline(never)]
-    pub(super) fn compute_apart(&mut self, compute: &Compute) -> Checked<()> {
+    pub(super) fn compute_apart(&mut self, compute: &Assign) -> Checked<()> {
         self.compute(compute)
     }
 
     /// Does one statement. The frame already stands at the next block; jumps change that. What the turns of most loops
     /// consist of is done in the loop over the blocks itself.
     #[inline(always)]
-    pub(super) fn statement<S: Sink>(
+    pub(super) fn statement<S: EventSink>(
         &mut self,
         program: &Program,
         statement: &Statement,
-        watch: &mut Watch,
+        watch: &mut LoopDetector,
         sink: &mut S,
     ) -> Checked<()> {
         match statement {
             Statement::While { condition, number, end } => {
-                let holds = self.holds(condition)?;
-                self.begin_turn(*number, *end, holds);
+                let holds = self.evaluate_condition(condition)?;
+                self.begin_iteration(*number, *end, holds);
             }
             Statement::End { number, start } => {
-                self.end_turn(*number, *start)?;
+                self.end_iteration(*number, *start)?;
                 watch.jumped(self);
             }
             _ => return self.any_statement(program, statement, watch, sink),
@@ -51,13 +51,13 @@ impl Core {
         Ok(())
     }
 
-    /// As [`Core::statement`], away from the loop over the blocks.
+    /// As [`Executor::statement`], away from the loop over the blocks.
     #[inline(never)]
-    pub(super) fn any_statement<S: Sink>(
+    pub(super) fn any_statement<S: EventSink>(
         &mut self,
         program: &Program,
         statement: &Statement,
-        watch: &mut Watch,
+        watch: &mut LoopDetector,
         sink: &mut S,
     ) -> Checked<()> {
         let next = self.frame.next;
@@ -75,22 +75,22 @@ impl Core {
             }
             Statement::Goto(to) => self.goto(program, to)?,
             Statement::IfGoto { condition, to } => {
-                if self.holds(condition)? {
+                if self.evaluate_condition(condition)? {
                     self.goto(program, to)?;
                 }
             }
             Statement::IfThen { condition, then } => {
-                if self.holds(condition)? {
+                if self.evaluate_condition(condition)? {
                     // An assignment or a GOTO: lowering lets nothing else stand here.
                     return self.any_statement(program, then, watch, sink);
                 }
             }
             Statement::While { condition, number, end } => {
-                let holds = self.holds(condition)?;
-                self.begin_turn(*number, *end, holds);
+                let holds = self.evaluate_condition(condition)?;
+                self.begin_iteration(*number, *end, holds);
             }
-            Statement::Do { number, end } => self.begin_turn(*number, *end, true),
-            Statement::End { number, start } => self.end_turn(*number, *start)?,
+            Statement::Do { number, end } => self.begin_iteration(*number, *end, true),
+            Statement::End { number, start } => self.end_iteration(*number, *start)?,
             Statement::SetNames { first, names } => self.name_variables(first, names)?,
             Statement::Print { kind, parts } => self.print(*kind, parts, self.block)?,
             Statement::OpenOutput => self.open_output(true),
@@ -105,7 +105,7 @@ impl Core {
 
     /// The DO or WHILE of a loop, `end` the operation of its END.
     #[inline]
-    fn begin_turn(&mut self, number: u8, end: OpIndex, goes_on: bool) {
+    fn begin_iteration(&mut self, number: u8, end: OpIndex, goes_on: bool) {
         let frame = &mut self.frame;
         let open = &mut frame.loops[usize::from(number) - 1];
         if goes_on {
@@ -118,7 +118,7 @@ impl Core {
 
     /// The END of a loop, `start` the operation of its DO or WHILE.
     #[inline]
-    fn end_turn(&mut self, number: u8, start: OpIndex) -> Checked<()> {
+    fn end_iteration(&mut self, number: u8, start: OpIndex) -> Checked<()> {
         let open = self.frame.loops[usize::from(number) - 1];
         if open.is_none_or(|(first, _)| first != start) {
             return Err(Alarm::MissingDo { number }.at(self.block));
@@ -162,13 +162,13 @@ impl Core {
         let Some(target) = program.find_number(number, from) else {
             return Err(self.no_target(number).at(to.span));
         };
-        self.tell_jump(program, number, target);
+        self.note_ambiguous_jump(program, number, target);
         self.frame.jump(target);
         Ok(())
     }
 
     /// A jump that a control may take elsewhere, or that leads into a loop.
-    pub(super) fn tell_jump(&mut self, program: &Program, number: u32, target: OpIndex) {
+    pub(super) fn note_ambiguous_jump(&mut self, program: &Program, number: u32, target: OpIndex) {
         if program.has_twice(number) {
             self.notes.entry(Note::DoubledNumber { number }).or_insert(self.block);
         }
@@ -186,7 +186,7 @@ impl Core {
     }
 
     /// Writes a variable of any kind.
-    pub(super) fn write<S: Sink>(
+    pub(super) fn write<S: EventSink>(
         &mut self,
         slot: Slot,
         value: Value,
@@ -203,7 +203,7 @@ impl Core {
 
     /// Writes a variable that is neither local nor common on every control.
     #[inline(never)]
-    fn write_other<S: Sink>(
+    fn write_other<S: EventSink>(
         &mut self,
         number: u32,
         value: Value,
@@ -212,13 +212,15 @@ impl Core {
         sink: &mut S,
     ) -> Checked<()> {
         match self.vars.kind(number) {
-            Kind::Local(place) | Kind::Common(place) => self.vars.set(place, value),
-            Kind::Vacant => return Err(Alarm::WriteProtected { number }.at(span)),
-            Kind::System if number == 3000 => {
+            VariableClass::Local(place) | VariableClass::Common(place) => self.vars.set(place, value),
+            VariableClass::Vacant => return Err(Alarm::WriteProtected { number }.at(span)),
+            VariableClass::System if number == 3000 => {
                 return Err(self.raised(value.number(), shown(text)).at(span));
             }
-            Kind::System if number == 3006 => self.message(&shown(text), sink),
-            Kind::System => self.write_system(number, value.number()).map_err(|alarm| alarm.at(span))?,
+            VariableClass::System if number == 3006 => self.message(&shown(text), sink),
+            VariableClass::System => {
+                self.write_system(number, value.number()).map_err(|alarm| alarm.at(span))?
+            }
         }
         Ok(())
     }
@@ -241,7 +243,7 @@ impl Core {
 
     /// `#3006=1(TEXT)`: the program waits, and the operator reads the text and the variables it names; a vacant
     /// one shows nothing.
-    fn message<S: Sink>(&mut self, text: &str, sink: &mut S) {
+    fn message<S: EventSink>(&mut self, text: &str, sink: &mut S) {
         let mut named = Vec::new();
         for part in text.split('#').skip(1) {
             let digits: String = part.chars().take_while(char::is_ascii_digit).collect();
@@ -254,10 +256,10 @@ impl Core {
         let text = text.to_owned();
         let stop = EventKind::Stop { kind: StopKind::Message, text, named };
         if self.ahead.waits() {
-            let place = Place { block: self.block, calls: self.frame.calls.clone() };
+            let place = Backtrace { block: self.block, calls: self.frame.calls.clone() };
             return self.ahead.wait_behind(stop, place);
         }
-        self.tell(&stop, 0.0, sink);
+        self.emit(&stop, 0.0, sink);
     }
 }
 

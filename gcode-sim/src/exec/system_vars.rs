@@ -1,32 +1,32 @@
 //! The system variables: one row per range, how it is read and how it is written.
-use super::Core;
+use super::Executor;
 use super::notes::Note;
 use super::offsets::Register;
 use super::vars::Value;
 use crate::alarm::Alarm;
 use crate::control::OffsetVariables;
-use crate::motion::Axis;
+use crate::motion::AxisIndex;
 use crate::program::codes;
 use crate::program::modes::WorkSystem;
 
-type Read = fn(&Core, u32) -> Result<f64, Alarm>;
-type Write = fn(&mut Core, u32, f64) -> Result<(), Alarm>;
+type Read = fn(&Executor, u32) -> Result<f64, Alarm>;
+type Write = fn(&mut Executor, u32, f64) -> Result<(), Alarm>;
 
 /// A range of variables; reading and writing take the place in the range, counted from 0.
-struct Row {
+struct VariableRow {
     from: u32,
     to: u32,
     read: Option<Read>,
     write: Option<Write>,
 }
 
-const fn row(from: u32, to: u32, read: Option<Read>, write: Option<Write>) -> Row {
-    Row { from, to, read, write }
+const fn row(from: u32, to: u32, read: Option<Read>, write: Option<Write>) -> VariableRow {
+    VariableRow { from, to, read, write }
 }
 
 /// All ranges in ascending order. A number in none of them is PS0115; without a way to read PS1115, to write PS0116.
 #[rustfmt::skip]
-const ROWS: &[Row] = &[
+const ROWS: &[VariableRow] = &[
     // Interface signals.
     row(1000, 1031, Some(|c, n| Ok(f64::from(c.settings.inputs >> n & 1))), None),
     row(1032, 1035, Some(|c, n| first_signals(n).map(|()| f64::from(c.settings.inputs as i32))), None),
@@ -86,7 +86,7 @@ const NOT_SIMULATED: &[(u32, u32, &str)] = &[
 
 /// What a Haas has elsewhere: its tool offsets, whose diameters are radii here, and the offset of G52.
 #[rustfmt::skip]
-const HAAS: &[Row] = &[
+const HAAS: &[VariableRow] = &[
     row(2001, 2200, Some(|c, n| c.tool_offset(Register::HGeometry, n)), Some(|c, n, v| c.set_tool_offset(Register::HGeometry, n, v))),
     row(2201, 2400, Some(|c, n| c.tool_offset(Register::HWear, n)), Some(|c, n, v| c.set_tool_offset(Register::HWear, n, v))),
     row(2401, 2600, Some(|c, n| Ok(2.0 * c.tool_offset(Register::DGeometry, n)?)), Some(|c, n, v| c.set_tool_offset(Register::DGeometry, n, v / 2.0))),
@@ -114,7 +114,7 @@ fn not_simulated(number: u32, of: &[(u32, u32, &str)]) -> Option<Alarm> {
     Some(Alarm::NotSimulated { what: format!("#{number} ({what})") })
 }
 
-fn find(number: u32, offsets: OffsetVariables) -> Result<&'static Row, Alarm> {
+fn find(number: u32, offsets: OffsetVariables) -> Result<&'static VariableRow, Alarm> {
     let unknown = Alarm::NoSuchVariable { number: i64::from(number) };
     if offsets == OffsetVariables::Haas {
         if let Some(row) = HAAS.iter().find(|row| (row.from..=row.to).contains(&number)) {
@@ -158,7 +158,7 @@ fn of_no_axis(alarm: Alarm, number: u32) -> Alarm {
     }
 }
 
-impl Core {
+impl Executor {
     pub(super) fn read_system(&self, number: u32) -> Result<Value, Alarm> {
         if number == 3100 {
             return Ok(Value::Vacant);
@@ -264,7 +264,7 @@ impl Core {
             true => self.state.transform.forward(self.state.programmed),
             false => {
                 if self.state.ended.is_some() {
-                    self.aftermath.tell(Note::EndBeforeSwitch);
+                    self.aftermath.record_note(Note::EndPointBeforeTransform);
                 }
                 self.move_end(&self.state)
             }
@@ -272,19 +272,19 @@ impl Core {
     }
 
     /// An axis of the control by its number from 0 on.
-    fn known_axis(&self, axis: u32) -> Result<Axis, Alarm> {
+    fn known_axis(&self, axis: u32) -> Result<AxisIndex, Alarm> {
         let known = Some(axis as usize).filter(|axis| *axis < self.settings.axes.len());
         known.ok_or(Alarm::AxisNumber { number: i64::from(axis) + 1 })
     }
 
     /// A position of an axis, in the unit of the program.
-    fn position(&self, axis: u32, of: impl Fn(&Self, Axis) -> f64) -> Result<f64, Alarm> {
+    fn position(&self, axis: u32, of: impl Fn(&Self, AxisIndex) -> f64) -> Result<f64, Alarm> {
         let axis = self.known_axis(axis)?;
         Ok(self.shown(&self.state, Some(axis), of(self, axis)))
     }
 
     /// A machine position in the work coordinate system, tool length included.
-    fn in_work(&self, axis: Axis, machine: f64) -> f64 {
+    fn in_work(&self, axis: AxisIndex, machine: f64) -> f64 {
         self.rolled(axis, self.clean(machine - self.zero(&self.state, axis)))
     }
 
@@ -324,7 +324,7 @@ impl Core {
         let mut state = *self.state;
         self.recompute(&mut state);
         *self.state = state;
-        self.see_if_plain();
+        self.update_is_plain();
     }
 
     fn register(&self, register: Register) -> Register {
@@ -359,7 +359,7 @@ impl Core {
 
     /// Where the tool's centre stands, in machine coordinates; a move that waits for the next counts as done, as if
     /// nothing followed.
-    pub(super) fn centre(&self, axis: Axis) -> f64 {
+    pub(super) fn centre(&self, axis: AxisIndex) -> f64 {
         self.state.machine[axis] + self.ahead.offset(axis)
     }
 }

@@ -1,25 +1,31 @@
 //! G33: a straight cut that keeps step with the spindle.
-use super::Core;
+use super::Executor;
 use super::eval::Checked;
-use super::plan::Plan;
-use super::words::{Given, Raw};
+use super::plan::BlockPlan;
+use super::words::{BlockWords, WordNumber};
 use crate::alarm::Alarm;
-use crate::motion::{EventKind, MAX_AXES, Position, Spindle};
+use crate::motion::{EventKind, MAX_AXES, Position, SpindleDirection};
 use crate::program::modes::Unit;
 use crate::source::Span;
 use crate::units::MmPerMin;
 
-impl Core {
+impl Executor {
     /// F is the lead along the axis with the longest way, in every feed mode; Q, the angle it starts at, moves nothing.
-    pub(super) fn thread(&self, plan: &mut Plan, to: Position, given: &Given, span: Span) -> Checked<()> {
+    pub(super) fn thread(
+        &self,
+        plan: &mut BlockPlan,
+        to: Position,
+        given: &BlockWords,
+        span: Span,
+    ) -> Checked<()> {
         given.accept(b"Q");
         let refused = |what: &str, span| Err(Alarm::NotSimulated { what: what.into() }.at(span));
-        if let Some((Raw::Literal(lead), _)) = given.get(b'F')
+        if let Some((WordNumber::Literal(lead), _)) = given.get(b'F')
             && lead.places.is_none()
         {
             return refused("F without a point in G33, whose unit controls differ in,", given.span(b'F'));
         }
-        let turning = plan.state.spindle != Spindle::Off && plan.state.codes.s > 0.0;
+        let turning = plan.state.spindle != SpindleDirection::Off && plan.state.codes.s > 0.0;
         if !turning {
             return refused("G33 while the spindle stands: a control waits for it, and so it", span);
         }

@@ -1,5 +1,5 @@
 //! From programmed to work coordinates: mirror (G51.1), then scaling (G51), then rotation (G68) or tilt (G68.2).
-use crate::motion::{Axis, MAX_AXES, Position};
+use crate::motion::{AxisIndex, MAX_AXES, Position};
 use crate::units::Deg;
 
 /// What stands between the programmed point and the work coordinate system.
@@ -9,20 +9,20 @@ pub struct Transform {
     pub mirrored: u8,
     pub mirror: Position,
     pub scaling: Option<Scale>,
-    pub rotation: Option<Turn>,
+    pub rotation: Option<Rotation>,
     pub tilt: Option<Tilt>,
 }
 
 /// G68.2: p = o + Rz(I)·Rx(J)·Rz(K)·q in the coordinates of X, Y and Z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tilt {
-    axes: [Axis; 3],
+    axes: [AxisIndex; 3],
     origin: [f64; 3],
     rows: [[f64; 3]; 3],
 }
 
 impl Tilt {
-    pub(super) fn new(axes: [Axis; 3], origin: [f64; 3], angles: [f64; 3]) -> Self {
+    pub(super) fn new(axes: [AxisIndex; 3], origin: [f64; 3], angles: [f64; 3]) -> Self {
         let [(si, ci), (sj, cj), (sk, ck)] = angles.map(sine_cosine);
         let rows = [
             [ci * ck - si * cj * sk, -ci * sk - si * cj * ck, si * sj],
@@ -68,16 +68,16 @@ pub struct Scale {
 
 /// G68: a turn in the plane of two axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Turn {
-    pub plane: (Axis, Axis),
+pub struct Rotation {
+    pub plane: (AxisIndex, AxisIndex),
     pub centre: (f64, f64),
     pub angle: f64,
     sine: f64,
     cosine: f64,
 }
 
-impl Turn {
-    pub(super) fn new(plane: (Axis, Axis), centre: (f64, f64), angle: f64) -> Self {
+impl Rotation {
+    pub(super) fn new(plane: (AxisIndex, AxisIndex), centre: (f64, f64), angle: f64) -> Self {
         let (sine, cosine) = sine_cosine(angle);
         Self { plane, centre, angle, sine, cosine }
     }
@@ -140,9 +140,9 @@ impl Transform {
     }
 
     /// Whether arcs in this plane change their sense, and whether they stay circles.
-    pub(super) fn on_arcs(&self, plane: (Axis, Axis)) -> (bool, bool) {
-        let bit = |axis: Axis| self.mirrored >> axis & 1 == 1;
-        let factor = |axis: Axis| self.scaling.as_ref().map_or(1.0, |s| s.factor[axis]);
+    pub(super) fn on_arcs(&self, plane: (AxisIndex, AxisIndex)) -> (bool, bool) {
+        let bit = |axis: AxisIndex| self.mirrored >> axis & 1 == 1;
+        let factor = |axis: AxisIndex| self.scaling.as_ref().map_or(1.0, |s| s.factor[axis]);
         let (a, b) = (factor(plane.0), factor(plane.1));
         let turned = bit(plane.0) ^ bit(plane.1) ^ (a < 0.0) ^ (b < 0.0);
         (turned, a.abs() == b.abs())
@@ -155,7 +155,7 @@ mod tests {
 
     #[test]
     fn a_quarter_turn_takes_x_to_y() {
-        let turn = Turn::new((0, 1), (0.0, 0.0), 90.0);
+        let turn = Rotation::new((0, 1), (0.0, 0.0), 90.0);
         let transform = Transform { rotation: Some(turn), ..Transform::default() };
         let mut point = Position::default();
         point[0] = 10.0;

@@ -1,19 +1,19 @@
-//! G68, G68.2, G51 and G51.1: their words to a [`Transform`](super::transform::Transform).
-use super::Core;
+//! G68, G68.2, G51 and G51.1: their words to a [`super::transform::Transform`].
+use super::Executor;
 use super::eval::{Checked, at};
 use super::modal_codes::not_simulated;
 use super::notes::Note;
-use super::plan::Plan;
-use super::transform::{Scale, Tilt, Transform, Turn};
-use super::words::Given;
+use super::plan::BlockPlan;
+use super::transform::{Rotation, Scale, Tilt, Transform};
+use super::words::BlockWords;
 use crate::alarm::Alarm;
 use crate::motion::{MAX_AXES, Position};
 use crate::program::modes::Mirror;
 use crate::source::Span;
 
-impl Core {
+impl Executor {
     /// G68: the plane turns about a point.
-    pub(super) fn rotate(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<()> {
+    pub(super) fn rotate(&self, given: &BlockWords, plan: &mut BlockPlan, span: Span) -> Checked<()> {
         let state = &mut plan.state;
         let plane = at(self.plane_axes(state.modal.plane), span)?;
         let letter = |axis| self.settings.axes.letter(axis) as u8;
@@ -30,13 +30,13 @@ impl Core {
         let centre = Transform { rotation: None, tilt: None, ..state.transform }.forward(centre);
         let (mirrored, _) = state.transform.on_arcs(plane);
         let angle = if mirrored { -angle } else { angle };
-        state.transform.rotation = Some(Turn::new(plane, (centre[plane.0], centre[plane.1]), angle));
+        state.transform.rotation = Some(Rotation::new(plane, (centre[plane.0], centre[plane.1]), angle));
         self.transform_changed(state);
         Ok(())
     }
 
     /// G68.2 by Euler angles; its other forms have a P.
-    pub(super) fn tilt(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<()> {
+    pub(super) fn tilt(&self, given: &BlockWords, plan: &mut BlockPlan, span: Span) -> Checked<()> {
         if given.has_any(b"PQR") {
             return Err(not_simulated(682, "tilted plane other than by Euler angles").at(span));
         }
@@ -53,7 +53,7 @@ impl Core {
     }
 
     /// G51: by P, or by I J K for X Y Z, in 0.001 or 0.00001.
-    pub(super) fn scale(&self, given: &Given, plan: &mut Plan, span: Span) -> Checked<()> {
+    pub(super) fn scale(&self, given: &BlockWords, plan: &mut BlockPlan, span: Span) -> Checked<()> {
         let unit = if self.settings.coarse_scaling { 1000.0 } else { 100_000.0 };
         let mut scale = Scale { centre: plan.state.programmed, factor: Position([1.0; MAX_AXES]) };
         for (axis, letter) in self.settings.axes.iter() {
@@ -81,7 +81,7 @@ impl Core {
     }
 
     /// G51.1 mirrors the named axes, G50.1 no longer; G50.1 alone ends all of it.
-    pub(super) fn mirror(&self, on: bool, given: &Given, plan: &mut Plan) -> Checked<()> {
+    pub(super) fn mirror(&self, on: bool, given: &BlockWords, plan: &mut BlockPlan) -> Checked<()> {
         let state = &mut plan.state;
         if !on && !self.names_axis(given) {
             state.transform.mirrored = 0;

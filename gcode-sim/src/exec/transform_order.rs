@@ -2,14 +2,19 @@
 //! switching them out of their order, which is mirror, scale, rotate, and back the other way.
 use super::modal::Modal;
 use super::state::State;
-use super::words::Given;
+use super::words::BlockWords;
 use crate::alarm::Alarm;
 use crate::program::codes::{Effect, OneShot, spelled};
 use crate::program::modes::{Mirror, Rotation, Scaling};
 
 /// Holds a block's codes against what was in force before it; `state` has its modal codes, not yet its transform. G53
 /// without an axis only waits.
-pub(super) fn check(given: &Given, before: &Modal, state: &State, names_axis: bool) -> Result<(), Alarm> {
+pub(super) fn check(
+    given: &BlockWords,
+    before: &Modal,
+    state: &State,
+    names_axis: bool,
+) -> Result<(), Alarm> {
     let modal = &state.modal;
     let turned = before.rotation == Rotation::On && modal.rotation == Rotation::On;
     let mirrored = before.mirror == Mirror::On;

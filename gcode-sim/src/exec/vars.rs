@@ -23,7 +23,7 @@ impl Value {
     }
 
     /// The number, or `None` where the word that carries it is not there.
-    pub fn given(self) -> Option<f64> {
+    pub fn as_number(self) -> Option<f64> {
         match self {
             Self::Vacant => None,
             Self::Number(number) => Some(number),
@@ -33,12 +33,12 @@ impl Value {
 
 /// What code has given last: the number is 0 where it is vacant, so that arithmetic needn't ask.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Last {
+pub(super) struct Accumulator {
     pub(super) number: f64,
     vacant: bool,
 }
 
-impl Last {
+impl Accumulator {
     pub(super) const VACANT: Self = Self { number: 0.0, vacant: true };
 
     #[inline(always)]
@@ -47,30 +47,30 @@ impl Last {
     }
 }
 
-impl From<Value> for Last {
+impl From<Value> for Accumulator {
     #[inline]
     fn from(value: Value) -> Self {
         Self { number: value.number(), vacant: value.is_vacant() }
     }
 }
 
-impl From<Last> for Value {
+impl From<Accumulator> for Value {
     #[inline]
-    fn from(last: Last) -> Self {
+    fn from(last: Accumulator) -> Self {
         if last.vacant { Self::Vacant } else { Self::Number(last.number) }
     }
 }
 
 /// A value as it is kept, in the same way.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Held {
+struct StoredValue {
     number: f64,
     vacant: bool,
     /// The decimals of an argument that was written without a point and counts increments; 0 for all others.
     decimals: u8,
 }
 
-impl Held {
+impl StoredValue {
     const VACANT: Self = Self { number: 0.0, vacant: true, decimals: 0 };
 
     /// What tells 0 from −0, too.
@@ -79,16 +79,16 @@ impl Held {
     }
 }
 
-impl From<Value> for Held {
+impl From<Value> for StoredValue {
     #[inline]
     fn from(value: Value) -> Self {
         Self { number: value.number(), vacant: value.is_vacant(), decimals: 0 }
     }
 }
 
-impl From<Held> for Value {
+impl From<StoredValue> for Value {
     #[inline]
-    fn from(held: Held) -> Self {
+    fn from(held: StoredValue) -> Self {
         if held.vacant { Self::Vacant } else { Self::Number(held.number) }
     }
 }
@@ -102,10 +102,10 @@ const PLACES: usize = ORDINARY.next_power_of_two();
 
 /// #1 to #33 of one macro level, by number; #0 stays vacant.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Locals([Held; LOCALS]);
+pub struct Locals([StoredValue; LOCALS]);
 
 /// A level that nothing has been written to.
-pub(super) const VACANT: Locals = Locals([Held::VACANT; LOCALS]);
+pub(super) const VACANT: Locals = Locals([StoredValue::VACANT; LOCALS]);
 
 impl Locals {
     pub fn get(&self, local: usize) -> Value {
@@ -114,13 +114,13 @@ impl Locals {
 
     /// Sets an argument; `decimals` where it was written without a point and counts increments.
     pub(super) fn set(&mut self, local: usize, value: Value, decimals: u8) {
-        self.0[local] = Held { decimals, ..value.into() };
+        self.0[local] = StoredValue { decimals, ..value.into() };
     }
 }
 
 /// Where a number belongs; a local's and a common's place among the values of [`Vars`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum VariableClass {
     Vacant,
     Local(usize),
     Common(usize),
@@ -131,8 +131,8 @@ pub(super) enum Kind {
 #[derive(Clone, Debug)]
 pub struct Vars {
     /// By number the locals of the current level and the commons. What has no number of these is never written.
-    ordinary: Box<[Held; PLACES]>,
-    further: Vec<Held>,
+    ordinary: Box<[StoredValue; PLACES]>,
+    further: Vec<StoredValue>,
     /// The locals of the levels that wait for the current one, the main program's first.
     outer: Vec<Locals>,
     /// The numbers of further commons.
@@ -146,8 +146,8 @@ impl Vars {
     pub(super) fn new(more: Option<(u32, u32)>, aliased: bool) -> Self {
         let count = more.map_or(0, |(from, to)| (to - from + 1) as usize);
         Self {
-            ordinary: Box::new([Held::VACANT; PLACES]),
-            further: vec![Held::VACANT; count],
+            ordinary: Box::new([StoredValue::VACANT; PLACES]),
+            further: vec![StoredValue::VACANT; count],
             outer: Vec::new(),
             more: more.unwrap_or((1, 0)),
             aliased,
@@ -156,23 +156,25 @@ impl Vars {
 
     /// What kind of variable `number` is.
     #[inline]
-    pub(super) fn kind(&self, number: u32) -> Kind {
+    pub(super) fn kind(&self, number: u32) -> VariableClass {
         match Slot::of(number) {
-            Slot::Free(place) if usize::from(place) < LOCALS => Kind::Local(usize::from(place)),
-            Slot::Free(place) => Kind::Common(usize::from(place)),
+            Slot::Free(place) if usize::from(place) < LOCALS => VariableClass::Local(usize::from(place)),
+            Slot::Free(place) => VariableClass::Common(usize::from(place)),
             Slot::Other(number) => self.other_kind(number),
         }
     }
 
     /// What kind of variable one is that settings of the control decide about.
-    fn other_kind(&self, number: u32) -> Kind {
+    fn other_kind(&self, number: u32) -> VariableClass {
         match number {
-            0 => Kind::Vacant,
-            10_100..=10_199 | 10_500..=10_999 if self.aliased => Kind::Common(number as usize - 10_000),
-            _ if (self.more.0..=self.more.1).contains(&number) => {
-                Kind::Common(ORDINARY + (number - self.more.0) as usize)
+            0 => VariableClass::Vacant,
+            10_100..=10_199 | 10_500..=10_999 if self.aliased => {
+                VariableClass::Common(number as usize - 10_000)
             }
-            _ => Kind::System,
+            _ if (self.more.0..=self.more.1).contains(&number) => {
+                VariableClass::Common(ORDINARY + (number - self.more.0) as usize)
+            }
+            _ => VariableClass::System,
         }
     }
 
@@ -190,7 +192,7 @@ impl Vars {
 
     /// Writes such a variable.
     #[inline(always)]
-    pub(super) fn set_free(&mut self, number: u16, value: Last) {
+    pub(super) fn set_free(&mut self, number: u16, value: Accumulator) {
         let held = &mut self.ordinary[usize::from(number) % PLACES];
         (held.number, held.vacant, held.decimals) = (value.number, value.vacant, 0);
     }
@@ -209,7 +211,7 @@ impl Vars {
     }
 
     #[inline]
-    fn held(&self, place: usize) -> Held {
+    fn held(&self, place: usize) -> StoredValue {
         match place.checked_sub(ORDINARY) {
             None => self.ordinary[place],
             Some(place) => self.further[place],
@@ -223,7 +225,7 @@ impl Vars {
 
     /// ADP: a local's value as if it had been passed with a point.
     pub(super) fn with_point(&self, local: usize) -> f64 {
-        let Held { number, decimals, .. } = self.ordinary[local];
+        let StoredValue { number, decimals, .. } = self.ordinary[local];
         number * 10_f64.powi(i32::from(decimals))
     }
 
@@ -271,17 +273,17 @@ impl Vars {
     }
 
     fn outer_bits(&self) -> impl Iterator<Item = (u64, bool)> + '_ {
-        self.outer.iter().flat_map(|level| level.0.map(Held::bits))
+        self.outer.iter().flat_map(|level| level.0.map(StoredValue::bits))
     }
 
     /// The variables that aren't vacant, by number: the locals of the main program and the commons.
-    pub fn known(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
+    pub fn nonvacant(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
         let local = |local| self.outer.first().map_or_else(|| self.get(local), |level| level.get(local));
         let locals = (0..LOCALS).map(move |place| (place, local(place)));
         let commons = (LOCALS..self.places()).map(|place| (place, self.get(place)));
         locals.chain(commons).filter_map(|(place, value)| {
             let number = place.checked_sub(ORDINARY).map_or(place as u32, |more| self.more.0 + more as u32);
-            Some((number, value.given()?))
+            Some((number, value.as_number()?))
         })
     }
 }
@@ -297,7 +299,7 @@ mod tests {
         vars.enter(&VACANT);
         assert!(vars.get(1).is_vacant());
         vars.set(1, Value::Number(9.0));
-        assert_eq!(vars.known().collect::<Vec<_>>(), [(1, 7.0)], "the main program's");
+        assert_eq!(vars.nonvacant().collect::<Vec<_>>(), [(1, 7.0)], "the main program's");
         vars.leave();
         assert_eq!(vars.get(1), Value::Number(7.0));
         vars.enter(&VACANT);
@@ -331,7 +333,7 @@ mod tests {
         for place in [33, 100, 999, ORDINARY, ORDINARY + 499] {
             vars.set(place, Value::Number(1.0));
         }
-        let numbers: Vec<_> = vars.known().map(|(number, _)| number).collect();
+        let numbers: Vec<_> = vars.nonvacant().map(|(number, _)| number).collect();
         assert_eq!(numbers, [33, 100, 999, 98_000, 98_499]);
     }
 }

@@ -3,10 +3,10 @@ use std::collections::BTreeMap;
 
 use super::state::State;
 use super::vars::{Value, Vars};
-use super::{Control, Outcome, Stop};
+use super::{Control, OperatorStop, Outcome};
 use crate::alarm::Alarm;
 use crate::control::Settings;
-use crate::motion::{Axis, Place, Position};
+use crate::motion::{AxisIndex, Backtrace, Position};
 use crate::program::Memory;
 use crate::source::Span;
 use crate::units::Seconds;
@@ -27,12 +27,12 @@ impl Control {
 
     /// What isn't vacant, by number: the main program's locals as they stood before M30's reset, and the commons.
     pub fn variables(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
-        self.core.vars.known()
+        self.core.vars.nonvacant()
     }
 
     /// A variable of any kind by its number, as a program would read it now.
     pub fn variable(&self, number: u32) -> Result<Value, Alarm> {
-        self.core.apart(|core| core.read(number))
+        self.core.without_side_effects(|core| core.read(number))
     }
 
     /// Local and common variables as they stand.
@@ -41,7 +41,7 @@ impl Control {
     }
 
     /// The coordinate of an axis in the active work coordinate system, as #5001… show it.
-    pub fn work_position(&self, axis: Axis) -> f64 {
+    pub fn work_position(&self, axis: AxisIndex) -> f64 {
         let state = &self.core.state;
         self.core.shown(state, Some(axis), state.programmed[axis])
     }
@@ -60,9 +60,9 @@ impl Control {
     }
 
     /// The block last begun, and the calls that led to it.
-    pub fn place(&self) -> Place {
+    pub fn place(&self) -> Backtrace {
         let calls = self.core.frame.calls.clone();
-        Place { block: self.core.block, calls }
+        Backtrace { block: self.core.block, calls }
     }
 
     /// Blocks executed so far.
@@ -99,7 +99,7 @@ impl Control {
     }
 
     /// Operator stops in order; the first ten thousand.
-    pub fn stops(&self) -> &[Stop] {
+    pub fn stops(&self) -> &[OperatorStop] {
         &self.core.stops
     }
 }

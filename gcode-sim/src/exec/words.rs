@@ -2,28 +2,28 @@
 //! the block asks for them.
 use std::cell::Cell;
 
-use super::Core;
+use super::Executor;
 use super::code_calls::CallingWord;
-use super::eval::{Checked, RoundsTo, at, integer};
+use super::eval::{Checked, RoundingTarget, at, integer};
 use super::vars::Value;
 use crate::alarm::Alarm;
 use crate::control::{CodeSet, Settings};
-use crate::program::codes::{self, Effect, Row};
+use crate::program::codes::{self, Effect, GCodeRow};
 use crate::program::m_codes;
 use crate::program::modes::Motion;
-use crate::program::{Coded, Input, Words};
+use crate::program::{LoweredWord, WordOperand, Words};
 use crate::source::Span;
 use crate::syntax::ast::Decimal;
 use crate::units::round;
 
 /// The value of a word before anything is made of it.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Raw {
+pub(super) enum WordNumber {
     Literal(Decimal),
     Computed(f64),
 }
 
-impl Raw {
+impl WordNumber {
     /// The number that stands there, whatever it is at its address.
     pub(super) fn value(self) -> f64 {
         match self {
@@ -48,37 +48,37 @@ const M_CODES: usize = 3;
 
 /// The words of a block by letter. Kept between blocks and cleared by its mask, so that it costs nothing.
 #[derive(Clone, Debug)]
-pub(super) struct Given {
+pub(super) struct BlockWords {
     present: u32,
     /// The letters whose value somebody has asked for.
     read: Cell<u32>,
-    values: [(Raw, Span); 26],
-    g: [Option<&'static Row>; G_CODES],
+    values: [(WordNumber, Span); 26],
+    g: [Option<&'static GCodeRow>; G_CODES],
     g_count: usize,
     /// The last code of group 01.
     pub(super) motion: Option<Motion>,
     /// A G code stands in the block that is not of group 01.
-    beyond_moves: bool,
+    has_other_g_codes: bool,
     pub(super) m: [Option<(u32, Span)>; M_CODES],
     pub(super) m_count: usize,
     /// `,R` or `,C`.
-    pub(super) corner: Option<(u8, Raw, Span)>,
+    pub(super) corner: Option<(u8, WordNumber, Span)>,
     /// M codes that a later one of the block has replaced.
     pub(super) lost_m: Vec<u32>,
     /// The value in the comment of `G10 L85`.
     pub(super) punched: Option<u64>,
 }
 
-impl Default for Given {
+impl Default for BlockWords {
     fn default() -> Self {
         Self {
             present: 0,
             read: Cell::new(0),
-            values: [(Raw::Computed(0.0), Span::default()); 26],
+            values: [(WordNumber::Computed(0.0), Span::default()); 26],
             g: [None; G_CODES],
             g_count: 0,
             motion: None,
-            beyond_moves: false,
+            has_other_g_codes: false,
             m: [None; M_CODES],
             m_count: 0,
             corner: None,
@@ -88,14 +88,14 @@ impl Default for Given {
     }
 }
 
-impl Given {
+impl BlockWords {
     /// As before the first block.
     fn clear(&mut self) {
         self.present = 0;
         self.read.set(0);
         self.g_count = 0;
         self.motion = None;
-        self.beyond_moves = false;
+        self.has_other_g_codes = false;
         self.m_count = 0;
         self.corner = None;
         self.lost_m.clear();
@@ -103,7 +103,7 @@ impl Given {
     }
 
     /// `,R` or `,C`.
-    fn put_corner(&mut self, word: &Coded, raw: Raw) -> Result<(), Alarm> {
+    fn put_corner(&mut self, word: &LoweredWord, raw: WordNumber) -> Result<(), Alarm> {
         if word.letter == b'A' {
             return Err(Alarm::NotSimulated { what: "direct drawing dimensions (,A)".into() });
         }
@@ -114,7 +114,7 @@ impl Given {
         Ok(())
     }
 
-    fn put_g(&mut self, row: &'static Row) -> Result<(), Alarm> {
+    fn put_g(&mut self, row: &'static GCodeRow) -> Result<(), Alarm> {
         if self.g_count == G_CODES {
             return Err(Alarm::MacroFormat { what: "too many G codes in one block".into() });
         }
@@ -122,7 +122,7 @@ impl Given {
         self.g_count += 1;
         match row.effect {
             Effect::Motion(motion) => self.motion = Some(motion),
-            _ => self.beyond_moves = true,
+            _ => self.has_other_g_codes = true,
         }
         Ok(())
     }
@@ -165,12 +165,12 @@ impl Given {
     }
 
     /// Whether a G code stands in it that is not of group 01.
-    pub(super) fn has_more_than_moves(&self) -> bool {
-        self.beyond_moves
+    pub(super) fn has_non_motion_words(&self) -> bool {
+        self.has_other_g_codes
     }
 
     /// The value of a word, which is asked for with this.
-    pub(super) fn get(&self, letter: u8) -> Option<(Raw, Span)> {
+    pub(super) fn get(&self, letter: u8) -> Option<(WordNumber, Span)> {
         self.read.set(self.read.get() | 1 << (letter - b'A'));
         self.has(letter).then(|| self.values[usize::from(letter - b'A')])
     }
@@ -197,14 +197,14 @@ impl Given {
         self.values[usize::from(letter - b'A')].1
     }
 
-    pub(super) fn g_codes(&self) -> impl Iterator<Item = &'static Row> + '_ {
+    pub(super) fn g_codes(&self) -> impl Iterator<Item = &'static GCodeRow> + '_ {
         self.g[..self.g_count].iter().flatten().copied()
     }
 
     /// Whether the block has a G code of an effect; those of group 01 are not asked.
     #[inline(always)]
     pub(super) fn has_code_beyond_moves(&self, is_it: impl Fn(Effect) -> bool) -> bool {
-        self.beyond_moves && self.g_codes().any(|row| is_it(row.effect))
+        self.has_other_g_codes && self.g_codes().any(|row| is_it(row.effect))
     }
 
     /// A count or a number: no point, no minus; a computed value is rounded.
@@ -215,17 +215,17 @@ impl Given {
 }
 
 /// A value where only a whole number may stand.
-pub(super) fn count(raw: Raw, letter: u8) -> Result<u32, Alarm> {
+pub(super) fn count(raw: WordNumber, letter: u8) -> Result<u32, Alarm> {
     let letter = char::from(letter);
     let number = match raw {
-        Raw::Literal(number) if number.places.is_some() => {
+        WordNumber::Literal(number) if number.places.is_some() => {
             return Err(Alarm::IllegalPoint { letter: Some(letter) });
         }
-        Raw::Literal(number) if number.negative && number.digits > 0 => {
+        WordNumber::Literal(number) if number.negative && number.digits > 0 => {
             return Err(Alarm::IllegalMinus { letter });
         }
-        Raw::Literal(number) => i64::try_from(number.digits).map_err(|_| Alarm::TooManyDigits)?,
-        Raw::Computed(value) => integer(value)?,
+        WordNumber::Literal(number) => i64::try_from(number.digits).map_err(|_| Alarm::TooManyDigits)?,
+        WordNumber::Computed(value) => integer(value)?,
     };
     if number < 0 {
         return Err(Alarm::IllegalMinus { letter });
@@ -235,13 +235,13 @@ pub(super) fn count(raw: Raw, letter: u8) -> Result<u32, Alarm> {
     if number > most { Err(Alarm::TooManyDigits) } else { Ok(number as u32) }
 }
 
-impl Core {
+impl Executor {
     /// Evaluates every word of a block into `given`, but for those that belong to a call.
     pub(super) fn collect(
         &self,
         words: &Words,
         calling: Option<&CallingWord>,
-        given: &mut Given,
+        given: &mut BlockWords,
     ) -> Checked<()> {
         given.clear();
         given.punched = words.punched();
@@ -257,16 +257,16 @@ impl Core {
 
     /// Evaluates a word and puts it to those of its block.
     #[inline(always)]
-    fn take(&self, words: &Words, word: &Coded, given: &mut Given) -> Checked<()> {
+    fn take(&self, words: &Words, word: &LoweredWord, given: &mut BlockWords) -> Checked<()> {
         let raw = match &word.value {
-            Input::Literal(number) => Raw::Literal(*number),
-            Input::G(code, found) if !word.comma => {
+            WordOperand::Literal(number) => WordNumber::Literal(*number),
+            WordOperand::G(code, found) if !word.comma => {
                 let row = found.on(self.settings.codes);
                 let improper = || Alarm::ImproperGCode { code: codes::spelled(*code) }.at(word.span);
                 return at(given.put_g(row.ok_or_else(improper)?), word.span);
             }
             value => match self.computed(words, value)? {
-                Value::Number(value) => Raw::Computed(value),
+                Value::Number(value) => WordNumber::Computed(value),
                 Value::Vacant => return Ok(()),
             },
         };
@@ -278,7 +278,7 @@ impl Core {
 
     /// Puts a word that is more than a value at an address to those of its block.
     #[inline(never)]
-    fn put(&self, words: &Words, word: &Coded, raw: Raw, given: &mut Given) -> Checked<()> {
+    fn put(&self, words: &Words, word: &LoweredWord, raw: WordNumber, given: &mut BlockWords) -> Checked<()> {
         if word.comma {
             return at(given.put_corner(word, raw), word.span);
         }
@@ -303,7 +303,7 @@ impl Core {
     }
 
     #[inline(always)]
-    fn put_value(&self, letter: u8, span: Span, raw: Raw, given: &mut Given) -> Checked<()> {
+    fn put_value(&self, letter: u8, span: Span, raw: WordNumber, given: &mut BlockWords) -> Checked<()> {
         if self.settings.no_repeated_address && given.has(letter) {
             return Err(Alarm::RepeatedAddress { letter: char::from(letter) }.at(span));
         }
@@ -314,31 +314,31 @@ impl Core {
 
     /// The value of a word, or `None` where it is vacant and the word therefore not there.
     #[inline]
-    pub(super) fn raw(&self, words: &Words, word: &Coded) -> Checked<Option<Raw>> {
+    pub(super) fn raw(&self, words: &Words, word: &LoweredWord) -> Checked<Option<WordNumber>> {
         match &word.value {
-            Input::Literal(number) => Ok(Some(Raw::Literal(*number))),
-            value => Ok(self.computed(words, value)?.given().map(Raw::Computed)),
+            WordOperand::Literal(number) => Ok(Some(WordNumber::Literal(*number))),
+            value => Ok(self.computed(words, value)?.as_number().map(WordNumber::Computed)),
         }
     }
 
     /// What a value behind an address is that is more than a literal.
     #[inline(always)]
-    pub(super) fn computed(&self, words: &Words, value: &Input) -> Checked<Value> {
+    pub(super) fn computed(&self, words: &Words, value: &WordOperand) -> Checked<Value> {
         match value {
-            Input::Variable { slot, span } => self.load(*slot, span),
-            Input::Code(place) => self.run_code(words.code(*place), RoundsTo::Increment),
-            Input::Number(number) => Ok(Value::Number(*number)),
-            Input::G(code, _) => Ok(Value::Number(f64::from(*code) / 10.0)),
-            Input::Literal(number) => Ok(Value::Number(number.value())),
+            WordOperand::Variable { slot, span } => self.load(*slot, span),
+            WordOperand::Code(place) => self.run_code(words.code(*place), RoundingTarget::Increment),
+            WordOperand::Number(number) => Ok(Value::Number(*number)),
+            WordOperand::G(code, _) => Ok(Value::Number(f64::from(*code) / 10.0)),
+            WordOperand::Literal(number) => Ok(Value::Number(number.value())),
         }
     }
 }
 
 /// The row of a G code that is computed.
-pub(super) fn computed_row(raw: Raw, set: CodeSet) -> Result<&'static Row, Alarm> {
+pub(super) fn computed_row(raw: WordNumber, set: CodeSet) -> Result<&'static GCodeRow, Alarm> {
     let value = match raw {
-        Raw::Computed(value) => value,
-        Raw::Literal(number) => return Err(Alarm::ImproperGCode { code: number.value().to_string() }),
+        WordNumber::Computed(value) => value,
+        WordNumber::Literal(number) => return Err(Alarm::ImproperGCode { code: number.value().to_string() }),
     };
     // A computed code keeps one decimal.
     let tenths = round(value * 10.0);

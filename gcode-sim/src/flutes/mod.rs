@@ -1,25 +1,25 @@
 //! Motion → flutes: follows a grinder's wheel on the burr and tells grinding from approach, retract and indexing.
 //!
 //! Feeds that turn A are grinding moves; whatever else moves lies between two passes.
-mod dives;
 mod trace;
-mod turning;
+mod wheel_collisions;
+mod wheel_state;
 
 use nalgebra::Point3;
 
-use dives::{By, Dives, Moved};
-pub use dives::{Dive, Kind, Plunge};
 pub(crate) use trace::shorter;
 pub use trace::{Sample, Trace, Window};
-use turning::Turning;
-pub use turning::{Begun, Idle};
+pub use wheel_collisions::{CollisionKind, PlungeFeed, WheelCollision};
+use wheel_collisions::{CollisionTracker, MotionMode, Moved};
+use wheel_state::WheelState;
+pub use wheel_state::{FirstOccurrence, StoppedWheel};
 
 use crate::diag::{Diagnostic, Severity};
-use crate::holes::Unplaced;
-use crate::holes::unplaced::Placing;
-use crate::machine::path::Travel;
+use crate::holes::UnknownWorkZero;
+use crate::holes::work_zero::WorkZeroTracker;
+use crate::machine::path::AxisMotion;
 use crate::machine::{LinkMotion, Machine, Wheel};
-use crate::motion::{Arc2, Axis, Event, EventKind, Place, Position, Sink};
+use crate::motion::{AxisIndex, Backtrace, Event, EventKind, EventSink, PlanarArc, Position};
 use crate::part::flutes::Flutes;
 use crate::units::{Deg, Rpm};
 
@@ -42,7 +42,7 @@ pub const ARITHMETIC: f64 = 1e-6;
 
 /// Why flutes can't be followed on a machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum NoGrinder {
+pub enum GrinderError {
     #[error(
         "the machine file has no [wheel], which a burr is ground by: use the machine.toml that stands beside the program"
     )]
@@ -55,32 +55,32 @@ pub enum NoGrinder {
 
 /// One pass of the wheel, in contact from end to end.
 #[derive(Clone, Debug)]
-pub struct Pass {
+pub struct GrindingPass {
     pub trace: Trace,
     /// Where it begins.
-    pub place: Place,
+    pub place: Backtrace,
     pub moves: usize,
     /// The least and the greatest angle of the swivelled wheel during the pass, where an axis swivels it.
     pub head: Option<(Deg, Deg)>,
     /// The first of its moves during which the wheel stood, and the first with M04 in force.
-    pub idle: Option<Idle>,
-    pub reversed: Option<Begun>,
+    pub idle: Option<StoppedWheel>,
+    pub reversed: Option<FirstOccurrence>,
     /// The speeds of the turning wheel, each from the move on that is the first with it.
-    pub speeds: Vec<(Rpm, Begun)>,
+    pub speeds: Vec<(Rpm, FirstOccurrence)>,
 }
 
 /// What a program does to a burr.
 #[derive(Clone, Debug, Default)]
-pub struct Ground {
-    pub passes: Vec<Pass>,
+pub struct GrindingResult {
+    pub passes: Vec<GrindingPass>,
     /// The deepest of each block.
-    pub dives: Vec<Dive>,
+    pub dives: Vec<WheelCollision>,
     /// The feeds into the blank behind which a pass begins.
-    pub plunges: Vec<Plunge>,
+    pub plunges: Vec<PlungeFeed>,
     /// Rapids before the wheel first stood off the blank: where they began nobody knows, and nothing is said of them.
-    pub unseen: usize,
+    pub unchecked_rapids: usize,
     /// Rapids whose way isn't known because axes are sent to machine coordinates.
-    pub unplaced: Option<Unplaced>,
+    pub unplaced: Option<UnknownWorkZero>,
     /// From the C axis to the end of the burr's cylinder, x and y, as the machine file has it; `None` without a C that turns
     /// about z.
     pub offset: Option<[f64; 2]>,
@@ -91,19 +91,19 @@ pub struct Ground {
 
 /// Listens to a run and follows the contact on the burr.
 #[derive(Debug)]
-pub struct Follower<'m> {
+pub struct FluteTracker<'m> {
     machine: &'m Machine,
     wheel: Wheel,
     /// The axis that turns the burr about itself.
-    burr: Axis,
+    burr: AxisIndex,
     flutes: Flutes,
     at: Position,
     moved: Moved,
-    open: Option<Pass>,
-    ground: Ground,
-    dives: Dives,
-    turning: Turning,
-    placing: Placing,
+    open: Option<GrindingPass>,
+    ground: GrindingResult,
+    dives: CollisionTracker,
+    turning: WheelState,
+    placing: WorkZeroTracker,
     moves: usize,
     /// Points kept of passes, and computed at all, and the most that may be.
     kept: usize,
@@ -114,30 +114,34 @@ pub struct Follower<'m> {
     full: bool,
 }
 
-impl<'m> Follower<'m> {
+impl<'m> FluteTracker<'m> {
     /// Starts with every axis at machine zero.
     ///
     /// # Errors
     /// A machine without a wheel, or without an A that turns the burr.
-    pub fn new(machine: &'m Machine, flutes: Flutes) -> Result<Self, NoGrinder> {
-        let wheel = machine.wheel.ok_or(NoGrinder::Wheel)?;
+    pub fn new(machine: &'m Machine, flutes: Flutes) -> Result<Self, GrinderError> {
+        let wheel = machine.wheel.ok_or(GrinderError::Wheel)?;
         let turns = machine.axes.find(b'A').filter(|axis| {
-            let of_axis = |link: &&crate::machine::Link| link.axis == *axis;
+            let of_axis = |link: &&crate::machine::AxisLink| link.axis == *axis;
             machine.table.0.iter().find(of_axis).is_some_and(|l| matches!(l.motion, LinkMotion::Turn { .. }))
         });
         let most_kept = (GOES * flutes.length() / APART).clamp(KEPT.0, KEPT.1) as usize;
         Ok(Self {
             machine,
             wheel,
-            burr: turns.ok_or(NoGrinder::Burr)?,
+            burr: turns.ok_or(GrinderError::Burr)?,
             flutes,
             at: Position::default(),
             moved: Moved::default(),
             open: None,
-            ground: Ground { offset: offset(machine), signs: signs(machine), ..Ground::default() },
-            dives: Dives::default(),
-            turning: Turning::default(),
-            placing: Placing::default(),
+            ground: GrindingResult {
+                offset: offset(machine),
+                signs: signs(machine),
+                ..GrindingResult::default()
+            },
+            dives: CollisionTracker::default(),
+            turning: WheelState::default(),
+            placing: WorkZeroTracker::default(),
             moves: 0,
             kept: 0,
             most_kept,
@@ -147,9 +151,9 @@ impl<'m> Follower<'m> {
         })
     }
 
-    pub fn finish(mut self) -> Ground {
+    pub fn finish(mut self) -> GrindingResult {
         self.close();
-        self.ground.unseen = self.dives.unseen;
+        self.ground.unchecked_rapids = self.dives.unseen;
         self.ground.plunges = std::mem::take(&mut self.dives.plunges);
         self.ground.dives = self.dives.finish();
         self.ground.unplaced = self.placing.finish(self.machine);
@@ -170,13 +174,13 @@ impl<'m> Follower<'m> {
         self.ground.findings.push(finding.at(event.place()));
     }
 
-    fn motion(&mut self, event: &Event<'_>, rapid: bool, to: &Position, arc: Option<&Arc2>) {
+    fn motion(&mut self, event: &Event<'_>, rapid: bool, to: &Position, arc: Option<&PlanarArc>) {
         let from = self.at;
         self.at = *to;
         if self.full || (from == *to && arc.is_none()) {
             return;
         }
-        let (was, is) = self.placing.go();
+        let (was, is) = self.placing.advance();
         let before = self.moved;
         self.note_moved(&from, to);
         self.moves += 1;
@@ -186,7 +190,7 @@ impl<'m> Follower<'m> {
         if rapid && was | is != 0 {
             return self.jump(event, (was, is), to);
         }
-        let travel = Travel { from: &from, to, arc };
+        let travel = AxisMotion { from: &from, to, arc };
         let grinds = !rapid && from[self.burr] != to[self.burr];
         let apart = if grinds { APART } else { APART_BETWEEN };
         let Some(steps) = self.steps(&travel, apart) else {
@@ -203,16 +207,16 @@ impl<'m> Follower<'m> {
             self.close();
             let turns = (from[self.burr] != to[self.burr]).then_some(self.ground.passes.len());
             let by = match rapid {
-                true => By::Rapid { turns },
-                false => By::Feed { seconds: event.seconds.0 },
+                true => MotionMode::Rapid { turns },
+                false => MotionMode::Feed { seconds: event.seconds.0 },
             };
-            self.dives.look(&self.flutes, event.place(), by, self.moved, &path);
+            self.dives.check_motion(&self.flutes, event.place(), by, self.moved, &path);
             return;
         }
         self.kept = self.most_kept.min(self.kept + path.len());
         self.dives.ground(before);
         let head = self.wheel.angle(&from).zip(self.wheel.angle(to));
-        let pass = self.open.get_or_insert_with(|| Pass {
+        let pass = self.open.get_or_insert_with(|| GrindingPass {
             trace: Trace::default(),
             place: event.place(),
             moves: 0,
@@ -223,7 +227,7 @@ impl<'m> Follower<'m> {
         });
         pass.moves += 1;
         pass.trace.follow(&self.flutes, &path, event.seconds.0, event.place());
-        self.turning.note(pass, || Begun { place: event.place(), at: path[0] });
+        self.turning.note(pass, || FirstOccurrence { place: event.place(), at: path[0] });
         if let Some((one, other)) = head {
             let (low, high) = if one < other { (one, other) } else { (other, one) };
             let (least, most) = pass.head.unwrap_or((low, high));
@@ -237,7 +241,13 @@ impl<'m> Follower<'m> {
         self.placing.note_rapid(event, was | is);
         if is == 0 {
             let end = self.machine.contact(&self.wheel, to);
-            self.dives.look(&self.flutes, event.place(), By::Rapid { turns: None }, self.moved, &[end, end]);
+            self.dives.check_motion(
+                &self.flutes,
+                event.place(),
+                MotionMode::Rapid { turns: None },
+                self.moved,
+                &[end, end],
+            );
         }
     }
 
@@ -250,7 +260,7 @@ impl<'m> Follower<'m> {
 
     /// In how many steps a motion is looked at, so that no two points are farther apart than about `apart` mm; `None`
     /// where telling that takes too many of them.
-    fn steps(&mut self, travel: &Travel<'_>, apart: f64) -> Option<f64> {
+    fn steps(&mut self, travel: &AxisMotion<'_>, apart: f64) -> Option<f64> {
         // The length is measured first: by points a twelfth of a turn apart, for after whole turns all are in one place.
         let sweep = travel.arc.map_or(Deg::ZERO, |arc| arc.sweep.abs());
         let turn = self.machine.table.turned(travel.from, travel.to) + sweep;
@@ -261,7 +271,7 @@ impl<'m> Follower<'m> {
 
     /// The contact on the burr in so many steps along a motion, one more if that is odd; `None` where that makes too
     /// many of them in all.
-    fn points(&mut self, travel: &Travel<'_>, steps: f64) -> Option<Vec<Point3<f64>>> {
+    fn points(&mut self, travel: &AxisMotion<'_>, steps: f64) -> Option<Vec<Point3<f64>>> {
         if (self.most_computed.saturating_sub(self.computed)) as f64 <= steps + 2.0 {
             return None;
         }
@@ -295,17 +305,19 @@ fn signs(machine: &Machine) -> Vec<(char, f64)> {
     carry.chain(swivels.map(|(axis, sign)| (machine.axes.letter(axis), sign))).collect()
 }
 
-impl Sink for Follower<'_> {
+impl EventSink for FluteTracker<'_> {
     fn event(&mut self, event: &Event<'_>) {
         match event.kind {
             EventKind::Rapid { to } => self.motion(event, true, to, None),
             EventKind::Feed { to, .. } | EventKind::Skip { to, .. } => self.motion(event, false, to, None),
             EventKind::Arc { to, arc, .. } => self.motion(event, false, to, Some(arc)),
             // How far the burr is turned about itself, no depth depends on.
-            EventKind::Unplaced { axes } => self.placing.hear(self.machine, axes & !(1 << self.burr)),
-            EventKind::Spindle { .. } | EventKind::Auxiliary { .. } => self.turning.hear(event.kind),
+            EventKind::WorkZeroUnknown { axes } => {
+                self.placing.apply_event(self.machine, axes & !(1 << self.burr))
+            }
+            EventKind::Spindle { .. } | EventKind::Auxiliary { .. } => self.turning.apply_event(event.kind),
             EventKind::Dwell { .. }
-            | EventKind::Tool { .. }
+            | EventKind::ToolChange { .. }
             | EventKind::ToolLength { .. }
             | EventKind::Coolant { .. }
             | EventKind::Stop { .. } => {}

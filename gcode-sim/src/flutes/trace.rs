@@ -2,7 +2,7 @@
 use nalgebra::Point3;
 
 use crate::job::FluteLaw;
-use crate::motion::Place;
+use crate::motion::Backtrace;
 use crate::part::flutes::Flutes;
 use crate::units::Deg;
 
@@ -37,7 +37,7 @@ pub struct Sample {
 #[derive(Clone, Debug, Default)]
 pub struct Trace {
     pub samples: Vec<Sample>,
-    places: Vec<Place>,
+    places: Vec<Backtrace>,
     /// That all moves so far took.
     seconds: f64,
 }
@@ -63,7 +63,7 @@ impl Trace {
     /// Goes on along `path`, whose first point is where the trace has come to and whose points are equally far in time.
     /// Ways along and around are those of the surface's points below the path: how far the path is off says nothing of its
     /// direction.
-    pub(super) fn follow(&mut self, flutes: &Flutes, path: &[Point3<f64>], seconds: f64, place: Place) {
+    pub(super) fn follow(&mut self, flutes: &Flutes, path: &[Point3<f64>], seconds: f64, place: Backtrace) {
         let profile = &flutes.profile;
         let index = self.places.len();
         self.places.push(place);
@@ -121,7 +121,7 @@ impl Trace {
     }
 
     /// The block that moved to a sample.
-    pub fn place(&self, sample: &Sample) -> &Place {
+    pub fn place(&self, sample: &Sample) -> &Backtrace {
         &self.places[sample.place]
     }
 

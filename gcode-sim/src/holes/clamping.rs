@@ -1,26 +1,26 @@
 //! The clamp of the rotary table: while it holds, the table must not turn, and while it doesn't, nothing may be drilled.
-use super::Extractor;
+use super::HoleExtractor;
 use crate::diag::Diagnostic;
 use crate::job::Clamp;
-use crate::motion::{Axis, Event, Place, Position};
+use crate::motion::{AxisIndex, Backtrace, Event, Position};
 
 /// What the program has done about the clamp.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) enum Hold {
+pub(super) enum ClampState {
     /// Nothing yet: what was done before the program, nobody knows.
     #[default]
-    Unsaid,
-    Held,
-    Free,
+    Unknown,
+    Clamped,
+    Released,
 }
 
-impl Extractor<'_> {
+impl HoleExtractor<'_> {
     /// A code of the clamp, if it is one.
-    pub(super) fn hold(&mut self, code: u32) -> bool {
+    pub(super) fn apply_clamp_code(&mut self, code: u32) -> bool {
         let Some(clamp) = self.conduct.clamp else { return false };
         match code {
-            code if code == clamp.on => self.hold = Hold::Held,
-            code if code == clamp.off => self.hold = Hold::Free,
+            code if code == clamp.on => self.hold = ClampState::Clamped,
+            code if code == clamp.off => self.hold = ClampState::Released,
             _ => return false,
         }
         true
@@ -33,13 +33,13 @@ impl Extractor<'_> {
         let letter = self.machine.axes.letter(axis);
         let Clamp { on, off } = clamp;
         match self.hold {
-            Hold::Free => {}
-            Hold::Held => self.findings.add("turns-clamped", &event.place(), 0, || {
+            ClampState::Released => {}
+            ClampState::Clamped => self.findings.add("turns-clamped", &event.place(), 0, || {
                 Diagnostic::error("turns-clamped", format!("{letter} turns while M{on:02} holds it"))
                     .note("the axis stops with an alarm, or the drive works against the clamp")
                     .help(format!("M{off:02} before {letter} turns"))
             }),
-            Hold::Unsaid => {
+            ClampState::Unknown => {
                 self.findings.add("turns-clamped", &event.place(), 1, || {
                     Diagnostic::warning(
                         "turns-clamped",
@@ -49,25 +49,25 @@ impl Extractor<'_> {
                     .help(format!("M{off:02} before {letter} turns"))
                 });
                 // It turned: so it was free, and nothing holds it now.
-                self.hold = Hold::Free;
+                self.hold = ClampState::Released;
             }
         }
     }
 
     /// Whether what is drilled was held when the feed began.
-    pub(super) fn check_held(&mut self, place: &Place, hold: Hold) {
+    pub(super) fn check_held(&mut self, place: &Backtrace, hold: ClampState) {
         let Some(Clamp { on, .. }) = self.conduct.clamp else { return };
         let Some(axis) = self.clamped() else { return };
         let letter = self.machine.axes.letter(axis);
         match hold {
-            Hold::Held => {}
-            Hold::Free => self.findings.add("drills-unclamped", place, 0, || {
+            ClampState::Clamped => {}
+            ClampState::Released => self.findings.add("drills-unclamped", place, 0, || {
                 let message = format!("the tool feeds into the part while nothing holds {letter}");
                 Diagnostic::error("drills-unclamped", message)
                     .note("the part gives way under the drill, and the hole stands where that leaves it")
                     .help(format!("M{on:02} after {letter} has turned"))
             }),
-            Hold::Unsaid => self.findings.add("drills-unclamped", place, 1, || {
+            ClampState::Unknown => self.findings.add("drills-unclamped", place, 1, || {
                 let message = format!("the tool feeds into the part before any M{on:02} holds {letter}");
                 Diagnostic::warning("drills-unclamped", message)
                     .note("how the clamp stands when the program begins isn't known")
@@ -77,7 +77,7 @@ impl Extractor<'_> {
     }
 
     /// The axis that the clamp holds: the reference's rotary, where it carries the part, else the first that turns it.
-    fn clamped(&self) -> Option<Axis> {
+    fn clamped(&self) -> Option<AxisIndex> {
         let named = self.conduct.rotary.and_then(|rotary| self.machine.axes.find(rotary.letter as u8));
         let mut turning = self.machine.table.turning();
         named

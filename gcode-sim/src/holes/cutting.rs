@@ -1,17 +1,17 @@
 //! What is in force while a tool cuts: its direction of rotation, S, F and length offset, which the verdict holds against
 //! what the reference says of the tool.
-use super::line::Pecks;
+use super::line::PeckExtent;
 use super::per_block::PerBlock;
-use crate::motion::{Lengthening, Place, Spindle};
+use crate::motion::{Backtrace, LengthCompensation, SpindleDirection};
 use crate::units::{MmPerMin, Rpm};
 
 /// How a block feeds a tool into the part.
 #[derive(Clone, Debug)]
-pub struct Cutting {
-    pub place: Place,
+pub struct CutConditions {
+    pub place: Backtrace,
     pub tool: Option<u32>,
-    pub by: Lengthening,
-    pub turning: Spindle,
+    pub compensation: LengthCompensation,
+    pub spindle_direction: SpindleDirection,
     pub speed: Rpm,
     /// The slowest and the fastest of the feeds.
     pub feeds: [MmPerMin; 2],
@@ -25,33 +25,39 @@ pub struct Cutting {
 
 /// What the program has said so far.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct InForce {
+pub(super) struct CuttingState {
     pub tool: Option<u32>,
-    pub by: Lengthening,
-    pub turning: Spindle,
+    pub by: LengthCompensation,
+    pub turning: SpindleDirection,
     pub speed: Rpm,
 }
 
 /// One for each block and what was in force there, in the order in which they came up.
 #[derive(Debug, Default)]
-pub(super) struct Cuttings(PerBlock<[u64; 6], Cutting>);
+pub(super) struct CutConditionsByBlock(PerBlock<[u64; 6], CutConditions>);
 
-impl Cuttings {
-    pub(super) fn add(&mut self, place: &Place, force: &InForce, feeds: [MmPerMin; 2], pecks: Pecks) {
-        let InForce { tool, by, turning, speed } = *force;
+impl CutConditionsByBlock {
+    pub(super) fn add(
+        &mut self,
+        place: &Backtrace,
+        force: &CuttingState,
+        feeds: [MmPerMin; 2],
+        pecks: PeckExtent,
+    ) {
+        let CuttingState { tool, by, turning, speed } = *force;
         let length = match by {
-            Lengthening::Off => 0,
-            Lengthening::Plus(h) => 1 << 32 | u64::from(h),
-            Lengthening::Minus(h) => 2 << 32 | u64::from(h),
+            LengthCompensation::Off => 0,
+            LengthCompensation::Plus(h) => 1 << 32 | u64::from(h),
+            LengthCompensation::Minus(h) => 2 << 32 | u64::from(h),
         };
         let tool_key = tool.map_or(u64::MAX, u64::from);
         let [least, most] = feeds.map(|feed| feed.0.to_bits());
         let kind = [tool_key, length, turning as u64, speed.0.to_bits(), least, most];
-        let (_, entry) = self.0.count(place.block, kind, || Cutting {
+        let (_, entry) = self.0.count(place.block, kind, || CutConditions {
             place: place.clone(),
             tool,
-            by,
-            turning,
+            compensation: by,
+            spindle_direction: turning,
             speed,
             feeds,
             cut: 0.0,
@@ -65,7 +71,7 @@ impl Cuttings {
         }
     }
 
-    pub(super) fn finish(self) -> Vec<Cutting> {
-        self.0.into_entries().map(|entry| Cutting { times: entry.times, ..entry.value }).collect()
+    pub(super) fn finish(self) -> Vec<CutConditions> {
+        self.0.into_entries().map(|entry| CutConditions { times: entry.times, ..entry.value }).collect()
     }
 }

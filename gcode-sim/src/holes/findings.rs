@@ -1,7 +1,7 @@
 //! What is said about the motion: one finding per kind and block, however often the block runs.
 use super::per_block::{PerBlock, again};
 use crate::diag::Diagnostic;
-use crate::motion::Place;
+use crate::motion::Backtrace;
 
 /// Findings in the order in which they first came up, by what tells one kind from another.
 #[derive(Debug, Default)]
@@ -12,7 +12,7 @@ impl Findings {
     pub(super) fn add(
         &mut self,
         code: &'static str,
-        place: &Place,
+        place: &Backtrace,
         detail: u32,
         make: impl FnOnce() -> Diagnostic,
     ) {

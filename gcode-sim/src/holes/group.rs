@@ -3,9 +3,9 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Point3, Unit, Vector3};
 
-use super::near::PointTree;
+use super::point_tree::PointTree;
 use crate::machine::Machine;
-use crate::motion::{Place, Position};
+use crate::motion::{Backtrace, Position};
 use crate::units::Deg;
 
 /// Passes belong to one hole when one's bottom lies this near the other's line, in mm, …
@@ -19,7 +19,7 @@ const DEEPER: f64 = 0.001;
 
 /// A feed into the part along one line, in the part's frame.
 #[derive(Clone, Debug)]
-pub(super) struct Pass {
+pub(super) struct DrillPass {
     pub start: Point3<f64>,
     pub bottom: Point3<f64>,
     /// The tool's direction out of the part, or the feed's where it isn't known.
@@ -27,13 +27,13 @@ pub(super) struct Pass {
     /// The direction of the feed, out of the part.
     pub fed: Unit<Vector3<f64>>,
     pub tool: Option<u32>,
-    pub place: Place,
+    pub place: Backtrace,
     pub at: Position,
 }
 
 /// A hole the program makes, in the part's frame.
 #[derive(Clone, Debug)]
-pub struct Found {
+pub struct DrilledHole {
     /// Where the cutting feed of the finishing tool begins, on the hole's axis.
     pub entry: Point3<f64>,
     /// Out of the part.
@@ -44,40 +44,40 @@ pub struct Found {
     pub diameter: Option<f64>,
     pub tool: Option<u32>,
     /// The block that finished it.
-    pub place: Place,
+    pub place: Backtrace,
     /// Where the axes stood at the bottom.
     pub at: Position,
     /// The angle between the finishing feed and the tool's axis.
-    pub off_tool: Deg,
+    pub tool_axis_deviation: Deg,
     /// What was cut there besides the finishing pass.
-    pub others: Vec<Cut>,
+    pub earlier_passes: Vec<EarlierPass>,
     /// The place in the list of the first hole on this line. A later one with the same is the same hole, drilled
     /// again by a tool that had been there.
-    pub first: usize,
+    pub first_on_line: usize,
 }
 
 /// A pass of a hole that doesn't finish it.
 #[derive(Clone, Debug)]
-pub struct Cut {
+pub struct EarlierPass {
     pub bottom: Point3<f64>,
     /// Out of the part.
     pub axis: Unit<Vector3<f64>>,
     pub tool: Option<u32>,
     /// Of the tool, in mm, where the tool table has it.
     pub diameter: Option<f64>,
-    pub place: Place,
+    pub place: Backtrace,
     /// Where the axes stood at the bottom.
     pub at: Position,
 }
 
 /// The holes in the order in which their first passes were made.
-pub(super) fn holes(passes: &[Pass], machine: &Machine) -> Vec<Found> {
+pub(super) fn holes(passes: &[DrillPass], machine: &Machine) -> Vec<DrilledHole> {
     let first = same_line(passes);
     let mut order: Vec<usize> = (0..passes.len()).collect();
     // On one line they keep their order.
     order.sort_by_key(|index| first[*index]);
     let mut found = Vec::with_capacity(passes.len());
-    let mut sorted = Sorted::default();
+    let mut sorted = PassesOnLine::default();
     for line in order.chunk_by(|one, other| first[*one] == first[*other]) {
         sorted.sort(line.iter().map(|index| &passes[*index]));
         holes_of(&sorted, passes[line[0]].axis, machine, &mut found);
@@ -86,7 +86,7 @@ pub(super) fn holes(passes: &[Pass], machine: &Machine) -> Vec<Found> {
 }
 
 /// For each pass the first one on its line.
-fn same_line(passes: &[Pass]) -> Vec<usize> {
+fn same_line(passes: &[DrillPass]) -> Vec<usize> {
     let tree = PointTree::new(passes.iter().map(|pass| pass.bottom));
     let mut groups = tree.groups();
     for (index, pass) in passes.iter().enumerate() {
@@ -99,21 +99,21 @@ fn same_line(passes: &[Pass]) -> Vec<usize> {
             aside <= ASIDE && pass.axis.dot(&passes[other].axis) >= COSINE
         });
     }
-    groups.firsts()
+    groups.representatives()
 }
 
 /// The passes of one line: those that cut, and those of tools that came back for nothing. One is filled again for
 /// each line.
 #[derive(Default)]
-struct Sorted<'p> {
-    cutting: Vec<&'p Pass>,
-    again: Vec<&'p Pass>,
+struct PassesOnLine<'p> {
+    cutting: Vec<&'p DrillPass>,
+    again: Vec<&'p DrillPass>,
     /// How low each tool has been.
     reached: BTreeMap<Option<u32>, f64>,
 }
 
-impl<'p> Sorted<'p> {
-    fn sort(&mut self, passes: impl Iterator<Item = &'p Pass>) {
+impl<'p> PassesOnLine<'p> {
+    fn sort(&mut self, passes: impl Iterator<Item = &'p DrillPass>) {
         self.cutting.clear();
         self.again.clear();
         self.reached.clear();
@@ -133,14 +133,19 @@ impl<'p> Sorted<'p> {
 
 /// One hole, and one more for every time a tool came back for nothing. Heights count along `out`, the first pass's
 /// axis.
-fn holes_of(passes: &Sorted<'_>, out: Unit<Vector3<f64>>, machine: &Machine, found: &mut Vec<Found>) {
+fn holes_of(
+    passes: &PassesOnLine<'_>,
+    out: Unit<Vector3<f64>>,
+    machine: &Machine,
+    found: &mut Vec<DrilledHole>,
+) {
     let first = found.len();
     let height = |p: &Point3<f64>| p.coords.dot(&out);
-    let Sorted { cutting, again, .. } = passes;
+    let PassesOnLine { cutting, again, .. } = passes;
     let lowest = cutting.iter().map(|pass| height(&pass.bottom)).fold(f64::INFINITY, f64::min);
     let finish = finishing(cutting, lowest, height, machine);
-    let diameter = |pass: &Pass| machine.diameter_of(pass.tool);
-    let cut = |pass: &&Pass| Cut {
+    let diameter = |pass: &DrillPass| machine.diameter_of(pass.tool);
+    let cut = |pass: &&DrillPass| EarlierPass {
         bottom: pass.bottom,
         axis: pass.axis,
         tool: pass.tool,
@@ -149,11 +154,11 @@ fn holes_of(passes: &Sorted<'_>, out: Unit<Vector3<f64>>, machine: &Machine, fou
         at: pass.at,
     };
     let others = cutting.iter().filter(|pass| !std::ptr::eq(**pass, finish)).map(cut).collect();
-    let one = |pass: &Pass, start: f64, bottom: f64, others: Vec<Cut>| {
+    let one = |pass: &DrillPass, start: f64, bottom: f64, others: Vec<EarlierPass>| {
         let slope = pass.axis.dot(&out);
         let along =
             |level: f64| pass.bottom + pass.axis.into_inner() * ((level - height(&pass.bottom)) / slope);
-        Found {
+        DrilledHole {
             entry: along(start),
             axis: pass.axis,
             depth: (along(start) - along(bottom)).norm(),
@@ -161,9 +166,9 @@ fn holes_of(passes: &Sorted<'_>, out: Unit<Vector3<f64>>, machine: &Machine, fou
             tool: pass.tool,
             place: pass.place.clone(),
             at: pass.at,
-            off_tool: Deg::acos(pass.axis.dot(&pass.fed).clamp(-1.0, 1.0)),
-            others,
-            first,
+            tool_axis_deviation: Deg::acos(pass.axis.dot(&pass.fed).clamp(-1.0, 1.0)),
+            earlier_passes: others,
+            first_on_line: first,
         }
     };
     let finishing = cutting.iter().filter(|pass| pass.tool == finish.tool);
@@ -176,14 +181,14 @@ fn holes_of(passes: &Sorted<'_>, out: Unit<Vector3<f64>>, machine: &Machine, fou
 /// the last tool. A countersink is large and shallow and doesn't make the hole, nor does a spot drill, however deep:
 /// a tool behind it goes deeper.
 fn finishing<'p>(
-    cutting: &[&'p Pass],
+    cutting: &[&'p DrillPass],
     lowest: f64,
     height: impl Fn(&Point3<f64>) -> f64,
     machine: &Machine,
-) -> &'p Pass {
+) -> &'p DrillPass {
     let longest = cutting.iter().map(|pass| height(&pass.start) - lowest).fold(0.0, f64::max);
-    let diameter = |pass: &Pass| machine.diameter_of(pass.tool).unwrap_or(0.0);
-    let deep = |p: &Pass| height(&p.bottom) <= lowest + longest / 2.0;
+    let diameter = |pass: &DrillPass| machine.diameter_of(pass.tool).unwrap_or(0.0);
+    let deep = |p: &DrillPass| height(&p.bottom) <= lowest + longest / 2.0;
     let mut best = cutting[0];
     for pass in &cutting[1..] {
         let goes_on = deep(pass) && height(&pass.bottom) < height(&best.bottom) - DEEPER;

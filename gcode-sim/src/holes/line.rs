@@ -1,10 +1,10 @@
 //! The line a cutting feed runs along on the part, as long as the tool stays on it: strokes in, pecks, the way out.
 use nalgebra::{Point3, Unit, Vector3};
 
-use super::Pass;
-use super::clamping::Hold;
-use super::cutting::InForce;
-use crate::motion::{Place, Position};
+use super::DrillPass;
+use super::clamping::ClampState;
+use super::cutting::CuttingState;
+use crate::motion::{Backtrace, Position};
 use crate::units::MmPerMin;
 
 /// A stroke counts as deeper than the last when it is so by this much, in mm.
@@ -15,7 +15,7 @@ const SHIFT: f64 = 5.0;
 
 /// Where a tool that was on a line is after a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum After {
+pub(super) enum ToolExit {
     /// Still on it.
     On,
     /// It left along the line, past the point where the feed had begun.
@@ -26,36 +26,36 @@ pub(super) enum After {
 
 /// The current line. Depths count from `start`, positive into the part.
 #[derive(Debug)]
-pub(super) struct Line {
+pub(super) struct CuttingLine {
     pub start: Point3<f64>,
     pub out: Unit<Vector3<f64>>,
     /// The direction of the tool on the part, where known.
     pub tool_axis: Option<Unit<Vector3<f64>>>,
     /// What was in force when the feed began, and how the clamp stood.
-    pub force: InForce,
-    pub hold: Hold,
+    pub force: CuttingState,
+    pub hold: ClampState,
     /// The axes whose place on the part isn't known, as bits, axis 1 the lowest.
     pub unplaced: u8,
     /// How far the tip is beyond the programmed point.
-    pub beyond: Option<f64>,
+    pub length_excess: Option<f64>,
     /// The slowest and the fastest of the feeds that cut.
     feeds: Option<[MmPerMin; 2]>,
     /// How deep below the start the part begins, where its surface is known.
     pub top: Option<f64>,
     /// The most that one finished stroke has cut, air included, and of the part alone.
-    pecks: Pecks,
+    pecks: PeckExtent,
     /// The spindle was reversed, or stopped, while the tool was in the hole.
-    pub spindle: InHole,
+    pub spindle: SpindleInHole,
     /// The depth reached by finished strokes.
     deepest: f64,
     /// The stroke being fed.
-    stroke: Option<Stroke>,
+    stroke: Option<PeckStroke>,
     /// The tool's depth now.
     depth: f64,
     /// How far beside the line the tool stands: a boring bar shifted off the wall.
     aside: Vector3<f64>,
     /// The block, and the axes' position, of the deepest point of the finished strokes.
-    place: Place,
+    place: Backtrace,
     at: Position,
     /// Half the rounding of a programmed point, mm.
     rounding: f64,
@@ -63,7 +63,7 @@ pub(super) struct Line {
 
 /// What the spindle does while the tool is in the hole.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum InHole {
+pub(super) enum SpindleInHole {
     #[default]
     Turns,
     Stops,
@@ -72,7 +72,7 @@ pub(super) enum InHole {
 
 /// How much strokes cut beyond the ones before them, mm.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Pecks {
+pub(super) struct PeckExtent {
     /// So many strokes cut.
     pub strokes: u32,
     /// The most that one of them was fed beyond the others, air included.
@@ -83,19 +83,19 @@ pub(super) struct Pecks {
 
 /// Feeds inwards without a way back between them.
 #[derive(Debug)]
-struct Stroke {
+struct PeckStroke {
     from: f64,
     reach: f64,
-    place: Place,
+    place: Backtrace,
     at: Position,
 }
 
-impl Line {
+impl CuttingLine {
     /// A feed from `start` to `end` that is the first on its line; `None` if it is too short to have a direction.
     pub(super) fn begin(
         start: Point3<f64>,
         end: Point3<f64>,
-        place: Place,
+        place: Backtrace,
         at: Position,
         rounding: f64,
     ) -> Option<Self> {
@@ -105,16 +105,16 @@ impl Line {
             start,
             out,
             tool_axis: None,
-            force: InForce::default(),
-            hold: Hold::default(),
+            force: CuttingState::default(),
+            hold: ClampState::default(),
             unplaced: 0,
-            beyond: None,
+            length_excess: None,
             feeds: None,
             top: None,
-            pecks: Pecks::default(),
-            spindle: InHole::default(),
+            pecks: PeckExtent::default(),
+            spindle: SpindleInHole::default(),
             deepest: 0.0,
-            stroke: Some(Stroke { from: 0.0, reach: depth, place: place.clone(), at }),
+            stroke: Some(PeckStroke { from: 0.0, reach: depth, place: place.clone(), at }),
             depth,
             aside: Vector3::zeros(),
             place,
@@ -134,17 +134,17 @@ impl Line {
     }
 
     /// What its strokes have cut, the one that is being fed included.
-    pub(super) fn pecks(&self) -> Pecks {
+    pub(super) fn pecks(&self) -> PeckExtent {
         match &self.stroke {
             Some(stroke) if stroke.reach > self.deepest + DEEPER => self.pecked(stroke.reach),
             _ => self.pecks,
         }
     }
 
-    fn pecked(&self, reach: f64) -> Pecks {
-        let Pecks { strokes, fed, cut } = self.pecks;
+    fn pecked(&self, reach: f64) -> PeckExtent {
+        let PeckExtent { strokes, fed, cut } = self.pecks;
         let solid = self.deepest.max(self.top.unwrap_or(self.deepest));
-        Pecks { strokes: strokes + 1, fed: fed.max(reach - self.deepest), cut: cut.max(reach - solid) }
+        PeckExtent { strokes: strokes + 1, fed: fed.max(reach - self.deepest), cut: cut.max(reach - solid) }
     }
 
     /// The tool is below where the feed began.
@@ -162,7 +162,7 @@ impl Line {
     }
 
     /// The block of the deepest point.
-    pub(super) fn place(&self) -> &Place {
+    pub(super) fn place(&self) -> &Backtrace {
         match &self.stroke {
             Some(stroke) if stroke.reach > self.deepest => &stroke.place,
             _ => &self.place,
@@ -211,16 +211,16 @@ impl Line {
     }
 
     /// Where the tool is after a straight motion to `to`.
-    pub(super) fn after(&self, from: &Point3<f64>, to: &Point3<f64>) -> After {
+    pub(super) fn after(&self, from: &Point3<f64>, to: &Point3<f64>) -> ToolExit {
         let depth = self.depth_of(to);
         if !self.is_beside(to) {
-            return After::On;
+            return ToolExit::On;
         }
         if self.depth <= self.rounding * 2.0 {
-            return After::Out;
+            return ToolExit::Out;
         }
         if depth < 0.0 && !self.is_beside(&(from + (to - from) * (self.depth / (self.depth - depth)))) {
-            return After::Out;
+            return ToolExit::Out;
         }
         self.aside()
     }
@@ -235,16 +235,16 @@ impl Line {
     }
 
     /// Left in some other way than straight.
-    pub(super) fn aside(&self) -> After {
+    pub(super) fn aside(&self) -> ToolExit {
         if self.depth <= self.rounding * 2.0 {
-            After::Out
+            ToolExit::Out
         } else {
-            After::Aside { back: self.cut() - self.depth }
+            ToolExit::Aside { back: self.cut() - self.depth }
         }
     }
 
     /// A feed along the line. Answers a pass that was fed a second time for nothing, if that ended here.
-    pub(super) fn feed(&mut self, to: &Point3<f64>, place: Place, at: &Position) -> Option<Pass> {
+    pub(super) fn feed(&mut self, to: &Point3<f64>, place: Backtrace, at: &Position) -> Option<DrillPass> {
         let depth = self.depth_of(to);
         if depth <= self.depth {
             return self.back(depth);
@@ -254,13 +254,13 @@ impl Line {
             self.out = Unit::new_normalize(self.start - to);
         }
         let from = self.stroke.as_ref().map_or(self.depth, |stroke| stroke.from);
-        self.stroke = Some(Stroke { from, reach: depth, place, at: *at });
+        self.stroke = Some(PeckStroke { from, reach: depth, place, at: *at });
         self.depth = depth;
         None
     }
 
     /// A rapid along the line. The answer tells whether it ran deeper than the line was cut.
-    pub(super) fn rapid(&mut self, to: &Point3<f64>) -> (Option<Pass>, bool) {
+    pub(super) fn rapid(&mut self, to: &Point3<f64>) -> (Option<DrillPass>, bool) {
         let depth = self.depth_of(to);
         if depth <= self.depth {
             return (self.back(depth), false);
@@ -272,14 +272,14 @@ impl Line {
         (again, uncut)
     }
 
-    fn back(&mut self, depth: f64) -> Option<Pass> {
+    fn back(&mut self, depth: f64) -> Option<DrillPass> {
         let again = if depth < self.depth { self.end_stroke() } else { None };
         self.depth = depth;
         again
     }
 
     /// A full stroke from where the feed had begun that cuts no deeper was fed for nothing.
-    fn end_stroke(&mut self) -> Option<Pass> {
+    fn end_stroke(&mut self) -> Option<DrillPass> {
         let stroke = self.stroke.take()?;
         if stroke.reach > self.deepest + DEEPER {
             self.pecks = self.pecked(stroke.reach);
@@ -293,14 +293,14 @@ impl Line {
     }
 
     /// The passes of the line when the tool has left it: the line's own, and one that was fed again for nothing.
-    pub(super) fn finish(mut self) -> (Pass, Option<Pass>) {
+    pub(super) fn finish(mut self) -> (DrillPass, Option<DrillPass>) {
         let again = self.end_stroke();
         (self.pass(self.deepest, self.place.clone(), self.at), again)
     }
 
-    fn pass(&self, depth: f64, place: Place, at: Position) -> Pass {
+    fn pass(&self, depth: f64, place: Backtrace, at: Position) -> DrillPass {
         let bottom = self.start - self.out.into_inner() * depth;
         let axis = self.tool_axis.unwrap_or(self.out);
-        Pass { start: self.start, bottom, axis, fed: self.out, tool: self.force.tool, place, at }
+        DrillPass { start: self.start, bottom, axis, fed: self.out, tool: self.force.tool, place, at }
     }
 }

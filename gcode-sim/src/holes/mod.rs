@@ -1,49 +1,52 @@
 //! Motion → holes: follows the tool on the part, sees feeds along one line as passes, and passes as holes.
 mod clamping;
+mod clearance;
+mod clusters;
 mod cutting;
+#[cfg(test)]
+pub(crate) mod event_script;
 mod findings;
 mod group;
-mod judge;
+mod length_mismatch;
 mod line;
-mod linked;
-mod machine_words;
-pub mod near;
-mod passing;
+mod line_findings;
+mod machine_requests;
 pub(crate) mod per_block;
+pub mod point_tree;
 mod probing;
 mod rapids;
-mod reaches;
-#[cfg(test)]
-pub(crate) mod script;
 pub(crate) mod spindle;
 #[cfg(test)]
 mod tests;
-pub(crate) mod unplaced;
+pub(crate) mod work_zero;
 
 use nalgebra::Point3;
 
-pub use cutting::Cutting;
-pub use group::Found;
-use group::Pass;
-use line::{After, Line};
-pub(crate) use machine_words::unclear_head;
-pub use passing::{CONTACT, Passing, ROUNDED, Way};
-pub use reaches::Reach;
-pub use unplaced::Unplaced;
+pub use clearance::{CONTACT, CloseMotion, CloseMotionKind, ROUNDED};
+pub use cutting::CutConditions;
+use group::DrillPass;
+pub use group::DrilledHole;
+pub use length_mismatch::LengthMismatch;
+use line::{CuttingLine, ToolExit};
+pub(crate) use machine_requests::unclear_head;
+pub use work_zero::UnknownWorkZero;
 
-use self::clamping::Hold;
-use self::cutting::{Cuttings, InForce};
+use self::clamping::ClampState;
+use self::clearance::CloseMotions;
+use self::cutting::{CutConditionsByBlock, CuttingState};
 use self::findings::Findings;
-use self::passing::Passings;
+use self::length_mismatch::LengthMismatches;
 use self::rapids::{Curved, TOUCH};
-use self::reaches::Reaches;
-use self::unplaced::Placing;
+use self::work_zero::WorkZeroTracker;
 use crate::diag::{Diagnostic, Severity};
-use crate::machine::path::Travel;
+use crate::machine::path::AxisMotion;
 use crate::machine::{Frame, Machine, Pose, Setup};
-use crate::motion::{Arc2, Event, EventKind, Place, Position, Signal, Sink, SkipFeed, Spindle, StopKind};
-use crate::part::conduct::Conduct;
+use crate::motion::{
+    Backtrace, Event, EventKind, EventSink, PlanarArc, Position, SkipMove, SkipSignal, SpindleDirection,
+    StopKind,
+};
 use crate::part::hole::{Hole, HoleList, Origin, Unit};
+use crate::part::process::ProcessLimits;
 use crate::part::surface::Surface;
 use crate::source::Span;
 use crate::units::Rpm;
@@ -54,65 +57,65 @@ const PASSES: usize = 200_000;
 
 /// What a program does to the part.
 #[derive(Clone, Debug, Default)]
-pub struct Extracted {
+pub struct HoleExtraction {
     /// In the order in which they were begun.
-    pub holes: Vec<Found>,
+    pub holes: Vec<DrilledHole>,
     pub findings: Vec<Diagnostic>,
     /// What passes near the part, where the part's surface is known.
-    pub passings: Vec<Passing>,
+    pub passings: Vec<CloseMotion>,
     /// What was in force where the tool cut.
-    pub cuttings: Vec<Cutting>,
+    pub cuttings: Vec<CutConditions>,
     /// Feeds of tools whose lengths aren't those that the control reckons with.
-    pub reaches: Vec<Reach>,
+    pub reaches: Vec<LengthMismatch>,
     /// Rapids whose way over the part isn't known.
-    pub unplaced: Option<Unplaced>,
+    pub unplaced: Option<UnknownWorkZero>,
     /// What the motion was looked at for.
-    pub conduct: Conduct,
+    pub conduct: ProcessLimits,
 }
 
 /// Listens to a run and collects the holes it makes.
 #[derive(Debug)]
-pub struct Extractor<'m> {
+pub struct HoleExtractor<'m> {
     machine: &'m Machine,
     surface: Option<Surface>,
     at: Position,
     setup: Setup,
-    force: InForce,
+    force: CuttingState,
     /// The last M code since M03, M04 or M05 that went to the machine builder's logic, which may have started the spindle.
     builder: Option<u32>,
-    conduct: Conduct,
-    hold: Hold,
+    conduct: ProcessLimits,
+    hold: ClampState,
     /// The part's place while the table stands as it does in `at`.
     frame: Frame,
     /// The tool on the part.
     pose: Pose,
     /// The tool has been outside the part: what it does before that, nobody knows where it stood.
     outside: bool,
-    line: Option<Box<Line>>,
-    passes: Vec<Pass>,
+    line: Option<Box<CuttingLine>>,
+    passes: Vec<DrillPass>,
     /// As many passes are kept.
     most: usize,
     /// The first of the passes that were too many.
-    too_many: Option<Place>,
-    placing: Placing,
+    too_many: Option<Backtrace>,
+    placing: WorkZeroTracker,
     findings: Findings,
-    passings: Passings,
-    cuttings: Cuttings,
-    reaches: Reaches,
+    passings: CloseMotions,
+    cuttings: CutConditionsByBlock,
+    reaches: LengthMismatches,
     /// How many times a probe was sent to the part.
     touches: u64,
 }
 
 /// How a motion was asked for.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Pace {
+enum MotionKind {
     Rapid,
     Feed,
     /// Neither cuts nor hurries: a probe looks for its signal.
     Probe,
 }
 
-impl<'m> Extractor<'m> {
+impl<'m> HoleExtractor<'m> {
     /// Starts with every axis at machine zero.
     pub fn new(machine: &'m Machine) -> Self {
         let (at, setup) = (Position::default(), Setup::default());
@@ -123,10 +126,10 @@ impl<'m> Extractor<'m> {
             surface: None,
             at,
             setup,
-            force: InForce::default(),
+            force: CuttingState::default(),
             builder: None,
-            conduct: Conduct::default(),
-            hold: Hold::default(),
+            conduct: ProcessLimits::default(),
+            hold: ClampState::default(),
             frame,
             pose,
             outside: false,
@@ -134,11 +137,11 @@ impl<'m> Extractor<'m> {
             passes: Vec::new(),
             most: PASSES,
             too_many: None,
-            placing: Placing::default(),
+            placing: WorkZeroTracker::default(),
             findings: Findings::default(),
-            passings: Passings::default(),
-            cuttings: Cuttings::default(),
-            reaches: Reaches::default(),
+            passings: CloseMotions::default(),
+            cuttings: CutConditionsByBlock::default(),
+            reaches: LengthMismatches::default(),
             touches: 0,
         }
     }
@@ -152,15 +155,15 @@ impl<'m> Extractor<'m> {
 
     /// With what the reference says of how the part is to be worked, the motion is held against that as well.
     #[must_use]
-    pub fn with_conduct(mut self, conduct: &Conduct) -> Self {
+    pub fn with_conduct(mut self, conduct: &ProcessLimits) -> Self {
         self.conduct = conduct.clone();
         self
     }
 
-    pub fn finish(mut self) -> Extracted {
+    pub fn finish(mut self) -> HoleExtraction {
         if let Some(line) = self.line.take() {
             let after = line.aside();
-            self.judge_line(line, after, false);
+            self.report_line(line, after, false);
         }
         let mut findings = self.findings.finish();
         findings.extend(self.too_many.map(|place| {
@@ -170,7 +173,7 @@ impl<'m> Extractor<'m> {
             finding.help("does a loop never end? else split the program")
         }));
         let holes = group::holes(&self.passes, self.machine);
-        Extracted {
+        HoleExtraction {
             holes,
             findings,
             passings: self.passings.finish(),
@@ -181,7 +184,7 @@ impl<'m> Extractor<'m> {
         }
     }
 
-    fn keep(&mut self, passes: impl IntoIterator<Item = Pass>) {
+    fn keep(&mut self, passes: impl IntoIterator<Item = DrillPass>) {
         for pass in passes {
             if self.passes.len() < self.most {
                 self.passes.push(pass);
@@ -191,7 +194,7 @@ impl<'m> Extractor<'m> {
         }
     }
 
-    fn motion(&mut self, event: &Event<'_>, pace: Pace, to: &Position, arc: Option<&Arc2>) {
+    fn motion(&mut self, event: &Event<'_>, pace: MotionKind, to: &Position, arc: Option<&PlanarArc>) {
         let from = self.at;
         self.idle_axes(event, &from, to);
         self.check_turn(event, &from, to);
@@ -201,12 +204,12 @@ impl<'m> Extractor<'m> {
         }
         self.at = *to;
         self.pose = self.machine.tool(to, &self.setup).on(&self.frame);
-        let (was, is) = self.placing.go();
-        if was | is != 0 && pace != Pace::Feed {
+        let (was, is) = self.placing.advance();
+        if was | is != 0 && pace != MotionKind::Feed {
             self.jump(event, &before.tip, (was, is));
             return;
         }
-        let travel = Travel { from: &from, to, arc };
+        let travel = AxisMotion { from: &from, to, arc };
         if !self.machine.is_straight(&travel) {
             self.leave_curved(event, pace, &travel);
             return;
@@ -214,21 +217,21 @@ impl<'m> Extractor<'m> {
         if (self.pose.tip - before.tip).norm() < 1e-9 {
             return;
         }
-        let free_from = self.stay_or_leave(event, pace, before.tip);
+        let free_from = self.update_line(event, pace, before.tip);
         match (pace, free_from) {
-            (Pace::Rapid, Some(start)) => self.check_rapid(event, &start, &self.pose.tip.clone()),
-            (Pace::Feed, Some(start)) => self.begin_line(event, start),
+            (MotionKind::Rapid, Some(start)) => self.check_rapid(event, &start, &self.pose.tip.clone()),
+            (MotionKind::Feed, Some(start)) => self.begin_line(event, start),
             _ => {}
         }
-        self.look_outside();
+        self.update_outside();
     }
 
     /// Follows a straight motion from `from` on the current line. Where it has left the line, or there is none:
     /// the point from which it moved freely.
-    fn stay_or_leave(&mut self, event: &Event<'_>, pace: Pace, from: Point3<f64>) -> Option<Point3<f64>> {
+    fn update_line(&mut self, event: &Event<'_>, pace: MotionKind, from: Point3<f64>) -> Option<Point3<f64>> {
         let Some(mut line) = self.line.take() else { return Some(from) };
         let tip = self.pose.tip;
-        if pace == Pace::Rapid && line.is_overrun(&tip) {
+        if pace == MotionKind::Rapid && line.is_overrun(&tip) {
             if line.is_shifted() {
                 self.bored_from_the_back(&line);
             } else {
@@ -236,21 +239,21 @@ impl<'m> Extractor<'m> {
             }
             return Some(from);
         }
-        let stands = pace == Pace::Rapid && self.force.turning == Spindle::Off;
+        let stands = pace == MotionKind::Rapid && self.force.turning == SpindleDirection::Off;
         if stands && line.leads_in() && line.shift(&tip) {
             self.line = Some(line);
             return None;
         }
         match line.after(&from, &tip) {
-            After::On => {
+            ToolExit::On => {
                 let again = match pace {
-                    Pace::Feed => {
+                    MotionKind::Feed => {
                         if line.depth_of(&from) < line.depth_of(&tip) {
                             self.note_feed(event, &mut line);
                         }
                         line.feed(&tip, event.place(), &self.at)
                     }
-                    Pace::Rapid | Pace::Probe => {
+                    MotionKind::Rapid | MotionKind::Probe => {
                         let (again, uncut) = line.rapid(&tip);
                         if uncut {
                             self.rapid_into_uncut(event, &line);
@@ -262,12 +265,12 @@ impl<'m> Extractor<'m> {
                 self.line = Some(line);
                 None
             }
-            after @ (After::Out | After::Aside { .. }) => {
-                if stands && !line.leads_in() && after != After::Out {
+            after @ (ToolExit::Out | ToolExit::Aside { .. }) => {
+                if stands && !line.leads_in() && after != ToolExit::Out {
                     self.bored_from_the_back(&line);
                 }
-                let free = if after == After::Out { line.top_between(&from, &tip) } else { from };
-                self.judge_line(line, after, pace == Pace::Feed);
+                let free = if after == ToolExit::Out { line.top_between(&from, &tip) } else { from };
+                self.report_line(line, after, pace == MotionKind::Feed);
                 Some(free)
             }
         }
@@ -275,14 +278,14 @@ impl<'m> Extractor<'m> {
 
     fn begin_line(&mut self, event: &Event<'_>, start: Point3<f64>) {
         let rounding = self.machine.increment.size() / 2.0;
-        let line = Line::begin(start, self.pose.tip, event.place(), self.at, rounding);
+        let line = CuttingLine::begin(start, self.pose.tip, event.place(), self.at, rounding);
         self.line = line.map(|line| {
             let mut line = Box::new(line);
             line.tool_axis = self.pose.axis;
-            line.force = InForce { tool: self.setup.tool, ..self.force };
+            line.force = CuttingState { tool: self.setup.tool, ..self.force };
             line.hold = self.hold;
             line.unplaced = self.placing.now();
-            line.beyond = self.beyond();
+            line.length_excess = self.length_excess();
             line.top =
                 self.surface.and_then(|s| s.exit(&line.bottom(), &line.out)).map(|p| line.depth_of(&p));
             self.note_feed(event, &mut line);
@@ -291,7 +294,7 @@ impl<'m> Extractor<'m> {
     }
 
     /// How fast a feed inwards is, where it cuts: the way to the part may be fed faster.
-    fn note_feed(&self, event: &Event<'_>, line: &mut Line) {
+    fn note_feed(&self, event: &Event<'_>, line: &mut CuttingLine) {
         let cuts = self.surface.is_none_or(|surface| surface.is_deeper(&self.pose.tip, TOUCH));
         if let EventKind::Feed { rate, .. } = event.kind
             && cuts
@@ -301,20 +304,20 @@ impl<'m> Extractor<'m> {
     }
 
     /// The table or the head turns, or an arc: the tool's way on the part is curved.
-    fn leave_curved(&mut self, event: &Event<'_>, pace: Pace, travel: &Travel<'_>) {
+    fn leave_curved(&mut self, event: &Event<'_>, pace: MotionKind, travel: &AxisMotion<'_>) {
         if let Some(line) = self.line.take() {
             let after = line.aside();
-            self.judge_line(line, after, pace == Pace::Feed);
+            self.report_line(line, after, pace == MotionKind::Feed);
         }
         match pace {
-            Pace::Rapid => self.check_curved(event, travel, Curved::Rapid),
-            Pace::Feed => self.check_curved(event, travel, Curved::Feed),
-            Pace::Probe => {}
+            MotionKind::Rapid => self.check_curved(event, travel, Curved::Rapid),
+            MotionKind::Feed => self.check_curved(event, travel, Curved::Feed),
+            MotionKind::Probe => {}
         }
-        self.look_outside();
+        self.update_outside();
     }
 
-    fn look_outside(&mut self) {
+    fn update_outside(&mut self) {
         if let (false, true, Some(surface)) = (self.outside, self.placing.now() == 0, &self.surface) {
             self.outside = surface.value(&self.pose.tip) > 0.0;
         }
@@ -329,36 +332,36 @@ impl<'m> Extractor<'m> {
         }
         if let Some(line) = self.line.take() {
             let after = line.aside();
-            self.judge_line(line, after, false);
+            self.report_line(line, after, false);
         }
         self.pose = self.machine.tool(&self.at, &self.setup).on(&self.frame);
     }
 }
 
-impl Sink for Extractor<'_> {
-    fn signal(&mut self, feed: &SkipFeed<'_>) -> Option<Signal> {
+impl EventSink for HoleExtractor<'_> {
+    fn skip_signal(&mut self, feed: &SkipMove<'_>) -> Option<SkipSignal> {
         self.probe(feed)
     }
 
     fn event(&mut self, event: &Event<'_>) {
         match event.kind {
-            EventKind::Rapid { to } => self.motion(event, Pace::Rapid, to, None),
-            EventKind::Feed { to, .. } => self.motion(event, Pace::Feed, to, None),
-            EventKind::Arc { to, arc, .. } => self.motion(event, Pace::Feed, to, Some(arc)),
-            EventKind::Skip { to, .. } => self.motion(event, Pace::Probe, to, None),
-            EventKind::Tool { number } => {
-                self.known_tool(event, *number);
+            EventKind::Rapid { to } => self.motion(event, MotionKind::Rapid, to, None),
+            EventKind::Feed { to, .. } => self.motion(event, MotionKind::Feed, to, None),
+            EventKind::Arc { to, arc, .. } => self.motion(event, MotionKind::Feed, to, Some(arc)),
+            EventKind::Skip { to, .. } => self.motion(event, MotionKind::Probe, to, None),
+            EventKind::ToolChange { number } => {
+                self.check_tool_known(event, *number);
                 self.set_up(|setup| setup.tool = Some(*number));
             }
             EventKind::ToolLength { offset, by } => {
                 self.set_up(|setup| setup.offset = *offset);
                 self.force.by = *by;
             }
-            EventKind::Unplaced { axes } => self.placing.hear(self.machine, *axes),
+            EventKind::WorkZeroUnknown { axes } => self.placing.apply_event(self.machine, *axes),
             EventKind::Spindle { turning, speed } => {
                 // At S0 it stands.
                 let before = self.force.turning;
-                self.force.turning = if *speed == Rpm(0.0) { Spindle::Off } else { *turning };
+                self.force.turning = if *speed == Rpm(0.0) { SpindleDirection::Off } else { *turning };
                 self.force.speed = *speed;
                 self.spindle_in_hole(before);
                 self.builder = None;
@@ -369,7 +372,7 @@ impl Sink for Extractor<'_> {
                 }
             }
             EventKind::Auxiliary { code } => {
-                if !self.hold(*code) {
+                if !self.apply_clamp_code(*code) {
                     self.builder = Some(*code);
                 }
             }
@@ -378,7 +381,7 @@ impl Sink for Extractor<'_> {
     }
 }
 
-impl Extracted {
+impl HoleExtraction {
     /// The document that `holes` writes; `locate` names the program and the line of a block.
     pub fn list(&self, locate: impl Fn(Span) -> (String, u32)) -> HoleList {
         let holes = self.holes.iter().map(|found| found.hole(&locate)).collect();
@@ -386,7 +389,7 @@ impl Extracted {
     }
 }
 
-impl Found {
+impl DrilledHole {
     /// In the schema that references have too; the program alone gives no id.
     pub fn hole(&self, locate: impl Fn(Span) -> (String, u32)) -> Hole {
         let (program, line) = locate(self.place.block);

@@ -1,10 +1,10 @@
 //! Motion that must not cut, and motion that is no hole: rapids through the part or beyond a cut, curved ways.
 use nalgebra::Point3;
 
-use super::Extractor;
-use super::line::Line;
+use super::HoleExtractor;
+use super::line::CuttingLine;
 use crate::diag::Diagnostic;
-use crate::machine::path::Travel;
+use crate::machine::path::AxisMotion;
 use crate::motion::Event;
 use crate::part::surface::Surface;
 
@@ -21,9 +21,9 @@ pub(super) enum Curved {
     Feed,
 }
 
-impl Extractor<'_> {
+impl HoleExtractor<'_> {
     /// After a way back, a rapid along the line ran deeper than the line was cut.
-    pub(super) fn rapid_into_uncut(&mut self, event: &Event<'_>, line: &Line) {
+    pub(super) fn rapid_into_uncut(&mut self, event: &Event<'_>, line: &CuttingLine) {
         let bottom = line.bottom();
         let inside = self.surface.map(|surface| surface.depth(&bottom));
         if inside.is_some_and(|depth| depth <= TOUCH) {
@@ -43,7 +43,7 @@ impl Extractor<'_> {
     }
 
     /// The feed ends and a rapid goes on in its direction: out of the part after a feed outwards, or deeper into it.
-    pub(super) fn judge_overrun(&mut self, event: &Event<'_>, line: &Line, to: &Point3<f64>) {
+    pub(super) fn judge_overrun(&mut self, event: &Event<'_>, line: &CuttingLine, to: &Point3<f64>) {
         // A rapid into the part is told where all rapids are.
         if self.surface.is_some() {
             return;
@@ -116,7 +116,7 @@ impl Extractor<'_> {
     }
 
     /// A motion that is curved on the part: a rapid must stay outside, a feed is no hole.
-    pub(super) fn check_curved(&mut self, event: &Event<'_>, travel: &Travel<'_>, kind: Curved) {
+    pub(super) fn check_curved(&mut self, event: &Event<'_>, travel: &AxisMotion<'_>, kind: Curved) {
         let deepest = match self.surface {
             Some(surface) if self.outside => self.deepest_on(&surface, travel),
             _ => f64::NEG_INFINITY,
@@ -153,7 +153,7 @@ impl Extractor<'_> {
     }
 
     /// How far below the surface a curved way goes; below 0 outside. Coarse chords first: most ways stay far away.
-    fn deepest_on(&self, surface: &Surface, travel: &Travel<'_>) -> f64 {
+    fn deepest_on(&self, surface: &Surface, travel: &AxisMotion<'_>) -> f64 {
         for tolerance in [40.0, 5.0, 0.5] {
             let mut last: Option<Point3<f64>> = None;
             let mut clear = true;

@@ -1,21 +1,21 @@
 //! What is a hole and what isn't, on runs written down by hand.
 use nalgebra::Point3;
 
-use super::script::Script;
-use super::{Extracted, Extractor, Found};
+use super::event_script::EventScript;
+use super::{DrilledHole, HoleExtraction, HoleExtractor};
 use crate::machine::{Head, HeadKind, Machine, Tool};
 use crate::motion::{EventKind, StopKind};
 use crate::part::surface::Surface;
 
-fn extract(machine: &Machine, surface: Option<Surface>, script: &Script) -> Extracted {
-    let mut extractor = Extractor::new(machine).with_surface(surface);
-    script.play(&mut extractor);
+fn extract(machine: &Machine, surface: Option<Surface>, script: &EventScript) -> HoleExtraction {
+    let mut extractor = HoleExtractor::new(machine).with_surface(surface);
+    script.emit_to(&mut extractor);
     extractor.finish()
 }
 
 /// The holes one a line, rounded, and the findings' codes.
-fn told(extracted: &Extracted) -> String {
-    let hole = |h: &Found| {
+fn told(extracted: &HoleExtraction) -> String {
+    let hole = |h: &DrilledHole| {
         let numbers = h.entry.iter().chain(h.axis.iter()).chain([&h.depth]);
         let numbers: Vec<_> = numbers.map(|v| format!("{:.3}", v + 0.0).replace("-0.000", "0.000")).collect();
         format!("{}{}", numbers.join(" "), h.tool.map_or(String::new(), |t| format!(" T{t}")))
@@ -24,14 +24,14 @@ fn told(extracted: &Extracted) -> String {
     holes.chain(extracted.findings.iter().map(|f| f.code.clone())).collect::<Vec<_>>().join("\n")
 }
 
-fn check(script: &Script, expected: &str) {
+fn check(script: &EventScript, expected: &str) {
     assert_eq!(told(&extract(&Machine::default(), None, script)), expected);
 }
 
 #[test]
 fn a_feed_in_and_a_rapid_out_make_a_hole() {
     check(
-        &Script::new().rapid("X5 Y6 Z2").feed("Z-10").rapid("Z2"),
+        &EventScript::new().rapid("X5 Y6 Z2").feed("Z-10").rapid("Z2"),
         "5.000 6.000 2.000 0.000 0.000 1.000 12.000",
     );
 }
@@ -39,7 +39,7 @@ fn a_feed_in_and_a_rapid_out_make_a_hole() {
 #[test]
 fn a_hole_may_be_fed_out_of_as_boring_does() {
     check(
-        &Script::new().rapid("X5 Z2").feed("Z-10").feed("Z2").rapid("X9"),
+        &EventScript::new().rapid("X5 Z2").feed("Z-10").feed("Z2").rapid("X9"),
         "5.000 0.000 2.000 0.000 0.000 1.000 12.000",
     );
 }
@@ -47,14 +47,14 @@ fn a_hole_may_be_fed_out_of_as_boring_does() {
 /// The part turned by B = 90° about +y: what the tool does along machine x happens along the part's z.
 #[test]
 fn the_hole_lies_where_the_tool_went_on_the_part() {
-    let script = Script::new().rapid("X120 Y7 B90").feed("X90").rapid("X120").rapid("B0");
+    let script = EventScript::new().rapid("X120 Y7 B90").feed("X90").rapid("X120").rapid("B0");
     check(&script, "0.000 7.000 120.000 0.000 0.000 1.000 30.000");
 }
 
 /// As G83 does: out to R after each peck, back in by rapid to just above the depth reached.
 #[test]
 fn pecks_are_one_hole() {
-    let script = Script::new()
+    let script = EventScript::new()
         .rapid("Z50")
         .rapid("Z2")
         .feed("Z-3")
@@ -70,20 +70,26 @@ fn pecks_are_one_hole() {
 
 #[test]
 fn pecks_fed_from_the_r_level_are_one_hole_too() {
-    let script = Script::new().rapid("Z2").feed("Z-3").rapid("Z2").feed("Z-6").rapid("Z50").rapid("X7");
+    let script = EventScript::new().rapid("Z2").feed("Z-3").rapid("Z2").feed("Z-6").rapid("Z50").rapid("X7");
     check(&script, "0.000 0.000 2.000 0.000 0.000 1.000 8.000");
 }
 
 #[test]
 fn the_same_depth_twice_is_a_hole_twice() {
     let one = "0.000 0.000 2.000 0.000 0.000 1.000 5.000";
-    let staying = Script::new().rapid("Z2").feed("Z-3").rapid("Z2").feed("Z-3").rapid("Z2");
+    let staying = EventScript::new().rapid("Z2").feed("Z-3").rapid("Z2").feed("Z-3").rapid("Z2");
     check(&staying, &format!("{one}\n{one}"));
-    let coming_back =
-        Script::new().rapid("Z2").feed("Z-3").rapid("Z2").rapid("X9").rapid("X0").feed("Z-3").rapid("Z2");
+    let coming_back = EventScript::new()
+        .rapid("Z2")
+        .feed("Z-3")
+        .rapid("Z2")
+        .rapid("X9")
+        .rapid("X0")
+        .feed("Z-3")
+        .rapid("Z2");
     check(&coming_back, &format!("{one}\n{one}"));
     let a_turn_later =
-        Script::new().rapid("X2 Z2").feed("Z-3").rapid("Z2").rapid("B360").feed("Z-3").rapid("Z2");
+        EventScript::new().rapid("X2 Z2").feed("Z-3").rapid("Z2").rapid("B360").feed("Z-3").rapid("Z2");
     check(&a_turn_later, &format!("{one}\n{one}").replace("0.000 0.000 2.000", "2.000 0.000 2.000"));
 }
 
@@ -91,23 +97,23 @@ fn the_same_depth_twice_is_a_hole_twice() {
 #[test]
 fn a_loop_over_one_hole_ends_with_the_limit_of_passes() {
     let machine = Machine::default();
-    let mut extractor = Extractor::new(&machine);
+    let mut extractor = HoleExtractor::new(&machine);
     extractor.most = 500;
-    Script::new().rapid("X9 Z2").rapid("X0").play(&mut extractor);
-    let once = Script::new().feed("Z-3").rapid("Z2").rapid("X9").rapid("X0");
+    EventScript::new().rapid("X9 Z2").rapid("X0").emit_to(&mut extractor);
+    let once = EventScript::new().feed("Z-3").rapid("Z2").rapid("X9").rapid("X0");
     for _ in 0..505 {
-        once.play(&mut extractor);
+        once.emit_to(&mut extractor);
     }
     let found = extractor.finish();
     assert_eq!(found.holes.len(), 500);
-    assert!(found.holes.iter().all(|hole| hole.first == 0 && (hole.depth - 5.0).abs() < 1e-9));
+    assert!(found.holes.iter().all(|hole| hole.first_on_line == 0 && (hole.depth - 5.0).abs() < 1e-9));
     let [limit] = &found.findings[..] else { panic!("{:?}", found.findings) };
     assert_eq!((limit.code.as_str(), limit.severity), ("limit", crate::diag::Severity::Alarm));
 }
 
 #[test]
 fn two_tools_on_one_line_are_one_hole_as_deep_as_the_deeper() {
-    let script = Script::new()
+    let script = EventScript::new()
         .tool(1)
         .rapid("X1 Z5")
         .feed("Z-12")
@@ -130,7 +136,7 @@ fn two_tools_on_one_line_are_one_hole_as_deep_as_the_deeper() {
 fn the_largest_tool_that_goes_deep_finishes_the_hole() {
     let tool = |number, diameter| Tool { number, length: None, diameter: Some(diameter) };
     let machine = Machine { tools: vec![tool(1, 6.0), tool(2, 5.9), tool(3, 20.0)], ..Machine::default() };
-    let script = Script::new()
+    let script = EventScript::new()
         .tool(2)
         .rapid("Z2")
         .feed("Z-15")
@@ -149,24 +155,29 @@ fn the_largest_tool_that_goes_deep_finishes_the_hole() {
 #[test]
 fn a_feed_that_is_not_retraced_is_no_hole_and_is_told() {
     check(
-        &Script::new().rapid("Z2").feed("X50").feed("Z-5").rapid("Z2"),
+        &EventScript::new().rapid("Z2").feed("X50").feed("Z-5").rapid("Z2"),
         "50.000 0.000 2.000 0.000 0.000 1.000 7.000\nfeed-without-retract",
     );
-    check(&Script::new().rapid("Z2").feed("Z-5").rapid("X50"), "feed-without-retract");
+    check(&EventScript::new().rapid("Z2").feed("Z-5").rapid("X50"), "feed-without-retract");
 }
 
 #[test]
 fn a_feed_outwards_that_a_rapid_goes_on_with_is_no_hole_and_is_told() {
-    check(&Script::new().rapid("Z-5 X9").feed("Z2").rapid("Z50"), "rapid-beyond-cut");
-    let out_of_the_ball =
-        Script::new().rapid("X150").feed("X150 Y150").rapid("Y200").rapid("X20").feed("Y150").rapid("Y250");
+    check(&EventScript::new().rapid("Z-5 X9").feed("Z2").rapid("Z50"), "rapid-beyond-cut");
+    let out_of_the_ball = EventScript::new()
+        .rapid("X150")
+        .feed("X150 Y150")
+        .rapid("Y200")
+        .rapid("X20")
+        .feed("Y150")
+        .rapid("Y250");
     assert_eq!(on_the_ball(out_of_the_ball), "20.000 200.000 0.000 0.000 1.000 0.000 50.000");
 }
 
 /// Each end point is rounded: the way out isn't exactly on the line that the way in drew.
 #[test]
 fn rounded_points_stay_on_their_line() {
-    let script = Script::new()
+    let script = EventScript::new()
         .rapid("X100.033 Y200.057")
         .feed("X99 Y198.268")
         .feed("X92.533 Y187.067")
@@ -178,7 +189,7 @@ fn rounded_points_stay_on_their_line() {
 
 #[test]
 fn an_arc_and_a_turning_table_make_no_hole() {
-    let script = Script::new().rapid("X50 Y5").feed("X40 B30").rapid("X50");
+    let script = EventScript::new().rapid("X50 Y5").feed("X40 B30").rapid("X50");
     check(&script, "feed-no-hole");
 }
 
@@ -187,7 +198,7 @@ fn the_head_set_by_the_operator_gives_the_axis() {
     let machine = Machine::default();
     // 30° from x towards y: the feed goes 20 mm along (cos 30°, sin 30°).
     let script =
-        Script::new().head(30.0).rapid("X100 Y100").feed("X82.679 Y90").rapid("X100 Y100").rapid("B5");
+        EventScript::new().head(30.0).rapid("X100 Y100").feed("X82.679 Y90").rapid("X100 Y100").rapid("B5");
     let found = extract(&machine, None, &script);
     assert_eq!(told(&found), "100.000 100.000 0.000 0.866 0.500 0.000 20.000");
 }
@@ -195,7 +206,7 @@ fn the_head_set_by_the_operator_gives_the_axis() {
 #[test]
 fn a_feed_beside_the_tool_is_a_finding_and_the_hole_has_the_tools_axis() {
     let script =
-        Script::new().head(30.7).rapid("X100 Y100").feed("X82.679 Y90").rapid("X100 Y100").rapid("B5");
+        EventScript::new().head(30.7).rapid("X100 Y100").feed("X82.679 Y90").rapid("X100 Y100").rapid("B5");
     let found = extract(&Machine::default(), None, &script);
     assert_eq!(found.findings.len(), 1);
     // The rounded end point stands at 29.9993°, 0.7007° away; 20·sin 0.7007° = 0.2446.
@@ -216,7 +227,7 @@ fn a_feed_beside_the_tool_is_a_finding_and_the_hole_has_the_tools_axis() {
 #[test]
 fn a_head_nobody_has_set_is_an_error() {
     let machine = Machine { head: Head::new(HeadKind::Manual { start: None }, 0.0), ..Machine::default() };
-    let script = Script::new().rapid("Z2").feed("Z-5").rapid("Z2");
+    let script = EventScript::new().rapid("Z2").feed("Z-5").rapid("Z2");
     let found = extract(&machine, None, &script);
     assert!(told(&found).ends_with("head-not-set"), "{}", told(&found));
 }
@@ -229,7 +240,7 @@ fn a_message_about_something_else_sets_no_head() {
         told(&extract(
             &Machine::default(),
             None,
-            &Script::new().with(stop).rapid("Z2").feed("Z-5").rapid("Z2"),
+            &EventScript::new().with(stop).rapid("Z2").feed("Z-5").rapid("Z2"),
         ))
     };
     let drilled = "0.000 0.000 2.000 0.000 0.000 1.000 7.000";
@@ -241,60 +252,60 @@ fn a_message_about_something_else_sets_no_head() {
 fn a_message_that_names_no_angle_leaves_the_head_as_it_is() {
     use crate::motion::{EventKind, StopKind};
     let message = EventKind::Stop { kind: StopKind::Message, text: "SET HEAD".into(), named: vec![] };
-    check(&Script::new().with(message), "head-message-unclear");
+    check(&EventScript::new().with(message), "head-message-unclear");
 }
 
 #[test]
 fn the_spindle_must_turn() {
-    let script = Script::default().rapid("Z2").feed("Z-5").rapid("Z2");
+    let script = EventScript::default().rapid("Z2").feed("Z-5").rapid("Z2");
     check(&script, "0.000 0.000 2.000 0.000 0.000 1.000 7.000\nspindle-stopped");
 }
 
 #[test]
 fn axes_that_carry_nothing_are_told_once_a_block() {
-    check(&Script::new().rapid("A5").rapid("C7"), "axis-carries-nothing\naxis-carries-nothing");
+    check(&EventScript::new().rapid("A5").rapid("C7"), "axis-carries-nothing\naxis-carries-nothing");
 }
 
 #[test]
 fn a_tool_that_is_not_in_the_table_is_told() {
     let machine =
         Machine { tools: vec![Tool { number: 1, length: None, diameter: None }], ..Machine::default() };
-    assert_eq!(told(&extract(&machine, None, &Script::new().tool(1).tool(5).tool(0))), "tool-unknown");
+    assert_eq!(told(&extract(&machine, None, &EventScript::new().tool(1).tool(5).tool(0))), "tool-unknown");
 }
 
 const BALL: Option<Surface> = Some(Surface::Ellipsoid { a: 100.0, b: 100.0 });
 
-fn on_the_ball(script: Script) -> String {
+fn on_the_ball(script: EventScript) -> String {
     told(&extract(&Machine::default(), BALL, &script))
 }
 
 #[test]
 fn a_rapid_through_the_part_is_an_error() {
-    let home_first = Script::new().rapid("Y150");
+    let home_first = EventScript::new().rapid("Y150");
     assert_eq!(on_the_ball(home_first), "", "where the tool stood before it was outside, nobody knows");
-    let through = Script::new().rapid("X-150").rapid("X150 Y5");
+    let through = EventScript::new().rapid("X-150").rapid("X150 Y5");
     assert_eq!(on_the_ball(through), "rapid-into-part");
-    let round = Script::new().rapid("Y150").rapid("X150").rapid("B90");
+    let round = EventScript::new().rapid("Y150").rapid("X150").rapid("B90");
     assert_eq!(on_the_ball(round), "");
 }
 
 #[test]
 fn a_rapid_to_below_the_surface_before_the_feed_is_an_error() {
-    let script = Script::new().rapid("Y150").rapid("Y99.5").feed("Y85").rapid("Y150");
+    let script = EventScript::new().rapid("Y150").rapid("Y99.5").feed("Y85").rapid("Y150");
     assert_eq!(on_the_ball(script), "0.000 99.500 0.000 0.000 1.000 0.000 14.500\nrapid-into-part");
 }
 
 /// The head half a turn round: the shank would go in first.
 #[test]
 fn a_feed_into_the_part_against_the_tool_is_an_error() {
-    let script = Script::new().head(270.0).rapid("Y150").feed("Y85").rapid("Y150");
+    let script = EventScript::new().head(270.0).rapid("Y150").feed("Y85").rapid("Y150");
     let said = on_the_ball(script);
     assert!(said.ends_with("feed-not-along-tool"), "{said}");
 }
 
 #[test]
 fn drilling_and_coming_back_out_is_no_rapid_through_the_part() {
-    let script = Script::new()
+    let script = EventScript::new()
         .rapid("Y150")
         .rapid("Y102")
         .feed("Y95")
@@ -309,7 +320,7 @@ fn drilling_and_coming_back_out_is_no_rapid_through_the_part() {
 
 #[test]
 fn a_rapid_deeper_than_the_pecks_have_cut_is_an_error() {
-    let script = Script::new()
+    let script = EventScript::new()
         .rapid("Y150")
         .rapid("Y102")
         .feed("Y95")
@@ -322,17 +333,22 @@ fn a_rapid_deeper_than_the_pecks_have_cut_is_an_error() {
 
 #[test]
 fn turning_the_table_with_the_tool_in_the_hole_is_an_error() {
-    let script =
-        Script::new().rapid("X20 Y150").rapid("Y102").feed("Y90").rapid("Y96").rapid("B30").rapid("Y150");
+    let script = EventScript::new()
+        .rapid("X20 Y150")
+        .rapid("Y102")
+        .feed("Y90")
+        .rapid("Y96")
+        .rapid("B30")
+        .rapid("Y150");
     let said = on_the_ball(script);
     assert!(said.contains("leaves-hole-sideways") && said.contains("rapid-into-part"), "{said}");
 }
 
 #[test]
 fn not_coming_out_at_all_is_an_error_where_the_surface_is_known() {
-    let script = Script::new().rapid("X20 Y150").rapid("Y102").feed("Y90").rapid("B30").rapid("Y150");
+    let script = EventScript::new().rapid("X20 Y150").rapid("Y102").feed("Y90").rapid("B30").rapid("Y150");
     let said = on_the_ball(script);
     assert!(said.contains("feed-without-retract"), "{said}");
-    let in_the_air = Script::new().rapid("Y150").feed("X40").rapid("Y200");
+    let in_the_air = EventScript::new().rapid("Y150").feed("X40").rapid("Y200");
     assert_eq!(on_the_ball(in_the_air), "");
 }

@@ -17,7 +17,7 @@ use toml::Value;
 
 use super::JobError;
 use super::reader::{Reader, Spanned};
-use crate::control::{ADDRESSES, CodeCalls, FAMILIES, RANGES, ROWS, Row, Settings, Values};
+use crate::control::{ADDRESSES, CodeCalls, FAMILIES, RANGES, ROWS, SettingRow, SettingValues, Settings};
 
 /// Sets what the text of a control file says, the family of controls first and the rest in the order of the file.
 ///
@@ -77,13 +77,15 @@ impl JsonSchema for ControlFile {
     }
 }
 
-fn setting(row: &Row) -> serde_json::Value {
+fn setting(row: &SettingRow) -> serde_json::Value {
     let mut schema = match row.values {
-        Values::Switch => switch(),
-        Values::Words(words) => json!({ "type": "string", "enum": words() }),
-        Values::Whole(least, most) => json!({ "type": "integer", "minimum": least, "maximum": most }),
-        Values::Number(least, most, _) => json!({ "type": "number", "minimum": least, "maximum": most }),
-        Values::Text(pattern, _) => json!({ "type": "string", "pattern": pattern }),
+        SettingValues::Switch => switch(),
+        SettingValues::Words(words) => json!({ "type": "string", "enum": words() }),
+        SettingValues::Whole(least, most) => json!({ "type": "integer", "minimum": least, "maximum": most }),
+        SettingValues::Number(least, most, _) => {
+            json!({ "type": "number", "minimum": least, "maximum": most })
+        }
+        SettingValues::Text(pattern, _) => json!({ "type": "string", "pattern": pattern }),
     };
     schema["description"] = format!("{} [{}]", row.meaning, row.values).into();
     schema

@@ -22,12 +22,12 @@ pub use burr::{
 };
 pub use honeycomb::{Clamp, CombMachine, Cylinder, Drill, Honeycomb, Metric, Spacing};
 pub use pin_holes::{
-    AxisDirection, Head, HeadKind, HoleWanted, MacroSettings, PinHoles, PinMachine, Surface, Tool,
+    AxisDirection, Head, HeadKind, HoleSpec, MacroSettings, PinHoles, PinMachine, Surface, Tool,
 };
 pub use reader::JobError;
 use reader::{Reader, Spanned};
 pub(crate) use sheet::FileRates;
-pub use sheet::{Beside, Minutes, Rates, SheetWords};
+pub use sheet::{AlternativeMachine, Minutes, Rates, SheetInfo};
 
 use crate::control::{Dialect, Increment};
 
@@ -115,7 +115,7 @@ impl Job {
     }
 
     /// What the set-up sheet says beside what follows from the job.
-    pub fn sheet(&self) -> &SheetWords {
+    pub fn sheet(&self) -> &SheetInfo {
         match self {
             Self::PinHoles(job) => &job.sheet,
             Self::Honeycomb(job) => &job.sheet,

@@ -49,9 +49,9 @@ impl<T: JsonSchema> JsonSchema for Spanned<T> {
 
 /// So many values in brackets, and not one more: an array of serde's would leave the rest out in silence.
 #[derive(Clone, Debug)]
-pub(crate) struct Exactly<T, const N: usize>(pub(crate) [T; N]);
+pub(crate) struct FixedArray<T, const N: usize>(pub(crate) [T; N]);
 
-impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for Exactly<T, N> {
+impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for FixedArray<T, N> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let values = Vec::deserialize(deserializer)?;
         let wrong = |values: Vec<T>| D::Error::invalid_length(values.len(), &format!("{N}").as_str());
@@ -59,7 +59,7 @@ impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for Exactly<T, N
     }
 }
 
-impl<T: JsonSchema, const N: usize> JsonSchema for Exactly<T, N> {
+impl<T: JsonSchema, const N: usize> JsonSchema for FixedArray<T, N> {
     fn inline_schema() -> bool {
         true
     }

@@ -7,7 +7,7 @@ use super::sections::within;
 
 /// What only people know of a job. Whatever is left out stands empty on the sheet, to be filled in by hand.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct SheetWords {
+pub struct SheetInfo {
     pub part: Option<String>,
     pub drawing: Option<String>,
     pub revision: Option<String>,
@@ -35,12 +35,12 @@ pub struct Rates {
     pub currency: String,
     /// A machine hour.
     pub rate: f64,
-    pub beside: Vec<Beside>,
+    pub beside: Vec<AlternativeMachine>,
 }
 
 /// The same part on another machine. Times that are left out are taken to be the same.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Beside {
+pub struct AlternativeMachine {
     pub machine: String,
     /// A machine hour, in the same currency.
     pub rate: f64,
@@ -126,13 +126,13 @@ struct FileBeside {
 
 impl FileSheet {
     /// The section of a job; a job without it has nothing to say.
-    pub(super) fn of(section: Option<Self>, reader: &Reader<'_>) -> Result<SheetWords, JobError> {
-        section.map_or_else(|| Ok(SheetWords::default()), |sheet| sheet.check(reader))
+    pub(super) fn of(section: Option<Self>, reader: &Reader<'_>) -> Result<SheetInfo, JobError> {
+        section.map_or_else(|| Ok(SheetInfo::default()), |sheet| sheet.check(reader))
     }
 
-    fn check(self, reader: &Reader<'_>) -> Result<SheetWords, JobError> {
+    fn check(self, reader: &Reader<'_>) -> Result<SheetInfo, JobError> {
         let minutes = |key: &str, value: &Option<_>| minutes(reader, "sheet.", key, value.as_ref());
-        Ok(SheetWords {
+        Ok(SheetInfo {
             minutes: Minutes {
                 setup: minutes("setup_minutes", &self.setup_minutes)?,
                 stop: minutes("stop_minutes", &self.stop_minutes)?,
@@ -163,9 +163,9 @@ impl FileRates {
 }
 
 impl FileBeside {
-    fn check(self, reader: &Reader<'_>, prefix: &str) -> Result<Beside, JobError> {
+    fn check(self, reader: &Reader<'_>, prefix: &str) -> Result<AlternativeMachine, JobError> {
         let minutes = |key: &str, value: &Option<_>| minutes(reader, prefix, key, value.as_ref());
-        Ok(Beside {
+        Ok(AlternativeMachine {
             rate: rate(reader, prefix, &self.rate)?,
             run: minutes("run_minutes", &self.run_minutes)?,
             minutes: Minutes {
@@ -201,14 +201,14 @@ mod tests {
     const BURR: &str = "family = \"burr\"\n[burr]\ndiameter = 12.0\nlength = 25.0\nflutes = 16\nhelix = 20.0\n\
                         law = \"published\"\ntip_angle = 5.0\nchord_error = 0.002\n[machine]\nc_offset = [40.0, -15.0]\n";
 
-    fn words(section: &str) -> Result<SheetWords, String> {
+    fn words(section: &str) -> Result<SheetInfo, String> {
         Job::parse(&format!("{BURR}{section}")).map(|job| job.sheet().clone()).map_err(|e| e.to_string())
     }
 
     #[test]
     fn a_job_may_say_nothing() {
-        assert_eq!(words("").unwrap(), SheetWords::default());
-        assert_eq!(words("[sheet]\n").unwrap(), SheetWords::default());
+        assert_eq!(words("").unwrap(), SheetInfo::default());
+        assert_eq!(words("[sheet]\n").unwrap(), SheetInfo::default());
     }
 
     #[test]
@@ -222,8 +222,12 @@ mod tests {
         assert_eq!(words.minutes, Minutes { setup: Some(20.0), stop: Some(0.0), tool_change: None });
         let rates = words.rates.unwrap();
         assert_eq!((rates.currency.as_str(), rates.rate), ("CNY", 250.0));
-        let other =
-            Beside { machine: "other".into(), rate: 1000.0, run: Some(4.5), minutes: Minutes::default() };
+        let other = AlternativeMachine {
+            machine: "other".into(),
+            rate: 1000.0,
+            run: Some(4.5),
+            minutes: Minutes::default(),
+        };
         assert_eq!(rates.beside, [other]);
     }
 

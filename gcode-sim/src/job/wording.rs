@@ -4,7 +4,7 @@ use std::ops::Range;
 /// Rewords `message`, which is about the bytes `span` of `text`.
 pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> String {
     // What the root lacks is reported at no byte at all.
-    let place = span.filter(|s| !s.is_empty()).map(|s| Place::of(text, s.start)).unwrap_or_default();
+    let place = span.filter(|s| !s.is_empty()).map(|s| KeyPath::of(text, s.start)).unwrap_or_default();
     if let Some(field) = quoted(message, "missing field ") {
         let name = place.inside(field);
         // The one list of tables that a job can't do without.
@@ -44,14 +44,14 @@ fn quoted<'m>(message: &'m str, before: &str) -> Option<&'m str> {
 
 /// Which table and which key a line is about.
 #[derive(Default)]
-struct Place {
+struct KeyPath {
     /// `surface` in `[surface]`, `hole` in `[[hole]]`; empty before the first.
     table: String,
     /// The key the line sets; `None` where it is a table's header.
     key: Option<String>,
 }
 
-impl Place {
+impl KeyPath {
     fn of(text: &str, offset: usize) -> Self {
         let mut place = Self::default();
         let mut end = 0;

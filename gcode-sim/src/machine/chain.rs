@@ -2,23 +2,23 @@
 use nalgebra::{Point3, Rotation3, Translation3, Unit, Vector3};
 
 use super::Frame;
-use super::error::Wave;
-use crate::motion::{Axes, Axis, Position};
+use super::error::PeriodicError;
+use crate::motion::{Axes, AxisIndex, Position};
 use crate::units::Deg;
 
 /// Axes that stand on one another, from the bed outwards.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Chain(pub Vec<Link>);
+pub struct Chain(pub Vec<AxisLink>);
 
 /// One axis of a chain.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Link {
-    pub axis: Axis,
+pub struct AxisLink {
+    pub axis: AxisIndex,
     pub motion: LinkMotion,
     /// 1 or −1: which way a positive command goes.
     pub sign: f64,
     /// How far beyond its commanded place the axis stands, counted as commands are.
-    pub error: Wave,
+    pub error: PeriodicError,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -34,13 +34,13 @@ pub(super) fn turn(about: &Unit<Vector3<f64>>, angle: Deg) -> Rotation3<f64> {
     Rotation3::from_axis_angle(about, angle.to_rad())
 }
 
-impl Link {
-    pub fn turn(axis: Axis, about: Unit<Vector3<f64>>, centre: Point3<f64>, sign: f64) -> Self {
-        Self { axis, motion: LinkMotion::Turn { about, centre }, sign, error: Wave::default() }
+impl AxisLink {
+    pub fn turn(axis: AxisIndex, about: Unit<Vector3<f64>>, centre: Point3<f64>, sign: f64) -> Self {
+        Self { axis, motion: LinkMotion::Turn { about, centre }, sign, error: PeriodicError::default() }
     }
 
-    pub fn slide(axis: Axis, along: Unit<Vector3<f64>>, sign: f64) -> Self {
-        Self { axis, motion: LinkMotion::Slide { along }, sign, error: Wave::default() }
+    pub fn slide(axis: AxisIndex, along: Unit<Vector3<f64>>, sign: f64) -> Self {
+        Self { axis, motion: LinkMotion::Slide { along }, sign, error: PeriodicError::default() }
     }
 
     /// Where what stands on the link is, on a link that stands at `frame`.
@@ -59,14 +59,14 @@ impl Link {
 
 impl Chain {
     /// The sign of an axis that turns; `None` where the chain has no such axis.
-    pub fn turns(&self, axis: Axis) -> Option<f64> {
-        let turns = |link: &&Link| link.axis == axis && matches!(link.motion, LinkMotion::Turn { .. });
+    pub fn turns(&self, axis: AxisIndex) -> Option<f64> {
+        let turns = |link: &&AxisLink| link.axis == axis && matches!(link.motion, LinkMotion::Turn { .. });
         self.0.iter().find(turns).map(|link| link.sign)
     }
 
     /// The table of the paper's machine: B turns the part about y through its origin, if the control has a B.
     pub fn of_the_paper(axes: &Axes, origin: Point3<f64>) -> Self {
-        let b = axes.find(b'B').map(|axis| Link::turn(axis, Vector3::y_axis(), origin, 1.0));
+        let b = axes.find(b'B').map(|axis| AxisLink::turn(axis, Vector3::y_axis(), origin, 1.0));
         Self(b.into_iter().collect())
     }
 
@@ -77,7 +77,7 @@ impl Chain {
         Self(
             found
                 .filter(|(axis, _)| !table.has(*axis))
-                .map(|(axis, along)| Link::slide(axis, along, 1.0))
+                .map(|(axis, along)| AxisLink::slide(axis, along, 1.0))
                 .collect(),
         )
     }
@@ -95,7 +95,7 @@ impl Chain {
         })
     }
 
-    pub fn has(&self, axis: Axis) -> bool {
+    pub fn has(&self, axis: AxisIndex) -> bool {
         self.0.iter().any(|link| link.axis == axis)
     }
 
@@ -113,7 +113,7 @@ impl Chain {
     }
 
     /// The axes that turn what stands on the chain.
-    pub fn turning(&self) -> impl Iterator<Item = Axis> + '_ {
+    pub fn turning(&self) -> impl Iterator<Item = AxisIndex> + '_ {
         let turns = self.0.iter().filter(|link| matches!(link.motion, LinkMotion::Turn { .. }));
         turns.map(|link| link.axis)
     }
@@ -131,7 +131,7 @@ mod tests {
 
     #[test]
     fn a_table_turns_about_its_own_centre() {
-        let chain = Chain(vec![Link::turn(0, Vector3::z_axis(), Point3::new(10.0, 0.0, 0.0), 1.0)]);
+        let chain = Chain(vec![AxisLink::turn(0, Vector3::z_axis(), Point3::new(10.0, 0.0, 0.0), 1.0)]);
         let mut at = Position::default();
         at[0] = 90.0;
         let there = chain.frame(&at) * Point3::new(12.0, 0.0, 5.0);
@@ -142,8 +142,8 @@ mod tests {
     #[test]
     fn what_stands_on_a_slide_moves_with_it() {
         let chain = Chain(vec![
-            Link::slide(0, Vector3::x_axis(), 1.0),
-            Link::turn(1, Vector3::z_axis(), Point3::origin(), -1.0),
+            AxisLink::slide(0, Vector3::x_axis(), 1.0),
+            AxisLink::turn(1, Vector3::z_axis(), Point3::origin(), -1.0),
         ]);
         let mut at = Position::default();
         at[0] = 7.0;

@@ -1,10 +1,10 @@
 //! What a machine and a set-up are off by: how an error is distributed, and how it goes on from place to place.
-use super::random::Draw;
+use super::random::RandomStream;
 use crate::units::Deg;
 
 /// How one error is distributed; lengths in mm, angles in degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Spread {
+pub enum Distribution {
     /// Always this value: known, and not corrected.
     Fixed(f64),
     /// Gaussian round 0 with this standard deviation.
@@ -13,8 +13,8 @@ pub enum Spread {
     Uniform(f64),
 }
 
-impl Spread {
-    pub fn draw(self, draw: Draw) -> f64 {
+impl Distribution {
+    pub fn draw(self, draw: RandomStream) -> f64 {
         match self {
             Self::Fixed(value) => value,
             Self::Normal(deviation) => deviation * draw.normal(),
@@ -33,7 +33,7 @@ impl Spread {
 
 /// An error as a function of where an axis stands: a level, and a wave upon it. The default is no error.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wave {
+pub struct PeriodicError {
     pub level: f64,
     pub swing: f64,
     pub phase: Deg,
@@ -41,13 +41,13 @@ pub struct Wave {
     pub length: f64,
 }
 
-impl Default for Wave {
+impl Default for PeriodicError {
     fn default() -> Self {
         Self { level: 0.0, swing: 0.0, phase: Deg::ZERO, length: 360.0 }
     }
 }
 
-impl Wave {
+impl PeriodicError {
     pub fn level(level: f64) -> Self {
         Self { level, ..Self::default() }
     }
@@ -56,11 +56,11 @@ impl Wave {
     ///
     /// A normal one: the two coordinates of a normally distributed point of the plane, turned by the place, stay
     /// normal. A uniform one: every coordinate of a point evenly on a sphere is uniform (Archimedes).
-    pub fn drawn(spread: Spread, length: f64, draw: Draw) -> Self {
+    pub fn drawn(spread: Distribution, length: f64, draw: RandomStream) -> Self {
         let (level, swing) = match spread {
-            Spread::Fixed(value) => (value, 0.0),
-            Spread::Normal(deviation) => (0.0, deviation * draw.at(0).radius()),
-            Spread::Uniform(most) => {
+            Distribution::Fixed(value) => (value, 0.0),
+            Distribution::Normal(deviation) => (0.0, deviation * draw.at(0).radius()),
+            Distribution::Uniform(most) => {
                 let height = 2.0 * draw.at(0).unit() - 1.0;
                 (0.0, most * (1.0 - height * height).sqrt())
             }
@@ -85,8 +85,11 @@ mod tests {
     #[test]
     fn at_every_place_an_error_is_distributed_as_the_file_says() {
         for place in [0.0, 123.456, -900.0] {
-            for (spread, quartile) in [(Spread::Normal(0.01), 0.006_745), (Spread::Uniform(0.01), 0.005)] {
-                let errors = (0..200_000).map(|n| Wave::drawn(spread, 500.0, Draw::new(n)).at(place));
+            for (spread, quartile) in
+                [(Distribution::Normal(0.01), 0.006_745), (Distribution::Uniform(0.01), 0.005)]
+            {
+                let errors =
+                    (0..200_000).map(|n| PeriodicError::drawn(spread, 500.0, RandomStream::new(n)).at(place));
                 let mut errors: Vec<f64> = errors.collect();
                 errors.sort_by(f64::total_cmp);
                 for (part, expected) in [(50_000, -quartile), (100_000, 0.0), (150_000, quartile)] {
@@ -96,17 +99,17 @@ mod tests {
                         errors[part]
                     );
                 }
-                assert!(spread != Spread::Uniform(0.01) || errors[199_999] <= 0.01);
+                assert!(spread != Distribution::Uniform(0.01) || errors[199_999] <= 0.01);
             }
         }
     }
 
     #[test]
     fn a_wave_repeats_after_its_length_and_a_fixed_error_is_the_same_everywhere() {
-        let wave = Wave::drawn(Spread::Normal(0.02), 500.0, Draw::new(3));
+        let wave = PeriodicError::drawn(Distribution::Normal(0.02), 500.0, RandomStream::new(3));
         assert!((wave.at(17.0) - wave.at(517.0)).abs() < 1e-12);
         assert!((wave.at(17.0) + wave.at(267.0)).abs() < 1e-12, "half a wave on it is the opposite");
-        let fixed = Wave::drawn(Spread::Fixed(-0.02), 500.0, Draw::new(3));
+        let fixed = PeriodicError::drawn(Distribution::Fixed(-0.02), 500.0, RandomStream::new(3));
         assert_eq!((fixed.at(0.0), fixed.at(123.0)), (-0.02, -0.02));
     }
 }

@@ -2,8 +2,8 @@
 use nalgebra::{Unit, Vector3};
 
 use super::Setup;
-use super::error::Wave;
-use crate::motion::{Axis, Position};
+use super::error::PeriodicError;
+use crate::motion::{AxisIndex, Position};
 use crate::units::Deg;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -12,7 +12,7 @@ pub struct Head {
     /// From the pivot to the spindle's gauge line.
     pub pivot: f64,
     /// How far beyond its angle a head that turns stands.
-    pub error: Wave,
+    pub error: PeriodicError,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -24,7 +24,7 @@ pub enum HeadKind {
     /// Set by hand at an operator stop, in the plane of X and Y; `start` is how it stands before.
     Manual { start: Option<Deg> },
     /// An axis of the control, in the plane of X and Y: at 0 the tool stands at the angle `zero`.
-    Axis { axis: Axis, sign: f64, zero: Deg },
+    Axis { axis: AxisIndex, sign: f64, zero: Deg },
 }
 
 /// What a message to the operator asks of the head.
@@ -53,7 +53,7 @@ impl HeadMessage {
 
 impl Head {
     pub fn new(kind: HeadKind, pivot: f64) -> Self {
-        Self { kind, pivot, error: Wave::default() }
+        Self { kind, pivot, error: PeriodicError::default() }
     }
 
     /// From the tip to the spindle. An angle h counts from +x towards +y: (cos h, sin h, 0).

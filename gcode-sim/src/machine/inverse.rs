@@ -98,7 +98,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::machine::{Head, Link, Placement};
+    use crate::machine::{AxisLink, Head, Placement};
 
     proptest! {
         /// Forward is the definition: what inverse answers must bring the tool there.
@@ -111,7 +111,7 @@ mod tests {
             tilt in -2.0..2.0,
         ) {
             let mut machine = Machine::default();
-            machine.table.0 = vec![Link::turn(4, Vector3::y_axis(), Point3::new(cx, 3.0, cz), sign)];
+            machine.table.0 = vec![AxisLink::turn(4, Vector3::y_axis(), Point3::new(cx, 3.0, cz), sign)];
             machine.part = Placement {
                 origin: Point3::new(cx, 7.0, cz),
                 shift: Vector3::new(0.1, -0.2, 0.3),
@@ -167,7 +167,7 @@ mod tests {
     fn a_fixed_head_needs_the_table_alone_for_a_radial_hole() {
         let mut machine = Machine::default();
         machine.head.kind = HeadKind::Fixed(Vector3::z_axis());
-        machine.table.0 = vec![Link::turn(3, Vector3::x_axis(), Point3::origin(), 1.0)];
+        machine.table.0 = vec![AxisLink::turn(3, Vector3::x_axis(), Point3::origin(), 1.0)];
         let out = Unit::new_unchecked(Vector3::new(0.0, Deg(50.0).sin(), Deg(50.0).cos()));
         let tip = Point3::from(out.into_inner() * 250.0 + Vector3::x() * 20.0);
         let found = machine.inverse(tip, out, &Setup::default());

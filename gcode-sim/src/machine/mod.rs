@@ -3,9 +3,9 @@
 mod chain;
 pub mod error;
 mod file;
+mod from_job;
 mod head;
 mod inverse;
-mod of_job;
 pub mod path;
 mod probe;
 pub mod random;
@@ -15,7 +15,7 @@ mod wheel;
 
 use nalgebra::{IsometryMatrix3, Point3, Translation3, Unit, Vector3};
 
-pub use chain::{Chain, Link, LinkMotion};
+pub use chain::{AxisLink, Chain, LinkMotion};
 pub use file::error_file;
 pub(crate) use file::{ErrorFile, File as MachineFile};
 pub use head::{Head, HeadKind, HeadMessage};
@@ -23,7 +23,7 @@ pub use probe::Probe;
 pub use wheel::Wheel;
 
 use crate::control::{Dialect, Increment};
-use crate::motion::{Axes, Axis, Position};
+use crate::motion::{Axes, AxisIndex, Position};
 use crate::units::Deg;
 
 /// Turns and shifts a point; lengths in mm.
@@ -62,7 +62,7 @@ pub struct Tool {
 pub struct WorkOffset {
     /// 54 to 59.
     pub code: u32,
-    pub values: Vec<(Axis, f64)>,
+    pub values: Vec<(AxisIndex, f64)>,
 }
 
 /// Where the part stands on its table.
@@ -179,7 +179,7 @@ impl Machine {
     }
 
     /// Whether the axis moves the tool or the part.
-    pub fn carries(&self, axis: Axis) -> bool {
+    pub fn carries(&self, axis: AxisIndex) -> bool {
         let head = matches!(self.head.kind, HeadKind::Axis { axis: head, .. } if head == axis);
         let wheel = self.wheel.is_some_and(|wheel| wheel.swivels.is_some_and(|(swivel, _)| swivel == axis));
         head || wheel || self.table.has(axis) || self.slides.has(axis)

@@ -2,20 +2,20 @@
 //! doesn't.
 use nalgebra::Point3;
 
-use super::error::Wave;
+use super::error::PeriodicError;
 use super::{HeadKind, LinkMotion, Machine, Pose, Setup};
-use crate::motion::{Arc2, Position};
+use crate::motion::{PlanarArc, Position};
 use crate::units::Deg;
 
 /// One motion of the axes: straight in axis space, or an arc in the plane of two of them.
 #[derive(Clone, Copy, Debug)]
-pub struct Travel<'a> {
+pub struct AxisMotion<'a> {
     pub from: &'a Position,
     pub to: &'a Position,
-    pub arc: Option<&'a Arc2>,
+    pub arc: Option<&'a PlanarArc>,
 }
 
-impl Travel<'_> {
+impl AxisMotion<'_> {
     /// Where the axes stand after the part `t` of the motion, 0 to 1.
     pub fn position(&self, t: f64) -> Position {
         let mut at = *self.from;
@@ -43,7 +43,7 @@ impl Travel<'_> {
 impl Machine {
     /// Tells `each` the tool's poses on the part along a motion, the first at its start, so close together that
     /// the path strays from the chord between two of them by no more than `tolerance` mm.
-    pub fn follow(&self, travel: &Travel<'_>, setup: &Setup, tolerance: f64, mut each: impl FnMut(Pose)) {
+    pub fn follow(&self, travel: &AxisMotion<'_>, setup: &Setup, tolerance: f64, mut each: impl FnMut(Pose)) {
         let steps = self.steps(travel, setup, tolerance);
         for step in 0..=steps {
             let at = travel.position(f64::from(step) / f64::from(steps));
@@ -52,11 +52,11 @@ impl Machine {
     }
 
     /// Whether the tool goes straight on the part: neither the table nor the head turns, and no arc.
-    pub fn is_straight(&self, travel: &Travel<'_>) -> bool {
+    pub fn is_straight(&self, travel: &AxisMotion<'_>) -> bool {
         travel.arc.is_none() && self.turn(travel) == Deg::ZERO
     }
 
-    fn turn(&self, travel: &Travel<'_>) -> Deg {
+    fn turn(&self, travel: &AxisMotion<'_>) -> Deg {
         let head = match self.head.kind {
             HeadKind::Axis { axis, .. } => Deg(travel.to[axis] - travel.from[axis]).abs(),
             HeadKind::Free | HeadKind::Fixed(_) | HeadKind::Manual { .. } => Deg::ZERO,
@@ -67,7 +67,7 @@ impl Machine {
     /// A path p(t) strays from its chord by at most |p''|·Δt²/8. With the table and the head turning by γ in all,
     /// the slides going b, and levers no longer than ρ, |p''| is at most γ²·ρ + 2·γ·b; an arc of sweep s and
     /// radius R adds s²·R, and the error of an axis its own bend.
-    pub(crate) fn steps(&self, travel: &Travel<'_>, setup: &Setup, tolerance: f64) -> u32 {
+    pub(crate) fn steps(&self, travel: &AxisMotion<'_>, setup: &Setup, tolerance: f64) -> u32 {
         let turn = self.turn(travel).to_rad();
         let sweep = travel.arc.map_or(0.0, |arc| arc.sweep.to_rad());
         let waves = self.waves(travel, setup);
@@ -82,9 +82,9 @@ impl Machine {
     }
 
     /// How much the errors of the axes bend the way: a wave of swing A over n waves has |p''| of A·(2·π·n)² at most.
-    fn waves(&self, travel: &Travel<'_>, setup: &Setup) -> f64 {
+    fn waves(&self, travel: &AxisMotion<'_>, setup: &Setup) -> f64 {
         let lever = self.lever(travel.from, setup).max(self.lever(travel.to, setup)) + self.slide(travel);
-        let bend = |error: &Wave, by: f64, lever: f64| {
+        let bend = |error: &PeriodicError, by: f64, lever: f64| {
             let turn = Deg(360.0 * by / error.length).to_rad();
             error.swing.abs() * turn * turn * lever
         };
@@ -103,7 +103,7 @@ impl Machine {
     }
 
     /// How far the slides go, on both sides, from end to end.
-    fn slide(&self, travel: &Travel<'_>) -> f64 {
+    fn slide(&self, travel: &AxisMotion<'_>) -> f64 {
         let mut by = Position::default();
         for (axis, (from, to)) in travel.from.0.iter().zip(&travel.to.0).enumerate() {
             by[axis] = to - from;
@@ -138,7 +138,7 @@ mod tests {
         let (from, mut to) = (Position([700.0, 20.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]), Position::default());
         to[0] = 500.0;
         to[4] = 75.0;
-        let travel = Travel { from: &from, to: &to, arc: None };
+        let travel = AxisMotion { from: &from, to: &to, arc: None };
         let mut points = Vec::new();
         machine.follow(&travel, &Setup::default(), 0.05, |pose| points.push(pose.tip));
         assert!(points.len() > 10 && points.len() < 200, "{}", points.len());
@@ -155,8 +155,8 @@ mod tests {
     fn an_arc_is_followed_to_the_tolerance_too() {
         let machine = Machine::default();
         let from = Position([10.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
-        let arc = Arc2 { plane: (0, 1), centre: (0.0, 0.0), sweep: Deg(360.0) };
-        let travel = Travel { from: &from, to: &from, arc: Some(&arc) };
+        let arc = PlanarArc { plane: (0, 1), centre: (0.0, 0.0), sweep: Deg(360.0) };
+        let travel = AxisMotion { from: &from, to: &from, arc: Some(&arc) };
         let mut points = Vec::new();
         machine.follow(&travel, &Setup::default(), 0.01, |pose| points.push(pose.tip));
         for pair in points.windows(2) {

@@ -1,5 +1,5 @@
 //! The touch probe as data.
-use super::error::Spread;
+use super::error::Distribution;
 use crate::units::Seconds;
 
 /// A touch probe; the tool's tip is the centre of its ball.
@@ -14,7 +14,7 @@ pub struct Probe {
     /// How far the stylus can be pushed before it breaks, mm.
     pub give: f64,
     /// How far along its way each touch is noted beyond its place, mm.
-    pub noise: Spread,
+    pub noise: Distribution,
     pub seed: u64,
 }
 
@@ -22,6 +22,6 @@ impl Probe {
     /// A ball that notes its contact at once and exactly.
     pub fn new(radius: f64) -> Self {
         let (delay, overrun) = (Seconds::ZERO, Seconds::ZERO);
-        Self { radius, delay, overrun, give: f64::INFINITY, noise: Spread::Fixed(0.0), seed: 0 }
+        Self { radius, delay, overrun, give: f64::INFINITY, noise: Distribution::Fixed(0.0), seed: 0 }
     }
 }

@@ -4,12 +4,12 @@ use crate::units::Deg;
 
 /// One place in a tree of random numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Draw(u64);
+pub struct RandomStream(u64);
 
 /// 2⁶⁴ over the golden ratio, odd: steps by it fall evenly.
 const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
 
-impl Draw {
+impl RandomStream {
     pub fn new(seed: u64) -> Self {
         Self(mix(seed))
     }
@@ -56,7 +56,7 @@ mod tests {
     /// are so within four standard errors √(1, 2, 6, 24)/1000.
     #[test]
     fn a_million_normal_draws_have_the_moments_they_should() {
-        let root = Draw::new(1);
+        let root = RandomStream::new(1);
         let mut sums = [0.0; 4];
         for index in 0..1_000_000 {
             let value = root.at(index).normal();
@@ -78,9 +78,9 @@ mod tests {
             let mut boxes = vec![0u32; 1000];
             for index in 0..1_000_000 {
                 let draw = match branch {
-                    0 => Draw::new(7).at(index),
-                    1 => Draw::new(index).at(3),
-                    _ => Draw::new(7).at(index / 1000).at(index % 1000),
+                    0 => RandomStream::new(7).at(index),
+                    1 => RandomStream::new(index).at(3),
+                    _ => RandomStream::new(7).at(index / 1000).at(index % 1000),
                 };
                 boxes[(draw.unit() * 1000.0) as usize] += 1;
             }
@@ -92,7 +92,7 @@ mod tests {
     /// Neighbouring places know nothing of one another: the correlation of 10⁶ pairs is 0 within four of 1/1000.
     #[test]
     fn neighbours_are_independent() {
-        let value = |sample: u64, source: u64| Draw::new(5).at(sample).at(source).normal();
+        let value = |sample: u64, source: u64| RandomStream::new(5).at(sample).at(source).normal();
         let (mut along, mut across) = (0.0, 0.0);
         for index in 0..1_000_000 {
             along += value(index, 0) * value(index + 1, 0) / 1e6;

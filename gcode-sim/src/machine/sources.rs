@@ -1,10 +1,10 @@
 //! Sources of error: what of a machine and of a part's set-up can be off, and what that does to a machine.
 use nalgebra::{Unit, Vector3};
 
-use super::error::{Spread, Wave};
-use super::random::Draw;
+use super::error::{Distribution, PeriodicError};
+use super::random::RandomStream;
 use super::{LinkMotion, Machine, chain};
-use crate::motion::Axis;
+use crate::motion::AxisIndex;
 use crate::units::Deg;
 
 /// One thing that can be off; directions are counted 0 to 2 for x, y, z of the machine.
@@ -17,7 +17,7 @@ pub enum Quantity {
     /// The part's centre stands aside of the axis by half of this, in a direction that nobody knows.
     RunOut,
     /// A linear axis stands beyond its commanded place.
-    Linear(Axis),
+    Linear(AxisIndex),
     /// The rotary axis stands beyond its commanded angle.
     Index,
     /// Where the rotary axis is, against where the program believes it.
@@ -30,14 +30,14 @@ pub enum Quantity {
 
 /// A thing that can be off, and how far.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Source {
+pub struct ErrorSource {
     pub quantity: Quantity,
-    pub spread: Spread,
+    pub spread: Distribution,
 }
 
 /// What a group of sources is drawn from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Drawn {
+pub(super) struct SampleParameters {
     pub(super) seed: u64,
     /// How far a linear axis goes for one wave of its error, mm.
     pub(super) wave: f64,
@@ -79,39 +79,39 @@ impl Quantity {
     }
 }
 
-impl Source {
+impl ErrorSource {
     /// Draws its value, the same at every place of the axes, and puts it into the machine.
-    pub fn draw_into(&self, machine: &mut Machine, draw: Draw) {
+    pub fn draw_into(&self, machine: &mut Machine, draw: RandomStream) {
         let draw = draw.at(self.quantity.place());
         let direction = if self.quantity == Quantity::RunOut { draw.at(2).turn() } else { Deg::ZERO };
         machine.put(self.quantity, self.spread.draw(draw), direction);
     }
 
     /// One machine with this error: of an axis as a function of its place.
-    pub(super) fn realize(&self, machine: &mut Machine, drawn: Drawn) {
-        let draw = Draw::new(drawn.seed).at(self.quantity.place());
+    pub(super) fn realize(&self, machine: &mut Machine, drawn: SampleParameters) {
+        let draw = RandomStream::new(drawn.seed).at(self.quantity.place());
         match self.quantity {
             Quantity::Linear(axis) => {
-                machine.link_error(axis, Wave::drawn(self.spread, drawn.wave, draw));
+                machine.link_error(axis, PeriodicError::drawn(self.spread, drawn.wave, draw));
             }
             Quantity::Index => {
                 if let Some(axis) = machine.rotary_axis() {
-                    machine.link_error(axis, Wave::drawn(self.spread, 360.0, draw));
+                    machine.link_error(axis, PeriodicError::drawn(self.spread, 360.0, draw));
                 }
             }
-            Quantity::Head => machine.head.error = Wave::drawn(self.spread, 360.0, draw),
+            Quantity::Head => machine.head.error = PeriodicError::drawn(self.spread, 360.0, draw),
             Quantity::Shift(_)
             | Quantity::Tilt(_)
             | Quantity::RunOut
             | Quantity::Centre(_)
-            | Quantity::AxisTilt(_) => self.draw_into(machine, Draw::new(drawn.seed)),
+            | Quantity::AxisTilt(_) => self.draw_into(machine, RandomStream::new(drawn.seed)),
         }
     }
 }
 
 impl Machine {
     /// The one axis that turns the part; `None` where none or several do.
-    pub fn rotary_axis(&self) -> Option<Axis> {
+    pub fn rotary_axis(&self) -> Option<AxisIndex> {
         let mut turns =
             self.table.0.iter().filter(|link| matches!(link.motion, LinkMotion::Turn { .. })).map(|l| l.axis);
         let first = turns.next()?;
@@ -128,7 +128,7 @@ impl Machine {
 
     /// Whether it does what it is told, to a part that stands where it should.
     pub fn is_exact(&self) -> bool {
-        let exact = |error: &Wave| error.level == 0.0 && error.swing == 0.0;
+        let exact = |error: &PeriodicError| error.level == 0.0 && error.swing == 0.0;
         let part = self.part.shift == Vector3::zeros() && self.part.tilt == [Deg::ZERO; 3];
         part && exact(&self.head.error)
             && self.table.0.iter().chain(&self.slides.0).all(|link| exact(&link.error))
@@ -145,10 +145,10 @@ impl Machine {
                 let aside = chain::turn(about, direction) * across;
                 self.part.shift += aside * (value / 2.0);
             }
-            Quantity::Linear(axis) => self.link_error(axis, Wave::level(value)),
+            Quantity::Linear(axis) => self.link_error(axis, PeriodicError::level(value)),
             Quantity::Index => {
                 if let Some(axis) = self.rotary_axis() {
-                    self.link_error(axis, Wave::level(value));
+                    self.link_error(axis, PeriodicError::level(value));
                 }
             }
             Quantity::Centre(along) => {
@@ -162,7 +162,7 @@ impl Machine {
                     *about = chain::turn(&line, Deg(value)) * *about;
                 }
             }
-            Quantity::Head => self.head.error = Wave::level(value),
+            Quantity::Head => self.head.error = PeriodicError::level(value),
         }
     }
 
@@ -175,7 +175,7 @@ impl Machine {
         }
     }
 
-    fn link_error(&mut self, axis: Axis, error: Wave) {
+    fn link_error(&mut self, axis: AxisIndex, error: PeriodicError) {
         let links = self.table.0.iter_mut().chain(&mut self.slides.0);
         links.filter(|link| link.axis == axis).for_each(|link| link.error = error);
     }

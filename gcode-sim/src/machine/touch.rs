@@ -1,10 +1,10 @@
 //! A probe on its way to the part: where its ball touches, and when the control hears of it.
 use nalgebra::Point3;
 
-use super::path::Travel;
-use super::random::Draw;
+use super::path::AxisMotion;
+use super::random::RandomStream;
 use super::{Machine, Probe, Setup};
-use crate::motion::{Signal, SkipFeed};
+use crate::motion::{SkipMove, SkipSignal};
 use crate::part::surface::{Surface, bisect};
 
 /// The ball's way is taken as chords that stray from it by no more than this, mm.
@@ -15,15 +15,17 @@ impl Machine {
     pub fn probe(
         &self,
         probe: &Probe,
-        feed: &SkipFeed<'_>,
+        feed: &SkipMove<'_>,
         setup: &Setup,
         surface: &Surface,
         touches: u64,
-    ) -> Signal {
-        let travel = Travel { from: feed.from, to: feed.to, arc: None };
-        let Some(contact) = self.touch(&travel, setup, surface, probe.radius) else { return Signal::Missed };
+    ) -> SkipSignal {
+        let travel = AxisMotion { from: feed.from, to: feed.to, arc: None };
+        let Some(contact) = self.touch(&travel, setup, surface, probe.radius) else {
+            return SkipSignal::Missed;
+        };
         let (seconds, length) = (feed.seconds.0, feed.rate.0 / 60.0 * feed.seconds.0);
-        let noise = probe.noise.draw(Draw::new(probe.seed).at(touches));
+        let noise = probe.noise.draw(RandomStream::new(probe.seed).at(touches));
         let late = if seconds > 0.0 { probe.delay.0 / seconds + noise / length } else { 0.0 };
         let noted = (contact + late).max(0.0);
         let over = if seconds > 0.0 { probe.overrun.0 / seconds } else { 0.0 };
@@ -31,10 +33,10 @@ impl Machine {
         let tip = self.forward(&travel.position(stopped), setup).tip;
         let pushed = probe.radius - surface.nearest(&tip).distance;
         if pushed > probe.give {
-            return Signal::Broken { stopped, pushed, give: probe.give };
+            return SkipSignal::Broken { stopped, pushed, give: probe.give };
         }
         // A signal that comes when the block has ended already skips nothing.
-        if noted > 1.0 { Signal::Missed } else { Signal::At { noted, stopped } }
+        if noted > 1.0 { SkipSignal::Missed } else { SkipSignal::At { latched: noted, stopped } }
     }
 
     /// The part of a motion, 0 to 1, after which a ball round the tool's tip touches the surface; 0 where it is pushed in
@@ -43,7 +45,13 @@ impl Machine {
     /// The way is cut into chords so short that they are as good as the curve. Along each the distance from a convex
     /// body is a convex function, so that its least value can be found, and the contact before it: however shallow,
     /// none is jumped over.
-    pub fn touch(&self, travel: &Travel<'_>, setup: &Setup, surface: &Surface, radius: f64) -> Option<f64> {
+    pub fn touch(
+        &self,
+        travel: &AxisMotion<'_>,
+        setup: &Setup,
+        surface: &Surface,
+        radius: f64,
+    ) -> Option<f64> {
         let tip = |part: f64| self.forward(&travel.position(part), setup).tip;
         let mut from = tip(0.0);
         // A position is rounded to the increment: a ball that just touched may stand so far in, and goes out freely.
@@ -85,7 +93,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::machine::error::Spread;
+    use crate::machine::error::Distribution;
     use crate::motion::Position;
     use crate::units::{Deg, MmPerMin, Seconds};
 
@@ -96,7 +104,7 @@ mod tests {
     }
 
     fn touch(machine: &Machine, from: Position, to: Position, radius: f64) -> Option<f64> {
-        let travel = Travel { from: &from, to: &to, arc: None };
+        let travel = AxisMotion { from: &from, to: &to, arc: None };
         machine.touch(&travel, &Setup::default(), &BODY, radius)
     }
 
@@ -136,14 +144,14 @@ mod tests {
         let mut machine = Machine::default();
         machine.part.shift.x = 40.0;
         let (from, to) = (at(0.0, 0.0, -130.0, 0.0), at(0.0, 0.0, -130.0, 90.0));
-        let travel = Travel { from: &from, to: &to, arc: None };
+        let travel = AxisMotion { from: &from, to: &to, arc: None };
         let found = machine.touch(&travel, &Setup::default(), &sphere, 5.0).unwrap() * 90.0;
         let sine = (1600.0 + 16_900.0 - 11_025.0) / 10_400.0;
         // The chords stray by 1e-5 mm, and a degree closes the gap by 0.6 mm.
         assert!((found - Deg::asin(sine).0).abs() < 3e-5, "{found}");
         // The other way round the part goes away from it.
         let back = at(0.0, 0.0, -130.0, -90.0);
-        let travel = Travel { from: &from, to: &back, arc: None };
+        let travel = AxisMotion { from: &from, to: &back, arc: None };
         assert_eq!(machine.touch(&travel, &Setup::default(), &sphere, 5.0), None);
     }
 
@@ -169,9 +177,9 @@ mod tests {
     }
 
     /// 600 mm/min are 10 mm a second; the way of 100 mm takes 10 s.
-    fn probed(probe: &Probe, touches: u64) -> Signal {
+    fn probed(probe: &Probe, touches: u64) -> SkipSignal {
         let (from, to) = (at(0.0, 450.0, 0.0, 0.0), at(0.0, 350.0, 0.0, 0.0));
-        let feed = SkipFeed { from: &from, to: &to, rate: MmPerMin(600.0), seconds: Seconds(10.0) };
+        let feed = SkipMove { from: &from, to: &to, rate: MmPerMin(600.0), seconds: Seconds(10.0) };
         Machine::default().probe(probe, &feed, &Setup::default(), &BODY, touches)
     }
 
@@ -179,23 +187,25 @@ mod tests {
     fn a_delay_notes_the_position_late_and_an_overrun_stops_later_still() {
         let mut probe = Probe::new(3.0);
         (probe.delay, probe.overrun) = (Seconds(0.02), Seconds(0.05));
-        let Signal::At { noted, stopped } = probed(&probe, 0) else { panic!("it touches") };
+        let SkipSignal::At { latched: noted, stopped } = probed(&probe, 0) else { panic!("it touches") };
         // 0.2 and 0.5 mm on from the contact after 47 mm.
         assert!((noted - 0.472).abs() < 1e-9 && (stopped - 0.477).abs() < 1e-9, "{noted} {stopped}");
         probe.give = 0.6;
-        let Signal::Broken { pushed, give, .. } = probed(&probe, 0) else { panic!("0.7 is more than 0.6") };
+        let SkipSignal::Broken { pushed, give, .. } = probed(&probe, 0) else {
+            panic!("0.7 is more than 0.6")
+        };
         assert!((pushed - 0.7).abs() < 1e-9 && give == 0.6);
         // A delay beyond the end of the way: no signal while the block lasts.
         (probe.delay, probe.give) = (Seconds(6.0), f64::INFINITY);
-        assert_eq!(probed(&probe, 0), Signal::Missed);
+        assert_eq!(probed(&probe, 0), SkipSignal::Missed);
     }
 
     #[test]
     fn noise_differs_from_touch_to_touch_and_not_from_run_to_run() {
         let mut probe = Probe::new(3.0);
-        probe.noise = Spread::Uniform(0.01);
+        probe.noise = Distribution::Uniform(0.01);
         let noted = |touches: u64| match probed(&probe, touches) {
-            Signal::At { noted, .. } => noted,
+            SkipSignal::At { latched: noted, .. } => noted,
             other => panic!("{other:?}"),
         };
         let (first, second) = (noted(0), noted(1));

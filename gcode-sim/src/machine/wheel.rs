@@ -1,7 +1,7 @@
 //! A grinding wheel that stays where it is while the table moves the part against it.
 use nalgebra::Point3;
 
-use crate::motion::{Axis, Position};
+use crate::motion::{AxisIndex, Position};
 use crate::units::Deg;
 
 use super::Machine;
@@ -12,7 +12,7 @@ pub struct Wheel {
     /// Where it touches, machine coordinates.
     pub contact: Point3<f64>,
     /// The axis that swivels it about this point, and 1 or −1: which way a positive command goes.
-    pub swivels: Option<(Axis, f64)>,
+    pub swivels: Option<(AxisIndex, f64)>,
 }
 
 impl Wheel {

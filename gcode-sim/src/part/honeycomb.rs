@@ -5,8 +5,8 @@
 //! +z, and azimuth counts from z towards y. Both senses give the same holes.
 use nalgebra::{Point3, Vector3};
 
-use super::conduct::{Conduct, Duty};
 use super::hole::Hole;
+use super::process::{ProcessLimits, ToolProcess};
 use super::read::ReferenceError;
 use super::reference::Reference;
 use super::surface::Surface;
@@ -137,15 +137,15 @@ pub(super) fn reference(job: &Honeycomb) -> Result<Reference, ReferenceError> {
     })
 }
 
-fn conduct(job: &Honeycomb) -> Conduct {
+fn conduct(job: &Honeycomb) -> ProcessLimits {
     let Drill { number, speed, feed, peck, depth, diameter, said } = job.drill;
-    Conduct {
+    ProcessLimits {
         clearance: Some(job.machine.clearance),
         approach: job.machine.clearance_said.then_some(job.machine.clearance),
         retract: job.machine.retract_said.then_some(job.machine.retract),
         rotary: Some(job.machine.rotary),
         clamp: job.machine.clamp,
-        tools: vec![Duty {
+        tools: vec![ToolProcess {
             number,
             offset: said.number.then_some(number),
             speed: said.speed.then_some(speed),

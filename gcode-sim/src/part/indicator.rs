@@ -7,7 +7,7 @@ use crate::units::{Deg, Mm};
 
 /// An indicator at (x, y, 0) that moves along x, and the part turned about z through its centre, x towards y.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tilted {
+pub struct TiltedEllipsoid {
     /// Where the surface is before, from the axis of revolution.
     pub radius: Mm,
     /// How far it moves outwards, exactly.
@@ -23,7 +23,7 @@ pub struct Tilted {
 ///
 /// A sphere shows nothing, and neither does any part to first order at its equator: a tilt is seen the better the farther the
 /// indicator is from there.
-pub fn tilted(a: Mm, b: Mm, y: Mm, tilt: Deg) -> Option<Tilted> {
+pub fn tilted(a: Mm, b: Mm, y: Mm, tilt: Deg) -> Option<TiltedEllipsoid> {
     let body = Surface::Ellipsoid { a: a.0, b: b.0 };
     // In the part's frame the indicator is turned the other way.
     let reach = |turned: Deg| {
@@ -36,7 +36,7 @@ pub fn tilted(a: Mm, b: Mm, y: Mm, tilt: Deg) -> Option<Tilted> {
     let delta = tilt.to_rad();
     let flat = a.0 * a.0 / (b.0 * b.0);
     let bend = (flat - 1.0) * (y.0 * y.0 * flat - radius * radius) / radius;
-    Some(Tilted {
+    Some(TiltedEllipsoid {
         radius: Mm(radius),
         change: Mm(after - radius),
         first_order: Mm(delta * y.0 * (flat - 1.0)),
@@ -50,7 +50,7 @@ mod tests {
 
     use super::*;
 
-    fn at(a: f64, b: f64, y: f64, tilt: f64) -> Tilted {
+    fn at(a: f64, b: f64, y: f64, tilt: f64) -> TiltedEllipsoid {
         tilted(Mm(a), Mm(b), Mm(y), Deg(tilt)).unwrap()
     }
 

@@ -2,12 +2,12 @@
 //! the direction is the surface's gradient there.
 use nalgebra::{Point3, Vector3};
 
-use super::conduct::{Conduct, Duty};
 use super::hole::Hole;
+use super::process::{ProcessLimits, ToolProcess};
 use super::read::ReferenceError;
 use super::reference::Reference;
 use super::surface::Surface;
-use crate::job::{AxisDirection, HoleWanted, PinHoles, Tool};
+use crate::job::{AxisDirection, HoleSpec, PinHoles, Tool};
 use crate::units::Deg;
 
 /// What the job's part should get.
@@ -24,15 +24,15 @@ pub(super) fn reference(job: &PinHoles) -> Result<Reference, ReferenceError> {
     })
 }
 
-fn conduct(job: &PinHoles) -> Conduct {
-    let duty = |tool: &Tool| Duty {
+fn conduct(job: &PinHoles) -> ProcessLimits {
+    let duty = |tool: &Tool| ToolProcess {
         number: tool.number,
         offset: Some(tool.number),
         speed: Some(tool.speed),
         feed: Some(tool.feed),
         peck: None,
     };
-    Conduct {
+    ProcessLimits {
         clearance: Some(job.machine.clearance),
         approach: job.machine.clearance_said.then_some(job.machine.clearance),
         retract: job.machine.retract_said.then_some(job.machine.retract),
@@ -43,7 +43,7 @@ fn conduct(job: &PinHoles) -> Conduct {
 }
 
 /// The upper half's point over (r·cos α, r·sin α).
-fn pin_hole(surface: &Surface, wanted: &HoleWanted) -> Result<Hole, ReferenceError> {
+fn pin_hole(surface: &Surface, wanted: &HoleSpec) -> Result<Hole, ReferenceError> {
     let azimuth = Deg(wanted.azimuth);
     let under = Point3::new(wanted.radius * azimuth.cos(), 0.0, wanted.radius * azimuth.sin());
     let missed = || ReferenceError {
@@ -69,8 +69,8 @@ fn pin_hole(surface: &Surface, wanted: &HoleWanted) -> Result<Hole, ReferenceErr
 mod tests {
     use super::*;
 
-    fn wanted(radius: f64, azimuth: f64, axis: AxisDirection) -> HoleWanted {
-        HoleWanted { id: "h".into(), radius, azimuth, axis, diameter: 6.0, depth: 15.0, tools: vec![1] }
+    fn wanted(radius: f64, azimuth: f64, axis: AxisDirection) -> HoleSpec {
+        HoleSpec { id: "h".into(), radius, azimuth, axis, diameter: 6.0, depth: 15.0, tools: vec![1] }
     }
 
     fn near(found: [f64; 3], expected: [f64; 3]) {

@@ -142,25 +142,25 @@ fn check(hole: &Hole, index: usize) -> Result<(), String> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::nominal::NominalPart;
     use super::super::reference::Reference;
-    use super::super::wanted::Wanted;
     use super::*;
 
     const HOLE: &str =
         r#"{"unit": "mm", "holes": [{"id": "1", "entry": [1, 2, 3], "axis": [0, 0.6, 0.8], "depth": 5}]}"#;
 
     fn refused(text: &str) -> String {
-        Wanted::parse(text).unwrap_err().to_string()
+        NominalPart::parse(text).unwrap_err().to_string()
     }
 
     fn read_holes(text: &str) -> Reference {
-        Wanted::parse(text).unwrap().into_holes().unwrap()
+        NominalPart::parse(text).unwrap().into_holes().unwrap()
     }
 
     #[test]
     fn json_and_csv_say_the_same() {
         let csv = "id,x,y,z,i,j,k,depth,diameter\r\n1, 1, 2, 3, 0, 0.6, 0.8, 5,\r\n";
-        assert_eq!(Wanted::parse(HOLE).unwrap(), Wanted::parse(csv).unwrap());
+        assert_eq!(NominalPart::parse(HOLE).unwrap(), NominalPart::parse(csv).unwrap());
     }
 
     #[test]

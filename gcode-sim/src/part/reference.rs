@@ -1,7 +1,7 @@
 //! The wanted holes: computed from a job's geometry, or read from a list.
-use super::conduct::Conduct;
 use super::hole::{Hole, HoleList, Unit};
 use super::honeycomb::Pattern;
+use super::process::ProcessLimits;
 use super::read;
 pub use super::read::ReferenceError;
 use super::surface::Surface;
@@ -17,7 +17,7 @@ pub struct Reference {
     pub depth: Option<f64>,
     pub surface: Option<Surface>,
     /// How the part is to be worked, as far as the reference says it.
-    pub conduct: Conduct,
+    pub conduct: ProcessLimits,
     /// What the holes' neighbours must be like, of a part where that matters.
     pub pattern: Option<Pattern>,
 }
@@ -30,7 +30,7 @@ impl Reference {
             position: None,
             depth: None,
             surface: None,
-            conduct: Conduct::default(),
+            conduct: ProcessLimits::default(),
             pattern: None,
         })
     }

@@ -1,8 +1,8 @@
 //! Bars below one another, each with its name and its number.
 use super::font::Font;
-use super::ink::{Align, Ink, Rect, px};
+use super::ink::{Align, DrawCommand, Rect, px};
 use super::palette;
-use super::role::Standing;
+use super::role::HoleStatus;
 use super::sheet::Sheet;
 use super::size::Size;
 use super::words::Words;
@@ -60,7 +60,10 @@ impl Bars {
             let (top, bottom) = (y, y + pitch - 0.7 * text);
             let corners =
                 [px(left, top), px(left + length, top), px(left + length, bottom), px(left, bottom)];
-            words.inks.push(Ink::Area { points: corners.to_vec(), color: palette::standing(Standing::Good) });
+            words.inks.push(DrawCommand::Area {
+                points: corners.to_vec(),
+                color: palette::standing(HoleStatus::Good),
+            });
             let base = (top + bottom) / 2.0 + 0.4 * text;
             let dark = palette::TEXT;
             words.write(px(page.left, base), Align::Left, text, dark, &bar.name, names);
@@ -75,7 +78,7 @@ impl Bars {
             words.write(below, Align::Left, text, palette::SOFT_TEXT, &note, page.width());
             notes.push(note);
         }
-        words.inks.push(Ink::line(px(left, begin), px(left, y), 1.0, palette::RULE));
+        words.inks.push(DrawCommand::line(px(left, begin), px(left, y), 1.0, palette::RULE));
         let Words { inks, labels, .. } = words;
         Sheet { size, inks, labels, notes, magnification: None }
     }
@@ -122,7 +125,7 @@ mod tests {
             .inks
             .iter()
             .filter_map(|ink| match ink {
-                Ink::Area { points, .. } => Some(points[1].x - points[0].x),
+                DrawCommand::Area { points, .. } => Some(points[1].x - points[0].x),
                 _ => None,
             })
             .collect();

@@ -1,8 +1,8 @@
 //! Curves over a way: graphs one above the other over the same way, with numbers at round places, bands and signs.
-use super::ink::{Align, Dash, Ink, Px, Rect, Rgb, px};
+use super::ink::{Align, Dash, DrawCommand, Px, Rect, Rgb, px};
 use super::obstacle::Obstacle;
 use super::palette;
-use super::role::{Pen, Point, Standing};
+use super::role::{HoleStatus, Pen, Point};
 use super::symbol;
 use super::ticks::Ticks;
 use super::words::Words;
@@ -30,7 +30,7 @@ pub struct Graph {
     pub band: Vec<[f64; 3]>,
     /// Zero has a line of its own and is never left out.
     pub zero: bool,
-    pub signs: Vec<Sign>,
+    pub signs: Vec<ChartMarker>,
 }
 
 /// A line of a graph.
@@ -44,9 +44,9 @@ pub struct Curve {
 
 /// A place of a graph to look at, with what it is.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sign {
+pub struct ChartMarker {
     pub at: Point,
-    pub standing: Standing,
+    pub standing: HoleStatus,
     pub name: String,
 }
 
@@ -72,7 +72,7 @@ impl Chart {
         for (index, (graph, range)) in self.graphs.iter().zip(&ranges).enumerate() {
             let frame = Rect { left: west, top: top + head, right: east, bottom: top + head + tall };
             words.write(px(area.left, top + text), Align::Left, text, soft, &graph.up, area.width());
-            let place = Place { frame, x: &x, range };
+            let place = ChartArea { frame, x: &x, range };
             graph.draw_band(&place, words);
             let grid = palette::pen(Pen::Grid, text);
             for at in across.all().map(x) {
@@ -101,9 +101,9 @@ impl Chart {
 
 impl Chart {
     /// Between two upright lines a thick one at zero.
-    fn draw_gaps(&self, place: &Place<'_>, words: &mut Words<'_>) {
+    fn draw_gaps(&self, place: &ChartArea<'_>, words: &mut Words<'_>) {
         let (text, frame) = (words.text, place.frame);
-        let color = palette::standing(Standing::Bad);
+        let color = palette::standing(HoleStatus::Bad);
         let dash = Dash::Pattern([0.25 * text, 0.35 * text]);
         for [from, to] in self.gaps.iter().map(|gap| gap.map(place.x)) {
             for x in [from, to] {
@@ -118,38 +118,38 @@ impl Chart {
 }
 
 /// Where a graph stands on the sheet.
-struct Place<'c> {
+struct ChartArea<'c> {
     frame: Rect,
     x: &'c dyn Fn(f64) -> f64,
     range: &'c Range,
 }
 
-impl Place<'_> {
+impl ChartArea<'_> {
     fn px(&self, [x, y]: Point) -> Px {
         let Range { low, high, .. } = *self.range;
         px((self.x)(x), self.frame.bottom - self.frame.height() * (y - low) / (high - low))
     }
 
     /// A level line from side to side.
-    fn level(&self, at: f64, pen: (Rgb, f64, Dash)) -> Ink {
+    fn level(&self, at: f64, pen: (Rgb, f64, Dash)) -> DrawCommand {
         let y = self.px([0.0, at]).y;
         stroke(vec![px(self.frame.left, y), px(self.frame.right, y)], pen)
     }
 }
 
 impl Graph {
-    fn draw_band(&self, place: &Place<'_>, words: &mut Words<'_>) {
+    fn draw_band(&self, place: &ChartArea<'_>, words: &mut Words<'_>) {
         let edge = |which: usize| self.band.iter().map(move |at| place.px([at[0], at[which]]));
         if 1 < self.band.len() {
             let (low, high): (Vec<Px>, Vec<Px>) = (edge(1).collect(), edge(2).collect());
             let points = low.iter().chain(high.iter().rev()).copied().collect();
-            words.inks.push(Ink::Area { points, color: palette::BAND });
+            words.inks.push(DrawCommand::Area { points, color: palette::BAND });
             let pen = palette::pen(Pen::Limit, words.text);
             words.inks.extend([low, high].map(|points| stroke(points, pen)));
         }
     }
 
-    fn draw(&self, place: &Place<'_>, words: &mut Words<'_>) {
+    fn draw(&self, place: &ChartArea<'_>, words: &mut Words<'_>) {
         let (text, ticks) = (words.text, &place.range.ticks);
         for at in ticks.all() {
             words.inks.push(place.level(at, palette::pen(Pen::Grid, text)));
@@ -175,7 +175,7 @@ impl Graph {
     }
 
     /// Writes what a sign stands for where no curve runs: beside it, else above or below.
-    fn name(&self, sign: &Sign, at: Px, place: &Place<'_>, words: &mut Words<'_>) {
+    fn name(&self, sign: &ChartMarker, at: Px, place: &ChartArea<'_>, words: &mut Words<'_>) {
         let text = words.text;
         let beside = [(Align::Left, 0.8), (Align::Right, -0.8)];
         let level = beside.map(|(align, x)| (align, px(at.x + x * text, at.y + 0.36 * text)));
@@ -193,8 +193,8 @@ impl Graph {
     }
 }
 
-fn stroke(points: Vec<Px>, (color, width, dash): (Rgb, f64, Dash)) -> Ink {
-    Ink::Line { points, closed: false, width: width.max(1.0), dash, color }
+fn stroke(points: Vec<Px>, (color, width, dash): (Rgb, f64, Dash)) -> DrawCommand {
+    DrawCommand::Line { points, closed: false, width: width.max(1.0), dash, color }
 }
 
 /// The pieces of a curve from `low` to `high`.

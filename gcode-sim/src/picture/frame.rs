@@ -19,7 +19,7 @@ pub(super) struct Frame {
 
 /// Which signs the drawing really has, for the legend.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Shown {
+pub(super) struct LegendUse {
     pub(super) magnification: Option<f64>,
     pub(super) directions: bool,
     pub(super) astray: bool,
@@ -29,7 +29,7 @@ pub(super) struct Shown {
     pub(super) plain_rest: bool,
 }
 
-impl Shown {
+impl LegendUse {
     /// No holes are drawn.
     pub(super) const NOTHING: Self =
         Self { magnification: None, directions: false, astray: false, plain_good: false, plain_rest: false };

@@ -104,7 +104,7 @@ pub enum Align {
 
 /// One thing to paint. Later ones cover earlier ones.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Ink {
+pub enum DrawCommand {
     Line {
         points: Vec<Px>,
         closed: bool,
@@ -138,7 +138,7 @@ pub enum Ink {
     },
 }
 
-impl Ink {
+impl DrawCommand {
     pub(super) fn line(from: Px, to: Px, width: f64, color: Rgb) -> Self {
         Self::Line { points: vec![from, to], closed: false, width, dash: Dash::Solid, color }
     }

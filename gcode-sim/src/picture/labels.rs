@@ -12,12 +12,12 @@ pub(super) struct Symbol {
     pub(super) at: Px,
     /// Labels keep this far from it.
     pub(super) clear: f64,
-    pub(super) way: Way,
+    pub(super) way: LeaderRule,
 }
 
 /// What a leader may pass over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Way {
+pub(super) enum LeaderRule {
     /// Nothing; it ends at the symbol's rim.
     Clear,
     /// The symbols of the crowd it starts in; it ends in the very place.
@@ -39,14 +39,14 @@ impl Symbol {
     fn leader(&self, rect: &Rect) -> (Px, Px) {
         let end = rect.nearest(self.at);
         let length = self.at.distance(end).max(1e-9);
-        let start = if self.way == Way::OutOfCrowd { 0.0 } else { self.clear };
+        let start = if self.way == LeaderRule::OutOfCrowd { 0.0 } else { self.clear };
         (self.at.toward([(end.x - self.at.x) / length, (end.y - self.at.y) / length], start), end)
     }
 }
 
 /// Where a label stands, and the line that leads to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Spot {
+pub(super) struct LabelPlacement {
     pub(super) rect: Rect,
     pub(super) leader: Option<(Px, Px)>,
     /// The side of the box that is towards the symbol: lines of unequal length keep to it.
@@ -55,7 +55,7 @@ pub(super) struct Spot {
 
 /// The area for labels and what is already in it, sorted into cells so that asking stays cheap.
 #[derive(Clone)]
-pub(super) struct Field {
+pub(super) struct LabelArea {
     area: Rect,
     cell: f64,
     columns: usize,
@@ -70,7 +70,7 @@ const DISTANCES: [f64; 12] = [0.2, 0.7, 1.2, 1.8, 2.6, 3.6, 5.0, 6.5, 9.0, 12.0,
 /// A label whose leader may not pass over other symbols stays within so many distances.
 const NEAR: usize = 8;
 
-impl Field {
+impl LabelArea {
     pub(super) fn new(area: Rect, cell: f64) -> Self {
         let columns = (area.width() / cell).max(0.0) as usize + 1;
         let rows = (area.height() / cell).max(0.0) as usize + 1;
@@ -96,10 +96,15 @@ impl Field {
     }
 
     /// Puts a label of this size beside a symbol and blocks its place; `line` is the height of a line of text.
-    pub(super) fn place(&mut self, symbol: Symbol, (width, height): (f64, f64), line: f64) -> Option<Spot> {
+    pub(super) fn place(
+        &mut self,
+        symbol: Symbol,
+        (width, height): (f64, f64),
+        line: f64,
+    ) -> Option<LabelPlacement> {
         let Symbol { at, clear, .. } = symbol;
-        let reach = if symbol.way == Way::ThroughAll { DISTANCES.len() } else { NEAR };
-        let mut best: Option<(f64, Spot)> = None;
+        let reach = if symbol.way == LeaderRule::ThroughAll { DISTANCES.len() } else { NEAR };
+        let mut best: Option<(f64, LabelPlacement)> = None;
         for (step, distance) in DISTANCES.iter().take(reach).enumerate() {
             for turn in 0..DIRECTIONS {
                 // From the upper right, alternately to both sides: where a reader expects a number.
@@ -123,7 +128,7 @@ impl Field {
                     continue;
                 }
                 let leader =
-                    (symbol.way != Way::Clear || 0 < step || self.is_nearer_to_another(&rect, symbol))
+                    (symbol.way != LeaderRule::Clear || 0 < step || self.is_nearer_to_another(&rect, symbol))
                         .then(|| symbol.leader(&rect));
                 if leader.is_some_and(|leader| self.is_crossed(leader, symbol)) {
                     continue;
@@ -132,7 +137,7 @@ impl Field {
                     if leader.is_some() && self.is_nearer_to_another(&rect, symbol) { 3.0 } else { 0.0 };
                 let cost = cost + doubtful + 2.0 * self.soft.iter().filter(|o| o.hits(&rect)).count() as f64;
                 if best.is_none_or(|(least, _)| cost < least) {
-                    best = Some((cost, Spot { rect, leader, align: symbol.align(&rect) }));
+                    best = Some((cost, LabelPlacement { rect, leader, align: symbol.align(&rect) }));
                 }
             }
         }
@@ -149,12 +154,12 @@ impl Field {
         &mut self,
         middles: impl IntoIterator<Item = Px>,
         (width, height): (f64, f64),
-    ) -> Option<Spot> {
+    ) -> Option<LabelPlacement> {
         let rects =
             middles.into_iter().map(|m| Rect::new(m.x - width / 2.0, m.y - height / 2.0, width, height));
         let rect = rects.into_iter().find(|rect| self.is_free(rect))?;
         self.block(Obstacle::Box(rect));
-        Some(Spot { rect, leader: None, align: Align::Centre })
+        Some(LabelPlacement { rect, leader: None, align: Align::Centre })
     }
 
     /// Whether a reader would take the label for another symbol's.
@@ -173,12 +178,12 @@ impl Field {
     /// Whether something lies in the leader's way.
     fn is_crossed(&self, (from, to): (Px, Px), symbol: Symbol) -> bool {
         let passable = |o: &Obstacle| match (symbol.way, *o) {
-            (Way::Clear, _) | (_, Obstacle::Box(_) | Obstacle::Ring { .. }) => false,
-            (Way::ThroughAll, Obstacle::Disc { .. } | Obstacle::Segment(..)) => true,
-            (Way::OutOfCrowd, Obstacle::Disc { centre, radius }) => {
+            (LeaderRule::Clear, _) | (_, Obstacle::Box(_) | Obstacle::Ring { .. }) => false,
+            (LeaderRule::ThroughAll, Obstacle::Disc { .. } | Obstacle::Segment(..)) => true,
+            (LeaderRule::OutOfCrowd, Obstacle::Disc { centre, radius }) => {
                 centre.distance(symbol.at) < symbol.clear + radius
             }
-            (Way::OutOfCrowd, Obstacle::Segment(a, b)) => {
+            (LeaderRule::OutOfCrowd, Obstacle::Segment(a, b)) => {
                 a.distance(symbol.at).min(b.distance(symbol.at)) < 2.0 * symbol.clear
             }
         };
@@ -205,11 +210,11 @@ mod tests {
     use proptest::prelude::*;
 
     fn symbol(x: f64, y: f64, clear: f64) -> Symbol {
-        Symbol { at: px(x, y), clear, way: Way::Clear }
+        Symbol { at: px(x, y), clear, way: LeaderRule::Clear }
     }
 
-    fn field() -> Field {
-        Field::new(Rect::new(0.0, 0.0, 400.0, 300.0), 40.0)
+    fn field() -> LabelArea {
+        LabelArea::new(Rect::new(0.0, 0.0, 400.0, 300.0), 40.0)
     }
 
     #[test]
@@ -253,7 +258,7 @@ mod tests {
             for (x, y, _) in &places {
                 field.block(Obstacle::Disc { centre: px(*x, *y), radius: 5.0 });
             }
-            let mut placed: Vec<Spot> = Vec::new();
+            let mut placed: Vec<LabelPlacement> = Vec::new();
             for (x, y, width) in &places {
                 placed.extend(field.place(symbol(*x, *y, 6.0), (*width, 12.0), 12.0));
             }

@@ -1,7 +1,7 @@
 //! The drawing's own lines: edges and circles, axes through the origin, the scale bar.
 use super::frame::Frame;
-use super::ink::{Align, Dash, Ink, Px, Rect, px};
-use super::labels::Field;
+use super::ink::{Align, Dash, DrawCommand, Px, Rect, px};
+use super::labels::LabelArea;
 use super::measure::{bar_length, plain};
 use super::obstacle::Obstacle;
 use super::palette;
@@ -14,11 +14,11 @@ pub(super) fn is_path(pen: Pen) -> bool {
     matches!(pen, Pen::Feed | Pen::Faulty | Pen::Hidden | Pen::Rapid | Pen::Kept | Pen::Now | Pen::Before)
 }
 
-pub(super) fn stroke_ink(stroke: &Stroke, frame: &Frame) -> Ink {
+pub(super) fn stroke_ink(stroke: &Stroke, frame: &Frame) -> DrawCommand {
     let (color, width, dash) = palette::pen(stroke.pen, frame.text);
     let width = width.max(1.0);
     match &stroke.shape {
-        Shape::Line(points) => Ink::Line {
+        Shape::Line(points) => DrawCommand::Line {
             points: points.iter().map(|p| frame.scale.px(*p)).collect(),
             closed: false,
             width,
@@ -27,13 +27,13 @@ pub(super) fn stroke_ink(stroke: &Stroke, frame: &Frame) -> Ink {
         },
         Shape::Circle { centre, radius } => {
             let (centre, radius) = (frame.scale.px(*centre), radius * frame.scale.factor);
-            Ink::Ring { centre, radius, width, dash, color }
+            DrawCommand::Ring { centre, radius, width, dash, color }
         }
     }
 }
 
 /// Labels keep off edges, and off other lines if they can.
-pub(super) fn block_stroke(field: &mut Field, stroke: &Stroke, frame: &Frame) {
+pub(super) fn block_stroke(field: &mut LabelArea, stroke: &Stroke, frame: &Frame) {
     let hard = stroke.pen == Pen::Outline;
     let obstacles: Vec<Obstacle> = match &stroke.shape {
         // One that has a number is told apart from others: better not covered. A few pieces will do.
@@ -61,8 +61,8 @@ pub(super) fn axes(
     frame: &Frame,
     extent: (Point, Point),
     drawing: Rect,
-    field: &mut Field,
-) -> Vec<Ink> {
+    field: &mut LabelArea,
+) -> Vec<DrawCommand> {
     let text = frame.text;
     let part = part(frame, extent);
     let origin = frame.scale.px([0.0, 0.0]);
@@ -73,7 +73,13 @@ pub(super) fn axes(
         let tail = leave(origin, [-along[0], -along[1]], part.grown(0.9 * text));
         let width = (0.06 * text).max(1.0);
         let dash = Dash::Chain(0.55 * text);
-        inks.push(Ink::Line { points: vec![tail, tip], closed: false, width, dash, color: palette::THIN });
+        inks.push(DrawCommand::Line {
+            points: vec![tail, tip],
+            closed: false,
+            width,
+            dash,
+            color: palette::THIN,
+        });
         inks.extend(symbol::arrow(tip.toward(along, -1.1 * text), tip, width, 0.7 * text, palette::TEXT));
         field.discourage(Obstacle::Segment(tail, tip));
 
@@ -84,7 +90,12 @@ pub(super) fn axes(
         let middle = tip.toward(along, -0.3 * text).toward(beside, 0.45 * size + wide / 2.0);
         let name = Rect::new(middle.x - wide / 2.0, middle.y - size * 0.4, wide, size * 0.8);
         let name = inside(name, drawing);
-        inks.push(Ink::text(px(name.left, name.top + size * 0.62), size, axis.name.clone(), palette::TEXT));
+        inks.push(DrawCommand::text(
+            px(name.left, name.top + size * 0.62),
+            size,
+            axis.name.clone(),
+            palette::TEXT,
+        ));
         field.block(Obstacle::Box(name.grown(2.0)));
         field.block(Obstacle::Segment(tip.toward(along, -1.1 * text), tip));
     }
@@ -135,19 +146,19 @@ fn leave(from: Px, along: [f64; 2], rect: Rect) -> Px {
 }
 
 /// A bar of a round length, no longer than a third of the drawing.
-pub(super) fn scale_bar(frame: &Frame, area: Rect) -> Vec<Ink> {
+pub(super) fn scale_bar(frame: &Frame, area: Rect) -> Vec<DrawCommand> {
     let text = frame.text;
     let length = bar_length(0.3 * area.width() / frame.scale.factor);
     let (left, wide) = (area.left + 0.8 * text, length * frame.scale.factor);
     let y = area.bottom - 0.9 * text;
     let width = (0.1 * text).max(1.0);
     let tick = 0.4 * text;
-    let mut inks = vec![Ink::line(px(left, y), px(left + wide, y), width, palette::TEXT)];
+    let mut inks = vec![DrawCommand::line(px(left, y), px(left + wide, y), width, palette::TEXT)];
     for x in [left, left + wide / 2.0, left + wide] {
-        inks.push(Ink::line(px(x, y - tick), px(x, y + tick), width, palette::TEXT));
+        inks.push(DrawCommand::line(px(x, y - tick), px(x, y + tick), width, palette::TEXT));
     }
     let caption = format!("{} mm", plain(length));
     let at = px(left + wide + 0.7 * text, y + 0.36 * text);
-    inks.push(Ink::Text { at, align: Align::Left, size: text, text: caption, color: palette::TEXT });
+    inks.push(DrawCommand::Text { at, align: Align::Left, size: text, text: caption, color: palette::TEXT });
     inks
 }

@@ -1,12 +1,12 @@
 //! Holes on the sheet: symbol, direction of the axis, and round it the dial that shows the misfit enlarged.
-use super::dials::{COVERING, Detail, Dials};
+use super::deviation_dials::{COVERING, Detail, DeviationDials};
 use super::frame::Frame;
-use super::ink::{Dash, Ink, Px, Rgb};
-use super::labels::Field;
+use super::ink::{Dash, DrawCommand, Px, Rgb};
+use super::labels::LabelArea;
 use super::obstacle::Obstacle;
 use super::palette;
-use super::role::Standing;
-use super::scene::{Mark, Misfit, Scene};
+use super::role::HoleStatus;
+use super::scene::{Mark, Scene, ZoneDeviation};
 use super::symbol;
 use crate::units::Deg;
 
@@ -18,7 +18,7 @@ pub(super) struct Drawn {
     pub(super) clear: f64,
     /// Other signs are so close that a label needs a line to the very place.
     pub(super) crowded: bool,
-    pub(super) inks: Vec<Ink>,
+    pub(super) inks: Vec<DrawCommand>,
     /// Its misfit is longer than the sheet shows.
     pub(super) cut: bool,
     /// A line leads to where it is instead.
@@ -31,7 +31,12 @@ pub(super) struct Drawn {
 const LONGEST: f64 = 1.7;
 
 /// Draws the holes and blocks their places for labels.
-pub(super) fn draw_marks(scene: &Scene, frame: &Frame, dials: &Dials, field: &mut Field) -> Vec<Drawn> {
+pub(super) fn draw_marks(
+    scene: &Scene,
+    frame: &Frame,
+    dials: &DeviationDials,
+    field: &mut LabelArea,
+) -> Vec<Drawn> {
     let mut drawn: Vec<Drawn> = Vec::new();
     for (index, mark) in scene.marks.iter().enumerate() {
         let hole = match (dials.of(index), mark.misfit) {
@@ -49,18 +54,18 @@ pub(super) fn draw_marks(scene: &Scene, frame: &Frame, dials: &Dials, field: &mu
 /// The zone's circle with the hole in its centre, the misfit, and the verdict on the rim.
 fn draw_dial(
     mark: &Mark,
-    misfit: Misfit,
+    misfit: ZoneDeviation,
     (times, zone): (f64, f64),
     badge: f64,
     frame: &Frame,
-    field: &mut Field,
+    field: &mut LabelArea,
 ) -> Drawn {
     let text = frame.text;
     let centre = frame.scale.px(mark.at);
     let thin = thin(text);
     let hole = (mark.radius * frame.scale.factor).max(0.28 * text);
     let mut inks = vec![
-        Ink::Disc { centre, radius: zone, color: palette::PAPER },
+        DrawCommand::Disc { centre, radius: zone, color: palette::PAPER },
         ring(centre, zone, thin, palette::THIN),
         ring(centre, hole, thin, palette::TEXT),
     ];
@@ -97,26 +102,26 @@ fn draw_dial(
 }
 
 /// A hole so far from its place that it needs no enlarging: a dotted line to where it is.
-fn line_astray(centre: Px, found: Px, hole: f64, text: f64, field: &mut Field) -> [Ink; 2] {
+fn line_astray(centre: Px, found: Px, hole: f64, text: f64, field: &mut LabelArea) -> [DrawCommand; 2] {
     let radius = hole.max(0.3 * text);
     field.block(Obstacle::Disc { centre: found, radius: radius + 0.1 * text });
     field.block(Obstacle::Segment(centre, found));
     let dash = Dash::Pattern([0.15 * text, 0.2 * text]);
     let (width, color) = (thin(text), palette::TEXT);
-    let line = Ink::Line { points: vec![centre, found], closed: false, width, dash, color };
+    let line = DrawCommand::Line { points: vec![centre, found], closed: false, width, dash, color };
     [line, ring(found, radius, width, color)]
 }
 
 /// Lines from the centre to the entry and on to the bottom: a tilted hole shows as a line across its dial. What is
 /// longer than the sheet shows ends in an arrow, whose tip is given back.
 fn misfit_inks(
-    standing: Standing,
-    misfit: Misfit,
+    standing: HoleStatus,
+    misfit: ZoneDeviation,
     enlarge: f64,
     centre: Px,
     zone: f64,
     text: f64,
-) -> (Vec<Ink>, Option<Px>) {
+) -> (Vec<DrawCommand>, Option<Px>) {
     let color = palette::standing(standing);
     let width = (0.12 * text).max(1.4);
     let mut inks = Vec::new();
@@ -130,13 +135,13 @@ fn misfit_inks(
             inks.extend(symbol::arrow(centre, end, width, 0.6 * text, color));
             beyond = Some(end);
         } else {
-            inks.push(Ink::line(centre, end, width, color));
+            inks.push(DrawCommand::line(centre, end, width, color));
         }
         end
     });
-    inks.push(Ink::line(ends[0], ends[1], width, color));
+    inks.push(DrawCommand::line(ends[0], ends[1], width, color));
     if beyond.is_none() {
-        inks.push(Ink::Disc { centre: ends[0], radius: (0.14 * text).max(1.6), color });
+        inks.push(DrawCommand::Disc { centre: ends[0], radius: (0.14 * text).max(1.6), color });
     }
     (inks, beyond)
 }
@@ -147,9 +152,9 @@ fn draw_sign(
     mark: &Mark,
     index: usize,
     frame: &Frame,
-    dials: &Dials,
+    dials: &DeviationDials,
     before: &[Drawn],
-    field: &mut Field,
+    field: &mut LabelArea,
 ) -> Drawn {
     let text = frame.text;
     let place = frame.scale.px(mark.at);
@@ -163,7 +168,7 @@ fn draw_sign(
     };
     let mut inks = Vec::new();
     let mut centre = place;
-    if mark.standing == Standing::Extra
+    if mark.standing == HoleStatus::Extra
         && !is_dot
         && let Some(other) = before.iter().find(|d| d.centre.distance(place) < COVERING * text)
     {
@@ -172,7 +177,7 @@ fn draw_sign(
         let mut around =
             (0..8).map(|i| other.centre.toward(symbol::direction(Deg(200.0 + 45.0 * f64::from(i))), step));
         if let Some(beside) = around.find(free) {
-            inks.push(Ink::line(place, beside, thin(text), palette::TEXT));
+            inks.push(DrawCommand::line(place, beside, thin(text), palette::TEXT));
             centre = beside;
         }
     }
@@ -214,8 +219,8 @@ fn axis_arrow(
     projected: f64,
     from: f64,
     text: f64,
-    field: &mut Field,
-) -> Vec<Ink> {
+    field: &mut LabelArea,
+) -> Vec<DrawCommand> {
     let start = centre.toward(along, from);
     let end = centre.toward(along, from + text * (0.55 + 1.3 * projected));
     field.block(Obstacle::Segment(start, end));
@@ -234,8 +239,8 @@ fn badge_angle(taken: &[Deg]) -> Deg {
     Deg(choices.into_iter().fold(45.0, |best, angle| if free(best) < free(angle) { angle } else { best }))
 }
 
-fn ring(centre: Px, radius: f64, width: f64, color: Rgb) -> Ink {
-    Ink::Ring { centre, radius, width, dash: Dash::Solid, color }
+fn ring(centre: Px, radius: f64, width: f64, color: Rgb) -> DrawCommand {
+    DrawCommand::Ring { centre, radius, width, dash: Dash::Solid, color }
 }
 
 fn thin(text: f64) -> f64 {

@@ -2,7 +2,7 @@
 //!
 //! Colour never stands alone: every standing has a shape and a mark of its own (`symbol`), every pen its dashes.
 use super::ink::{Dash, Rgb};
-use super::role::{Pen, Standing};
+use super::role::{HoleStatus, Pen};
 
 pub(super) const PAPER: Rgb = Rgb(255, 255, 255);
 pub(super) const TEXT: Rgb = Rgb(0, 0, 0);
@@ -14,13 +14,13 @@ pub(super) const THIN: Rgb = Rgb(90, 90, 90);
 /// What lies within the limits of a graph.
 pub(super) const BAND: Rgb = Rgb(238, 238, 238);
 
-pub(super) fn standing(standing: Standing) -> Rgb {
+pub(super) fn standing(standing: HoleStatus) -> Rgb {
     match standing {
-        Standing::Good => Rgb(0, 114, 178),
-        Standing::Bad => Rgb(213, 94, 0),
-        Standing::Missing => Rgb(0, 0, 0),
-        Standing::Extra => Rgb(230, 159, 0),
-        Standing::Unjudged => Rgb(90, 90, 90),
+        HoleStatus::Good => Rgb(0, 114, 178),
+        HoleStatus::Bad => Rgb(213, 94, 0),
+        HoleStatus::Missing => Rgb(0, 0, 0),
+        HoleStatus::Extra => Rgb(230, 159, 0),
+        HoleStatus::Unjudged => Rgb(90, 90, 90),
     }
 }
 

@@ -1,10 +1,10 @@
 //! Title block, legend and notes beside the drawing.
 use super::font::{ASCENT, Font};
-use super::frame::{Frame, Shown};
-use super::ink::{Dash, Ink, Px, Rect, Rgb, px};
+use super::frame::{Frame, LegendUse};
+use super::ink::{Dash, DrawCommand, Px, Rect, Rgb, px};
 use super::measure::plain;
 use super::palette;
-use super::role::Standing;
+use super::role::HoleStatus;
 use super::scene::{LegendItem, Sample, Scene};
 use super::symbol;
 
@@ -18,14 +18,14 @@ pub(super) struct Panel {
 }
 
 /// One line or group of lines of a column.
-enum Row {
+enum PanelRow {
     Text {
         text: String,
         size: f64,
         color: Rgb,
         important: bool,
     },
-    Verdict(Standing, String),
+    Verdict(HoleStatus, String),
     /// ⌖ | Φ0.1 as a feature control frame has it.
     Zone(f64),
     Sample(Sample, String),
@@ -35,7 +35,7 @@ enum Row {
     Dots,
 }
 
-impl Row {
+impl PanelRow {
     /// The higher, the later it is left out.
     fn importance(&self) -> u8 {
         match self {
@@ -75,7 +75,7 @@ impl Panel {
         let column = Rect::new(0.0, 0.0, page.width() / 2.0 - 2.0 * space, 0.0);
         // Two lines are kept for notes, which are known only when everything has its place.
         let notes = vec!["n".to_owned(), "n".to_owned()];
-        let all = Shown {
+        let all = LegendUse {
             magnification: Some(1000.0),
             directions: true,
             astray: true,
@@ -100,8 +100,14 @@ impl Panel {
         }
     }
 
-    pub(super) fn inks(&self, scene: &Scene, frame: &Frame, shown: Shown, notes: &[String]) -> Vec<Ink> {
-        let rule = |from: Px, to: Px| Ink::line(from, to, 1.0, palette::RULE);
+    pub(super) fn inks(
+        &self,
+        scene: &Scene,
+        frame: &Frame,
+        shown: LegendUse,
+        notes: &[String],
+    ) -> Vec<DrawCommand> {
+        let rule = |from: Px, to: Px| DrawCommand::line(from, to, 1.0, palette::RULE);
         let page = self.page;
         let corners = [
             px(page.left, page.top),
@@ -109,7 +115,7 @@ impl Panel {
             px(page.right, page.bottom),
             px(page.left, page.bottom),
         ];
-        let mut inks = vec![Ink::Line {
+        let mut inks = vec![DrawCommand::Line {
             points: corners.to_vec(),
             closed: true,
             width: 1.0,
@@ -126,7 +132,7 @@ impl Panel {
             inks.push(rule(px(drawing.right, drawing.top), px(drawing.right, drawing.bottom)));
             inks.extend(fitted(self.title, frame, |text| {
                 let mut rows = title_rows(scene, text);
-                rows.push(Row::Rule);
+                rows.push(PanelRow::Rule);
                 rows.extend(legend_rows(scene, shown, notes, text));
                 rows
             }));
@@ -137,7 +143,7 @@ impl Panel {
 
 /// The rows in the largest text that the column has room for; what finds none even in the smallest is left out, the
 /// least important first, and a row of dots says so.
-fn fitted(column: Rect, frame: &Frame, rows: impl Fn(f64) -> Vec<Row>) -> Vec<Ink> {
+fn fitted(column: Rect, frame: &Frame, rows: impl Fn(f64) -> Vec<PanelRow>) -> Vec<DrawCommand> {
     let least = 9.5f64.min(frame.text);
     let mut text = frame.text;
     let (mut inks, mut height) = flow(&rows(text), column, &frame.font, text);
@@ -150,16 +156,16 @@ fn fitted(column: Rect, frame: &Frame, rows: impl Fn(f64) -> Vec<Row>) -> Vec<In
         && let Some((index, _)) = left.iter().enumerate().rev().min_by_key(|(_, row)| row.importance())
     {
         left.remove(index);
-        left.retain(|row| !matches!(row, Row::Dots));
-        left.push(Row::Dots);
+        left.retain(|row| !matches!(row, PanelRow::Dots));
+        left.push(PanelRow::Dots);
         (inks, height) = flow(&left, column, &frame.font, text);
     }
     inks
 }
 
-fn title_rows(scene: &Scene, text: f64) -> Vec<Row> {
+fn title_rows(scene: &Scene, text: f64) -> Vec<PanelRow> {
     let title = &scene.title;
-    let line = |words: &str, size: f64, color: Rgb, important: bool| Row::Text {
+    let line = |words: &str, size: f64, color: Rgb, important: bool| PanelRow::Text {
         text: words.to_owned(),
         size,
         color,
@@ -168,12 +174,12 @@ fn title_rows(scene: &Scene, text: f64) -> Vec<Row> {
     let mut rows = vec![
         line(&title.name, 1.25 * text, palette::TEXT, true),
         line(&title.view, text, palette::SOFT_TEXT, true),
-        Row::Gap,
+        PanelRow::Gap,
     ];
     if let Some((standing, words)) = &title.verdict {
-        rows.push(Row::Verdict(*standing, words.clone()));
+        rows.push(PanelRow::Verdict(*standing, words.clone()));
     }
-    rows.extend(title.position.map(Row::Zone));
+    rows.extend(title.position.map(PanelRow::Zone));
     rows.extend(title.lines.iter().enumerate().map(|(n, words)| line(words, text, palette::TEXT, n == 0)));
     if !title.caution.is_empty() {
         rows.push(line(&title.caution, text, palette::SOFT_TEXT, true));
@@ -181,7 +187,7 @@ fn title_rows(scene: &Scene, text: f64) -> Vec<Row> {
     rows
 }
 
-fn legend_rows(scene: &Scene, shown: Shown, notes: &[String], text: f64) -> Vec<Row> {
+fn legend_rows(scene: &Scene, shown: LegendUse, notes: &[String], text: f64) -> Vec<PanelRow> {
     let item = |item: &LegendItem| {
         let words = match item.sample {
             Sample::Misfit => format!("{} ×{}", item.text, plain(shown.magnification?)),
@@ -196,30 +202,34 @@ fn legend_rows(scene: &Scene, shown: Shown, notes: &[String], text: f64) -> Vec<
             Sample::Standing(standing) if shown.plain_rest && !standing.is_good() => Sample::Plain(standing),
             sample => sample,
         };
-        Some(Row::Sample(sample, words))
+        Some(PanelRow::Sample(sample, words))
     };
-    let mut rows: Vec<Row> = scene.legend.iter().filter_map(item).collect();
+    let mut rows: Vec<PanelRow> = scene.legend.iter().filter_map(item).collect();
     if !notes.is_empty() {
-        rows.push(Row::Rule);
+        rows.push(PanelRow::Rule);
     }
-    let note =
-        |n: &String| Row::Text { text: n.clone(), size: text, color: palette::SOFT_TEXT, important: true };
+    let note = |n: &String| PanelRow::Text {
+        text: n.clone(),
+        size: text,
+        color: palette::SOFT_TEXT,
+        important: true,
+    };
     rows.extend(notes.iter().map(note));
     rows
 }
 
 /// Sets the rows below each other; also says how high they are.
-fn flow(rows: &[Row], column: Rect, font: &Font, text: f64) -> (Vec<Ink>, f64) {
+fn flow(rows: &[PanelRow], column: Rect, font: &Font, text: f64) -> (Vec<DrawCommand>, f64) {
     let mut inks = Vec::new();
     let mut y = column.top;
     let leading = 1.28;
     let indent = 2.1 * text;
     for row in rows {
         match row {
-            Row::Gap => y += 0.5 * text,
-            Row::Rule => {
+            PanelRow::Gap => y += 0.5 * text,
+            PanelRow::Rule => {
                 y += 0.45 * text;
-                inks.push(Ink::line(
+                inks.push(DrawCommand::line(
                     px(column.left, y.round() + 0.5),
                     px(column.right, y.round() + 0.5),
                     1.0,
@@ -227,18 +237,18 @@ fn flow(rows: &[Row], column: Rect, font: &Font, text: f64) -> (Vec<Ink>, f64) {
                 ));
                 y += 0.55 * text;
             }
-            Row::Dots => {
-                inks.push(Ink::text(px(column.left, y + ASCENT * text), text, "…", palette::TEXT));
+            PanelRow::Dots => {
+                inks.push(DrawCommand::text(px(column.left, y + ASCENT * text), text, "…", palette::TEXT));
                 y += leading * text;
             }
-            Row::Text { text: words, size, color, .. } => {
+            PanelRow::Text { text: words, size, color, .. } => {
                 for line in font.wrapped(words, *size, column.width(), MOST_LINES) {
-                    inks.push(Ink::text(px(column.left, y + ASCENT * size), *size, line, *color));
+                    inks.push(DrawCommand::text(px(column.left, y + ASCENT * size), *size, line, *color));
                     y += leading * size;
                 }
             }
-            Row::Zone(zone) => y += zone_frame(*zone, px(column.left, y), font, text, &mut inks),
-            Row::Verdict(standing, words) => {
+            PanelRow::Zone(zone) => y += zone_frame(*zone, px(column.left, y), font, text, &mut inks),
+            PanelRow::Verdict(standing, words) => {
                 inks.extend(symbol::standing(
                     *standing,
                     px(column.left + 0.8 * text, y + 0.5 * text),
@@ -246,7 +256,7 @@ fn flow(rows: &[Row], column: Rect, font: &Font, text: f64) -> (Vec<Ink>, f64) {
                 ));
                 y += indented(words, px(column.left + indent, y), column.right, font, text, &mut inks);
             }
-            Row::Sample(sample, words) => {
+            PanelRow::Sample(sample, words) => {
                 inks.extend(sample_inks(*sample, px(column.left + 0.8 * text, y + 0.5 * text), text));
                 y += indented(words, px(column.left + indent, y), column.right, font, text, &mut inks);
             }
@@ -255,16 +265,21 @@ fn flow(rows: &[Row], column: Rect, font: &Font, text: f64) -> (Vec<Ink>, f64) {
     (inks, y - column.top)
 }
 
-fn indented(words: &str, at: Px, right: f64, font: &Font, text: f64, inks: &mut Vec<Ink>) -> f64 {
+fn indented(words: &str, at: Px, right: f64, font: &Font, text: f64, inks: &mut Vec<DrawCommand>) -> f64 {
     let lines = font.wrapped(words, text, right - at.x, MOST_LINES);
     let height = 1.28 * text * lines.len().max(1) as f64;
     for (n, line) in lines.into_iter().enumerate() {
-        inks.push(Ink::text(px(at.x, at.y + text * (ASCENT + 1.28 * n as f64)), text, line, palette::TEXT));
+        inks.push(DrawCommand::text(
+            px(at.x, at.y + text * (ASCENT + 1.28 * n as f64)),
+            text,
+            line,
+            palette::TEXT,
+        ));
     }
     height
 }
 
-fn zone_frame(zone: f64, at: Px, font: &Font, text: f64, inks: &mut Vec<Ink>) -> f64 {
+fn zone_frame(zone: f64, at: Px, font: &Font, text: f64, inks: &mut Vec<DrawCommand>) -> f64 {
     let words = format!("Φ{}", plain(zone));
     let high = 1.7 * text;
     let (first, second) = (1.9 * text, font.width(&words, text) + 0.8 * text);
@@ -273,11 +288,17 @@ fn zone_frame(zone: f64, at: Px, font: &Font, text: f64, inks: &mut Vec<Ink>) ->
     for (x, wide) in [(left, first), (left + first.round(), second)] {
         let (right, bottom) = (x + wide.round(), top + high.round());
         let points = vec![px(x, top), px(right, top), px(right, bottom), px(x, bottom)];
-        inks.push(Ink::Line { points, closed: true, width: 1.0, dash: Dash::Solid, color: palette::TEXT });
+        inks.push(DrawCommand::Line {
+            points,
+            closed: true,
+            width: 1.0,
+            dash: Dash::Solid,
+            color: palette::TEXT,
+        });
     }
     let middle = px(left + first / 2.0, top + high / 2.0);
     inks.extend(symbol::position(middle, 0.62 * text, (0.08 * text).max(1.0), palette::TEXT));
-    inks.push(Ink::text(
+    inks.push(DrawCommand::text(
         px(left + first.round() + 0.4 * text, top + 1.18 * text),
         text,
         words,
@@ -286,7 +307,7 @@ fn zone_frame(zone: f64, at: Px, font: &Font, text: f64, inks: &mut Vec<Ink>) ->
     high + 0.45 * text
 }
 
-fn sample_inks(sample: Sample, middle: Px, text: f64) -> Vec<Ink> {
+fn sample_inks(sample: Sample, middle: Px, text: f64) -> Vec<DrawCommand> {
     let half = 0.8 * text;
     let (left, right) = (px(middle.x - half, middle.y), px(middle.x + half, middle.y));
     match sample {
@@ -294,31 +315,37 @@ fn sample_inks(sample: Sample, middle: Px, text: f64) -> Vec<Ink> {
         Sample::Plain(standing) => symbol::hole(standing, middle, 0.4 * text, [0.0, 1.0], 1.0),
         Sample::Pen(pen) => {
             let (color, width, dash) = palette::pen(pen, text);
-            vec![Ink::Line { points: vec![left, right], closed: false, width: width.max(1.0), dash, color }]
+            vec![DrawCommand::Line {
+                points: vec![left, right],
+                closed: false,
+                width: width.max(1.0),
+                dash,
+                color,
+            }]
         }
         Sample::Direction => symbol::arrow(left, right, (0.08 * text).max(1.0), 0.5 * text, palette::TEXT),
         Sample::Astray => {
             let (width, dash) = ((0.06 * text).max(1.0), Dash::Pattern([0.15 * text, 0.2 * text]));
             let color = palette::TEXT;
             vec![
-                Ink::Line { points: vec![left, right], closed: false, width, dash, color },
-                Ink::Ring { centre: right, radius: 0.3 * text, width, dash: Dash::Solid, color },
+                DrawCommand::Line { points: vec![left, right], closed: false, width, dash, color },
+                DrawCommand::Ring { centre: right, radius: 0.3 * text, width, dash: Dash::Solid, color },
             ]
         }
         Sample::Misfit => {
             let thin = (0.06 * text).max(1.0);
             let end = px(middle.x + 0.3 * text, middle.y - 0.2 * text);
-            let color = palette::standing(Standing::Good);
+            let color = palette::standing(HoleStatus::Good);
             vec![
-                Ink::Ring {
+                DrawCommand::Ring {
                     centre: middle,
                     radius: 0.62 * text,
                     width: thin,
                     dash: Dash::Solid,
                     color: palette::THIN,
                 },
-                Ink::line(middle, end, (0.13 * text).max(1.5), color),
-                Ink::Disc { centre: end, radius: (0.17 * text).max(1.8), color },
+                DrawCommand::line(middle, end, (0.13 * text).max(1.5), color),
+                DrawCommand::Disc { centre: end, radius: (0.17 * text).max(1.8), color },
             ]
         }
     }

@@ -41,14 +41,14 @@ impl Plot {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::picture::chart::{Curve, Graph, Sign};
-    use crate::picture::ink::Ink;
-    use crate::picture::role::{Pen, Standing};
+    use crate::picture::chart::{ChartMarker, Curve, Graph};
+    use crate::picture::ink::DrawCommand;
+    use crate::picture::role::{HoleStatus, Pen};
 
     fn plot(high: f64, length: f64) -> Plot {
-        let sign = |part: f64| Sign {
+        let sign = |part: f64| ChartMarker {
             at: [length * part, high],
-            standing: Standing::Bad,
+            standing: HoleStatus::Bad,
             name: "too far".to_owned(),
         };
         let curve = (0..=100).map(|n| [length * f64::from(n) / 100.0, high * libm::sin(f64::from(n) / 15.0)]);
@@ -95,7 +95,7 @@ mod tests {
         graph.signs.clear();
         let sheet = plot.lay_out(Size::default());
         let curves = sheet.inks.iter().filter_map(|ink| match ink {
-            Ink::Line { points, .. } if points.len() == 3 => Some(points),
+            DrawCommand::Line { points, .. } if points.len() == 3 => Some(points),
             _ => None,
         });
         let [points] = curves.collect::<Vec<_>>()[..] else { panic!("one curve of three points") };

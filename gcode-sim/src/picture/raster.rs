@@ -7,7 +7,7 @@ use tiny_skia::{
 
 use super::PictureError;
 use super::font::Font;
-use super::ink::{Align, Dash, Ink, Px, Rgb};
+use super::ink::{Align, Dash, DrawCommand, Px, Rgb};
 use super::palette;
 use super::sheet::Sheet;
 
@@ -42,17 +42,17 @@ pub(super) fn encode(rgb: &[u8], width: u32, height: u32) -> Result<Vec<u8>, Pic
     Ok(bytes)
 }
 
-fn put(pixmap: &mut Pixmap, font: &Font, ink: &Ink) {
+fn put(pixmap: &mut Pixmap, font: &Font, ink: &DrawCommand) {
     match ink {
-        Ink::Line { points, closed, width, dash, color } => {
+        DrawCommand::Line { points, closed, width, dash, color } => {
             stroke(pixmap, polygon(points, *closed), *width, *dash, *color);
         }
-        Ink::Area { points, color } => fill(pixmap, polygon(points, true), *color),
-        Ink::Ring { centre, radius, width, dash, color } => {
+        DrawCommand::Area { points, color } => fill(pixmap, polygon(points, true), *color),
+        DrawCommand::Ring { centre, radius, width, dash, color } => {
             stroke(pixmap, circle(*centre, *radius), *width, *dash, *color);
         }
-        Ink::Disc { centre, radius, color } => fill(pixmap, circle(*centre, *radius), *color),
-        Ink::Text { at, align, size, text, color } => {
+        DrawCommand::Disc { centre, radius, color } => fill(pixmap, circle(*centre, *radius), *color),
+        DrawCommand::Text { at, align, size, text, color } => {
             let left = match align {
                 Align::Left => at.x,
                 Align::Centre => at.x - font.width(text, *size) / 2.0,

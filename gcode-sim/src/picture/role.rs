@@ -38,7 +38,7 @@ pub enum Pen {
 
 /// How a hole stands against what was wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Standing {
+pub enum HoleStatus {
     Bad,
     Missing,
     Extra,
@@ -47,7 +47,7 @@ pub enum Standing {
     Good,
 }
 
-impl Standing {
+impl HoleStatus {
     /// Nothing to look at twice.
     pub fn is_good(self) -> bool {
         matches!(self, Self::Good | Self::Unjudged)

@@ -1,6 +1,6 @@
 //! What to draw, in mm and in roles: no pixels, no colours, no NC words.
 use super::chart::Chart;
-use super::role::{Pen, Point, Standing};
+use super::role::{HoleStatus, Pen, Point};
 
 /// One drawing.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -25,7 +25,7 @@ pub struct Title {
     /// Position tolerance as a feature control frame has it: diameter of the zone, mm.
     pub position: Option<f64>,
     /// Verdict on the whole.
-    pub verdict: Option<(Standing, String)>,
+    pub verdict: Option<(HoleStatus, String)>,
     /// Further lines, one thing each.
     pub lines: Vec<String>,
     /// What the reader must not take the picture for.
@@ -61,19 +61,19 @@ pub struct Mark {
     /// Where it should be; where it is, if nothing was asked for.
     pub at: Point,
     pub radius: f64,
-    pub standing: Standing,
+    pub standing: HoleStatus,
     /// Most important first; what finds no room is left out from the end.
     pub label: Vec<String>,
     /// Projection of the unit vector out of the part.
     pub direction: Option<Point>,
-    pub misfit: Option<Misfit>,
+    pub misfit: Option<ZoneDeviation>,
     /// Where it is in truth, if there is a place for it.
     pub found: Option<Point>,
 }
 
 /// Actual − nominal at both ends of a hole, mm, seen along the nominal axis: inside the zone's circle is inside tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Misfit {
+pub struct ZoneDeviation {
     pub entry: Point,
     pub bottom: Point,
 }
@@ -87,9 +87,9 @@ pub struct LegendItem {
 /// What a line of the legend shows at its left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sample {
-    Standing(Standing),
+    Standing(HoleStatus),
     /// The sheet puts it in the place of a standing whose holes it draws as they are, without a sign.
-    Plain(Standing),
+    Plain(HoleStatus),
     Pen(Pen),
     /// Left out by the sheet where no axis is drawn.
     Direction,

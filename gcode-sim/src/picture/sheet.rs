@@ -1,16 +1,16 @@
 //! Lays a scene out on a sheet of a given size: scale, dials, labels, scale bar, title block. Decides, doesn't paint.
 use super::PictureError;
-use super::dials::{Detail, Dials};
+use super::deviation_dials::{Detail, DeviationDials};
 use super::font::Font;
-use super::frame::{Frame, Shown};
-use super::ink::{Ink, Rect};
-use super::labels::Field;
-use super::lettering::{Lettering, caption_strokes};
+use super::frame::{Frame, LegendUse};
+use super::ink::{DrawCommand, Rect};
+use super::label_layout::{LabelLayout, caption_strokes};
+use super::labels::LabelArea;
 use super::lines::{are_arrows_hidden, axes, block_stroke, is_path, scale_bar, stroke_ink};
 use super::marks::draw_marks;
 use super::measure::Scale;
 use super::panel::Panel;
-use super::role::{Pen, Point, Standing};
+use super::role::{HoleStatus, Pen, Point};
 use super::scene::{Scene, Shape, Stroke};
 use super::size::Size;
 use super::words::Words;
@@ -19,7 +19,7 @@ use super::words::Words;
 #[derive(Clone, Debug)]
 pub struct Sheet {
     pub size: Size,
-    pub inks: Vec<Ink>,
+    pub inks: Vec<DrawCommand>,
     /// The labels of the holes and lines, as placed: none overlaps another.
     pub labels: Vec<(Rect, Vec<String>)>,
     /// What the picture leaves out, as it says itself.
@@ -58,7 +58,7 @@ pub fn lay_out(scene: &Scene, size: Size) -> Result<Sheet, PictureError> {
         let mut words = Words::new(&frame.font, text);
         chart.draw(panel.drawing.grown(-text), &mut words);
         let Words { mut inks, labels, .. } = words;
-        inks.extend(panel.inks(scene, &frame, Shown::NOTHING, &[]));
+        inks.extend(panel.inks(scene, &frame, LegendUse::NOTHING, &[]));
         return Ok(Sheet { size, inks, labels, notes: Vec::new(), magnification: None });
     }
     let mut plans = Detail::ALL.iter().map(|detail| Plan::new(scene, &frame, drawing, extent, *detail));
@@ -79,17 +79,17 @@ pub fn lay_out(scene: &Scene, size: Size) -> Result<Sheet, PictureError> {
 
 /// The drawing with some of the detail there could be.
 struct Plan {
-    inks: Vec<Ink>,
+    inks: Vec<DrawCommand>,
     labels: Vec<(Rect, Vec<String>)>,
     notes: Vec<String>,
-    shown: Shown,
+    shown: LegendUse,
     /// Holes without a number.
     unlabelled: usize,
 }
 
 impl Plan {
     fn new(scene: &Scene, frame: &Frame, drawing: Rect, extent: (Point, Point), detail: Detail) -> Self {
-        let mut field = Field::new(drawing.grown(-0.3 * frame.text), frame.text);
+        let mut field = LabelArea::new(drawing.grown(-0.3 * frame.text), frame.text);
         let mut inks = Vec::new();
         for stroke in &scene.strokes {
             inks.push(stroke_ink(stroke, frame));
@@ -100,14 +100,14 @@ impl Plan {
         let mut labels = Vec::new();
         let is_line = |stroke: &Stroke| matches!(stroke.shape, Shape::Line(_)) && !is_path(stroke.pen);
         let mut bare = caption_strokes(scene, is_line, frame, &mut field, &mut inks, &mut labels);
-        let dials = Dials::choose(scene, frame, detail);
+        let dials = DeviationDials::choose(scene, frame, detail);
         let drawn = draw_marks(scene, frame, &dials, &mut field);
         // What isn't good comes last, on top.
         for good in [true, false] {
             let holes = scene.marks.iter().zip(&drawn).filter(|(mark, _)| mark.standing.is_good() == good);
             inks.extend(holes.flat_map(|(_, hole)| hole.inks.iter().cloned()));
         }
-        let mut lettering = Lettering::of(scene, &drawn, frame, &field);
+        let mut lettering = LabelLayout::of(scene, &drawn, frame, &field);
         labels.extend(lettering.write(scene, frame, &mut inks));
         let is_circle = |stroke: &Stroke| !is_line(stroke);
         bare.extend(caption_strokes(scene, is_circle, frame, &mut lettering.field, &mut inks, &mut labels));
@@ -120,11 +120,11 @@ impl Plan {
             notes.push(format!("No room on the line for {}.", bare.join(", ")));
         }
         let unlabelled = lettering.unlabelled(scene);
-        let shown = Shown {
+        let shown = LegendUse {
             magnification: dials.magnification(),
             directions: drawn.iter().any(|d| d.directed),
             astray: drawn.iter().any(|d| d.strayed),
-            plain_good: dials.are_plain(scene, Standing::is_good),
+            plain_good: dials.are_plain(scene, HoleStatus::is_good),
             plain_rest: dials.are_plain(scene, |standing| !standing.is_good()),
         };
         if detail == Detail::SignsWithoutAxes {
@@ -197,7 +197,7 @@ fn extent(scene: &Scene) -> (Point, Point) {
 mod tests {
     use super::*;
     use crate::picture::ink::Align;
-    use crate::picture::scene::{Axis, LegendItem, Mark, Misfit, Sample, Title};
+    use crate::picture::scene::{Axis, LegendItem, Mark, Sample, Title, ZoneDeviation};
     use proptest::prelude::*;
 
     fn scene(marks: Vec<Mark>) -> Scene {
@@ -214,7 +214,7 @@ mod tests {
                     .to_owned(),
                 view: "Top view".to_owned(),
                 position: Some(0.1),
-                verdict: Some((Standing::Bad, "FAIL: 2 of 5 good, 2 bad, 1 missing, 2 extra".to_owned())),
+                verdict: Some((HoleStatus::Bad, "FAIL: 2 of 5 good, 2 bad, 1 missing, 2 extra".to_owned())),
                 lines: (0..6).map(|i| format!("another line about the part, number {i}")).collect(),
                 caution: "Predicted by simulation, not measured".to_owned(),
             },
@@ -223,8 +223,8 @@ mod tests {
             marks,
             zone: Some(0.1),
             legend: vec![
-                item(Sample::Standing(Standing::Good)),
-                item(Sample::Standing(Standing::Bad)),
+                item(Sample::Standing(HoleStatus::Good)),
+                item(Sample::Standing(HoleStatus::Bad)),
                 item(Sample::Misfit),
                 item(Sample::Direction),
                 item(Sample::Pen(Pen::Outline)),
@@ -236,24 +236,25 @@ mod tests {
 
     fn mark(index: usize, at: Point) -> Mark {
         let standing =
-            [Standing::Good, Standing::Good, Standing::Bad, Standing::Missing, Standing::Extra][index % 5];
+            [HoleStatus::Good, HoleStatus::Good, HoleStatus::Bad, HoleStatus::Missing, HoleStatus::Extra]
+                [index % 5];
         let off = 0.01 * index as f64;
-        let judged = matches!(standing, Standing::Good | Standing::Bad);
+        let judged = matches!(standing, HoleStatus::Good | HoleStatus::Bad);
         Mark {
             at,
             radius: 3.0,
             standing,
             label: vec![format!("{}", index + 1), format!("B {index}°"), "Φ0.020".to_owned()],
             direction: Some([at[0] / 800.0, at[1] / 800.0]),
-            misfit: judged.then_some(Misfit { entry: [off, 0.01], bottom: [off, -0.01] }),
+            misfit: judged.then_some(ZoneDeviation { entry: [off, 0.01], bottom: [off, -0.01] }),
             found: judged.then_some([at[0] + off, at[1]]),
         }
     }
 
     /// How far an ink reaches, pixels.
-    fn reach(ink: &Ink, font: &Font) -> Rect {
+    fn reach(ink: &DrawCommand, font: &Font) -> Rect {
         match ink {
-            Ink::Line { points, .. } | Ink::Area { points, .. } => {
+            DrawCommand::Line { points, .. } | DrawCommand::Area { points, .. } => {
                 points.iter().fold(Rect::new(points[0].x, points[0].y, 0.0, 0.0), |rect, p| Rect {
                     left: rect.left.min(p.x),
                     top: rect.top.min(p.y),
@@ -261,10 +262,10 @@ mod tests {
                     bottom: rect.bottom.max(p.y),
                 })
             }
-            Ink::Ring { centre, radius, .. } | Ink::Disc { centre, radius, .. } => {
+            DrawCommand::Ring { centre, radius, .. } | DrawCommand::Disc { centre, radius, .. } => {
                 Rect::new(centre.x - radius, centre.y - radius, 2.0 * radius, 2.0 * radius)
             }
-            Ink::Text { at, align, size, text, .. } => {
+            DrawCommand::Text { at, align, size, text, .. } => {
                 let width = font.width(text, *size);
                 let part = match align {
                     Align::Left => 0.0,
@@ -324,7 +325,7 @@ mod tests {
     fn too_many_holes_for_their_numbers_are_said_to_be() {
         let places = (0..900).map(|i| [f64::from(i % 30) * 30.0 - 435.0, f64::from(i / 30) * 30.0 - 435.0]);
         let scene = scene(
-            places.enumerate().map(|(i, at)| Mark { standing: Standing::Good, ..mark(i, at) }).collect(),
+            places.enumerate().map(|(i, at)| Mark { standing: HoleStatus::Good, ..mark(i, at) }).collect(),
         );
         let sheet = lay_out(&scene, Size::new(480, 360).unwrap()).unwrap();
         let numbered = sheet.labels.iter().filter(|(_, lines)| lines[0].parse::<u32>().is_ok()).count();

@@ -1,13 +1,13 @@
 //! The words of a chart, each with the place it takes: title and notes above, names and numbers in it.
 use super::font::Font;
-use super::ink::{Align, Ink, Px, Rect, Rgb, px};
+use super::ink::{Align, DrawCommand, Px, Rect, Rgb, px};
 use super::palette;
 
 pub(super) struct Words<'f> {
     pub(super) font: &'f Font,
     /// Height of the plain text, pixels.
     pub(super) text: f64,
-    pub(super) inks: Vec<Ink>,
+    pub(super) inks: Vec<DrawCommand>,
     pub(super) labels: Vec<(Rect, Vec<String>)>,
 }
 
@@ -41,7 +41,7 @@ impl<'f> Words<'f> {
         let words = self.font.fitted(words, size, width);
         let place = self.place(at, align, size, &words);
         self.labels.push((place, vec![words.clone()]));
-        self.inks.push(Ink::Text { at, align, size, text: words, color });
+        self.inks.push(DrawCommand::Text { at, align, size, text: words, color });
     }
 
     /// The place that words on the line through `at` take.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::loops::Loops;
 use super::lower::{Lowering, lower_case};
-use super::{Act, Op, OpIndex, OpKind, Statement};
+use super::{Op, OpBody, OpIndex, OpKind, Statement};
 use crate::alarm::Alarm;
 use crate::source::{Bytes, SourceId};
 use crate::syntax::{ast, block_at, sequence_number_at};
@@ -124,8 +124,8 @@ impl Blocks {
 /// it gets there.
 fn join(op: &mut Op, place: OpIndex, loops: &Loops) {
     let kind = match &mut op.act {
-        Act::Plain(kind) => kind,
-        Act::Asked(asked) => &mut asked.kind,
+        OpBody::Plain(kind) => kind,
+        OpBody::Asked(asked) => &mut asked.kind,
     };
     let OpKind::Statement(statement) = kind else { return };
     let alarm = match statement {
@@ -150,7 +150,7 @@ fn join(op: &mut Op, place: OpIndex, loops: &Loops) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Compute, Memory, Operation, Source};
+    use super::super::{Assign, Memory, OperandSource, Operation};
     use super::*;
 
     /// Every third block is an assignment with code of its own.
@@ -169,8 +169,8 @@ mod tests {
         for place in (0..LINES).chain((0..2 * LINES).map(|step| step * 7919 % LINES)).chain(near) {
             let op = memory.ready(id, place).unwrap();
             let span = op.span;
-            if let OpKind::Compute(Compute { code, .. }) = op.kind() {
-                let wanted = Operation::Add([Source::Number(place as f64), Source::Free(2)]);
+            if let OpKind::Compute(Assign { code, .. }) = op.kind() {
+                let wanted = Operation::Add([OperandSource::Number(place as f64), OperandSource::Free(2)]);
                 assert_eq!(code[0].operation, wanted);
             } else {
                 assert_eq!(op.number, Some(place as u32));

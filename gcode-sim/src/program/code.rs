@@ -12,7 +12,7 @@ pub enum Operand {
         slot: Slot,
         span: Span,
     },
-    Code(Code),
+    Code(Bytecode),
 }
 
 /// A variable whose number is written out, found as far as no setting of the control decides.
@@ -56,7 +56,7 @@ impl Target {
 }
 
 /// What computes a value: the last of its instructions gives it.
-pub type Code = Box<[Instruction]>;
+pub type Bytecode = Box<[Instruction]>;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Instruction {
@@ -66,7 +66,7 @@ pub struct Instruction {
 
 /// Where an operator finds a value that it needs. Most are numbers and variables, which then needn't wait on the stack.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Source {
+pub enum OperandSource {
     /// A variable of [`Slot::Free`].
     Free(u16),
     Number(f64),
@@ -87,21 +87,21 @@ pub enum Computed {
 #[derive(Clone, Debug, PartialEq)]
 #[repr(u8)]
 pub enum Operation {
-    Add([Source; 2]),
-    Subtract([Source; 2]),
-    Multiply([Source; 2]),
-    Divide([Source; 2]),
-    Compare(Relation, [Source; 2]),
-    Function(Function, Source),
+    Add([OperandSource; 2]),
+    Subtract([OperandSource; 2]),
+    Multiply([OperandSource; 2]),
+    Divide([OperandSource; 2]),
+    Compare(Relation, [OperandSource; 2]),
+    Function(Function, OperandSource),
     /// ATAN of two values.
-    Atan2([Source; 2]),
-    Rare(Rare),
+    Atan2([OperandSource; 2]),
+    Rare(UncommonOp),
 }
 
 /// What only some expressions contain.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Rare {
-    Load(Source),
+pub enum UncommonOp {
+    Load(OperandSource),
     /// Lets the last value wait for its operator.
     Wait,
     /// A variable that may not be read.
@@ -114,8 +114,8 @@ pub enum Rare {
     Plus,
     Bracket,
     /// An operator on whole numbers.
-    Whole(BinaryOp, [Source; 2]),
-    Power([Source; 2]),
+    Whole(BinaryOp, [OperandSource; 2]),
+    Power([OperandSource; 2]),
     /// ROUND in a word: to the increment of that address.
     RoundTo(u8),
     /// Of the value that waits and the last one.
@@ -135,20 +135,22 @@ pub enum Rare {
     SystemNumber(NameRow),
 }
 
-impl From<Rare> for Operation {
-    fn from(rare: Rare) -> Self {
+impl From<UncommonOp> for Operation {
+    fn from(rare: UncommonOp) -> Self {
         Self::Rare(rare)
     }
 }
 
 impl Operation {
-    pub(super) fn binary(op: BinaryOp, values: [Source; 2]) -> Self {
+    pub(super) fn binary(op: BinaryOp, values: [OperandSource; 2]) -> Self {
         match op {
             BinaryOp::Add => Self::Add(values),
             BinaryOp::Sub => Self::Subtract(values),
             BinaryOp::Mul => Self::Multiply(values),
             BinaryOp::Div => Self::Divide(values),
-            BinaryOp::Mod | BinaryOp::And | BinaryOp::Or | BinaryOp::Xor => Rare::Whole(op, values).into(),
+            BinaryOp::Mod | BinaryOp::And | BinaryOp::Or | BinaryOp::Xor => {
+                UncommonOp::Whole(op, values).into()
+            }
         }
     }
 }

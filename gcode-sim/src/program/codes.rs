@@ -106,12 +106,12 @@ pub enum OneShot {
     /// G12 and G13 of a Haas.
     CirclePocket(Motion),
     /// G70 and G71 of a Haas.
-    BoltHoles(Holes),
+    BoltHoles(HolePattern),
 }
 
 /// How a pattern places its holes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Holes {
+pub enum HolePattern {
     /// All round.
     Circle,
     /// By a given angle from hole to hole.
@@ -120,7 +120,7 @@ pub enum Holes {
 
 /// A row of the table.
 #[derive(Clone, Copy, Debug)]
-pub struct Row {
+pub struct GCodeRow {
     /// G code × 10: 541 is G54.1.
     pub code: u32,
     pub effect: Effect,
@@ -130,37 +130,37 @@ pub struct Row {
 }
 
 /// A code that all controls have.
-const fn row(code: u32, effect: Effect, help: &'static str) -> Row {
-    Row { code, effect, help, on: CodeSet::EVERY }
+const fn row(code: u32, effect: Effect, help: &'static str) -> GCodeRow {
+    GCodeRow { code, effect, help, on: CodeSet::EVERY }
 }
 
 /// A code that a Haas hasn't, or has as something else.
-const fn fanuc(code: u32, effect: Effect, help: &'static str) -> Row {
-    Row { code, effect, help, on: CodeSet::FANUC }
+const fn fanuc(code: u32, effect: Effect, help: &'static str) -> GCodeRow {
+    GCodeRow { code, effect, help, on: CodeSet::FANUC }
 }
 
 /// A code of controls that move five axes at once: the 0i-F moves four.
-const fn five(code: u32, effect: Effect, help: &'static str) -> Row {
-    Row { code, effect, help, on: CodeSet::FIVE_AXES }
+const fn five(code: u32, effect: Effect, help: &'static str) -> GCodeRow {
+    GCodeRow { code, effect, help, on: CodeSet::FIVE_AXES }
 }
 
 /// A code of a Haas alone.
-const fn haas(code: u32, effect: Effect, help: &'static str) -> Row {
-    Row { code, effect, help, on: CodeSet::HAAS }
+const fn haas(code: u32, effect: Effect, help: &'static str) -> GCodeRow {
+    GCodeRow { code, effect, help, on: CodeSet::HAAS }
 }
 
-const fn cycle(index: usize) -> Row {
+const fn cycle(index: usize) -> GCodeRow {
     let cycle = &cycles::CYCLES[index];
     row(cycle.code, Effect::Cycle(Some(cycle)), cycle.help)
 }
 
-const fn fanuc_cycle(index: usize) -> Row {
-    Row { on: CodeSet::FANUC, ..cycle(index) }
+const fn fanuc_cycle(index: usize) -> GCodeRow {
+    GCodeRow { on: CodeSet::FANUC, ..cycle(index) }
 }
 
 /// All codes in ascending order; a code that is another thing on another control has a row for each.
 #[rustfmt::skip]
-pub const CODES: &[Row] = &[
+pub const CODES: &[GCodeRow] = &[
     row(0, Effect::Motion(Motion::Rapid), "rapid"),
     row(10, Effect::Motion(Motion::Linear), "straight feed"),
     row(20, Effect::Motion(Motion::Clockwise), "arc, clockwise"),
@@ -266,8 +266,8 @@ pub const CODES: &[Row] = &[
     fanuc(683, Effect::NotSimulated, "tilted plane by the tool"),
     fanuc(684, Effect::NotSimulated, "tilted plane, incremental"),
     row(690, Effect::Rotation(Rotation::Off), "rotation off"),
-    haas(700, Effect::OneShot(OneShot::BoltHoles(Holes::Circle)), "holes on a circle"),
-    haas(710, Effect::OneShot(OneShot::BoltHoles(Holes::Arc)), "holes on an arc"),
+    haas(700, Effect::OneShot(OneShot::BoltHoles(HolePattern::Circle)), "holes on a circle"),
+    haas(710, Effect::OneShot(OneShot::BoltHoles(HolePattern::Arc)), "holes on an arc"),
     haas(720, Effect::NotSimulated, "holes on a line"),
     fanuc(721, Effect::NotSimulated, "figure copy"),
     fanuc(722, Effect::NotSimulated, "figure copy"),
@@ -353,29 +353,29 @@ pub const CODES: &[Row] = &[
 
 /// What a code × 10 is on each group of controls: the place of its row; 255 where they don't have it.
 #[derive(Clone, Copy, Debug)]
-pub struct Found([u8; CodeSet::EVERY.len()]);
+pub struct RowLookup([u8; CodeSet::EVERY.len()]);
 
-impl Found {
+impl RowLookup {
     const NONE: u8 = u8::MAX;
     const NOWHERE: Self = Self([Self::NONE; CodeSet::EVERY.len()]);
 
     /// What the code is on a control.
     #[inline]
-    pub fn on(&self, set: CodeSet) -> Option<&'static Row> {
+    pub fn on(&self, set: CodeSet) -> Option<&'static GCodeRow> {
         CODES.get(usize::from(self.0[set as usize]))
     }
 }
 
 /// What is known of a code × 10.
 #[inline]
-pub fn find(code: u32) -> Found {
-    FOUND.get(code as usize).copied().unwrap_or(Found::NOWHERE)
+pub fn find(code: u32) -> RowLookup {
+    FOUND.get(code as usize).copied().unwrap_or(RowLookup::NOWHERE)
 }
 
 /// The same of each code × 10 up to the last one.
-const FOUND: [Found; LAST_CODE + 1] = {
-    assert!(CODES.len() <= Found::NONE as usize);
-    let mut all = [Found::NOWHERE; LAST_CODE + 1];
+const FOUND: [RowLookup; LAST_CODE + 1] = {
+    assert!(CODES.len() <= RowLookup::NONE as usize);
+    let mut all = [RowLookup::NOWHERE; LAST_CODE + 1];
     let mut place = 0;
     while place < CODES.len() {
         let row = &CODES[place];

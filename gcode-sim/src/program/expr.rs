@@ -1,17 +1,19 @@
 //! Expressions lowered to postfix code.
-use super::Form;
-use super::code::{Code, Computed, Instruction, Operand, Operation, Rare, STACK, Slot, Source, Target};
+use super::DialectSyntax;
+use super::code::{
+    Bytecode, Computed, Instruction, Operand, OperandSource, Operation, STACK, Slot, Target, UncommonOp,
+};
 use super::lower::Lowering;
 use super::names::{self, OTHER_MEMORIES};
-use crate::alarm::{Alarm, Placed};
+use crate::alarm::{Alarm, LocatedAlarm};
 use crate::source::Span;
-use crate::syntax::ast::{BinaryOp, CallForm, Condition, Expr, ExprKind, Function, Name, Written};
+use crate::syntax::ast::{BinaryOp, CallForm, Condition, Expr, ExprKind, Function, Name, OperatorSpelling};
 
 /// How deep brackets may stand in one another (operator's manual, custom macro: five levels).
 pub(super) const BRACKETS: usize = 5;
 
-const LAST: Source = Source::Computed(Computed::Last);
-const WAITING: Source = Source::Computed(Computed::Waiting);
+const LAST: OperandSource = OperandSource::Computed(Computed::Last);
+const WAITING: OperandSource = OperandSource::Computed(Computed::Waiting);
 
 /// Beyond it no number is a variable's.
 const MOST_WRITTEN: f64 = 999_999_999.0;
@@ -24,7 +26,7 @@ pub(super) enum Context {
     Address(u8),
 }
 
-type Lowered<T> = Result<T, Placed>;
+type Lowered<T> = Result<T, LocatedAlarm>;
 
 impl Lowering {
     pub(super) fn operand(&mut self, expr: &Expr, context: Context) -> Lowered<Operand> {
@@ -44,15 +46,15 @@ impl Lowering {
     pub(super) fn word_value(&mut self, expr: &Expr, letter: u8) -> Lowered<Operand> {
         let context = Context::Address(letter);
         let ExprKind::Negate(inner) = &expr.kind else { return self.operand(expr, context) };
-        let write = |this: &mut Self| this.unary(inner, Rare::Reverse, expr.span, context, 0);
+        let write = |this: &mut Self| this.unary(inner, UncommonOp::Reverse, expr.span, context, 0);
         self.code(expr.span, write).map(Operand::Code)
     }
 
-    pub(super) fn condition(&mut self, condition: &Condition, span: Span) -> Lowered<Code> {
+    pub(super) fn condition(&mut self, condition: &Condition, span: Span) -> Lowered<Bytecode> {
         self.code(span, |this| this.test(condition))
     }
 
-    fn code(&mut self, span: Span, write: impl FnOnce(&mut Self) -> Lowered<usize>) -> Lowered<Code> {
+    fn code(&mut self, span: Span, write: impl FnOnce(&mut Self) -> Lowered<usize>) -> Lowered<Bytecode> {
         self.instructions.clear();
         let depth = write(self)?;
         if depth > STACK {
@@ -70,32 +72,32 @@ impl Lowering {
     fn expr(&mut self, expr: &Expr, context: Context, brackets: usize) -> Lowered<usize> {
         let (source, depth) = self.source(expr, context, brackets)?;
         if source != LAST {
-            self.emit(Rare::Load(source), expr.span);
+            self.emit(UncommonOp::Load(source), expr.span);
         }
         Ok(depth)
     }
 
     /// Where an operator finds the value of `expr`, and how many places on the stack it needs at once. Only what has
     /// to be computed gets code, and what may alarm, so that the first alarm stays the first.
-    fn source(&mut self, expr: &Expr, context: Context, brackets: usize) -> Lowered<(Source, usize)> {
+    fn source(&mut self, expr: &Expr, context: Context, brackets: usize) -> Lowered<(OperandSource, usize)> {
         if brackets > BRACKETS {
             return Err(Alarm::TooManyBrackets.at(expr.span));
         }
         match &expr.kind {
-            ExprKind::Literal(number) => return Ok((Source::Number(number.value()), 1)),
+            ExprKind::Literal(number) => return Ok((OperandSource::Number(number.value()), 1)),
             ExprKind::Variable(index) => {
                 if let Some(number) = self.literal_index(index) {
                     let source = match Slot::of(number) {
-                        Slot::Free(number) => Source::Free(number),
+                        Slot::Free(number) => OperandSource::Free(number),
                         Slot::Other(number) => {
-                            self.emit(Rare::Read(number), expr.span);
+                            self.emit(UncommonOp::Read(number), expr.span);
                             LAST
                         }
                     };
                     return Ok((source, 1));
                 }
                 let depth = self.expr(index, Context::Macro, brackets)?;
-                self.emit(Rare::LoadIndirect, expr.span);
+                self.emit(UncommonOp::LoadIndirect, expr.span);
                 return Ok((LAST, depth));
             }
             _ => {}
@@ -109,13 +111,13 @@ impl Lowering {
         [left, right]: [&Expr; 2],
         context: Context,
         brackets: usize,
-    ) -> Lowered<([Source; 2], usize)> {
+    ) -> Lowered<([OperandSource; 2], usize)> {
         let (mut left_source, left_depth) = self.source(left, context, brackets)?;
         let behind_left = self.instructions.len();
         let (right_source, right_depth) = self.source(right, context, brackets)?;
         if (left_source, right_source) == (LAST, LAST) {
             left_source = WAITING;
-            let wait = Instruction { operation: Rare::Wait.into(), span: left.span };
+            let wait = Instruction { operation: UncommonOp::Wait.into(), span: left.span };
             self.instructions.insert(behind_left, wait);
         }
         Ok(([left_source, right_source], left_depth.max(right_depth + 1)))
@@ -128,15 +130,17 @@ impl Lowering {
             ExprKind::Literal(_) | ExprKind::Variable(_) => self.expr(expr, context, brackets)?,
             ExprKind::Named(name) => {
                 let depth = self.named(name, span, brackets)?;
-                self.emit(Rare::LoadIndirect, span);
+                self.emit(UncommonOp::LoadIndirect, span);
                 depth
             }
-            ExprKind::Negate(inner) => self.unary(inner, Rare::Negate, span, context, brackets)?,
-            ExprKind::Plus(inner) => self.unary(inner, Rare::Plus, span, context, brackets)?,
-            ExprKind::Bracket(inner) => self.unary(inner, Rare::Bracket, span, context, brackets + 1)?,
+            ExprKind::Negate(inner) => self.unary(inner, UncommonOp::Negate, span, context, brackets)?,
+            ExprKind::Plus(inner) => self.unary(inner, UncommonOp::Plus, span, context, brackets)?,
+            ExprKind::Bracket(inner) => {
+                self.unary(inner, UncommonOp::Bracket, span, context, brackets + 1)?
+            }
             ExprKind::Binary(op, left, right) => {
                 if *op == BinaryOp::Mod {
-                    self.note(Form::NewFunction("MOD"), span);
+                    self.note(DialectSyntax::NewFunction("MOD"), span);
                 }
                 let (values, depth) = self.sources([left, right], context, brackets)?;
                 self.emit(Operation::binary(*op, values), span);
@@ -144,18 +148,18 @@ impl Lowering {
             }
             ExprKind::Call(function, form) => self.call(*function, form, span, context, brackets + 1)?,
             ExprKind::Parameter { number, bit, axis } => {
-                self.note(Form::NewWord("PRM"), span);
+                self.note(DialectSyntax::NewWord("PRM"), span);
                 let mut depth = self.expr(number, Context::Macro, brackets + 1)?;
                 for (place, part) in bit.iter().chain(axis).enumerate() {
-                    self.emit(Rare::Wait, span);
+                    self.emit(UncommonOp::Wait, span);
                     depth = depth.max(self.expr(part, Context::Macro, brackets + 1)? + place + 1);
                 }
-                self.emit(Rare::Parameter { bit: bit.is_some(), axis: axis.is_some() }, span);
+                self.emit(UncommonOp::Parameter { bit: bit.is_some(), axis: axis.is_some() }, span);
                 depth
             }
             ExprKind::AxisNumber(letter) => {
-                self.note(Form::NewWord("AXNUM"), span);
-                self.emit(Rare::AxisNumber(*letter), span);
+                self.note(DialectSyntax::NewWord("AXNUM"), span);
+                self.emit(UncommonOp::AxisNumber(*letter), span);
                 1
             }
         })
@@ -164,7 +168,7 @@ impl Lowering {
     fn unary(
         &mut self,
         inner: &Expr,
-        operation: Rare,
+        operation: UncommonOp,
         span: Span,
         context: Context,
         brackets: usize,
@@ -182,7 +186,7 @@ impl Lowering {
         context: Context,
         brackets: usize,
     ) -> Lowered<usize> {
-        let two = |this: &mut Self, a: &Expr, b: &Expr, operation: fn([Source; 2]) -> Operation| {
+        let two = |this: &mut Self, a: &Expr, b: &Expr, operation: fn([OperandSource; 2]) -> Operation| {
             let (values, depth) = this.sources([a, b], context, brackets)?;
             this.emit(operation(values), span);
             Ok(depth)
@@ -193,25 +197,27 @@ impl Lowering {
             _ => None,
         };
         if let Some(name) = new {
-            self.note(Form::NewFunction(name), span);
+            self.note(DialectSyntax::NewFunction(name), span);
         }
         if let Some(name) = new.or(rare(function)) {
-            self.note(Form::MoreFunction(name), span);
+            self.note(DialectSyntax::MoreFunction(name), span);
         }
         match (function, form, context) {
             (Function::Atan, CallForm::Slash(a, b) | CallForm::Comma(a, b), _) => {
                 two(self, a, b, Operation::Atan2)
             }
-            (Function::Pow, CallForm::Comma(a, b), _) => two(self, a, b, |values| Rare::Power(values).into()),
+            (Function::Pow, CallForm::Comma(a, b), _) => {
+                two(self, a, b, |values| UncommonOp::Power(values).into())
+            }
             (Function::Pow, CallForm::One(_), _) => Err(Alarm::MissingComma.at(span)),
             (Function::Round, CallForm::One(inner), Context::Address(letter)) => {
-                self.unary(inner, Rare::RoundTo(letter), span, context, brackets)
+                self.unary(inner, UncommonOp::RoundTo(letter), span, context, brackets)
             }
             (Function::Adp, CallForm::One(inner), _) => {
                 let ExprKind::Variable(index) = &inner.kind else {
                     return Err(Alarm::ArgumentFormat { function: "ADP".into() }.at(span));
                 };
-                self.unary(index, Rare::AddPoint, span, Context::Macro, brackets)
+                self.unary(index, UncommonOp::AddPoint, span, Context::Macro, brackets)
             }
             (_, CallForm::One(inner), _) => {
                 let (value, depth) = self.source(inner, context, brackets)?;
@@ -245,12 +251,12 @@ impl Lowering {
     /// The number of a named variable.
     fn named(&mut self, name: &Name, span: Span, brackets: usize) -> Lowered<usize> {
         let text = || name.text.clone();
-        self.note(Form::NewWord("[#NAME]"), span);
+        self.note(DialectSyntax::NewWord("[#NAME]"), span);
         if !name.text.starts_with('_') {
             if name.index.is_some() {
                 return Err(Alarm::Suffix { name: text() }.at(span));
             }
-            self.emit(Rare::NameNumber(name.text.as_str().into()), span);
+            self.emit(UncommonOp::NameNumber(name.text.as_str().into()), span);
             return Ok(1);
         }
         if OTHER_MEMORIES.contains(&name.text.as_str()) {
@@ -262,7 +268,7 @@ impl Lowering {
             (None, None) => 1,
             _ => return Err(Alarm::Suffix { name: text() }.at(span)),
         };
-        self.emit(Rare::SystemNumber(row), span);
+        self.emit(UncommonOp::SystemNumber(row), span);
         Ok(depth)
     }
 
@@ -272,7 +278,7 @@ impl Lowering {
         let ExprKind::Literal(number) = index.kind else { return None };
         let value = number.value();
         if value.fract() != 0.0 {
-            self.note(Form::Fraction, index.span);
+            self.note(DialectSyntax::Fraction, index.span);
         }
         let value = value.round();
         (0.0..=MOST_WRITTEN).contains(&value).then_some(value as u32)
@@ -281,8 +287,8 @@ impl Lowering {
     fn test(&mut self, condition: &Condition) -> Lowered<usize> {
         match condition {
             Condition::Compare { left, relation, written, right, span } => {
-                if *written == Written::Sign {
-                    self.note(Form::Signs, *span);
+                if *written == OperatorSpelling::Sign {
+                    self.note(DialectSyntax::Signs, *span);
                 }
                 let (values, depth) = self.sources([left, right], Context::Macro, 1)?;
                 self.emit(Operation::Compare(*relation, values), *span);
@@ -291,13 +297,13 @@ impl Lowering {
             Condition::Logic(op, written, first, second) => {
                 let left = self.test(first)?;
                 let span = self.instructions.last().map_or_else(Span::default, |i| i.span);
-                self.emit(Rare::Wait, span);
+                self.emit(UncommonOp::Wait, span);
                 let right = self.test(second)?;
                 let span = self.instructions.last().map_or_else(Span::default, |i| i.span);
-                if *written == Written::Sign {
-                    self.note(Form::Signs, span);
+                if *written == OperatorSpelling::Sign {
+                    self.note(DialectSyntax::Signs, span);
                 }
-                self.emit(Rare::Logic(*op), span);
+                self.emit(UncommonOp::Logic(*op), span);
                 Ok(left.max(right + 1))
             }
             Condition::Bracket(inner) => self.test(inner),

@@ -3,7 +3,7 @@ use super::OpIndex;
 
 /// What a block is to a loop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Part {
+pub(super) enum LoopRole {
     /// DO, or WHILE.
     Begin,
     End,
@@ -20,7 +20,7 @@ pub(super) struct Loops {
 
 impl Loops {
     /// Pairs the blocks, given in their order. What has no partner alarms when a run gets there.
-    pub(super) fn pair(parts: &[(OpIndex, Part, u8)]) -> Self {
+    pub(super) fn pair(parts: &[(OpIndex, LoopRole, u8)]) -> Self {
         let mut open: Vec<(u8, OpIndex)> = Vec::new();
         let mut pairs = Vec::new();
         for &(block, part, number) in parts {
@@ -28,11 +28,11 @@ impl Loops {
             // one and all that are open in it have none.
             let outer = open.iter().position(|(n, _)| *n == number);
             match part {
-                Part::Begin => {
+                LoopRole::Begin => {
                     open.truncate(outer.unwrap_or(open.len()));
                     open.push((number, block));
                 }
-                Part::End => {
+                LoopRole::End => {
                     let Some(outer) = outer else { continue };
                     pairs.push((open[outer].1, block, number));
                     open.truncate(outer);

@@ -1,8 +1,8 @@
 //! Lowers a tree to operations, block by block; what can't run becomes the alarm it raises when it is reached.
-use super::code::{Code, Instruction, Slot, Target};
+use super::code::{Bytecode, Instruction, Slot, Target};
 use super::expr::Context;
-use super::{Act, Asked, Compute, Form, Op, OpKind, Operand, PrintPart, Statement};
-use crate::alarm::{Alarm, Placed};
+use super::{Assign, DialectSyntax, GuardedOp, Op, OpBody, OpKind, Operand, PrintPart, Statement};
+use crate::alarm::{Alarm, LocatedAlarm};
 use crate::source::{Span, Spanned};
 use crate::syntax::ast;
 
@@ -15,33 +15,33 @@ pub(super) struct Lowering {
     /// The code of the expression at hand.
     pub(super) instructions: Vec<Instruction>,
     /// What the words of the block at hand compute, and the numbers of their axes.
-    pub(super) codes: Vec<Code>,
+    pub(super) codes: Vec<Bytecode>,
     pub(super) axes: Vec<Operand>,
     /// What the block at hand has that not every control takes.
-    forms: Vec<Spanned<Form>>,
+    forms: Vec<Spanned<DialectSyntax>>,
 }
 
-type Lowered<T> = Result<T, Placed>;
+type Lowered<T> = Result<T, LocatedAlarm>;
 
 impl Lowering {
     /// Notes a way of writing for the block at hand.
-    pub(super) fn note(&mut self, form: Form, span: Span) {
+    pub(super) fn note(&mut self, form: DialectSyntax, span: Span) {
         self.forms.push(Spanned::new(form, span));
     }
 
     /// A block; `small` is the first of its letters in lower case, as [`lower_case`] finds it.
     pub(super) fn block(&mut self, block: &ast::Block, small: Option<Span>) -> Op {
         if let Some(span) = small {
-            self.note(Form::LowerCase, span);
+            self.note(DialectSyntax::LowerCase, span);
         }
         if let Some(span) = block.short {
-            self.note(Form::ShortWord, span);
+            self.note(DialectSyntax::ShortWord, span);
         }
         let kind = self.kind(block).unwrap_or_else(OpKind::Alarm);
         let skip = block.skip.as_ref().map(|s| s.node);
         let act = match skip.is_some() || !self.forms.is_empty() {
-            true => Act::Asked(Box::new(Asked { skip, forms: self.forms.drain(..).collect(), kind })),
-            false => Act::Plain(kind),
+            true => OpBody::Asked(Box::new(GuardedOp { skip, forms: self.forms.drain(..).collect(), kind })),
+            false => OpBody::Plain(kind),
         };
         Op { nth: 0, span: block.span, number: block.number.as_ref().map(|n| n.node), act }
     }
@@ -50,7 +50,7 @@ impl Lowering {
         if let Some(ast::Item::Statement(first)) = block.items.first()
             && let ast::Statement::If { condition, has_then } = &first.node
         {
-            self.note(if *has_then { Form::ThenWords } else { Form::PlainIf }, first.span);
+            self.note(if *has_then { DialectSyntax::ThenWords } else { DialectSyntax::PlainIf }, first.span);
             let condition = self.condition(condition, first.span)?;
             let rest = ast::Block { items: block.items[1..].to_vec(), ..block.clone() };
             let then = match self.kind(&rest)? {
@@ -113,7 +113,7 @@ impl Lowering {
             let ast::Statement::Assign { target, value } = &found.node else { return Ok(None) };
             several.push(self.assign(target, value, found.span, block)?);
         }
-        self.note(Form::SeveralAssignments, second.span);
+        self.note(DialectSyntax::SeveralAssignments, second.span);
         Ok(Some(Statement::Several(several)))
     }
 
@@ -134,7 +134,7 @@ impl Lowering {
                 let then = match &**then {
                     ast::Statement::Assign { .. } => self.statement(then, span, block)?,
                     ast::Statement::Goto(_) => {
-                        self.note(Form::ThenGoto, span);
+                        self.note(DialectSyntax::ThenGoto, span);
                         self.statement(then, span, block)?
                     }
                     _ => Statement::Alarm(Alarm::IfFormat.at(span)),
@@ -149,7 +149,7 @@ impl Lowering {
             ast::Statement::Do(number) => Statement::Do { number: loop_number(number)?, end: 0 },
             ast::Statement::End(number) => Statement::End { number: loop_number(number)?, start: 0 },
             ast::Statement::SetNames { first, names } => {
-                self.note(Form::NewWord("SETVN"), span);
+                self.note(DialectSyntax::NewWord("SETVN"), span);
                 let first = self.operand(first, Context::Macro)?;
                 Statement::SetNames { first, names: names.clone() }
             }
@@ -169,7 +169,7 @@ impl Lowering {
         let (to, value) = (self.target(target)?, self.operand(value, Context::Macro)?);
         Ok(match (to, value) {
             (Target::Slot(Slot::Free(place)), Operand::Code(code)) => {
-                Statement::Compute(Compute { place, code })
+                Statement::Compute(Assign { place, code })
             }
             (to, value) => {
                 let text = block.comments.iter().find(|c| c.span.start >= span.start);

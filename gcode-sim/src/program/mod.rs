@@ -8,8 +8,8 @@ mod blocks;
 mod code;
 pub mod codes;
 pub mod cycles;
+mod dialect_syntax;
 mod expr;
-mod forms;
 mod loops;
 mod lower;
 pub mod m_codes;
@@ -21,16 +21,18 @@ mod outline;
 mod words;
 
 pub use arguments::{ArgumentLocals, argument_letter};
-pub use code::{Code, Computed, Instruction, Operand, Operation, Rare, STACK, Slot, Source, Target};
-pub use forms::Form;
+pub use code::{
+    Bytecode, Computed, Instruction, Operand, OperandSource, Operation, STACK, Slot, Target, UncommonOp,
+};
+pub use dialect_syntax::DialectSyntax;
 pub use memory::{Library, Memory, NoLibrary, ProgramId};
-pub use words::{CallOp, CallTarget, Calling, Coded, Input, Words};
+pub use words::{CallCode, CallOp, CallTarget, LoweredWord, WordOperand, Words};
 
 use std::sync::OnceLock;
 
 use self::blocks::Blocks;
 use self::loops::Loops;
-use crate::alarm::Placed;
+use crate::alarm::LocatedAlarm;
 use crate::source::{Span, Spanned};
 use crate::syntax::ast::{PrintKind, ProgramName};
 
@@ -61,18 +63,18 @@ pub struct Op {
     nth: u32,
     pub span: Span,
     pub number: Option<u32>,
-    act: Act,
+    act: OpBody,
 }
 
 /// What a block does, and what is asked before.
 #[derive(Debug)]
-pub(crate) enum Act {
+pub(crate) enum OpBody {
     /// Nothing is, as of most.
     Plain(OpKind),
-    Asked(Box<Asked>),
+    Asked(Box<GuardedOp>),
 }
 
-impl Default for Act {
+impl Default for OpBody {
     fn default() -> Self {
         Self::Plain(OpKind::Empty)
     }
@@ -80,11 +82,11 @@ impl Default for Act {
 
 /// What a block does that is asked something first.
 #[derive(Debug)]
-pub(crate) struct Asked {
+pub(crate) struct GuardedOp {
     /// The block skip switch at its start.
     pub skip: Option<u8>,
     /// What is written in it that not every control takes, in the order it is held against the settings.
-    pub forms: Box<[Spanned<Form>]>,
+    pub forms: Box<[Spanned<DialectSyntax>]>,
     pub kind: OpKind,
 }
 
@@ -92,18 +94,18 @@ impl Op {
     /// What the block does, once nothing is asked any more.
     pub fn kind(&self) -> &OpKind {
         match &self.act {
-            Act::Plain(kind) => kind,
-            Act::Asked(asked) => &asked.kind,
+            OpBody::Plain(kind) => kind,
+            OpBody::Asked(asked) => &asked.kind,
         }
     }
 
     #[inline(always)]
-    pub(crate) fn act(&self) -> &Act {
+    pub(crate) fn body(&self) -> &OpBody {
         &self.act
     }
 
-    fn asked(&self) -> Option<&Asked> {
-        if let Act::Asked(asked) = &self.act { Some(asked) } else { None }
+    fn asked(&self) -> Option<&GuardedOp> {
+        if let OpBody::Asked(asked) = &self.act { Some(asked) } else { None }
     }
 
     /// The block skip switch at its start.
@@ -112,7 +114,7 @@ impl Op {
     }
 
     /// What is written in it that not every control takes.
-    pub fn forms(&self) -> &[Spanned<Form>] {
+    pub fn forms(&self) -> &[Spanned<DialectSyntax>] {
         self.asked().map_or(&[], |asked| &asked.forms)
     }
 }
@@ -126,22 +128,22 @@ pub enum OpKind {
     Empty,
     Words(Words),
     Statement(Statement),
-    /// A block of one [`Statement::Compute`]: who asks for statements has to ask for it as well.
-    Compute(Compute),
+    /// A block of one [`Statement::Assign`]: who asks for statements has to ask for it as well.
+    Compute(Assign),
     /// `IF[…]` before words or a statement, with THEN or without.
     If {
-        condition: Code,
+        condition: Bytecode,
         then: Box<Self>,
     },
     /// The control stops here if it gets here.
-    Alarm(Placed),
+    Alarm(LocatedAlarm),
 }
 
 /// A macro statement. Which one it is stands in a byte of its own, as in [`OpKind`].
 #[derive(Debug)]
 #[repr(u8)]
 pub enum Statement {
-    /// Any assignment that is no [`Statement::Compute`].
+    /// Any assignment that is no [`Statement::Assign`].
     Assign {
         target: Target,
         target_span: Span,
@@ -153,16 +155,16 @@ pub enum Statement {
     Several(Vec<Self>),
     Goto(Spanned<Operand>),
     IfGoto {
-        condition: Code,
+        condition: Bytecode,
         to: Spanned<Operand>,
     },
     IfThen {
-        condition: Code,
+        condition: Bytecode,
         then: Box<Self>,
     },
     /// `end` is the operation of the END.
     While {
-        condition: Code,
+        condition: Bytecode,
         number: u8,
         end: OpIndex,
     },
@@ -186,15 +188,15 @@ pub enum Statement {
     OpenOutput,
     CloseOutput,
     /// `IF[…]THEN` of something that must not stand there.
-    Alarm(Placed),
-    Compute(Compute),
+    Alarm(LocatedAlarm),
+    Compute(Assign),
 }
 
 /// An assignment of what code gives to a variable of [`Slot::Free`], as most are.
 #[derive(Debug)]
-pub struct Compute {
+pub struct Assign {
     pub place: u16,
-    pub code: Code,
+    pub code: Bytecode,
 }
 
 #[derive(Debug)]

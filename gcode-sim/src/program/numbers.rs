@@ -1,7 +1,7 @@
 //! Blocks of numbers, lowered straight from their text.
 use super::codes;
-use super::words::{Coded, Input, Words, g_code};
-use super::{Act, Op, OpKind};
+use super::words::{LoweredWord, WordOperand, Words, g_code};
+use super::{Op, OpBody, OpKind};
 use crate::source::{SourceId, Span};
 use crate::syntax::{NumberWord, Numbers};
 
@@ -13,13 +13,13 @@ impl Op {
         self.nth = 0;
         let Some(numbers) = Numbers::new(source, text, start) else { return false };
         let number = numbers.sequence_number;
-        if !matches!(self.act, Act::Plain(OpKind::Words(_))) {
-            self.act = Act::Plain(OpKind::Words(Words::default()));
+        if !matches!(self.act, OpBody::Plain(OpKind::Words(_))) {
+            self.act = OpBody::Plain(OpKind::Words(Words::default()));
         }
-        let Act::Plain(OpKind::Words(words)) = &mut self.act else { return false };
+        let OpBody::Plain(OpKind::Words(words)) = &mut self.act else { return false };
         let Some(end) = fill(words.emptied(), numbers) else { return false };
         if words.list.is_empty() {
-            self.act = Act::default();
+            self.act = OpBody::default();
         }
         self.span = Span { source, start, end };
         self.number = number;
@@ -29,18 +29,18 @@ impl Op {
 
 /// Puts the words of a line into an empty list, and tells where the last one ends; not where the line has others.
 #[inline(never)]
-fn fill(list: &mut Vec<Coded>, mut numbers: Numbers<'_>) -> Option<u32> {
+fn fill(list: &mut Vec<LoweredWord>, mut numbers: Numbers<'_>) -> Option<u32> {
     let mut end = numbers.begin;
     for NumberWord { letter, number, span } in numbers.by_ref() {
         end = span.end;
-        let coded = |value| Coded { letter, axis: None, comma: false, value, span };
+        let coded = |value| LoweredWord { letter, axis: None, comma: false, value, span };
         match letter {
             b'G' => match g_code(number)? {
                 650 | 660 | 661 | 670 => return None,
-                code => list.push(coded(Input::G(code, codes::find(code)))),
+                code => list.push(coded(WordOperand::G(code, codes::find(code)))),
             },
             b'M' if matches!(number.digits, 97 | 98 | 99 | 198) => return None,
-            _ => list.push(coded(Input::Literal(number))),
+            _ => list.push(coded(WordOperand::Literal(number))),
         }
     }
     numbers.is_at_end().then_some(end)

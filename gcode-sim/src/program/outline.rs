@@ -3,7 +3,7 @@ use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
 use super::blocks::{Blocks, Text};
-use super::loops::{Loops, Part};
+use super::loops::{LoopRole, Loops};
 use super::lower::Lowering;
 use super::{OpIndex, OpKind, Program, Statement};
 use crate::source::{Bytes, SourceId, Span};
@@ -12,23 +12,23 @@ use crate::syntax::{Outlined, Parts, end_without_spaces, outline, sequence_numbe
 
 /// What grows while a program is outlined.
 #[derive(Default)]
-struct Growing {
+struct OutlineBuilder {
     blocks: u32,
     /// Where the last block ends, perhaps with spaces behind it.
     end: u32,
     first_number: Option<u32>,
-    loops: Vec<(OpIndex, Part, u8)>,
+    loops: Vec<(OpIndex, LoopRole, u8)>,
     apart: BTreeMap<u32, ast::Block>,
 }
 
 /// Outlines the programs of a file.
 pub(super) fn programs(source: SourceId, bytes: &Bytes) -> Vec<Program> {
     let text = Text { source, bytes: bytes.clone(), length: written(bytes).len() };
-    let programs = outline(source, bytes, |growing: &mut Growing, block| growing.block(block, &text));
+    let programs = outline(source, bytes, |growing: &mut OutlineBuilder, block| growing.block(block, &text));
     programs.into_iter().map(|parts| finish(parts, text.clone())).collect()
 }
 
-impl Growing {
+impl OutlineBuilder {
     /// Notes a block.
     #[inline(always)]
     fn block(&mut self, block: Outlined, text: &Text) -> u32 {
@@ -70,9 +70,9 @@ impl Growing {
         }
         let part = match Lowering::default().block(block, None).kind() {
             OpKind::Statement(Statement::While { number, .. } | Statement::Do { number, .. }) => {
-                Some((Part::Begin, *number))
+                Some((LoopRole::Begin, *number))
             }
-            OpKind::Statement(Statement::End { number, .. }) => Some((Part::End, *number)),
+            OpKind::Statement(Statement::End { number, .. }) => Some((LoopRole::End, *number)),
             _ => None,
         };
         self.loops.extend(part.map(|(part, number)| (place as OpIndex, part, number)));
@@ -85,8 +85,8 @@ fn is_of_loop(item: &ast::Item) -> bool {
     matches!(item, ast::Item::Statement(found) if matches!(found.node, While { .. } | Do(_) | End(_)))
 }
 
-fn finish(Parts { name, span, context, blocks, closed }: Parts<Growing, u32>, text: Text) -> Program {
-    let Growing { end, first_number, loops, apart, .. } = context;
+fn finish(Parts { name, span, context, blocks, closed }: Parts<OutlineBuilder, u32>, text: Text) -> Program {
+    let OutlineBuilder { end, first_number, loops, apart, .. } = context;
     let end = end_without_spaces(text.written(), end);
     let number = match name {
         ProgramName::Number(number) => Some(number),

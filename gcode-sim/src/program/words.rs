@@ -1,52 +1,52 @@
 //! Blocks of words: codes looked up, calls taken out, the rest left for the run to evaluate.
-use super::Form;
-use super::code::{Code, Instruction, Operand, Slot};
-use super::codes::{self, Found};
+use super::DialectSyntax;
+use super::code::{Bytecode, Instruction, Operand, Slot};
+use super::codes::{self, RowLookup};
 use super::expr::Context;
 use super::lower::Lowering;
-use crate::alarm::{Alarm, Placed};
+use crate::alarm::{Alarm, LocatedAlarm};
 use crate::source::Span;
 use crate::syntax::ast::{AX, Decimal, Expr, Item, Word, WordValue};
 
 /// The words of one block.
 #[derive(Debug, Default)]
 pub struct Words {
-    pub list: Vec<Coded>,
+    pub list: Vec<LoweredWord>,
     /// What blocks of numbers don't have, so that the next one needs only its list.
-    rest: Option<Box<Rest>>,
+    rest: Option<Box<UncommonWords>>,
 }
 
 /// What few blocks of words have.
 #[derive(Debug, Default)]
-struct Rest {
+struct UncommonWords {
     call: Option<CallOp>,
     /// `/n` inside the block: what is left of it while switch n is on.
     short: Option<(u8, Words)>,
     punched: Option<u64>,
-    /// What [`Input::Code`] counts.
-    codes: Vec<Code>,
-    /// The numbers of axes that [`Coded::axis`] counts.
+    /// What [`WordOperand::Code`] counts.
+    codes: Vec<Bytecode>,
+    /// The numbers of axes that [`LoweredWord::axis`] counts.
     axes: Vec<Operand>,
 }
 
 /// A word ready to be evaluated.
 #[derive(Clone, Copy, Debug)]
-pub struct Coded {
+pub struct LoweredWord {
     pub letter: u8,
     /// `AX[…]`: where the number of the axis is among those of its block, see [`Words::axis`].
     pub axis: Option<u32>,
     /// `,R` and `,C`.
     pub comma: bool,
-    pub value: Input,
+    pub value: WordOperand,
     pub span: Span,
 }
 
 #[derive(Clone, Copy, Debug)]
-pub enum Input {
+pub enum WordOperand {
     /// Its meaning depends on the increment and on units: decided when it runs.
     Literal(Decimal),
     /// A G code × 10 written as a number, with what it is on each control.
-    G(u32, Found),
+    G(u32, RowLookup),
     /// Known, and computed for the control: it rounds.
     Number(f64),
     /// `#n` with a literal n.
@@ -56,7 +56,7 @@ pub enum Input {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Calling {
+pub enum CallCode {
     /// G65.
     Macro,
     /// G66.
@@ -77,7 +77,7 @@ pub enum Calling {
 
 #[derive(Clone, Debug)]
 pub enum CallTarget {
-    Number(Coded),
+    Number(LoweredWord),
     Name(String),
     None,
 }
@@ -85,32 +85,32 @@ pub enum CallTarget {
 /// A call or a return.
 #[derive(Debug)]
 pub struct CallOp {
-    pub kind: Calling,
+    pub kind: CallCode,
     /// P: the program, or the sequence number of `M99 P`.
     pub target: CallTarget,
     /// L.
-    pub repeats: Option<Coded>,
+    pub repeats: Option<LoweredWord>,
     /// Q of M98, H where M98 has neither P nor Q, P of M97: the sequence number to start at.
-    pub start: Option<Coded>,
-    pub arguments: Vec<Coded>,
+    pub start: Option<LoweredWord>,
+    pub arguments: Vec<LoweredWord>,
     pub span: Span,
 }
 
 impl Words {
-    fn new(list: Vec<Coded>, call: Option<CallOp>) -> Self {
-        let rest = call.map(|call| Box::new(Rest { call: Some(call), ..Rest::default() }));
+    fn new(list: Vec<LoweredWord>, call: Option<CallOp>) -> Self {
+        let rest = call.map(|call| Box::new(UncommonWords { call: Some(call), ..UncommonWords::default() }));
         Self { list, rest }
     }
 
     /// Its list, emptied for the words of another block.
     #[inline]
-    pub(super) fn emptied(&mut self) -> &mut Vec<Coded> {
+    pub(super) fn emptied(&mut self) -> &mut Vec<LoweredWord> {
         self.rest = None;
         self.list.clear();
         &mut self.list
     }
 
-    fn rest_mut(&mut self) -> &mut Rest {
+    fn rest_mut(&mut self) -> &mut UncommonWords {
         self.rest.get_or_insert_default()
     }
 
@@ -152,7 +152,7 @@ impl Words {
 
 impl Lowering {
     /// A block of words; `skips` are the switches inside it with their places among the items.
-    pub(super) fn words(&mut self, items: &[Item], skips: &[(u8, usize)]) -> Result<Words, Placed> {
+    pub(super) fn words(&mut self, items: &[Item], skips: &[(u8, usize)]) -> Result<Words, LocatedAlarm> {
         let Some(((switch, place), before)) = skips.split_last() else { return self.plain_words(items) };
         let short = self.words(&items[..*place], before)?;
         let mut whole = self.plain_words(items)?;
@@ -160,7 +160,7 @@ impl Lowering {
         Ok(whole)
     }
 
-    fn plain_words(&mut self, items: &[Item]) -> Result<Words, Placed> {
+    fn plain_words(&mut self, items: &[Item]) -> Result<Words, LocatedAlarm> {
         (self.codes, self.axes) = (Vec::new(), Vec::new());
         let mut words = self.listed(items)?;
         let (codes, axes) = (std::mem::take(&mut self.codes), std::mem::take(&mut self.axes));
@@ -171,7 +171,7 @@ impl Lowering {
         Ok(words)
     }
 
-    fn listed(&mut self, items: &[Item]) -> Result<Words, Placed> {
+    fn listed(&mut self, items: &[Item]) -> Result<Words, LocatedAlarm> {
         let words =
             items.iter().filter_map(|item| if let Item::Word(word) = item { Some(word) } else { None });
         let mut list = Vec::with_capacity(items.len());
@@ -179,7 +179,7 @@ impl Lowering {
         let (mut by_g, mut by_m) = (false, false);
         for word in words.clone() {
             let coded = self.word(word)?;
-            by_g |= matches!(coded.value, Input::G(650 | 660 | 661 | 670, _));
+            by_g |= matches!(coded.value, WordOperand::G(650 | 660 | 661 | 670, _));
             by_m |= coded.letter == b'M' || matches!(word.value, WordValue::Name(_));
             list.push(coded);
         }
@@ -188,19 +188,19 @@ impl Lowering {
             (false, true) => return subprogram(list, words),
             (true, _) => {}
         }
-        let is = |coded: &Coded, code: u32| matches!(coded.value, Input::G(c, _) if c == code);
-        let call = [(650, Calling::Macro), (660, Calling::AfterMoves), (661, Calling::EveryBlock)];
+        let is = |coded: &LoweredWord, code: u32| matches!(coded.value, WordOperand::G(c, _) if c == code);
+        let call = [(650, CallCode::Macro), (660, CallCode::AfterMoves), (661, CallCode::EveryBlock)];
         for (code, kind) in call {
             if let Some(at) = list.iter().position(|w| is(w, code)) {
-                self.note(Form::Code(code), list[at].span);
+                self.note(DialectSyntax::Code(code), list[at].span);
                 return macro_call(list, at, kind, words);
             }
         }
         if let Some(at) = list.iter().position(|w| is(w, 670)) {
             let span = list.remove(at).span;
-            self.note(Form::Code(670), span);
+            self.note(DialectSyntax::Code(670), span);
             let call = CallOp {
-                kind: Calling::Cancel,
+                kind: CallCode::Cancel,
                 target: CallTarget::None,
                 repeats: None,
                 start: None,
@@ -212,7 +212,7 @@ impl Lowering {
         subprogram(list, words)
     }
 
-    fn word(&mut self, word: &Word) -> Result<Coded, Placed> {
+    fn word(&mut self, word: &Word) -> Result<LoweredWord, LocatedAlarm> {
         let letter = word.address.letter;
         let value = match &word.value {
             WordValue::Literal(number) => literal(letter, *number)
@@ -222,8 +222,8 @@ impl Lowering {
             WordValue::Expr(expr) => self.computed_word(expr, letter)?,
             // Taken up by the call in the same block.
             WordValue::Name(_) => {
-                self.note(Form::NewWord("<NAME>"), word.span);
-                Input::Literal(Decimal { negative: false, digits: 0, places: None })
+                self.note(DialectSyntax::NewWord("<NAME>"), word.span);
+                WordOperand::Literal(Decimal { negative: false, digits: 0, places: None })
             }
         };
         let axis = match &word.axis {
@@ -234,28 +234,28 @@ impl Lowering {
             }
             None => None,
         };
-        Ok(Coded { letter, axis, comma: word.address.comma, value, span: word.span })
+        Ok(LoweredWord { letter, axis, comma: word.address.comma, value, span: word.span })
     }
 
-    fn computed_word(&mut self, expr: &Expr, letter: u8) -> Result<Input, Placed> {
+    fn computed_word(&mut self, expr: &Expr, letter: u8) -> Result<WordOperand, LocatedAlarm> {
         Ok(match self.word_value(expr, letter)? {
-            Operand::Number(number) => Input::Number(number),
-            Operand::Variable { slot, span } => Input::Variable { slot, span },
+            Operand::Number(number) => WordOperand::Number(number),
+            Operand::Variable { slot, span } => WordOperand::Variable { slot, span },
             Operand::Code(code) => {
                 self.codes.push(code);
-                Input::Code(self.codes.len() as u32 - 1)
+                WordOperand::Code(self.codes.len() as u32 - 1)
             }
         })
     }
 }
 
 /// What a number is behind its address; `None` for a G code that none can be.
-fn literal(letter: u8, number: Decimal) -> Option<Input> {
+fn literal(letter: u8, number: Decimal) -> Option<WordOperand> {
     if letter == b'G' {
         let code = g_code(number)?;
-        return Some(Input::G(code, codes::find(code)));
+        return Some(WordOperand::G(code, codes::find(code)));
     }
-    Some(Input::Literal(number))
+    Some(WordOperand::Literal(number))
 }
 
 /// G code × 10 of a literal with at most one decimal.
@@ -277,11 +277,11 @@ pub(super) fn g_code(number: Decimal) -> Option<u32> {
 
 /// G65, G66, G66.1: everything behind the code is for the macro.
 fn macro_call<'a>(
-    mut list: Vec<Coded>,
+    mut list: Vec<LoweredWord>,
     at: usize,
-    kind: Calling,
+    kind: CallCode,
     words: impl Iterator<Item = &'a Word>,
-) -> Result<Words, Placed> {
+) -> Result<Words, LocatedAlarm> {
     let span = list[at].span;
     if at > 0 {
         let what = "words before the macro call".into();
@@ -298,13 +298,13 @@ fn macro_call<'a>(
                 return Err(Alarm::NotAWord { text: "a name without P".into() }.at(coded.span));
             }
             (b'L', _) => call.repeats = Some(coded),
-            (b'G', _) if matches!(coded.value, Input::G(650 | 660 | 661, _)) => {
+            (b'G', _) if matches!(coded.value, WordOperand::G(650 | 660 | 661, _)) => {
                 return Err(Alarm::TwoMacroCalls.at(coded.span));
             }
             (b'M', WordValue::Literal(number)) if number.places.is_none() && number.digits == 98 => {
                 return Err(Alarm::TwoMacroCalls.at(coded.span));
             }
-            (b'G', _) if kind != Calling::EveryBlock => return Err(Alarm::GAsArgument.at(coded.span)),
+            (b'G', _) if kind != CallCode::EveryBlock => return Err(Alarm::GAsArgument.at(coded.span)),
             _ => call.arguments.push(coded),
         }
     }
@@ -312,7 +312,10 @@ fn macro_call<'a>(
 }
 
 /// M97 P, M98, M99 and M198 with their P, L and Q; the other words act first.
-fn subprogram<'a>(list: Vec<Coded>, words: impl Iterator<Item = &'a Word> + Clone) -> Result<Words, Placed> {
+fn subprogram<'a>(
+    list: Vec<LoweredWord>,
+    words: impl Iterator<Item = &'a Word> + Clone,
+) -> Result<Words, LocatedAlarm> {
     let code = |word: &Word| match word.value {
         WordValue::Literal(Decimal { negative: false, digits, places: None })
             if word.address.letter == b'M' =>
@@ -324,10 +327,10 @@ fn subprogram<'a>(list: Vec<Coded>, words: impl Iterator<Item = &'a Word> + Clon
     let has = |letter: u8| words.clone().any(|word| word.address.letter == letter);
     let kind = |word: &Word| match code(word)? {
         // Without P it ends a macro interrupt.
-        97 if has(b'P') => Some(Calling::Local),
-        98 => Some(Calling::Subprogram),
-        99 => Some(Calling::Return),
-        198 => Some(Calling::File),
+        97 if has(b'P') => Some(CallCode::Local),
+        98 => Some(CallCode::Subprogram),
+        99 => Some(CallCode::Return),
+        198 => Some(CallCode::File),
         _ => None,
     };
     let mut calls = words.clone().filter_map(|word| Some((word, kind(word)?)));
@@ -356,12 +359,14 @@ fn subprogram<'a>(list: Vec<Coded>, words: impl Iterator<Item = &'a Word> + Clon
             (_, WordValue::Name(_)) => {
                 return Err(Alarm::NotAWord { text: "a name without P".into() }.at(coded.span));
             }
-            (b'P', _) if calling == Calling::Local => op.start = Some(coded),
+            (b'P', _) if calling == CallCode::Local => op.start = Some(coded),
             (b'P', _) => op.target = CallTarget::Number(coded),
-            (b'L', _) if calling != Calling::Return => op.repeats = Some(coded),
-            (b'Q', _) if calling == Calling::Subprogram => op.start = Some(coded),
+            (b'L', _) if calling != CallCode::Return => op.repeats = Some(coded),
+            (b'Q', _) if calling == CallCode::Subprogram => op.start = Some(coded),
             // M98 H alone: some controls call the subprogram at this N of the same program.
-            (b'H', _) if calling == Calling::Subprogram && !has(b'P') && !has(b'Q') => op.start = Some(coded),
+            (b'H', _) if calling == CallCode::Subprogram && !has(b'P') && !has(b'Q') => {
+                op.start = Some(coded)
+            }
             _ => left.push(coded),
         }
     }

@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::budget::{Budget, Question, Share, Statistics};
-use crate::machine::error::Spread;
+use crate::machine::error::Distribution;
 use crate::picture::{Bar, Bars};
 
 /// Diameters and lengths in mm.
@@ -17,12 +17,12 @@ pub struct BudgetReport {
     tolerance: f64,
     holes: Vec<HoleRow>,
     /// The worst hole of each part.
-    parts: Row,
+    parts: BudgetRow,
     sources: Vec<SourceRow>,
 }
 
 #[derive(Debug, Serialize, JsonSchema)]
-struct Row {
+struct BudgetRow {
     mean: f64,
     p50: f64,
     p95: f64,
@@ -35,7 +35,7 @@ struct Row {
 struct HoleRow {
     id: String,
     #[serde(flatten)]
-    row: Row,
+    row: BudgetRow,
     /// Without errors.
     nominal: f64,
     sources: Vec<SourceRow>,
@@ -50,7 +50,7 @@ struct SourceRow {
     share: f64,
 }
 
-impl From<Statistics> for Row {
+impl From<Statistics> for BudgetRow {
     fn from(of: Statistics) -> Self {
         Self { mean: of.mean, p50: of.p50, p95: of.p95, p997: of.p997, max: of.max, within: of.within }
     }
@@ -74,9 +74,9 @@ impl BudgetReport {
             let source =
                 question.sources.iter().find(|source| source.quantity.name(question.machine) == name)?;
             Some(match source.spread {
-                Spread::Fixed(value) => format!("fixed {value}"),
-                Spread::Normal(value) => format!("normal {value}"),
-                Spread::Uniform(value) => format!("uniform {value}"),
+                Distribution::Fixed(value) => format!("fixed {value}"),
+                Distribution::Normal(value) => format!("normal {value}"),
+                Distribution::Uniform(value) => format!("uniform {value}"),
             })
         };
         let sources =
@@ -107,7 +107,7 @@ impl BudgetReport {
             "{:<wide$} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8}",
             "hole", "mean", "50 %", "95 %", "99.7 %", "largest", "within", "exact"
         );
-        let line = |name: &str, row: &Row| {
+        let line = |name: &str, row: &BudgetRow| {
             format!(
                 "{name:<wide$} {:>8.4} {:>8.4} {:>8.4} {:>8.4} {:>8.4} {:>6.1} %",
                 row.mean,

@@ -4,10 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::figures::{count, near};
 use super::hole_changes::remarks;
 use super::top::{Rotary, along, outline, round_up, side, still};
-use crate::changes::{Change, Compared, Leg, Paired, Record, Revision};
+use crate::changes::{Change, Leg, Paired, Record, Revision, RevisionDiff};
 use crate::machine::Machine;
 use crate::part::reference::Reference;
-use crate::picture::{DrawnHole, PathKind, PathPiece, Question, Standing, TopView};
+use crate::picture::{DrawnHole, HoleStatus, PathKind, PathPiece, PicturePurpose, TopView};
 
 /// No more cuts of each revision than this are drawn, nor more points.
 const MOST_MOVES: usize = 20_000;
@@ -25,7 +25,7 @@ pub fn of_changes(
     name: &str,
     (old, new): (&Revision, &Revision),
     machine: &Machine,
-    (compared, tolerance): (&Compared, f64),
+    (compared, tolerance): (&RevisionDiff, f64),
     reference: Option<&Reference>,
 ) -> TopView {
     let rotary = Rotary::of(machine);
@@ -37,10 +37,10 @@ pub fn of_changes(
         let is = pair.new.map(|hole| lists[1][hole].clone());
         let found = pair.new.map(|hole| &new.simulation.extracted.holes[hole]);
         let (id, standing) = match (pair.old, pair.new) {
-            (Some(hole), Some(_)) if !pair.changed => ((hole + 1).to_string(), Standing::Good),
-            (Some(hole), Some(_)) => ((hole + 1).to_string(), Standing::Bad),
-            (Some(hole), None) => ((hole + 1).to_string(), Standing::Missing),
-            (None, hole) => (format!("new {}", hole.unwrap_or_default() + 1), Standing::Extra),
+            (Some(hole), Some(_)) if !pair.changed => ((hole + 1).to_string(), HoleStatus::Good),
+            (Some(hole), Some(_)) => ((hole + 1).to_string(), HoleStatus::Bad),
+            (Some(hole), None) => ((hole + 1).to_string(), HoleStatus::Missing),
+            (None, hole) => (format!("new {}", hole.unwrap_or_default() + 1), HoleStatus::Extra),
         };
         let made = |side: usize, hole: Option<usize>| {
             hole.map(|hole| (&sides[side].simulation.extracted.holes[hole], tools[side][hole].as_slice()))
@@ -74,7 +74,7 @@ pub fn of_changes(
         rotary: rotary.letter(),
         backwards: rotary.backwards(),
         holes,
-        question: Question::Change,
+        question: PicturePurpose::Change,
         others: others.len(),
         ends: others.iter().find(|change| change.code == "outcome").map(|_| {
             let stops = |record: &Record| record.outcome() != "end";
@@ -122,7 +122,7 @@ struct Path {
     has_other_rapids: bool,
 }
 
-fn path(sides: [&Revision; 2], machine: &Machine, compared: &Compared) -> Path {
+fn path(sides: [&Revision; 2], machine: &Machine, compared: &RevisionDiff) -> Path {
     let mut has_other_rapids = false;
     let mut pieces: BTreeMap<PathKind, Vec<PathPiece>> = BTreeMap::new();
     for (place, side) in sides.into_iter().enumerate() {

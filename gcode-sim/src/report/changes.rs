@@ -5,8 +5,8 @@ use std::fmt::Write;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::sarif::{At, Finding};
-use crate::changes::{Change, Record, Totals, Unexecuted, Where};
+use super::sarif::{FileLocation, Finding};
+use crate::changes::{BlockLocation, Change, Record, Totals, UnexecutedChange};
 use crate::diag::Severity;
 
 /// The document of `diff --format json`.
@@ -20,7 +20,7 @@ pub struct ChangesReport {
     pub tolerance: f64,
     pub changes: Vec<Change>,
     /// Blocks that are written otherwise and that neither run executed: what they do isn't compared.
-    pub unexecuted: Vec<Unexecuted>,
+    pub unexecuted: Vec<UnexecutedChange>,
     pub old: Side,
     pub new: Side,
     /// How a run ended that stopped before its end: behind that nothing could be compared.
@@ -42,7 +42,7 @@ impl ChangesReport {
         old: (&str, &Record),
         new: (&str, &Record),
         changes: &[Change],
-        unexecuted: Vec<Unexecuted>,
+        unexecuted: Vec<UnexecutedChange>,
         tolerance: f64,
     ) -> Self {
         let side = |(name, record): (&str, &Record)| Side {
@@ -108,7 +108,7 @@ impl ChangesReport {
             "changed blocks that neither run executed, nothing is known of what they do: {}",
             all.len()
         );
-        for Unexecuted { old, new } in all.iter().take(SHOWN) {
+        for UnexecutedChange { old, new } in all.iter().take(SHOWN) {
             for (word, place) in [("old", old), ("new", new)] {
                 let Some(place) = place else { continue };
                 let _ = writeln!(text, "    {word} {}", line(place));
@@ -161,13 +161,13 @@ fn entry(text: &mut String, change: &Change, indent: &str) {
 }
 
 /// `O8101:12  G1 X#11`.
-fn line(place: &Where) -> String {
+fn line(place: &BlockLocation) -> String {
     format!("{}:{}  {}", place.program, place.line, place.block)
 }
 
 /// A change for a code review, at its place in the new revision; `files` are those of the programs by their names.
 pub fn change_found(change: &Change, before: &str, files: &BTreeMap<String, String>) -> Finding {
-    let Change { code, message, old, new, near } = change;
+    let Change { code, message, old, new, anchor: near } = change;
     // What is gone has no line in the file as it is now: its old one is told in words.
     let was = old.as_ref().filter(|_| new.is_none());
     let was = was.map(|place| format!(" (was {}:{} {})", place.program, place.line, place.block));
@@ -185,7 +185,7 @@ pub fn change_found(change: &Change, before: &str, files: &BTreeMap<String, Stri
 }
 
 /// The line of a block in its file.
-pub(super) fn place_in(place: &Where, files: &BTreeMap<String, String>) -> Option<At> {
+pub(super) fn place_in(place: &BlockLocation, files: &BTreeMap<String, String>) -> Option<FileLocation> {
     let file = files.get(&place.program)?.clone();
-    Some(At { file, line: Some(place.line), column: None })
+    Some(FileLocation { file, line: Some(place.line), column: None })
 }

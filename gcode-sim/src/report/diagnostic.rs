@@ -2,7 +2,7 @@
 use annotate_snippets::{Annotation, AnnotationKind, Level, Renderer, Snippet};
 
 use crate::diag::{Diagnostic, Severity};
-use crate::motion::{Calls, Place};
+use crate::motion::{Backtrace, CallChain};
 use crate::source::{Sources, Span};
 
 /// How many calls of a chain are shown; the rest is counted.
@@ -51,10 +51,10 @@ pub fn place_name(sources: &Sources, span: Span) -> String {
 }
 
 /// The chain of calls, innermost first, one line each.
-fn calls(place: &Place, sources: &Sources) -> Vec<String> {
+fn calls(place: &Backtrace, sources: &Sources) -> Vec<String> {
     let mut lines = Vec::new();
     let mut left = 0;
-    let mut next: &Calls = &place.calls;
+    let mut next: &CallChain = &place.calls;
     while let Some(call) = next {
         if lines.len() < CALLS_SHOWN {
             lines.push(format!(
@@ -108,7 +108,7 @@ mod tests {
         let from = Span { source: main, start: 3, end: 13 };
         let block = Span { source: called, start: 7, end: 18 };
         let mut diagnostic = Diagnostic::new(Severity::Alarm, "PS0112", "division by zero")
-            .at(Place { block, calls: Some(Arc::new(Call { from, outer: None })) })
+            .at(Backtrace { block, calls: Some(Arc::new(Call { from, outer: None })) })
             .help("a vacant variable counts as 0 here");
         diagnostic.span = Some(Span { source: called, start: 10, end: 14 });
         let text = anstream::adapter::strip_str(&render(&diagnostic, &sources)).to_string();

@@ -2,20 +2,21 @@
 use nalgebra::Point3;
 
 use super::helix_courses;
-use crate::flutes::Pass;
+use crate::flutes::GrindingPass;
 use crate::part::profile::Profile;
-use crate::picture::{Fault, FluteView, Spot, Standing};
-use crate::session::Grinding;
+use crate::picture::{Fault, FlutePoint, FluteView, HoleStatus};
+use crate::session::GrindingRun;
 use crate::units::Deg;
 use crate::verify::Answer;
 use crate::verify::flutes::{FluteVerdict, in_words};
 
 /// Of the program `name`.
-pub fn of(name: &str, grinding: &Grinding, verdict: &FluteVerdict) -> FluteView {
+pub fn of(name: &str, grinding: &GrindingRun, verdict: &FluteVerdict) -> FluteView {
     let wanted = &grinding.wanted;
     let profile = &wanted.profile;
-    let spot = |at: Point3<f64>| Spot { at: at.coords.into(), out: profile.normal(&at).into_inner().into() };
-    let spots = |pass: &Pass| pass.trace.samples.iter().map(|sample| spot(sample.at)).collect();
+    let spot =
+        |at: Point3<f64>| FlutePoint { at: at.coords.into(), out: profile.normal(&at).into_inner().into() };
+    let spots = |pass: &GrindingPass| pass.trace.samples.iter().map(|sample| spot(sample.at)).collect();
     // Every degree of the nose from its widest to the pole.
     let nose = (0..=90).map(|degree| profile.at_polar(Deg(90.0 - f64::from(degree))));
     let nose: Vec<[f64; 2]> = nose.map(|at| [at.x, -at.y]).collect();
@@ -30,8 +31,8 @@ pub fn of(name: &str, grinding: &Grinding, verdict: &FluteVerdict) -> FluteView 
     FluteView {
         name: name.to_owned(),
         verdict: match verdict.verdict {
-            Answer::Pass => (Standing::Good, format!("PASS: {}", verdict.sentence())),
-            Answer::Fail => (Standing::Bad, format!("FAIL: {}", verdict.sentence())),
+            Answer::Pass => (HoleStatus::Good, format!("PASS: {}", verdict.sentence())),
+            Answer::Fail => (HoleStatus::Bad, format!("FAIL: {}", verdict.sentence())),
         },
         lines: vec![
             format!("Law: {}, {}° on the cylinder", verdict.law, verdict.helix),
@@ -51,8 +52,8 @@ pub fn of(name: &str, grinding: &Grinding, verdict: &FluteVerdict) -> FluteView 
     }
 }
 
-fn spot(profile: &Profile, at: Point3<f64>) -> Spot {
-    Spot { at: at.coords.into(), out: profile.normal(&at).into_inner().into() }
+fn spot(profile: &Profile, at: Point3<f64>) -> FlutePoint {
+    FlutePoint { at: at.coords.into(), out: profile.normal(&at).into_inner().into() }
 }
 
 /// Where the findings are; several in one place of a pass are one.
@@ -68,9 +69,9 @@ fn faults(profile: &Profile, verdict: &FluteVerdict) -> Vec<Fault> {
                 continue;
             }
             let standing = match finding.code.as_str() {
-                "flute-missing" => Standing::Missing,
-                "flute-extra" => Standing::Extra,
-                _ => Standing::Bad,
+                "flute-missing" => HoleStatus::Missing,
+                "flute-extra" => HoleStatus::Extra,
+                _ => HoleStatus::Bad,
             };
             faults.push(Fault { spot, pass, standing, what: what.into_iter().collect() });
         }

@@ -1,16 +1,16 @@
 //! The helix angle along every flute, over the way from the shank's end, for its picture.
-use crate::flutes::{Pass, Trace};
+use crate::flutes::{GrindingPass, Trace};
 use crate::job::FluteLaw;
 use crate::part::flutes::Flutes;
 use crate::picture::{HelixAt, HelixCourses};
-use crate::session::Grinding;
+use crate::session::GrindingRun;
 use crate::units::Deg;
 use crate::verify::flutes::FluteVerdict;
 
 /// The polar angles that are named along the nose; the tip angle comes last.
 const NAMED: [f64; 6] = [90.0, 75.0, 60.0, 45.0, 30.0, 15.0];
 
-pub(super) fn of(grinding: &Grinding, verdict: &FluteVerdict) -> HelixCourses {
+pub(super) fn of(grinding: &GrindingRun, verdict: &FluteVerdict) -> HelixCourses {
     let wanted = &grinding.wanted;
     let other = match wanted.law {
         FluteLaw::ConstantHelix => FluteLaw::Published,
@@ -56,7 +56,7 @@ fn outline(wanted: &Flutes) -> Vec<(Deg, f64)> {
 }
 
 /// Whichever way it is ground.
-fn course(wanted: &Flutes, pass: &Pass) -> Vec<HelixAt> {
+fn course(wanted: &Flutes, pass: &GrindingPass) -> Vec<HelixAt> {
     let begins = from_shank(wanted, &pass.trace);
     let windows = pass.trace.windows(wanted.gauge);
     let mut course: Vec<HelixAt> = windows

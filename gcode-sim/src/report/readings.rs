@@ -8,8 +8,8 @@ use crate::diag::Severity;
 use crate::exec::Outcome;
 use crate::picture::{Chart, Curve, Graph, Pen, Plot};
 use crate::report::figures::count;
-use crate::session::Following;
-use crate::stylus::{Gap, Pass, Reading};
+use crate::session::StylusRun;
+use crate::stylus::{Gap, Reading, ReadingPass};
 use crate::verify::Answer;
 
 /// Lengths in mm.
@@ -52,11 +52,11 @@ struct PassRow {
     length: f64,
     least: f64,
     greatest: f64,
-    readings: Vec<Row>,
+    readings: Vec<ReadingRow>,
 }
 
 #[derive(Debug, Serialize, JsonSchema)]
-struct Row {
+struct ReadingRow {
     along: f64,
     x: f64,
     y: f64,
@@ -68,11 +68,11 @@ struct Row {
 
 impl ReadingsReport {
     /// Of the program `name`, for a ball of this radius.
-    pub fn new(name: &str, following: &Following, radius: f64, tolerance: Option<f64>) -> Self {
-        let row = |pass: &Pass, reading: &Reading| {
+    pub fn new(name: &str, following: &StylusRun, radius: f64, tolerance: Option<f64>) -> Self {
+        let row = |pass: &ReadingPass, reading: &Reading| {
             let (program, line) = following.run.locate(pass.places[reading.place].block);
             let [x, y, z] = reading.at.coords.into();
-            Row { along: reading.along, x, y, z, reading: reading.value, program, line }
+            ReadingRow { along: reading.along, x, y, z, reading: reading.value, program, line }
         };
         let passes: Vec<_> = following
             .followed
@@ -118,7 +118,7 @@ impl ReadingsReport {
             passes,
             findings: told.collect(),
             gaps: following.followed.gaps.clone(),
-            ways: following.followed.ways,
+            ways: following.followed.approach_retract_counts,
             name: name.to_owned(),
         }
     }
@@ -146,8 +146,9 @@ impl ReadingsReport {
             let mut shown = f64::NEG_INFINITY;
             for tenth in 0..=10 {
                 let along = pass.length * f64::from(tenth) / 10.0;
-                let distance = |row: &&Row| (row.along - along).abs();
-                let nearest = |one: &&Row, other: &&Row| distance(one).total_cmp(&distance(other));
+                let distance = |row: &&ReadingRow| (row.along - along).abs();
+                let nearest =
+                    |one: &&ReadingRow, other: &&ReadingRow| distance(one).total_cmp(&distance(other));
                 let Some(row) = pass.readings.iter().min_by(nearest) else { continue };
                 if row.along <= shown {
                     continue;
@@ -224,7 +225,7 @@ impl ReadingsReport {
             }
         }
         let limit = |limit: f64| [0.0, begun].map(|way| [way, -limit, limit]);
-        let end = |row: Option<&Row>| {
+        let end = |row: Option<&ReadingRow>| {
             row.map(|row| format!("x {:.3}, y {:.3}, z {:.3}", row.x, row.y, plain(row.z, 5e-4)))
         };
         let first = self.passes.first().and_then(|pass| end(pass.readings.first()));

@@ -7,9 +7,9 @@ use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
 use crate::alarm::remedy;
-use crate::changes::Where;
+use crate::changes::BlockLocation;
 use crate::exec::{Outcome, Value, printable};
-use crate::motion::{Axes, Event, EventKind, Position, Sink};
+use crate::motion::{Axes, Event, EventKind, EventSink, Position};
 use crate::session::Run;
 use crate::source::Span;
 
@@ -53,7 +53,7 @@ pub struct AlarmReport {
     pub block: String,
     pub help: Option<String>,
     /// The calls that led there, innermost first.
-    pub calls: Vec<Where>,
+    pub calls: Vec<BlockLocation>,
 }
 
 #[derive(Debug, Serialize, JsonSchema)]
@@ -145,16 +145,16 @@ pub struct Moves {
     found: Vec<(&'static str, Position, f64, Option<f64>, Span)>,
 }
 
-impl Sink for Moves {
+impl EventSink for Moves {
     fn event(&mut self, event: &Event<'_>) {
         let (kind, to, feed) = match event.kind {
             EventKind::Rapid { to } => ("rapid", *to, None),
             EventKind::Feed { to, rate } | EventKind::Skip { to, rate, .. } => ("feed", *to, Some(rate.0)),
             EventKind::Arc { to, rate, .. } => ("arc", *to, Some(rate.0)),
             EventKind::Dwell { .. } => ("dwell", self.at, None),
-            EventKind::Tool { .. }
+            EventKind::ToolChange { .. }
             | EventKind::ToolLength { .. }
-            | EventKind::Unplaced { .. }
+            | EventKind::WorkZeroUnknown { .. }
             | EventKind::Spindle { .. }
             | EventKind::Coolant { .. }
             | EventKind::Auxiliary { .. }
@@ -209,13 +209,13 @@ impl RunReport {
             notes: control
                 .notes()
                 .map(|(note, block)| {
-                    let (code, message, _) = note.parts();
+                    let (code, message, _) = note.describe();
                     let (program, line) = run.locate(block);
                     NoteReport { code, message, program, line }
                 })
                 .collect(),
             variables: control.variables().collect(),
-            system: system.into_iter().map(|(number, value)| (number, value.given())).collect(),
+            system: system.into_iter().map(|(number, value)| (number, value.as_number())).collect(),
             position: Coordinates::new(axes, |axis| control.work_position(axis)),
             machine: Coordinates::new(axes, |axis| machine[axis]),
             blocks: control.blocks(),
@@ -271,7 +271,7 @@ fn alarm(run: &Run) -> Option<AlarmReport> {
     let row = stopped.alarm.row();
     let sources = run.control.memory().sources();
     let at = sources.place(stopped.span);
-    let Where { program, block, calls, .. } = Where::of(run, &stopped.place);
+    let BlockLocation { program, block, calls, .. } = BlockLocation::of(run, &stopped.place);
     Some(AlarmReport {
         number: row.code.number(),
         code: row.code.to_string(),

@@ -14,14 +14,14 @@ pub struct Finding {
     pub code: String,
     pub severity: Severity,
     pub message: String,
-    pub at: Option<At>,
+    pub at: Option<FileLocation>,
     /// Second places, each with what is there.
-    pub related: Vec<(At, String)>,
+    pub related: Vec<(FileLocation, String)>,
 }
 
 /// A place in a file; lines and columns count from 1.
 #[derive(Clone, Debug)]
-pub struct At {
+pub struct FileLocation {
     /// The file's name as the user gave it.
     pub file: String,
     pub line: Option<u32>,
@@ -34,7 +34,7 @@ impl Finding {
         let at = |span: Span| {
             let place = sources.place(span);
             let file = sources.get(span.source).name.clone();
-            At { file, line: Some(place.line), column: Some(place.column) }
+            FileLocation { file, line: Some(place.line), column: Some(place.column) }
         };
         let place = diagnostic.place.as_ref();
         let chain = std::iter::successors(place.and_then(|place| place.calls.as_deref()), |call| {
@@ -186,7 +186,7 @@ fn rule(code: &str) -> Rule {
     }
 }
 
-fn location(at: &At, text: Option<&String>, root: &str) -> Location {
+fn location(at: &FileLocation, text: Option<&String>, root: &str) -> Location {
     let region = at.line.map(|line| Region { start_line: line, start_column: at.column });
     Location {
         physical_location: Physical { artifact_location: Artifact { uri: uri(&at.file, root) }, region },

@@ -4,14 +4,14 @@ use std::collections::BTreeMap;
 use nalgebra::Vector3;
 
 use super::figures::with_sign;
-use crate::holes::Found;
-use crate::machine::{HeadKind, Link, LinkMotion, Machine};
-use crate::motion::Axis;
+use crate::holes::DrilledHole;
+use crate::machine::{AxisLink, HeadKind, LinkMotion, Machine};
+use crate::motion::AxisIndex;
 use crate::part::hole::Hole;
 use crate::part::honeycomb::Pattern;
 use crate::part::reference::Reference;
 use crate::part::surface::Surface;
-use crate::picture::{Cylinder, DrawnHole, Side, Standing, TopView};
+use crate::picture::{Cylinder, DrawnHole, HoleStatus, Side, TopView};
 use crate::session::Simulation;
 use crate::verify::{Neighbours, Verdict};
 
@@ -25,7 +25,7 @@ pub fn of_holes(name: &str, simulation: &Simulation, machine: &Machine) -> TopVi
         id: (index + 1).to_string(),
         nominal: None,
         found: Some(hole),
-        standing: Standing::Unjudged,
+        standing: HoleStatus::Unjudged,
         phi: None,
         turn: rotary.turn(found),
         remarks: Vec::new(),
@@ -58,8 +58,8 @@ pub fn of_verdict(
         id: hole.id.clone(),
         nominal: wanted(&hole.id).cloned(),
         found: Some(found[hole.found].hole(nowhere)),
-        standing: if hole.ok { Standing::Good } else { Standing::Bad },
-        phi: Some(hole.phi),
+        standing: if hole.ok { HoleStatus::Good } else { HoleStatus::Bad },
+        phi: Some(hole.position_deviation),
         turn: rotary.turn(&found[hole.found]),
         remarks: hole
             .objections
@@ -75,7 +75,7 @@ pub fn of_verdict(
         id: id.clone(),
         nominal: wanted(id).cloned(),
         found: None,
-        standing: Standing::Missing,
+        standing: HoleStatus::Missing,
         phi: None,
         turn: None,
         remarks: Vec::new(),
@@ -88,7 +88,7 @@ pub fn of_verdict(
             .map_or_else(String::new, |from| format!("{}:{}", from.program, from.line)),
         nominal: None,
         found: Some(extra.hole.clone()),
-        standing: Standing::Extra,
+        standing: HoleStatus::Extra,
         phi: None,
         turn: None,
         remarks: Vec::new(),
@@ -181,11 +181,11 @@ pub(super) fn nowhere(_: crate::source::Span) -> (String, u32) {
 }
 
 /// The axis that turns the part: the one whose angle an operator looks for.
-pub(super) struct Rotary(Option<(Axis, char, bool)>);
+pub(super) struct Rotary(Option<(AxisIndex, char, bool)>);
 
 impl Rotary {
     pub(super) fn of(machine: &Machine) -> Self {
-        let turns = |link: &&Link| matches!(link.motion, LinkMotion::Turn { .. });
+        let turns = |link: &&AxisLink| matches!(link.motion, LinkMotion::Turn { .. });
         let link = machine.table.0.iter().find(turns);
         Self(link.map(|link| (link.axis, machine.axes.letter(link.axis), turns_backwards(link))))
     }
@@ -198,13 +198,13 @@ impl Rotary {
         self.0.is_some_and(|(_, _, backwards)| backwards)
     }
 
-    pub(super) fn turn(&self, found: &Found) -> Option<f64> {
+    pub(super) fn turn(&self, found: &DrilledHole) -> Option<f64> {
         self.0.map(|(axis, ..)| found.at[axis])
     }
 }
 
 /// About x, the one direction a cylinder lies along.
-fn turns_backwards(link: &Link) -> bool {
+fn turns_backwards(link: &AxisLink) -> bool {
     matches!(link.motion, LinkMotion::Turn { about, .. } if link.sign * about.x < 0.0)
 }
 

@@ -36,7 +36,8 @@ pub(super) fn summary(text: &mut String, verdict: &Verdict) {
                 from.replace("; ", "\n         ")
             ),
         );
-        let by_phi = |a: &&HoleVerdict, b: &&HoleVerdict| a.phi.total_cmp(&b.phi);
+        let by_phi =
+            |a: &&HoleVerdict, b: &&HoleVerdict| a.position_deviation.total_cmp(&b.position_deviation);
         if let Some(hole) = verdict.holes.iter().rev().max_by(by_phi) {
             put(text, &format!("         made by {}", made_by(hole)));
         }

@@ -1,7 +1,7 @@
 //! A verdict as the table an inspector knows: nominal, actual, deviation, position, out of tolerance.
 use super::figures::{count, near, signed, signed_to};
 use super::verdict_summary::{made_by, put, summary};
-use crate::verify::{HoleVerdict, Placed, Verdict};
+use crate::verify::{HoleGeometry, HoleVerdict, Verdict};
 
 /// How much of it, and in which order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -24,7 +24,7 @@ pub fn table(verdict: &Verdict, layout: Layout) -> String {
         false => worst(&verdict.holes),
     };
     if layout.worst_first {
-        holes.sort_by(|a, b| b.phi.total_cmp(&a.phi));
+        holes.sort_by(|a, b| b.position_deviation.total_cmp(&a.position_deviation));
     }
     let mut text = format!(
         "Position of {} against Φ{}: {}\nmm and degrees; deviations are actual less nominal\n\n",
@@ -50,7 +50,7 @@ fn worst(holes: &[HoleVerdict]) -> Vec<&HoleVerdict> {
     if OF_MANY < order.len() {
         order.select_nth_unstable_by(OF_MANY, |one, other| {
             let (a, b) = (&holes[*one], &holes[*other]);
-            a.ok.cmp(&b.ok).then(b.phi.total_cmp(&a.phi)).then(one.cmp(other))
+            a.ok.cmp(&b.ok).then(b.position_deviation.total_cmp(&a.position_deviation)).then(one.cmp(other))
         });
         order.truncate(OF_MANY);
     }
@@ -83,7 +83,7 @@ fn lines(text: &mut String, holes: &[&HoleVerdict]) {
                 near(hole.at_bottom, 4),
                 near(hole.tilt, 4),
                 signed(hole.depth_error),
-                near(hole.phi, 4),
+                near(hole.position_deviation, 4),
                 near(hole.out_of_tolerance, 4),
                 said(hole)
             ),
@@ -96,7 +96,7 @@ fn lines(text: &mut String, holes: &[&HoleVerdict]) {
 fn full(text: &mut String, hole: &HoleVerdict, tolerance: f64) {
     let head = ["x", "y", "z", "i", "j", "k", "d", "l"].map(|name| format!("{name:>10}")).concat();
     put(text, &format!("{:<11}{head}", format!("hole {}", hole.id)));
-    let columns = |placed: &Placed| {
+    let columns = |placed: &HoleGeometry| {
         let [x, y, z] = placed.entry.map(|v| near(v, 4));
         let [i, j, k] = placed.axis.map(|v| near(v, 6));
         let d = placed.diameter.map_or("-".to_owned(), |d| near(d, 3));
@@ -120,7 +120,7 @@ fn full(text: &mut String, hole: &HoleVerdict, tolerance: f64) {
         text,
         &format!(
             " position   Φ{} of Φ{tolerance}, out of tolerance {} (entry {}, bottom {}, tilt {}°)",
-            near(hole.phi, 4),
+            near(hole.position_deviation, 4),
             near(hole.out_of_tolerance, 4),
             near(hole.at_entry, 4),
             near(hole.at_bottom, 4),
@@ -147,7 +147,7 @@ mod tests {
     use crate::verify::Answer;
 
     fn hole(id: &str, phi: f64, objections: &[&str]) -> HoleVerdict {
-        let placed = |x: f64| Placed {
+        let placed = |x: f64| HoleGeometry {
             entry: [x, 674.93, 0.0],
             axis: [0.0, 1.0, 0.0],
             diameter: Some(6.0),
@@ -155,7 +155,7 @@ mod tests {
         };
         HoleVerdict {
             id: id.into(),
-            phi,
+            position_deviation: phi,
             at_entry: phi / 2.0,
             at_bottom: phi / 2.0,
             depth_error: -0.00002,

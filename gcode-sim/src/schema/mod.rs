@@ -19,7 +19,7 @@ use crate::report::pictures::{CompareReport, RenderReport};
 use crate::report::readings::ReadingsReport;
 use crate::report::run::RunReport;
 use crate::report::settings::SettingsReport;
-use crate::report::tested::TestReport;
+use crate::report::test_report::TestReport;
 use crate::verify::Verdict;
 use crate::verify::flutes::{FluteVerdict, WantedFlutes};
 

@@ -1,30 +1,30 @@
 //! One program through the whole chain: what the command line, the generator and tests call.
+mod endless_cause;
+mod likely_causes;
 mod places;
-mod slips;
-mod still;
 mod trace;
 
 use std::sync::Arc;
 
 use self::places::Places;
-pub use trace::{Executed, Role, Trace, Values};
+pub use trace::{Executed, Trace, Values, VariableRole};
 
-use crate::alarm::{Alarm, Code, remedy};
+use crate::alarm::{Alarm, AlarmCode, remedy};
 use crate::control::Settings;
 use crate::diag::{Diagnostic, Severity};
-use crate::exec::{Control, Limits, Note, Outcome, Progress, Watcher};
-use crate::flutes::{Follower, Ground, NoGrinder};
-use crate::holes::{Extracted, Extractor};
+use crate::exec::{Control, Limits, Note, Observer, Outcome, Progress};
+use crate::flutes::{FluteTracker, GrinderError, GrindingResult};
+use crate::holes::{HoleExtraction, HoleExtractor};
 use crate::machine::Machine;
-use crate::motion::{Place, Sink};
-use crate::part::conduct::Conduct;
+use crate::motion::{Backtrace, EventSink};
 use crate::part::flutes::Flutes;
 use crate::part::hole::HoleList;
+use crate::part::process::ProcessLimits;
 use crate::part::reference::Reference;
 use crate::part::surface::Surface;
 use crate::program::{Library, Memory};
 use crate::source::{Bytes, Span};
-use crate::stylus::{Followed, Rapids, Stylus};
+use crate::stylus::{Rapids, Stylus, StylusReadings};
 use crate::verify::flutes::{FluteVerdict, verify_flutes};
 use crate::verify::{Tolerances, Verdict, verify};
 
@@ -42,7 +42,7 @@ pub struct Request {
     /// The part's surface, where it is there to be probed.
     pub part: Option<Surface>,
     /// How the part is to be worked, as far as the reference says it.
-    pub conduct: Conduct,
+    pub conduct: ProcessLimits,
     /// Who sees how far the run is, and may end it.
     pub progress: Option<Arc<Progress>>,
 }
@@ -61,7 +61,7 @@ impl Request {
             limits: Limits::default(),
             variables: Vec::new(),
             part: None,
-            conduct: Conduct::default(),
+            conduct: ProcessLimits::default(),
             progress: None,
         }
     }
@@ -88,20 +88,20 @@ pub struct Run {
 }
 
 /// Runs a program and tells `sink` what the machine does.
-pub fn run<S: Sink>(
+pub fn run<S: EventSink>(
     request: &Request,
     library: &mut impl Library,
     sink: &mut S,
 ) -> Result<Run, SessionError> {
-    run_watched(request, library, sink, &mut ())
+    run_observed(request, library, sink, &mut ())
 }
 
 /// As [`run`], with somebody who looks on from block to block.
-pub fn run_watched<S: Sink>(
+pub fn run_observed<S: EventSink>(
     request: &Request,
     library: &mut impl Library,
     sink: &mut S,
-    watcher: &mut impl Watcher,
+    watcher: &mut impl Observer,
 ) -> Result<Run, SessionError> {
     let mut memory = Memory::default();
     memory.load(request.name.clone(), request.bytes.clone());
@@ -142,9 +142,9 @@ fn presets<'a>(machine: &'a Machine, settings: &'a Settings) -> impl Iterator<It
 
 /// A run with the flutes it ground.
 #[derive(Debug)]
-pub struct Grinding {
+pub struct GrindingRun {
     pub run: Run,
-    pub ground: Ground,
+    pub ground: GrindingResult,
     pub wanted: Flutes,
 }
 
@@ -152,7 +152,7 @@ pub struct Grinding {
 #[derive(Debug, thiserror::Error)]
 pub enum GrindingError {
     #[error(transparent)]
-    Machine(#[from] NoGrinder),
+    Machine(#[from] GrinderError),
     #[error(transparent)]
     Session(#[from] SessionError),
 }
@@ -162,17 +162,17 @@ pub fn grind(
     request: &Request,
     library: &mut impl Library,
     wanted: &Flutes,
-) -> Result<Grinding, GrindingError> {
-    let mut follower = Follower::new(&request.machine, *wanted)?;
+) -> Result<GrindingRun, GrindingError> {
+    let mut follower = FluteTracker::new(&request.machine, *wanted)?;
     let run = run(request, library, &mut follower)?;
     let mut ground = follower.finish();
     ground.findings.extend(run.notes());
-    ground.findings.extend(slips::other_offsets(&run, &request.machine, "flutes"));
+    ground.findings.extend(likely_causes::other_offsets(&run, &request.machine, "flutes"));
     ground.findings.extend(run.stopped());
-    Ok(Grinding { run, ground, wanted: *wanted })
+    Ok(GrindingRun { run, ground, wanted: *wanted })
 }
 
-impl Grinding {
+impl GrindingRun {
     /// The flutes against the wanted ones.
     pub fn verify(&self) -> FluteVerdict {
         verify_flutes(&self.wanted, &self.ground, &|span| self.run.locate(span))
@@ -181,9 +181,9 @@ impl Grinding {
 
 /// A run with what an edge finder showed.
 #[derive(Debug)]
-pub struct Following {
+pub struct StylusRun {
     pub run: Run,
-    pub followed: Followed,
+    pub followed: StylusReadings,
 }
 
 /// Runs a program and reads the ball of an edge finder, of so many mm of radius, along the part's surface; where the
@@ -193,23 +193,23 @@ pub fn follow(
     library: &mut impl Library,
     surface: Surface,
     radius: f64,
-) -> Result<Following, SessionError> {
+) -> Result<StylusRun, SessionError> {
     let mut stylus = Stylus::new(&request.machine, surface, radius);
     let mut rapids = Rapids::new(&request.machine, surface, radius);
-    let mut extractor = Extractor::new(&request.machine).with_surface(Some(surface));
+    let mut extractor = HoleExtractor::new(&request.machine).with_surface(Some(surface));
     let run = run(request, library, &mut (&mut (&mut stylus, &mut rapids), &mut extractor))?;
     let mut followed = stylus.finish();
     followed.findings.extend(rapids.finish());
     followed.findings.extend(run.notes());
     followed.findings.extend(run.stopped());
-    Ok(Following { run, followed })
+    Ok(StylusRun { run, followed })
 }
 
 /// A run with the holes it made.
 #[derive(Debug)]
 pub struct Simulation {
     pub run: Run,
-    pub extracted: Extracted,
+    pub extracted: HoleExtraction,
 }
 
 /// Runs a program and follows the tool; with the surface known, motion inside the part is seen as well, and a machine
@@ -219,22 +219,22 @@ pub fn simulate(
     library: &mut impl Library,
     surface: Option<Surface>,
 ) -> Result<Simulation, SessionError> {
-    simulate_beside(request, library, surface, &mut (), &mut ())
+    simulate_observed(request, library, surface, &mut (), &mut ())
 }
 
 /// As [`simulate`], with another listener beside the one that follows the tool, and somebody who looks on from block to
 /// block.
-pub fn simulate_beside<S: Sink>(
+pub fn simulate_observed<S: EventSink>(
     request: &Request,
     library: &mut impl Library,
     surface: Option<Surface>,
     listener: &mut S,
-    watcher: &mut impl Watcher,
+    watcher: &mut impl Observer,
 ) -> Result<Simulation, SessionError> {
-    let mut extractor = Extractor::new(&request.machine)
+    let mut extractor = HoleExtractor::new(&request.machine)
         .with_surface(surface.or(request.part))
         .with_conduct(&request.conduct);
-    let run = run_watched(request, library, &mut (&mut extractor, listener), watcher)?;
+    let run = run_observed(request, library, &mut (&mut extractor, listener), watcher)?;
     let mut extracted = extractor.finish();
     extracted.findings.extend(run.notes());
     extracted.findings.extend(run.stopped());
@@ -248,7 +248,7 @@ impl Simulation {
         let locate = |span| places.locate(span);
         let mut verdict = verify(&self.extracted, reference, tolerances, machine, &locate);
         let told = verdict.stands();
-        verdict.add_slips(slips::slips(&self.run, machine, told), &locate);
+        verdict.add_slips(likely_causes::likely_causes(&self.run, machine, told), &locate);
         verdict
     }
 
@@ -268,18 +268,18 @@ impl Run {
     /// What the control did without a word and the programmer hardly meant, as warnings.
     pub fn notes(&self) -> impl Iterator<Item = Diagnostic> + '_ {
         self.control.notes().map(|(note, block)| {
-            let (code, message, help) = note.parts();
+            let (code, message, help) = note.describe();
             // K0, lower case, block skip, G53 to wait and a centre where the tool stands are meant; the others are slips.
             let meant = matches!(
                 note,
-                Note::NoRepeats
+                Note::CycleRepeatsZero
                     | Note::LowerCase
-                    | Note::CentreHere { .. }
+                    | Note::CentreDefaulted { .. }
                     | Note::NoAxis { code: 530 }
                     | Note::BlockSkip { .. }
             );
             let severity = if meant { Severity::Note } else { Severity::Warning };
-            Diagnostic::new(severity, code, message).at(Place { block, calls: None }).help(help)
+            Diagnostic::new(severity, code, message).at(Backtrace { block, calls: None }).help(help)
         })
     }
 
@@ -295,20 +295,20 @@ impl Run {
                 finding.help = remedy(&stopped.alarm, stopped.span, self.control.memory().sources()).or_else(
                     || match row.code {
                         // The program's own words are all there is to say.
-                        Code::Mc(_) => None,
+                        AlarmCode::Mc(_) => None,
                         code => Some(format!("gcode-sim explain {code} shows what to write instead")),
                     },
                 );
                 Some(finding)
             }
-            Outcome::Limit => Some(self.unended()),
+            Outcome::Limit => Some(self.limit_finding()),
         }
     }
 
-    fn unended(&self) -> Diagnostic {
+    fn limit_finding(&self) -> Diagnostic {
         let Some((first, last)) = self.control.endless_loop() else {
             let (blocks, moves) = (self.control.blocks(), self.control.moves());
-            if self.control.is_told_to_stop() {
+            if self.control.is_cancelled() {
                 let message =
                     format!("the run was ended from outside after {blocks} blocks and {moves} moves");
                 let finding = Diagnostic::new(Severity::Alarm, "limit", message).at(self.control.place());
@@ -324,7 +324,7 @@ impl Run {
             "the program never ends: from line {from} of {program} to {to} all repeats and nothing changes"
         );
         let finding = Diagnostic::new(Severity::Alarm, "limit", message).at(self.control.place());
-        if let Some(why) = still::still(&self.control, first, last) {
+        if let Some(why) = endless_cause::unchanged_counter(&self.control, first, last) {
             return finding.note(why).help("a step that is 0 makes no progress: where does it come from?");
         }
         finding.help("a wait for an input ends with --input '#1005=1', a main program's M99 with --cycles 1")

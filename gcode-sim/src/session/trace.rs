@@ -2,7 +2,7 @@
 use std::collections::BTreeMap;
 
 use crate::check;
-use crate::exec::{Control, Outcome, Value, Watcher};
+use crate::exec::{Control, Observer, Outcome, Value};
 use crate::source::{SourceId, Span};
 use crate::syntax::parse;
 
@@ -19,12 +19,12 @@ pub struct Trace {
     /// The variables that the blocks of each text name by number.
     named: BTreeMap<(SourceId, u32), Vec<u32>>,
     read: Vec<SourceId>,
-    now: Option<Now>,
+    now: Option<CurrentBlock>,
 }
 
 /// The block at hand.
 #[derive(Clone, Debug)]
-struct Now {
+struct CurrentBlock {
     block: Span,
     level: usize,
     assigned: Vec<u32>,
@@ -44,7 +44,7 @@ pub struct Executed {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Values {
     pub number: u32,
-    pub role: Role,
+    pub role: VariableRole,
     pub times: u64,
     pub first: Value,
     pub last: Value,
@@ -54,7 +54,7 @@ pub struct Values {
 
 /// What the block does with it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Role {
+pub enum VariableRole {
     /// It is named; its value before the block.
     Read,
     /// Its value behind the block.
@@ -86,8 +86,8 @@ impl Trace {
     }
 }
 
-impl Watcher for Trace {
-    fn before(&mut self, control: &mut Control) {
+impl Observer for Trace {
+    fn before_block(&mut self, control: &mut Control) {
         self.now = None;
         let Some(block) = control.next_block() else { return };
         self.read(control, block.source);
@@ -101,15 +101,15 @@ impl Watcher for Trace {
         executed.times += 1;
         for number in self.named.get(&key).into_iter().flatten() {
             if let Ok(value) = control.variable(*number) {
-                executed.note(*number, Role::Read, value);
+                executed.note(*number, VariableRole::Read, value);
             }
         }
-        let mut assigned = control.will_assign();
+        let mut assigned = control.next_assigned_variables();
         assigned.retain(|number| !NOT_LOOKED_AT.contains(number));
-        self.now = Some(Now { block, level: control.vars().level(), assigned });
+        self.now = Some(CurrentBlock { block, level: control.vars().level(), assigned });
     }
 
-    fn after(&mut self, control: &Control) {
+    fn after_block(&mut self, control: &Control) {
         // A block that alarms has changed nothing.
         if matches!(control.outcome(), Some(Outcome::Alarm(_))) {
             return;
@@ -118,20 +118,20 @@ impl Watcher for Trace {
         let Some(executed) = self.blocks.get_mut(&(now.block.source, now.block.start)) else { return };
         for number in now.assigned {
             if let Ok(value) = control.variable(number) {
-                executed.note(number, Role::Assigned, value);
+                executed.note(number, VariableRole::Assigned, value);
             }
         }
         if control.vars().level() > now.level {
             let locals = control.vars().locals();
             for number in (1..=33).filter(|number| !locals.get(*number).is_vacant()) {
-                executed.note(number as u32, Role::Passed, locals.get(number));
+                executed.note(number as u32, VariableRole::Passed, locals.get(number));
             }
         }
     }
 }
 
 impl Executed {
-    fn note(&mut self, number: u32, role: Role, value: Value) {
+    fn note(&mut self, number: u32, role: VariableRole, value: Value) {
         let at = self.values.iter().position(|values| values.number == number && values.role == role);
         match at {
             Some(at) => self.values[at].add(value),
@@ -142,15 +142,15 @@ impl Executed {
 }
 
 impl Values {
-    fn new(number: u32, role: Role, value: Value) -> Self {
-        let range = value.given().map(|number| (number, number));
+    fn new(number: u32, role: VariableRole, value: Value) -> Self {
+        let range = value.as_number().map(|number| (number, number));
         Self { number, role, times: 1, first: value, last: value, range }
     }
 
     fn add(&mut self, value: Value) {
         self.times += 1;
         self.last = value;
-        if let Some(number) = value.given() {
+        if let Some(number) = value.as_number() {
             let (low, high) = self.range.unwrap_or((number, number));
             self.range = Some((low.min(number), high.max(number)));
         }
@@ -162,12 +162,12 @@ mod tests {
     use super::*;
     use crate::machine::Machine;
     use crate::program::NoLibrary;
-    use crate::session::{Request, run_watched};
+    use crate::session::{Request, run_observed};
 
     fn trace(text: &str) -> Trace {
         let request = Request::new("O1.nc", text.as_bytes().to_vec(), Machine::default());
         let mut trace = Trace::default();
-        run_watched(&request, &mut NoLibrary, &mut (), &mut trace).unwrap();
+        run_observed(&request, &mut NoLibrary, &mut (), &mut trace).unwrap();
         trace
     }
 
@@ -191,14 +191,14 @@ mod tests {
         let number = Value::Number;
         let read = Values {
             number: 1,
-            role: Role::Read,
+            role: VariableRole::Read,
             times: 3,
             first: number(3.0),
             last: number(1.0),
             range: Some((1.0, 3.0)),
         };
         let assigned = Values {
-            role: Role::Assigned,
+            role: VariableRole::Assigned,
             first: number(2.0),
             last: number(0.0),
             range: Some((0.0, 2.0)),
@@ -212,7 +212,7 @@ mod tests {
         let trace = trace("O1\nG65 P2 A4.5 X2.\nM30\nO2\n#2=#1\nM99\n");
         let passed: Vec<_> =
             trace.blocks().next().unwrap().values.iter().map(|v| (v.number, v.role)).collect();
-        assert_eq!(passed, [(1, Role::Passed), (24, Role::Passed)], "A is #1, X is #24");
+        assert_eq!(passed, [(1, VariableRole::Passed), (24, VariableRole::Passed)], "A is #1, X is #24");
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Where a stylus' ball is: the places of the axes, and what else decides where the tip stands.
 use crate::machine::{HeadMessage, Machine, Setup};
-use crate::motion::{Arc2, Event, EventKind, Position, StopKind};
+use crate::motion::{Event, EventKind, PlanarArc, Position, StopKind};
 
 /// Follows a run from machine zero on.
 #[derive(Debug, Default)]
@@ -11,13 +11,13 @@ pub(super) struct Ball {
 
 /// What an event is to the ball.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Heard<'e> {
+pub(super) enum BallUpdate<'e> {
     /// It has gone.
     Gone {
         from: Position,
         to: &'e Position,
-        arc: Option<&'e Arc2>,
-        by: By,
+        arc: Option<&'e PlanarArc>,
+        by: BallMove,
     },
     /// Another tool, length offset or angle of the head: from here on it stands elsewhere.
     Changed,
@@ -28,7 +28,7 @@ pub(super) enum Heard<'e> {
 
 /// How it has gone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum By {
+pub(super) enum BallMove {
     Rapid,
     /// A move that a probe ends.
     Touch,
@@ -36,37 +36,37 @@ pub(super) enum By {
 }
 
 impl Ball {
-    pub(super) fn follow<'e>(&mut self, machine: &Machine, event: &Event<'e>) -> Heard<'e> {
+    pub(super) fn apply_event<'e>(&mut self, machine: &Machine, event: &Event<'e>) -> BallUpdate<'e> {
         match event.kind {
-            EventKind::Rapid { to } => self.go(to, None, By::Rapid),
-            EventKind::Skip { to, .. } => self.go(to, None, By::Touch),
-            EventKind::Feed { to, .. } => self.go(to, None, By::Feed),
-            EventKind::Arc { to, arc, .. } => self.go(to, Some(arc), By::Feed),
-            EventKind::Tool { number } => self.change(Setup { tool: Some(*number), ..self.setup }),
+            EventKind::Rapid { to } => self.go(to, None, BallMove::Rapid),
+            EventKind::Skip { to, .. } => self.go(to, None, BallMove::Touch),
+            EventKind::Feed { to, .. } => self.go(to, None, BallMove::Feed),
+            EventKind::Arc { to, arc, .. } => self.go(to, Some(arc), BallMove::Feed),
+            EventKind::ToolChange { number } => self.change(Setup { tool: Some(*number), ..self.setup }),
             EventKind::ToolLength { offset, .. } => self.change(Setup { offset: *offset, ..self.setup }),
             EventKind::Stop { kind: StopKind::Message, text, named } if machine.head.is_set_by_hand() => {
                 match HeadMessage::of(text, named) {
                     HeadMessage::Angle(angle) => self.change(Setup { head_angle: Some(angle), ..self.setup }),
-                    HeadMessage::Unclear => Heard::Unclear(text),
-                    HeadMessage::Other => Heard::Still,
+                    HeadMessage::Unclear => BallUpdate::Unclear(text),
+                    HeadMessage::Other => BallUpdate::Still,
                 }
             }
-            EventKind::Unplaced { .. }
+            EventKind::WorkZeroUnknown { .. }
             | EventKind::Stop { .. }
             | EventKind::Dwell { .. }
             | EventKind::Spindle { .. }
             | EventKind::Coolant { .. }
-            | EventKind::Auxiliary { .. } => Heard::Still,
+            | EventKind::Auxiliary { .. } => BallUpdate::Still,
         }
     }
 
-    fn go<'e>(&mut self, to: &'e Position, arc: Option<&'e Arc2>, by: By) -> Heard<'e> {
+    fn go<'e>(&mut self, to: &'e Position, arc: Option<&'e PlanarArc>, by: BallMove) -> BallUpdate<'e> {
         let from = std::mem::replace(&mut self.at, *to);
-        Heard::Gone { from, to, arc, by }
+        BallUpdate::Gone { from, to, arc, by }
     }
 
-    fn change<'e>(&mut self, setup: Setup) -> Heard<'e> {
+    fn change<'e>(&mut self, setup: Setup) -> BallUpdate<'e> {
         self.setup = setup;
-        Heard::Changed
+        BallUpdate::Changed
     }
 }

@@ -12,13 +12,13 @@ use nalgebra::{Point3, Unit};
 
 use crate::diag::{Diagnostic, Severity};
 use crate::holes::unclear_head;
-use crate::machine::path::Travel;
+use crate::machine::path::AxisMotion;
 use crate::machine::{Machine, Placement};
-use crate::motion::{Event, Place, Sink};
+use crate::motion::{Backtrace, Event, EventSink};
 use crate::part::surface::Surface;
 
-use self::ball::{Ball, By, Heard};
-use self::unread::{Missed, Unread, Way};
+use self::ball::{Ball, BallMove, BallUpdate};
+use self::unread::{Unread, UnreadFeeds, UnreadReason};
 
 pub use self::rapids::Rapids;
 pub use self::unread::Gap;
@@ -39,12 +39,12 @@ const LOOKED_AT: usize = 2_000_000;
 const ALONG: f64 = 0.5;
 
 /// How a feed goes.
-enum Course {
+enum FeedCourse {
     /// Along the surface, near to it: it is read.
     Along,
     /// The ball doesn't move against the part.
     Still,
-    Off(Way),
+    Off(UnreadReason),
 }
 
 /// One point of a pass; lengths in mm.
@@ -56,19 +56,19 @@ pub struct Reading {
     pub at: Point3<f64>,
     /// From the ball to the surface: above 0 there is a gap, below 0 the ball is pushed in.
     pub value: f64,
-    /// Which of [`Pass::places`] moved here.
+    /// Which of [`ReadingPass::places`] moved here.
     pub place: usize,
 }
 
 /// A way along the surface.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Pass {
+pub struct ReadingPass {
     pub readings: Vec<Reading>,
     /// The blocks that moved, one for each move.
-    pub places: Vec<Place>,
+    pub places: Vec<Backtrace>,
 }
 
-impl Pass {
+impl ReadingPass {
     /// The least and the greatest reading; `None` of a pass without any.
     pub fn extremes(&self) -> Option<(Reading, Reading)> {
         let order = |one: &&Reading, other: &&Reading| one.value.total_cmp(&other.value);
@@ -83,12 +83,12 @@ impl Pass {
 
 /// What a program makes an edge finder show.
 #[derive(Clone, Debug, Default)]
-pub struct Followed {
-    pub passes: Vec<Pass>,
+pub struct StylusReadings {
+    pub passes: Vec<ReadingPass>,
     /// Where the path has no reading though it should, in order.
     pub gaps: Vec<Gap>,
     /// How many feeds go to the surface, and how many from it; they have no reading.
-    pub ways: [usize; 2],
+    pub approach_retract_counts: [usize; 2],
     pub findings: Vec<Diagnostic>,
 }
 
@@ -102,9 +102,9 @@ pub struct Stylus<'m> {
     /// Of the ball, mm.
     radius: f64,
     ball: Ball,
-    open: Option<Pass>,
-    missed: Missed,
-    followed: Followed,
+    open: Option<ReadingPass>,
+    missed: UnreadFeeds,
+    followed: StylusReadings,
     /// Points of passes, and of feeds that have no reading.
     kept: usize,
     looked_at: usize,
@@ -121,37 +121,37 @@ impl<'m> Stylus<'m> {
             radius,
             ball: Ball::default(),
             open: None,
-            missed: Missed::default(),
-            followed: Followed::default(),
+            missed: UnreadFeeds::default(),
+            followed: StylusReadings::default(),
             kept: 0,
             looked_at: 0,
         }
     }
 
-    pub fn finish(mut self) -> Followed {
+    pub fn finish(mut self) -> StylusReadings {
         self.close();
         self.missed.end(self.followed.passes.len());
-        let Missed { gaps, ways, mut findings, .. } = self.missed;
+        let UnreadFeeds { gaps, ways, mut findings, .. } = self.missed;
         findings.extend(self.followed.findings);
-        Followed { gaps, ways, findings, ..self.followed }
+        StylusReadings { gaps, approach_retract_counts: ways, findings, ..self.followed }
     }
 
     fn close(&mut self) {
         self.followed.passes.extend(self.open.take());
     }
 
-    fn motion(&mut self, event: &Event<'_>, travel: &Travel<'_>, by: By) {
+    fn motion(&mut self, event: &Event<'_>, travel: &AxisMotion<'_>, by: BallMove) {
         if self.is_full() || (travel.from == travel.to && travel.arc.is_none()) {
             return;
         }
-        if by != By::Feed {
+        if by != BallMove::Feed {
             self.close();
             return self.missed.leave(self.followed.passes.len());
         }
         match self.course(travel) {
-            Course::Along => {}
-            Course::Still => return,
-            Course::Off(way) => {
+            FeedCourse::Along => {}
+            FeedCourse::Still => return,
+            FeedCourse::Off(way) => {
                 self.close();
                 let unread = self.unread(event, travel, way);
                 self.missed.feed(unread);
@@ -196,7 +196,7 @@ impl<'m> Stylus<'m> {
     }
 
     /// How the ball goes, all the way.
-    fn course(&self, travel: &Travel<'_>) -> Course {
+    fn course(&self, travel: &AxisMotion<'_>) -> FeedCourse {
         let tip = |t: f64| self.machine.forward(&travel.position(t), &self.ball.setup).tip;
         // The distance from the surface where it is looked at, and the sine of the angle at which the way leaves it.
         let looks = [0.0, 0.5, 1.0].map(|t| {
@@ -208,20 +208,20 @@ impl<'m> Stylus<'m> {
         });
         let all = |holds: fn(f64) -> bool| looks.iter().all(|(_, rise)| rise.is_some_and(holds));
         if looks.iter().all(|(_, rise)| rise.is_none()) {
-            Course::Still
+            FeedCourse::Still
         } else if looks.iter().all(|(near, _)| *near) && all(|rise| rise.abs() <= ALONG) {
-            Course::Along
+            FeedCourse::Along
         } else if all(|rise| rise < -ALONG) {
-            Course::Off(Way::Nearer)
+            FeedCourse::Off(UnreadReason::Nearer)
         } else if all(|rise| rise > ALONG) {
-            Course::Off(Way::Farther)
+            FeedCourse::Off(UnreadReason::Farther)
         } else {
-            Course::Off(Way::Astray)
+            FeedCourse::Off(UnreadReason::Astray)
         }
     }
 
     /// A feed on which the dial isn't read.
-    fn unread(&mut self, event: &Event<'_>, travel: &Travel<'_>, way: Way) -> Unread {
+    fn unread(&mut self, event: &Event<'_>, travel: &AxisMotion<'_>, way: UnreadReason) -> Unread {
         let tip = |t: f64| self.machine.forward(&travel.position(t), &self.ball.setup).tip;
         let far = |tip: &Point3<f64>| self.surface.nearest(tip).distance - self.radius;
         let steps = self.machine.steps(travel, &self.ball.setup, ROUGH);
@@ -239,7 +239,7 @@ impl<'m> Stylus<'m> {
     }
 
     /// Where along a motion the ball is read: beyond 0, up to 1.
-    fn stations(&self, travel: &Travel<'_>) -> Vec<f64> {
+    fn stations(&self, travel: &AxisMotion<'_>) -> Vec<f64> {
         let steps = self.machine.steps(travel, &self.ball.setup, STRAY);
         let tip = |t: f64| self.machine.forward(&travel.position(t), &self.ball.setup).tip;
         let mut stations = Vec::new();
@@ -254,7 +254,7 @@ impl<'m> Stylus<'m> {
         stations
     }
 
-    fn read(&self, travel: &Travel<'_>, t: f64, pass: &Pass) -> Reading {
+    fn read(&self, travel: &AxisMotion<'_>, t: f64, pass: &ReadingPass) -> Reading {
         let position = travel.position(t);
         let tip = self.machine.forward(&position, &self.ball.setup).tip;
         let at = self.believed.forward(&position, &self.ball.setup).tip;
@@ -264,17 +264,17 @@ impl<'m> Stylus<'m> {
     }
 }
 
-impl Sink for Stylus<'_> {
+impl EventSink for Stylus<'_> {
     fn event(&mut self, event: &Event<'_>) {
-        match self.ball.follow(self.machine, event) {
-            Heard::Gone { from, to, arc, by } => {
-                self.motion(event, &Travel { from: &from, to, arc }, by);
+        match self.ball.apply_event(self.machine, event) {
+            BallUpdate::Gone { from, to, arc, by } => {
+                self.motion(event, &AxisMotion { from: &from, to, arc }, by);
             }
-            Heard::Changed => self.close(),
-            Heard::Unclear(text) => {
+            BallUpdate::Changed => self.close(),
+            BallUpdate::Unclear(text) => {
                 self.followed.findings.push(unclear_head(text).at(event.place()));
             }
-            Heard::Still => {}
+            BallUpdate::Still => {}
         }
     }
 }

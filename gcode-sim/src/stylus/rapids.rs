@@ -1,13 +1,13 @@
 //! Rapids on which a stylus' ball meets the part: no probe is asked there, and nothing gives.
 use crate::diag::Diagnostic;
 use crate::holes::per_block::PerBlock;
-use crate::holes::unplaced::Placing;
+use crate::holes::work_zero::WorkZeroTracker;
 use crate::machine::Machine;
-use crate::machine::path::Travel;
-use crate::motion::{Event, EventKind, Position, Sink};
+use crate::machine::path::AxisMotion;
+use crate::motion::{Event, EventKind, EventSink, Position};
 use crate::part::surface::Surface;
 
-use super::ball::{Ball, By, Heard};
+use super::ball::{Ball, BallMove, BallUpdate};
 
 /// A curved way is taken as chords that stray from it by no more than this, mm; nor is less than this told.
 const STRAY: f64 = 0.001;
@@ -22,7 +22,7 @@ pub struct Rapids<'m> {
     ball: Ball,
     /// Whether the ball has been outside: a run begins at machine zero, where no ball is.
     outside: bool,
-    placing: Placing,
+    placing: WorkZeroTracker,
     findings: PerBlock<(), Diagnostic>,
 }
 
@@ -35,7 +35,7 @@ impl<'m> Rapids<'m> {
             radius,
             ball: Ball::default(),
             outside: false,
-            placing: Placing::default(),
+            placing: WorkZeroTracker::default(),
             findings: PerBlock::default(),
         }
     }
@@ -45,7 +45,7 @@ impl<'m> Rapids<'m> {
         self.findings.into_entries().map(|entry| entry.value).collect()
     }
 
-    fn rapid(&mut self, event: &Event<'_>, travel: &Travel<'_>) {
+    fn rapid(&mut self, event: &Event<'_>, travel: &AxisMotion<'_>) {
         let tip = |t: f64| self.machine.forward(&travel.position(t), &self.ball.setup).tip;
         let pushed = |t: f64| self.radius - self.surface.nearest(&tip(t)).distance;
         let steps = self.machine.steps(travel, &self.ball.setup, STRAY);
@@ -84,17 +84,19 @@ impl<'m> Rapids<'m> {
     }
 }
 
-impl Sink for Rapids<'_> {
+impl EventSink for Rapids<'_> {
     fn event(&mut self, event: &Event<'_>) {
-        if let EventKind::Unplaced { axes } = event.kind {
-            self.placing.hear(self.machine, *axes);
+        if let EventKind::WorkZeroUnknown { axes } = event.kind {
+            self.placing.apply_event(self.machine, *axes);
         }
-        let Heard::Gone { from, to, arc, by } = self.ball.follow(self.machine, event) else { return };
-        let (was, is) = self.placing.go();
+        let BallUpdate::Gone { from, to, arc, by } = self.ball.apply_event(self.machine, event) else {
+            return;
+        };
+        let (was, is) = self.placing.advance();
         match by {
-            By::Rapid if was | is != 0 => self.jump(event, to, is == 0),
-            By::Rapid => self.rapid(event, &Travel { from: &from, to, arc }),
-            By::Touch | By::Feed => {}
+            BallMove::Rapid if was | is != 0 => self.jump(event, to, is == 0),
+            BallMove::Rapid => self.rapid(event, &AxisMotion { from: &from, to, arc }),
+            BallMove::Touch | BallMove::Feed => {}
         }
     }
 }

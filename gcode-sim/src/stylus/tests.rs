@@ -1,22 +1,22 @@
 //! An edge finder's ball round a sphere and an ellipsoid: readings worked out by hand.
 use super::*;
-use crate::holes::script::Script;
+use crate::holes::event_script::EventScript;
 use crate::units::Deg;
 
 const SPHERE: Surface = Surface::Ellipsoid { a: 100.0, b: 100.0 };
 
-fn followed(machine: &Machine, surface: Surface, script: &Script) -> Followed {
+fn followed(machine: &Machine, surface: Surface, script: &EventScript) -> StylusReadings {
     let mut stylus = Stylus::new(machine, surface, 3.0);
-    script.play(&mut stylus);
+    script.emit_to(&mut stylus);
     stylus.finish()
 }
 
 /// Down to the top of a sphere of 100 and along a chord of the ball's path, a sphere of 103: from 10° beside the pole to
 /// 10° on the other side.
-fn over_the_top() -> Script {
+fn over_the_top() -> EventScript {
     let (x, y) = (103.0 * Deg(10.0).sin(), 103.0 * Deg(10.0).cos());
     let at = |x: f64, y: f64| format!("X{x} Y{y}");
-    Script::new().rapid(&at(-x, 200.0)).feed(&at(-x, y)).feed(&at(x, y)).feed(&at(x, 200.0))
+    EventScript::new().rapid(&at(-x, 200.0)).feed(&at(-x, y)).feed(&at(x, y)).feed(&at(x, 200.0))
 }
 
 /// The chord is nearest in its middle: 103·cos 10° = 101.4352, which is 1.5648 too near. Approach and retract cross the
@@ -50,8 +50,13 @@ fn a_misplaced_part_is_read_as_it_stands() {
 
 #[test]
 fn what_crosses_the_surface_or_is_far_from_it_is_no_reading() {
-    let script =
-        Script::new().rapid("X0 Y200").feed("Y103").feed("Y200").feed("X50").rapid("X-5 Y103.1").rapid("X5");
+    let script = EventScript::new()
+        .rapid("X0 Y200")
+        .feed("Y103")
+        .feed("Y200")
+        .feed("X50")
+        .rapid("X-5 Y103.1")
+        .rapid("X5");
     let found = followed(&Machine::default(), SPHERE, &script);
     assert!(found.passes.is_empty() && found.findings.is_empty(), "{found:?}");
 }
@@ -61,7 +66,7 @@ fn what_crosses_the_surface_or_is_far_from_it_is_no_reading() {
 fn a_turning_table_is_read_as_well() {
     let mut machine = Machine::default();
     machine.part.shift.x = 0.3;
-    let script = Script::new().rapid("X200 Y0").rapid("X103").feed("B180").rapid("X200");
+    let script = EventScript::new().rapid("X200 Y0").rapid("X103").feed("B180").rapid("X200");
     let found = followed(&machine, SPHERE, &script);
     let (least, greatest) = found.passes[0].extremes().unwrap();
     // At B 0 the part is 0.3 nearer, at B 180 it is 0.3 farther away.
@@ -74,7 +79,7 @@ fn a_turning_table_is_read_as_well() {
 
 /// What is told of a way in feeds from a rapid place above the sphere, and how many feeds have a reading.
 fn told(feeds: &[&str]) -> (Vec<String>, usize) {
-    let begin = Script::new().rapid("X-20 Y110");
+    let begin = EventScript::new().rapid("X-20 Y110");
     let script = feeds.iter().fold(begin, |script, words| script.feed(words)).rapid("Y200");
     let found = followed(&Machine::default(), SPHERE, &script);
     let codes = found.findings.iter().map(|finding| finding.code.clone());
@@ -116,13 +121,13 @@ fn a_feed_of_the_path_without_a_reading_is_told() {
 /// says, so it is told wherever there is a path.
 #[test]
 fn what_is_fed_past_the_part_is_told_wherever_a_path_is_read() {
-    let over = |script: Script| {
+    let over = |script: EventScript| {
         let x = 103.0 * Deg(10.0).sin();
         let y = 103.0 * Deg(10.0).cos();
         script.rapid(&format!("X{} Y200", -x)).feed(&format!("Y{y}")).feed(&format!("X{x}")).rapid("Y200")
     };
-    let after = over(Script::new()).feed("X50");
-    let before = over(Script::new().rapid("X0 Y200").feed("X50").rapid("Y210"));
+    let after = over(EventScript::new()).feed("X50");
+    let before = over(EventScript::new().rapid("X0 Y200").feed("X50").rapid("Y210"));
     for (script, behind, passes) in [(before, 0, 1), (after.clone(), 1, 1), (over(after), 1, 2)] {
         let found = followed(&Machine::default(), SPHERE, &script);
         let [finding] = found.findings.as_slice() else { panic!("{:?}", found.findings) };
@@ -144,8 +149,8 @@ fn a_rapid_with_the_ball_into_the_part_is_told() {
         (&Machine::default(), vec!["X-30 Y103", "X30"], None),
     ] {
         let mut rapids = Rapids::new(machine, SPHERE, 3.0);
-        let script = ways.iter().fold(Script::new(), |script, way| script.rapid(way));
-        script.play(&mut rapids);
+        let script = ways.iter().fold(EventScript::new(), |script, way| script.rapid(way));
+        script.emit_to(&mut rapids);
         let found = rapids.finish();
         let told = found.iter().map(|finding| finding.message.as_str()).collect::<Vec<_>>().join("; ");
         assert_eq!(found.len(), usize::from(deepest.is_some()), "{ways:?}: {told}");
@@ -161,9 +166,9 @@ fn a_rapid_into_the_part_is_told_for_a_head_that_is_set_by_hand() {
     let kind = crate::machine::HeadKind::Manual { start: Some(Deg(90.0)) };
     let machine = Machine { head: crate::machine::Head::new(kind, 100.0), ..Machine::default() };
     for (angle, told) in [(0.0, Some("3.000")), (90.0, None)] {
-        let script = Script::new().rapid("X400 Y100").head(angle).rapid("X400 Y0").rapid("X200");
+        let script = EventScript::new().rapid("X400 Y100").head(angle).rapid("X400 Y0").rapid("X200");
         let mut rapids = Rapids::new(&machine, SPHERE, 3.0);
-        script.play(&mut rapids);
+        script.emit_to(&mut rapids);
         let found: Vec<_> = rapids.finish().into_iter().map(|finding| finding.message).collect();
         assert_eq!(found.len(), usize::from(told.is_some()), "{angle}: {found:?}");
         assert!(told.is_none_or(|told| found[0].contains(told)), "{angle}: {found:?}");
@@ -175,7 +180,7 @@ fn a_rapid_into_the_part_is_told_for_a_head_that_is_set_by_hand() {
 #[test]
 fn feeds_without_a_reading_are_looked_at_so_long_and_no_longer() {
     let turns = |count: usize| {
-        let begin = Script::new().rapid("X200 Y0");
+        let begin = EventScript::new().rapid("X200 Y0");
         (0..count).fold(begin, |script, n| script.feed(if n % 2 == 0 { "B180" } else { "B0" }))
     };
     let mut machine = Machine::default();
@@ -184,7 +189,7 @@ fn feeds_without_a_reading_are_looked_at_so_long_and_no_longer() {
     assert!(few.findings.iter().all(|finding| finding.code != "limit"), "{:?}", few.findings);
     let mut stylus = Stylus::new(&machine, SPHERE, 3.0);
     stylus.looked_at = LOOKED_AT - 1000;
-    turns(20).play(&mut stylus);
+    turns(20).emit_to(&mut stylus);
     let many = stylus.finish();
     let told: Vec<_> = many.findings.iter().filter(|finding| finding.code == "limit").collect();
     assert_eq!(told.len(), 1, "{told:?}");

@@ -2,11 +2,11 @@
 //! read is missing from it, and is told.
 use super::REACH;
 use crate::diag::Diagnostic;
-use crate::motion::Place;
+use crate::motion::Backtrace;
 
 /// How a feed that isn't read goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Way {
+pub(super) enum UnreadReason {
     /// To the surface, steeper than what goes along it.
     Nearer,
     /// Away from it, as steeply.
@@ -18,8 +18,8 @@ pub(super) enum Way {
 /// A feed that isn't read.
 #[derive(Debug)]
 pub(super) struct Unread {
-    pub place: Place,
-    pub way: Way,
+    pub place: Backtrace,
+    pub way: UnreadReason,
     /// How long it is, mm.
     pub length: f64,
     /// The least and the greatest distance of the ball from the surface, mm; below 0 the ball is in the part.
@@ -37,7 +37,7 @@ pub struct Gap {
 
 /// What wasn't read so far.
 #[derive(Debug, Default)]
-pub(super) struct Missed {
+pub(super) struct UnreadFeeds {
     /// Feeds since the last reading or rapid.
     feeds: Vec<Unread>,
     /// Whether anything was read since the last rapid.
@@ -51,7 +51,7 @@ pub(super) struct Missed {
     pub findings: Vec<Diagnostic>,
 }
 
-impl Missed {
+impl UnreadFeeds {
     pub(super) fn feed(&mut self, feed: Unread) {
         self.feeds.push(feed);
     }
@@ -59,14 +59,14 @@ impl Missed {
     /// A feed along the surface begins; so many passes were read before.
     pub(super) fn read(&mut self, passes: usize) {
         for (feeds, behind) in std::mem::take(&mut self.between) {
-            if behind > 0 || is_astray(&feeds) {
+            if behind > 0 || has_stray_feed(&feeds) {
                 self.tell(&feeds, behind);
             } else {
                 self.count(&feeds);
             }
         }
         let feeds = std::mem::take(&mut self.feeds);
-        if !self.touched && feeds.iter().all(|feed| feed.way == Way::Nearer && !feed.is_inside()) {
+        if !self.touched && feeds.iter().all(|feed| feed.way == UnreadReason::Nearer && !feed.is_inside()) {
             self.count(&feeds);
         } else {
             self.tell(&feeds, passes);
@@ -78,7 +78,7 @@ impl Missed {
     pub(super) fn leave(&mut self, passes: usize) {
         let feeds = std::mem::take(&mut self.feeds);
         let touched = std::mem::replace(&mut self.touched, false);
-        let away = feeds.iter().all(|feed| feed.way == Way::Farther);
+        let away = feeds.iter().all(|feed| feed.way == UnreadReason::Farther);
         if feeds.iter().any(Unread::is_inside) || (touched && !away) {
             self.tell(&feeds, passes);
         } else if touched {
@@ -93,7 +93,7 @@ impl Missed {
     pub(super) fn end(&mut self, passes: usize) {
         self.leave(passes);
         for (feeds, behind) in std::mem::take(&mut self.between) {
-            if passes > 0 && is_astray(&feeds) {
+            if passes > 0 && has_stray_feed(&feeds) {
                 self.tell(&feeds, behind);
             } else {
                 self.count(&feeds);
@@ -103,7 +103,7 @@ impl Missed {
 
     fn count(&mut self, feeds: &[Unread]) {
         for feed in feeds {
-            self.ways[usize::from(feed.way == Way::Farther)] += 1;
+            self.ways[usize::from(feed.way == UnreadReason::Farther)] += 1;
         }
     }
 
@@ -135,8 +135,8 @@ impl Missed {
     }
 }
 
-fn is_astray(feeds: &[Unread]) -> bool {
-    feeds.iter().any(|feed| feed.way == Way::Astray)
+fn has_stray_feed(feeds: &[Unread]) -> bool {
+    feeds.iter().any(|feed| feed.way == UnreadReason::Astray)
 }
 
 impl Unread {

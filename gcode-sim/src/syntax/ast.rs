@@ -245,18 +245,18 @@ pub enum Condition {
     Compare {
         left: Expr,
         relation: Relation,
-        written: Written,
+        written: OperatorSpelling,
         right: Expr,
         span: Span,
     },
     /// `[c1] AND [c2]`; [`BinaryOp::And`], [`BinaryOp::Or`] or [`BinaryOp::Xor`].
-    Logic(BinaryOp, Written, Box<Condition>, Box<Condition>),
+    Logic(BinaryOp, OperatorSpelling, Box<Condition>, Box<Condition>),
     Bracket(Box<Condition>),
 }
 
 /// How an operator of a condition is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Written {
+pub enum OperatorSpelling {
     /// `EQ`, `AND`: what every control takes.
     Letters,
     /// `=`, `&`.

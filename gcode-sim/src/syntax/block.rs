@@ -6,7 +6,7 @@ use super::digits::window;
 use super::number::integer;
 use super::numbers::{goes_on, number_word};
 use super::statement::{assignment, keyword, statement};
-use super::token::{Fault, Input, Line, Read, fail, next, other, spaces};
+use super::token::{Input, LineInput, Read, ReadFailure, fail, next, other, spaces};
 use super::word::{name_word, word};
 use crate::alarm::Alarm;
 use crate::source::Spanned;
@@ -17,7 +17,7 @@ pub(super) const MOST_SEQUENCE: u32 = 99_999_999;
 /// Reads one line, its end not included, into an empty block. What can't be read is the block's last item.
 ///
 /// `%`, and an O word after M02, M30 or M99 (`M99O0810(TEXT)`), end the block; they and the rest are handed back.
-pub(super) fn read_block<'a>(line: Line, input: Input<'a>, block: &mut Block) -> Input<'a> {
+pub(super) fn read_block<'a>(line: LineInput, input: Input<'a>, block: &mut Block) -> Input<'a> {
     let mut rest = spaces(input);
     while !rest.is_empty() && !ends_block(rest, block) {
         match item(line, rest, block) {
@@ -53,7 +53,7 @@ pub(super) fn begins_program(input: Input<'_>) -> bool {
     }
 }
 
-fn unreadable(line: Line, from: Input<'_>, error: Err<Fault>) -> Unreadable {
+fn unreadable(line: LineInput, from: Input<'_>, error: Err<ReadFailure>) -> Unreadable {
     let (alarm, left) = match error {
         Err::Error(fault) | Err::Failure(fault) => {
             let left = fault.left;
@@ -66,7 +66,7 @@ fn unreadable(line: Line, from: Input<'_>, error: Err<Fault>) -> Unreadable {
     Unreadable { alarm: line.spanned(alarm, at, end), span: line.span(from, end), text: Vec::new() }
 }
 
-fn item<'a>(line: Line, at: Input<'a>, block: &mut Block) -> Read<'a, ()> {
+fn item<'a>(line: LineInput, at: Input<'a>, block: &mut Block) -> Read<'a, ()> {
     let beginning = block.items.is_empty();
     let (rest, item) = match at {
         [b'/', ..] => {
@@ -119,7 +119,7 @@ fn item<'a>(line: Line, at: Input<'a>, block: &mut Block) -> Read<'a, ()> {
 }
 
 /// `/` or `/n`: the number of the switch.
-fn skip(line: Line, at: Input<'_>) -> Read<'_, Spanned<u8>> {
+fn skip(line: LineInput, at: Input<'_>) -> Read<'_, Spanned<u8>> {
     let after = &at[1..];
     match next(after) {
         Some((digit @ b'1'..=b'9', rest)) if !matches!(next(rest), Some((b'0'..=b'9' | b'.', _))) => {
@@ -131,7 +131,7 @@ fn skip(line: Line, at: Input<'_>) -> Read<'_, Spanned<u8>> {
 }
 
 /// `N10`. The input begins with the letter.
-pub(super) fn sequence_number(line: Line, at: Input<'_>) -> Read<'_, Spanned<u32>> {
+pub(super) fn sequence_number(line: LineInput, at: Input<'_>) -> Read<'_, Spanned<u32>> {
     let start = spaces(&at[1..]);
     let (rest, number) = match integer(start) {
         Err(Err::Error(_)) => match start.first() {

@@ -1,17 +1,17 @@
 //! Expressions and conditions in one pass: brackets, and operators in their three levels.
 //!
-//! `[…]` may hold a number or a condition, which only its end tells, so both are read as [`Mixed`] and told apart
+//! `[…]` may hold a number or a condition, which only its end tells, so both are read as [`ExprOrCondition`] and told apart
 //! where one of them is wanted. Nothing is read twice.
 use nom::Parser;
 use nom::branch::alt;
 use nom::combinator::value;
 
-use super::ast::{BinaryOp, Condition, Expr, ExprKind, Relation, Written};
+use super::ast::{BinaryOp, Condition, Expr, ExprKind, OperatorSpelling, Relation};
 use super::function::{call, is_name, named};
 use super::number::{EXPRESSION_LIMIT, decimal};
 use super::token::{
-    Input, Line, Read, comment_before, fail, must, next, no_expression, other, round_brackets, sign, spaces,
-    word,
+    Input, LineInput, Read, comment_before, fail, must, next, no_expression, other, round_brackets, sign,
+    spaces, word,
 };
 use crate::alarm::Alarm;
 
@@ -21,30 +21,30 @@ const DEEPEST: u8 = 5;
 /// Operators of one level side by side. No control takes a block this long; the limit keeps the tree shallow.
 const MOST_OPERATORS: usize = 100;
 
-enum Mixed {
+enum ExprOrCondition {
     Number(Expr),
     Truth(Condition),
 }
 
 /// An expression; a condition in its place is an alarm.
-pub(super) fn expr(line: Line, input: Input<'_>, depth: u8) -> Read<'_, Expr> {
+pub(super) fn expr(line: LineInput, input: Input<'_>, depth: u8) -> Read<'_, Expr> {
     let (rest, mixed) = sum(line, input, depth)?;
     number(rest, input, mixed)
 }
 
 /// `[c]` of IF and WHILE, or `[c1]AND[c2]` as some programs write `[[c1]AND[c2]]`. The bracket around all of it is
 /// not kept.
-pub(super) fn condition(line: Line, input: Input<'_>) -> Read<'_, Condition> {
+pub(super) fn condition(line: LineInput, input: Input<'_>) -> Read<'_, Condition> {
     sign(b'[')(input)?;
     match sum(line, input, 0)? {
-        (rest, Mixed::Truth(Condition::Bracket(inner))) => Ok((rest, *inner)),
-        (rest, Mixed::Truth(condition)) => Ok((rest, condition)),
-        (_, Mixed::Number(_)) => other(input),
+        (rest, ExprOrCondition::Truth(Condition::Bracket(inner))) => Ok((rest, *inner)),
+        (rest, ExprOrCondition::Truth(condition)) => Ok((rest, condition)),
+        (_, ExprOrCondition::Number(_)) => other(input),
     }
 }
 
 /// `#n`, `#[…]`, or a variable by its name in brackets: what may stand left of `=`.
-pub(super) fn variable(line: Line, input: Input<'_>) -> Read<'_, Expr> {
+pub(super) fn variable(line: LineInput, input: Input<'_>) -> Read<'_, Expr> {
     let start = spaces(input);
     match start.first() {
         Some(b'#') => numbered(line, start, 0),
@@ -54,7 +54,7 @@ pub(super) fn variable(line: Line, input: Input<'_>) -> Read<'_, Expr> {
 }
 
 /// One value: a variable or `[…]`, as after an address.
-pub(super) fn single(line: Line, input: Input<'_>) -> Read<'_, Expr> {
+pub(super) fn single(line: LineInput, input: Input<'_>) -> Read<'_, Expr> {
     let start = spaces(input);
     match start.first() {
         Some(b'[') if !is_name(start) => {
@@ -65,22 +65,22 @@ pub(super) fn single(line: Line, input: Input<'_>) -> Read<'_, Expr> {
     }
 }
 
-fn number<'a>(rest: Input<'a>, from: Input<'a>, mixed: Mixed) -> Read<'a, Expr> {
+fn number<'a>(rest: Input<'a>, from: Input<'a>, mixed: ExprOrCondition) -> Read<'a, Expr> {
     match mixed {
-        Mixed::Number(expr) => Ok((rest, expr)),
-        Mixed::Truth(_) => no_expression(spaces(from)),
+        ExprOrCondition::Number(expr) => Ok((rest, expr)),
+        ExprOrCondition::Truth(_) => no_expression(spaces(from)),
     }
 }
 
-type Operator = for<'a> fn(Input<'a>) -> Option<(Input<'a>, BinaryOp, Written)>;
-type Part = for<'a> fn(Line, Input<'a>, u8) -> Read<'a, Mixed>;
+type Operator = for<'a> fn(Input<'a>) -> Option<(Input<'a>, BinaryOp, OperatorSpelling)>;
+type Part = for<'a> fn(LineInput, Input<'a>, u8) -> Read<'a, ExprOrCondition>;
 
 /// `+ - OR XOR |`, left to right.
-fn sum(line: Line, input: Input<'_>, depth: u8) -> Read<'_, Mixed> {
+fn sum(line: LineInput, input: Input<'_>, depth: u8) -> Read<'_, ExprOrCondition> {
     let operator: Operator = |input| match next(input)? {
-        (b'+', rest) => Some((rest, BinaryOp::Add, Written::Sign)),
-        (b'-', rest) => Some((rest, BinaryOp::Sub, Written::Sign)),
-        (b'|', rest) => Some((rest, BinaryOp::Or, Written::Sign)),
+        (b'+', rest) => Some((rest, BinaryOp::Add, OperatorSpelling::Sign)),
+        (b'-', rest) => Some((rest, BinaryOp::Sub, OperatorSpelling::Sign)),
+        (b'|', rest) => Some((rest, BinaryOp::Or, OperatorSpelling::Sign)),
         (b'O' | b'o', _) => in_letters(input, "OR", BinaryOp::Or),
         (b'X' | b'x', _) => in_letters(input, "XOR", BinaryOp::Xor),
         _ => None,
@@ -89,11 +89,11 @@ fn sum(line: Line, input: Input<'_>, depth: u8) -> Read<'_, Mixed> {
 }
 
 /// `* / AND MOD &`, left to right.
-fn term(line: Line, input: Input<'_>, depth: u8) -> Read<'_, Mixed> {
+fn term(line: LineInput, input: Input<'_>, depth: u8) -> Read<'_, ExprOrCondition> {
     let operator: Operator = |input| match next(input)? {
-        (b'*', rest) => Some((rest, BinaryOp::Mul, Written::Sign)),
-        (b'/', rest) => Some((rest, BinaryOp::Div, Written::Sign)),
-        (b'&', rest) => Some((rest, BinaryOp::And, Written::Sign)),
+        (b'*', rest) => Some((rest, BinaryOp::Mul, OperatorSpelling::Sign)),
+        (b'/', rest) => Some((rest, BinaryOp::Div, OperatorSpelling::Sign)),
+        (b'&', rest) => Some((rest, BinaryOp::And, OperatorSpelling::Sign)),
         (b'A' | b'a', _) => in_letters(input, "AND", BinaryOp::And),
         (b'M' | b'm', _) => in_letters(input, "MOD", BinaryOp::Mod),
         _ => None,
@@ -105,11 +105,17 @@ fn in_letters<'a>(
     input: Input<'a>,
     text: &'static str,
     op: BinaryOp,
-) -> Option<(Input<'a>, BinaryOp, Written)> {
-    word(text)(input).ok().map(|(rest, ())| (rest, op, Written::Letters))
+) -> Option<(Input<'a>, BinaryOp, OperatorSpelling)> {
+    word(text)(input).ok().map(|(rest, ())| (rest, op, OperatorSpelling::Letters))
 }
 
-fn chain<'a>(line: Line, input: Input<'a>, depth: u8, operator: Operator, part: Part) -> Read<'a, Mixed> {
+fn chain<'a>(
+    line: LineInput,
+    input: Input<'a>,
+    depth: u8,
+    operator: Operator,
+    part: Part,
+) -> Read<'a, ExprOrCondition> {
     let start = spaces(input);
     let (mut rest, mut left) = part(line, input, depth)?;
     let mut count = 0;
@@ -124,15 +130,19 @@ fn chain<'a>(line: Line, input: Input<'a>, depth: u8, operator: Operator, part: 
         let bits = matches!(op, BinaryOp::And | BinaryOp::Or | BinaryOp::Xor);
         left = match (left, right) {
             // `&` and `|` join conditions only.
-            (Mixed::Number(_), Mixed::Number(_)) if bits && written == Written::Sign => {
+            (ExprOrCondition::Number(_), ExprOrCondition::Number(_))
+                if bits && written == OperatorSpelling::Sign =>
+            {
                 return no_expression(at);
             }
-            (Mixed::Number(left), Mixed::Number(right)) => Mixed::Number(Expr {
-                kind: ExprKind::Binary(op, Box::new(left), Box::new(right)),
-                span: line.span(start, after),
-            }),
-            (Mixed::Truth(left), Mixed::Truth(right)) if bits => {
-                Mixed::Truth(Condition::Logic(op, written, Box::new(left), Box::new(right)))
+            (ExprOrCondition::Number(left), ExprOrCondition::Number(right)) => {
+                ExprOrCondition::Number(Expr {
+                    kind: ExprKind::Binary(op, Box::new(left), Box::new(right)),
+                    span: line.span(start, after),
+                })
+            }
+            (ExprOrCondition::Truth(left), ExprOrCondition::Truth(right)) if bits => {
+                ExprOrCondition::Truth(Condition::Logic(op, written, Box::new(left), Box::new(right)))
             }
             _ => return no_expression(at),
         };
@@ -150,7 +160,7 @@ pub(super) fn wanted<'a, T>(read: Read<'a, T>, at: Input<'a>) -> Read<'a, T> {
     }
 }
 
-fn signed(line: Line, input: Input<'_>, depth: u8) -> Read<'_, Mixed> {
+fn signed(line: LineInput, input: Input<'_>, depth: u8) -> Read<'_, ExprOrCondition> {
     let start = spaces(input);
     let wrap: fn(Box<Expr>) -> ExprKind = match start.first() {
         Some(b'-') => ExprKind::Negate,
@@ -159,10 +169,10 @@ fn signed(line: Line, input: Input<'_>, depth: u8) -> Read<'_, Mixed> {
     };
     let (rest, mixed) = wanted(primary(line, &start[1..], depth), &start[1..])?;
     let (rest, inner) = number(rest, start, mixed)?;
-    Ok((rest, Mixed::Number(Expr { kind: wrap(Box::new(inner)), span: line.span(start, rest) })))
+    Ok((rest, ExprOrCondition::Number(Expr { kind: wrap(Box::new(inner)), span: line.span(start, rest) })))
 }
 
-fn primary(line: Line, input: Input<'_>, depth: u8) -> Read<'_, Mixed> {
+fn primary(line: LineInput, input: Input<'_>, depth: u8) -> Read<'_, ExprOrCondition> {
     let start = spaces(input);
     let (rest, expr) = match start.first() {
         Some(b'0'..=b'9' | b'.') => {
@@ -175,30 +185,31 @@ fn primary(line: Line, input: Input<'_>, depth: u8) -> Read<'_, Mixed> {
         Some(b'A'..=b'Z' | b'a'..=b'z') => call(line, start, depth)?,
         _ => return other(input),
     };
-    Ok((rest, Mixed::Number(expr)))
+    Ok((rest, ExprOrCondition::Number(expr)))
 }
 
 /// `[…]` with whatever is in it.
-fn bracket(line: Line, input: Input<'_>, depth: u8) -> Read<'_, Mixed> {
+fn bracket(line: LineInput, input: Input<'_>, depth: u8) -> Read<'_, ExprOrCondition> {
     let depth = deeper(input, depth)?;
     let start = &input[1..];
     let (rest, left) = wanted(sum(line, start, depth), start)?;
     let (rest, inside) = match (relation(rest), left) {
-        (Ok((after, (relation, written))), Mixed::Number(left)) => {
+        (Ok((after, (relation, written))), ExprOrCondition::Number(left)) => {
             let (after, right) = wanted(expr(line, after, depth), after)?;
             let span = line.span(spaces(start), after);
-            (after, Mixed::Truth(Condition::Compare { left, relation, written, right, span }))
+            (after, ExprOrCondition::Truth(Condition::Compare { left, relation, written, right, span }))
         }
-        (Ok(_), Mixed::Truth(_)) => return no_expression(spaces(rest)),
+        (Ok(_), ExprOrCondition::Truth(_)) => return no_expression(spaces(rest)),
         (Err(nom::Err::Error(_)), left) => (rest, left),
         (Err(error), _) => return Err(error),
     };
     let (rest, ()) = close(rest)?;
     let inside = match inside {
-        Mixed::Number(inner) => {
-            Mixed::Number(Expr { kind: ExprKind::Bracket(Box::new(inner)), span: line.span(input, rest) })
-        }
-        Mixed::Truth(inner) => Mixed::Truth(Condition::Bracket(Box::new(inner))),
+        ExprOrCondition::Number(inner) => ExprOrCondition::Number(Expr {
+            kind: ExprKind::Bracket(Box::new(inner)),
+            span: line.span(input, rest),
+        }),
+        ExprOrCondition::Truth(inner) => ExprOrCondition::Truth(Condition::Bracket(Box::new(inner))),
     };
     Ok((rest, inside))
 }
@@ -213,14 +224,14 @@ const SIGNS: [(&[u8], Relation); 6] = [
     (b"<", Relation::Lt),
 ];
 
-fn relation(input: Input<'_>) -> Read<'_, (Relation, Written)> {
+fn relation(input: Input<'_>) -> Read<'_, (Relation, OperatorSpelling)> {
     let start = spaces(input);
     if let Some((sign, relation)) = SIGNS.iter().find(|(sign, _)| start.starts_with(sign)) {
         let rest = &start[sign.len()..];
         return match next(rest) {
             // `==` and `=>` are no control's.
             Some((b'=' | b'<' | b'>', _)) => fail(start, Alarm::RelationSymbol),
-            _ => Ok((rest, (*relation, Written::Sign))),
+            _ => Ok((rest, (*relation, OperatorSpelling::Sign))),
         };
     }
     let letters = alt((
@@ -231,10 +242,10 @@ fn relation(input: Input<'_>) -> Read<'_, (Relation, Written)> {
         value(Relation::Lt, word("LT")),
         value(Relation::Le, word("LE")),
     ));
-    letters.map(|relation| (relation, Written::Letters)).parse(input)
+    letters.map(|relation| (relation, OperatorSpelling::Letters)).parse(input)
 }
 
-pub(super) fn deeper(input: Input<'_>, depth: u8) -> Result<u8, nom::Err<super::token::Fault>> {
+pub(super) fn deeper(input: Input<'_>, depth: u8) -> Result<u8, nom::Err<super::token::ReadFailure>> {
     if depth < DEEPEST { Ok(depth + 1) } else { fail(input, Alarm::TooManyBrackets).map(|(_, depth)| depth) }
 }
 
@@ -246,7 +257,7 @@ pub(super) fn close(input: Input<'_>) -> Read<'_, ()> {
 }
 
 /// `#5`, `#-1` (an alarm when it runs), `#[…]`; `##1` is none.
-fn numbered(line: Line, input: Input<'_>, depth: u8) -> Read<'_, Expr> {
+fn numbered(line: LineInput, input: Input<'_>, depth: u8) -> Read<'_, Expr> {
     let (rest, index) = match next(&input[1..]) {
         Some((b'[' | b'0'..=b'9' | b'.' | b'-', _)) => {
             let (rest, mixed) = wanted(signed(line, &input[1..], depth), input)?;

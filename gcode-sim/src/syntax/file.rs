@@ -1,6 +1,6 @@
 //! A whole file: the programs in it.
 use super::ast::{Block, Program, ProgramName};
-use super::pieces::{Piece, Pieces, says_nothing};
+use super::file_items::{FileItem, FileItems, says_nothing};
 use crate::source::{SourceId, Span};
 
 /// One program, its blocks in the form that was asked for.
@@ -17,11 +17,11 @@ pub struct Parts<C, B> {
 /// All programs of a file.
 pub fn parse(source: SourceId, bytes: &[u8]) -> Vec<Program> {
     let mut programs = Programs::<(), Block>::default();
-    for piece in Pieces::new(source, bytes) {
+    for piece in FileItems::new(source, bytes) {
         match piece {
-            Piece::Section => programs.close(),
-            Piece::Program { name, span } => programs.begin(name, span),
-            Piece::Block(block) => {
+            FileItem::Section => programs.close(),
+            FileItem::Program { name, span } => programs.begin(name, span),
+            FileItem::Block(block) => {
                 let (span, silent) = (block.span, says_nothing(&block));
                 programs.open(span, silent).blocks.push(block);
             }
@@ -87,13 +87,13 @@ impl<C: Default, B> Programs<C, B> {
 mod tests {
     use super::super::ast::{Item, Statement, WordValue};
     use super::*;
-    use crate::alarm::Code;
+    use crate::alarm::AlarmCode;
 
     fn programs(text: &[u8]) -> Vec<Program> {
         parse(SourceId(0), text)
     }
 
-    fn alarms(text: &str) -> Vec<Code> {
+    fn alarms(text: &str) -> Vec<AlarmCode> {
         let blocks = programs(text.as_bytes()).into_iter().flat_map(|p| p.blocks);
         let items = blocks.flat_map(|b| b.items);
         items
@@ -166,7 +166,7 @@ mod tests {
             ("X#1+#2", 4),
             ("?", 4),
         ] {
-            assert_eq!(alarms(text), [Code::Ps(alarm)], "{text}");
+            assert_eq!(alarms(text), [AlarmCode::Ps(alarm)], "{text}");
         }
     }
 }

@@ -6,8 +6,8 @@ use nom::sequence::{pair, preceded};
 use super::ast::{CallForm, Expr, ExprKind, Function, Name};
 use super::expr::{close, deeper, expr, wanted};
 use super::token::{
-    Input, Line, Read, comment_before, fail, is_space, letters, next, no_expression, round_brackets, sign,
-    spaces,
+    Input, LineInput, Read, comment_before, fail, is_space, letters, next, no_expression, round_brackets,
+    sign, spaces,
 };
 use crate::alarm::Alarm;
 
@@ -39,7 +39,7 @@ impl Function {
 }
 
 /// A function with its brackets. The input begins with a letter.
-pub(super) fn call(line: Line, input: Input<'_>, depth: u8) -> Read<'_, Expr> {
+pub(super) fn call(line: LineInput, input: Input<'_>, depth: u8) -> Read<'_, Expr> {
     if let (rest, 3) = letters(input, "PRM") {
         return parameter(line, input, rest, depth);
     }
@@ -73,7 +73,7 @@ pub(super) fn call(line: Line, input: Input<'_>, depth: u8) -> Read<'_, Expr> {
 type Arguments = (Box<Expr>, Option<Box<Expr>>);
 
 /// `[a]` or `[a,b]`.
-fn arguments(line: Line, input: Input<'_>, depth: u8) -> Read<'_, Arguments> {
+fn arguments(line: LineInput, input: Input<'_>, depth: u8) -> Read<'_, Arguments> {
     let Some((b'[', inside)) = next(input) else {
         if comment_before(input) {
             return round_brackets(input, None);
@@ -88,7 +88,7 @@ fn arguments(line: Line, input: Input<'_>, depth: u8) -> Read<'_, Arguments> {
 }
 
 /// `/[b]`, which belongs to the function before it.
-fn divided_by(line: Line, input: Input<'_>, depth: u8) -> Read<'_, Option<Box<Expr>>> {
+fn divided_by(line: LineInput, input: Input<'_>, depth: u8) -> Read<'_, Option<Box<Expr>>> {
     match next(input) {
         Some((b'/', after)) if matches!(next(after), Some((b'[', _))) => {
             match arguments(line, after, depth)? {
@@ -101,14 +101,14 @@ fn divided_by(line: Line, input: Input<'_>, depth: u8) -> Read<'_, Option<Box<Ex
 }
 
 /// `PRM[n]`, `PRM[n,bit]`, `PRM[n]/[axis]`, `PRM[n,bit]/[axis]`.
-fn parameter<'a>(line: Line, input: Input<'a>, after: Input<'a>, depth: u8) -> Read<'a, Expr> {
+fn parameter<'a>(line: LineInput, input: Input<'a>, after: Input<'a>, depth: u8) -> Read<'a, Expr> {
     let (rest, (number, bit)) = arguments(line, after, depth)?;
     let (rest, axis) = divided_by(line, rest, depth)?;
     Ok((rest, Expr { kind: ExprKind::Parameter { number, bit, axis }, span: line.span(input, rest) }))
 }
 
 /// `AXNUM[X]`.
-fn axis_number<'a>(line: Line, input: Input<'a>, after: Input<'a>, depth: u8) -> Read<'a, Expr> {
+fn axis_number<'a>(line: LineInput, input: Input<'a>, after: Input<'a>, depth: u8) -> Read<'a, Expr> {
     let Some((b'[', inside)) = next(after) else {
         return fail(spaces(after), Alarm::MissingOpenBracket);
     };
@@ -130,7 +130,7 @@ pub(super) fn is_name(input: Input<'_>) -> bool {
 }
 
 /// `[#NAME]`, `[#NAME[n]]`; [`is_name`] holds.
-pub(super) fn named(line: Line, input: Input<'_>, depth: u8) -> Read<'_, Expr> {
+pub(super) fn named(line: LineInput, input: Input<'_>, depth: u8) -> Read<'_, Expr> {
     let depth = deeper(input, depth)?;
     let (start, ()) = preceded(sign(b'['), sign(b'#')).parse(input)?;
     let mut text = String::new();

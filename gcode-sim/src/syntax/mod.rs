@@ -1,6 +1,6 @@
 //! Text to tree: reading never fails, and nothing but this module knows the parser library.
 //!
-//! A file is read line by line ([`Pieces`]): the line's comments are found and blanked (`comment`), then its
+//! A file is read line by line ([`FileItems`]): the line's comments are found and blanked (`comment`), then its
 //! block is read (`block`) from words (`word`, `numbers`) and statements (`statement`, `output`), which hold expressions
 //! (`expr`, `function`) and numbers (`number`). What can't be read stays in its block as text with its alarm.
 pub mod ast;
@@ -10,21 +10,21 @@ mod digits;
 mod dividers;
 mod expr;
 mod file;
+mod file_items;
 mod function;
-#[cfg(test)]
-mod laws;
 mod number;
 mod numbers;
 mod outline;
 mod output;
-mod pieces;
 pub mod print;
+#[cfg(test)]
+mod property_tests;
 mod statement;
 mod token;
 mod word;
 
 pub use file::{Parts, parse};
+pub use file_items::{FileItem, FileItems, end_without_spaces, written};
 pub use numbers::{NumberWord, Numbers};
 pub use outline::{Outlined, block_at, outline, sequence_number_at};
-pub use pieces::{Piece, Pieces, end_without_spaces, written};
 pub use print::print;

@@ -4,8 +4,8 @@
 //! an outline has the same programs and blocks as the tree.
 use super::ast::Block;
 use super::file::{Parts, Programs};
+use super::file_items::{FileItem, FileItems, says_nothing};
 use super::numbers::Numbers;
-use super::pieces::{Piece, Pieces, says_nothing};
 use crate::source::{SourceId, Span};
 
 /// A block as its outline has it.
@@ -35,21 +35,21 @@ pub fn outline<C: Default, B>(
     mut each: impl FnMut(&mut C, Outlined) -> B,
 ) -> Vec<Parts<C, B>> {
     let mut programs = Programs::default();
-    let mut pieces = Pieces::new(source, bytes);
+    let mut pieces = FileItems::new(source, bytes);
     // Whether it is known that the program at hand is one: it has a name, or a block that says something.
     let mut told = false;
     loop {
         let begins_line = pieces.begins_line();
         match pieces.piece() {
-            Some(Piece::Section) => {
+            Some(FileItem::Section) => {
                 told = false;
                 programs.close();
             }
-            Some(Piece::Program { name, span }) => {
+            Some(FileItem::Program { name, span }) => {
                 told = true;
                 programs.begin(name, span);
             }
-            Some(Piece::Block(block)) => {
+            Some(FileItem::Block(block)) => {
                 let silent = says_nothing(&block);
                 told |= !silent;
                 let Parts { context, blocks, .. } = programs.open(block.span, silent);
@@ -72,8 +72,8 @@ pub fn outline<C: Default, B>(
 
 /// The block at the beginning of a line, from where an outline has it, of a text as [`super::written`].
 pub fn block_at(source: SourceId, bytes: &[u8], start: u32) -> Option<Block> {
-    Pieces::from(source, bytes, start).find_map(|piece| match piece {
-        Piece::Block(block) => Some(block),
+    FileItems::from(source, bytes, start).find_map(|piece| match piece {
+        FileItem::Block(block) => Some(block),
         _ => None,
     })
 }

@@ -3,7 +3,7 @@ use super::ast::{PrintKind, PrintPart, Statement};
 use super::expr::{close, single};
 use super::function::is_name;
 use super::number::{EXPRESSION_LIMIT, decimal};
-use super::token::{COMMENT, Input, Line, Read, fail, is_space, must, next, sign, spaces};
+use super::token::{COMMENT, Input, LineInput, Read, fail, is_space, must, next, sign, spaces};
 use crate::alarm::Alarm;
 use crate::syntax::ast::{Expr, ExprKind};
 
@@ -11,7 +11,7 @@ use crate::syntax::ast::{Expr, ExprKind};
 const LONGEST_NAME: usize = 8;
 
 /// `SETVN 510[TOOL_NO, WORK]`, after its word.
-pub(super) fn set_names(line: Line, input: Input<'_>) -> Read<'_, Statement> {
+pub(super) fn set_names(line: LineInput, input: Input<'_>) -> Read<'_, Statement> {
     let at = spaces(input);
     let (rest, first) = match at.first() {
         Some(b'0'..=b'9') => {
@@ -58,7 +58,7 @@ fn name(input: Input<'_>) -> Read<'_, String> {
 }
 
 /// `DPRNT[TEXT#1[44]*#[#2][30]]`, after its word. Spaces print nothing; `*` prints a space.
-pub(super) fn print(line: Line, input: Input<'_>, kind: PrintKind) -> Read<'_, Statement> {
+pub(super) fn print(line: LineInput, input: Input<'_>, kind: PrintKind) -> Read<'_, Statement> {
     let (mut rest, ()) = must(sign(b'['), || Alarm::PrintFormat)(input)?;
     let mut parts = Vec::new();
     let mut text = String::new();
@@ -88,7 +88,7 @@ pub(super) fn print(line: Line, input: Input<'_>, kind: PrintKind) -> Read<'_, S
 }
 
 /// `#1[44]`: a variable and how many digits are printed before and after the point.
-fn printed_value(line: Line, input: Input<'_>) -> Read<'_, PrintPart> {
+fn printed_value(line: LineInput, input: Input<'_>) -> Read<'_, PrintPart> {
     let (rest, variable) = must(|input| single(line, input), || Alarm::PrintFormat)(input)?;
     let (mut rest, ()) = must(sign(b'['), || Alarm::PrintFormat)(rest)?;
     let mut format = String::new();

@@ -1,7 +1,7 @@
 //! Tree to text: one block a line, words a space apart, comments byte for byte. Reading the text gives the same tree.
 use super::ast::{
-    BinaryOp, Block, CallForm, Comment, CommentMark, Condition, Decimal, Expr, ExprKind, Item, PrintKind,
-    PrintPart, Program, ProgramName, Relation, Statement, Word, WordValue, Written,
+    BinaryOp, Block, CallForm, Comment, CommentMark, Condition, Decimal, Expr, ExprKind, Item,
+    OperatorSpelling, PrintKind, PrintPart, Program, ProgramName, Relation, Statement, Word, WordValue,
 };
 
 /// The program as text, its O word first and a line feed after each block.
@@ -157,25 +157,25 @@ pub fn condition(value: &Condition) -> String {
     match value {
         Condition::Compare { left, relation, written, right, .. } => {
             let relation = match (relation, written) {
-                (Relation::Eq, Written::Letters) => "EQ",
-                (Relation::Eq, Written::Sign) => "=",
-                (Relation::Ne, Written::Letters) => "NE",
-                (Relation::Ne, Written::Sign) => "<>",
-                (Relation::Gt, Written::Letters) => "GT",
-                (Relation::Gt, Written::Sign) => ">",
-                (Relation::Ge, Written::Letters) => "GE",
-                (Relation::Ge, Written::Sign) => ">=",
-                (Relation::Lt, Written::Letters) => "LT",
-                (Relation::Lt, Written::Sign) => "<",
-                (Relation::Le, Written::Letters) => "LE",
-                (Relation::Le, Written::Sign) => "<=",
+                (Relation::Eq, OperatorSpelling::Letters) => "EQ",
+                (Relation::Eq, OperatorSpelling::Sign) => "=",
+                (Relation::Ne, OperatorSpelling::Letters) => "NE",
+                (Relation::Ne, OperatorSpelling::Sign) => "<>",
+                (Relation::Gt, OperatorSpelling::Letters) => "GT",
+                (Relation::Gt, OperatorSpelling::Sign) => ">",
+                (Relation::Ge, OperatorSpelling::Letters) => "GE",
+                (Relation::Ge, OperatorSpelling::Sign) => ">=",
+                (Relation::Lt, OperatorSpelling::Letters) => "LT",
+                (Relation::Lt, OperatorSpelling::Sign) => "<",
+                (Relation::Le, OperatorSpelling::Letters) => "LE",
+                (Relation::Le, OperatorSpelling::Sign) => "<=",
             };
             format!("{} {relation} {}", expr(left), expr(right))
         }
         Condition::Logic(op, written, left, right) => {
             let sign = match (written, op) {
-                (Written::Sign, BinaryOp::And) => "&",
-                (Written::Sign, BinaryOp::Or) => "|",
+                (OperatorSpelling::Sign, BinaryOp::And) => "&",
+                (OperatorSpelling::Sign, BinaryOp::Or) => "|",
                 _ => operator(*op),
             };
             format!("{}{sign}{}", condition(left), condition(right))

@@ -4,7 +4,7 @@ use super::expr::{condition, expr, variable, wanted};
 use super::number::integer;
 use super::output::{print, set_names};
 use super::token::{
-    Input, Line, Read, comment_before, fail, is_space, letters, must, next, no_expression, other,
+    Input, LineInput, Read, comment_before, fail, is_space, letters, must, next, no_expression, other,
     round_brackets, sign, spaces,
 };
 use crate::alarm::Alarm;
@@ -41,7 +41,7 @@ const KEYWORDS: [(&str, Keyword); 11] = [
 ];
 
 /// The statement word that the input begins with.
-pub(super) struct Begun<'a> {
+pub(super) struct StatementStart<'a> {
     /// What is left stands after it.
     pub rest: Input<'a>,
     pub keyword: Keyword,
@@ -52,7 +52,7 @@ pub(super) struct Begun<'a> {
 /// The statement word that the input begins with. Two letters one after the other are never words, so a single look
 /// at the second one settles most blocks.
 #[inline]
-pub(super) fn keyword(input: Input<'_>) -> Option<Begun<'_>> {
+pub(super) fn keyword(input: Input<'_>) -> Option<StatementStart<'_>> {
     let (_, after) = input.split_first()?;
     if let [b'0'..=b'9' | b'-' | b'.' | b'#' | b'[', ..] = after {
         return None;
@@ -61,16 +61,16 @@ pub(super) fn keyword(input: Input<'_>) -> Option<Begun<'_>> {
     if second.is_ascii_alphabetic() { written_keyword(input) } else { None }
 }
 
-fn written_keyword(input: Input<'_>) -> Option<Begun<'_>> {
+fn written_keyword(input: Input<'_>) -> Option<StatementStart<'_>> {
     KEYWORDS.iter().find_map(|(text, keyword)| {
         let (rest, count) = letters(input, text);
-        (count >= 2).then_some(Begun { rest, keyword: *keyword, short: count < text.len() })
+        (count >= 2).then_some(StatementStart { rest, keyword: *keyword, short: count < text.len() })
     })
 }
 
 /// The statement after its keyword, and whether one of its words is cut short.
-pub(super) fn statement<'a>(line: Line, begun: &Begun<'a>) -> Read<'a, (Statement, bool)> {
-    let &Begun { rest, keyword, short } = begun;
+pub(super) fn statement<'a>(line: LineInput, begun: &StatementStart<'a>) -> Read<'a, (Statement, bool)> {
+    let &StatementStart { rest, keyword, short } = begun;
     let (rest, (statement, inside)) = match keyword {
         Keyword::If => if_statement(line, rest)?,
         Keyword::While => while_statement(line, rest)?,
@@ -102,7 +102,7 @@ fn whole_words<'a, T>(
 }
 
 /// `#n=value`; the input begins with `#` or with a name in brackets.
-pub(super) fn assignment(line: Line, input: Input<'_>) -> Read<'_, Statement> {
+pub(super) fn assignment(line: LineInput, input: Input<'_>) -> Read<'_, Statement> {
     let (rest, target) = must(|input| variable(line, input), not_a_word)(input)?;
     let (after, ()) = must(sign(b'='), || Alarm::MissingEquals)(rest)?;
     let (rest, value) = wanted(expr(line, after, 0), after)?;
@@ -123,25 +123,25 @@ fn whole(rest: Input<'_>) -> Read<'_, ()> {
     }
 }
 
-fn goto(line: Line, input: Input<'_>) -> Read<'_, Expr> {
+fn goto(line: LineInput, input: Input<'_>) -> Read<'_, Expr> {
     let what = || Alarm::MacroFormat { what: "GOTO needs a sequence number".into() };
     let (rest, to) = must(|input| expr(line, input, 0), what)(input)?;
     let (rest, ()) = whole(rest)?;
     Ok((rest, to))
 }
 
-fn if_statement(line: Line, input: Input<'_>) -> Read<'_, (Statement, bool)> {
+fn if_statement(line: LineInput, input: Input<'_>) -> Read<'_, (Statement, bool)> {
     let (rest, condition) = wanted_condition(line, input, Alarm::IfFormat)?;
     let at = spaces(rest);
     match keyword(at) {
-        Some(Begun { rest, keyword: Keyword::Goto, short }) => {
+        Some(StatementStart { rest, keyword: Keyword::Goto, short }) => {
             let (rest, to) = goto(line, rest)?;
             Ok((rest, (Statement::IfGoto { condition, to }, short)))
         }
-        Some(Begun { rest, keyword: Keyword::Then, short }) if begins_word(rest) => {
+        Some(StatementStart { rest, keyword: Keyword::Then, short }) if begins_word(rest) => {
             Ok((rest, (Statement::If { condition, has_then: true }, short)))
         }
-        Some(Begun { rest, keyword: Keyword::Then, short }) => {
+        Some(StatementStart { rest, keyword: Keyword::Then, short }) => {
             let (rest, (then, inside)) = must(|input| then(line, input), || Alarm::IfFormat)(rest)?;
             Ok((rest, (Statement::IfThen { condition, then: Box::new(then) }, short || inside)))
         }
@@ -159,7 +159,7 @@ fn begins_word(input: Input<'_>) -> bool {
 }
 
 /// One assignment, or a GOTO, which some controls take.
-fn then(line: Line, input: Input<'_>) -> Read<'_, (Statement, bool)> {
+fn then(line: LineInput, input: Input<'_>) -> Read<'_, (Statement, bool)> {
     let at = spaces(input);
     match at.first() {
         Some(b'#' | b'[') => assignment(line, at).map(|(rest, found)| (rest, (found, false))),
@@ -170,11 +170,13 @@ fn then(line: Line, input: Input<'_>) -> Read<'_, (Statement, bool)> {
     }
 }
 
-fn while_statement(line: Line, input: Input<'_>) -> Read<'_, (Statement, bool)> {
+fn while_statement(line: LineInput, input: Input<'_>) -> Read<'_, (Statement, bool)> {
     let (rest, condition) = wanted_condition(line, input, Alarm::WhileFormat)?;
     let at = spaces(rest);
     match keyword(at) {
-        Some(Begun { rest, keyword: Keyword::Do, .. }) if matches!(next(rest), Some((b'0'..=b'9', _))) => {
+        Some(StatementStart { rest, keyword: Keyword::Do, .. })
+            if matches!(next(rest), Some((b'0'..=b'9', _))) =>
+        {
             let (rest, number) = loop_number(line, rest)?;
             Ok((rest, (Statement::While { condition, number }, false)))
         }
@@ -183,7 +185,7 @@ fn while_statement(line: Line, input: Input<'_>) -> Read<'_, (Statement, bool)> 
 }
 
 /// `IF(…)` has a comment where its condition should be.
-fn wanted_condition<'a>(line: Line, input: Input<'a>, otherwise: Alarm) -> Read<'a, Condition> {
+fn wanted_condition<'a>(line: LineInput, input: Input<'a>, otherwise: Alarm) -> Read<'a, Condition> {
     match condition(line, input) {
         Err(nom::Err::Error(_)) if comment_before(input) => round_brackets(input, None),
         Err(nom::Err::Error(_)) => fail(spaces(input), otherwise),
@@ -191,7 +193,7 @@ fn wanted_condition<'a>(line: Line, input: Input<'a>, otherwise: Alarm) -> Read<
     }
 }
 
-fn loop_number(line: Line, input: Input<'_>) -> Read<'_, Spanned<i64>> {
+fn loop_number(line: LineInput, input: Input<'_>) -> Read<'_, Spanned<i64>> {
     let what = || Alarm::MacroFormat { what: "DO and END need the loop's number, 1, 2 or 3".into() };
     let at = spaces(input);
     let (rest, number) = must(integer, what)(at)?;

@@ -6,7 +6,7 @@ use crate::alarm::Alarm;
 use crate::source::{SourceId, Span, Spanned};
 
 pub(super) type Input<'a> = &'a [u8];
-pub(super) type Read<'a, T> = IResult<Input<'a>, T, Fault>;
+pub(super) type Read<'a, T> = IResult<Input<'a>, T, ReadFailure>;
 
 /// Every byte of a comment is overwritten with this one before a line is read (see [`super::comment`]), so that a
 /// comment may stand between any two words, numbers and brackets. No other byte of a line's code is a `(`.
@@ -15,13 +15,13 @@ pub(super) const COMMENT: u8 = b'(';
 /// Why a piece can't be read, and how much of the line was left there. The text that an alarm shows is filled in
 /// once it is known that the line can't be read in another way.
 #[derive(Debug)]
-pub(super) struct Fault {
+pub(super) struct ReadFailure {
     /// `None` where the text is neither this nor that. Faults are handed on at every step, so they are small.
     alarm: Option<Box<Alarm>>,
     pub(super) left: usize,
 }
 
-impl Fault {
+impl ReadFailure {
     pub(super) fn alarm(&self) -> Option<&Alarm> {
         self.alarm.as_deref()
     }
@@ -31,7 +31,7 @@ impl Fault {
     }
 }
 
-impl ParseError<Input<'_>> for Fault {
+impl ParseError<Input<'_>> for ReadFailure {
     fn from_error_kind(input: Input<'_>, _: ErrorKind) -> Self {
         Self { alarm: None, left: input.len() }
     }
@@ -44,7 +44,7 @@ impl ParseError<Input<'_>> for Fault {
 /// Reading can't go on in any other way.
 #[cold]
 pub(super) fn fail<T>(input: Input<'_>, alarm: Alarm) -> Read<'_, T> {
-    Err(Err::Failure(Fault { alarm: Some(Box::new(alarm)), left: input.len() }))
+    Err(Err::Failure(ReadFailure { alarm: Some(Box::new(alarm)), left: input.len() }))
 }
 
 /// Neither a number nor anything else an expression may have here.
@@ -60,12 +60,12 @@ pub(super) fn round_brackets<T>(input: Input<'_>, letter: Option<char>) -> Read<
 
 /// This isn't the piece looked for; another may be.
 pub(super) fn other<T>(input: Input<'_>) -> Read<'_, T> {
-    Err(Err::Error(Fault::from_error_kind(input, ErrorKind::Alt)))
+    Err(Err::Error(ReadFailure::from_error_kind(input, ErrorKind::Alt)))
 }
 
 /// What must follow: where it isn't there, the line can't be read.
 pub(super) fn must<'a, T>(
-    mut parser: impl Parser<Input<'a>, Output = T, Error = Fault>,
+    mut parser: impl Parser<Input<'a>, Output = T, Error = ReadFailure>,
     alarm: impl Fn() -> Alarm,
 ) -> impl FnMut(Input<'a>) -> Read<'a, T> {
     move |input| match parser.parse(input) {
@@ -76,13 +76,13 @@ pub(super) fn must<'a, T>(
 
 /// Where the line stands, so that what is left of it tells a place.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Line {
+pub(super) struct LineInput {
     pub source: SourceId,
     /// The offset of the byte after the last one of the line's code.
     pub end: u32,
 }
 
-impl Line {
+impl LineInput {
     pub(super) fn span(self, from: Input<'_>, to: Input<'_>) -> Span {
         Span { source: self.source, start: self.end - from.len() as u32, end: self.end - to.len() as u32 }
     }

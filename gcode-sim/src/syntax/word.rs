@@ -2,7 +2,9 @@
 use super::ast::{AX, Address, Expr, ExprKind, Word, WordValue};
 use super::expr::{close, expr, single, wanted};
 use super::number::{WORD_LIMIT, decimal};
-use super::token::{Input, Line, Read, comment_before, fail, letters, next, other, round_brackets, spaces};
+use super::token::{
+    Input, LineInput, Read, comment_before, fail, letters, next, other, round_brackets, spaces,
+};
 use crate::alarm::Alarm;
 
 /// The longest program name.
@@ -10,7 +12,7 @@ const LONGEST_NAME: usize = 32;
 
 /// `X10.`, `X-#1`, `F[#7/3.]`, `,R10.`, `P<NAME>`. The input begins with the letter or the comma.
 #[inline]
-pub(super) fn word(line: Line, input: Input<'_>) -> Read<'_, Word> {
+pub(super) fn word(line: LineInput, input: Input<'_>) -> Read<'_, Word> {
     let (comma, from) = match input {
         [b',', rest @ ..] => (true, spaces(rest)),
         _ => (false, input),
@@ -33,7 +35,7 @@ pub(super) fn word(line: Line, input: Input<'_>) -> Read<'_, Word> {
 }
 
 /// `AX[1]=10.`, `AX[#1]10.`: what stands behind `[`.
-fn axis_word<'a>(line: Line, input: Input<'a>, inside: Input<'a>) -> Read<'a, Word> {
+fn axis_word<'a>(line: LineInput, input: Input<'a>, inside: Input<'a>) -> Read<'a, Word> {
     let (rest, axis) = wanted(expr(line, inside, 1), inside)?;
     let (rest, ()) = close(rest)?;
     let behind = match next(rest) {
@@ -47,7 +49,7 @@ fn axis_word<'a>(line: Line, input: Input<'a>, inside: Input<'a>) -> Read<'a, Wo
 
 /// What stands behind an address.
 #[inline]
-fn word_value<'a>(line: Line, input: Input<'a>, behind: Input<'a>, letter: u8) -> Read<'a, WordValue> {
+fn word_value<'a>(line: LineInput, input: Input<'a>, behind: Input<'a>, letter: u8) -> Read<'a, WordValue> {
     let start = spaces(behind);
     let (negative, unsigned) = match start {
         [b'-', rest @ ..] => (true, spaces(rest)),
@@ -81,7 +83,7 @@ fn word_value<'a>(line: Line, input: Input<'a>, behind: Input<'a>, letter: u8) -
 }
 
 /// `M98 <NAME>`: the name stands for the word P.
-pub(super) fn name_word(line: Line, input: Input<'_>) -> Read<'_, Word> {
+pub(super) fn name_word(line: LineInput, input: Input<'_>) -> Read<'_, Word> {
     let (rest, name) = program_name(input)?;
     let address = Address { letter: b'P', comma: false };
     Ok((rest, Word { address, axis: None, value: WordValue::Name(name), span: line.span(input, rest) }))

@@ -3,8 +3,8 @@ use nalgebra::{Point3, Vector3};
 
 use super::Tolerances;
 use super::position::Deviation;
-use crate::holes::Found;
-use crate::holes::near::PointTree;
+use crate::holes::DrilledHole;
+use crate::holes::point_tree::PointTree;
 use crate::part::hole::Hole;
 use crate::part::honeycomb::Pattern;
 
@@ -16,7 +16,7 @@ const COSINE: f64 = 0.866_025_403_784_438_6;
 
 /// A wanted hole and the drilled one taken for it, by their numbers in the lists.
 #[derive(Clone, Copy, Debug)]
-pub struct Pair {
+pub struct HolePair {
     pub wanted: usize,
     pub found: usize,
     pub deviation: Deviation,
@@ -25,13 +25,13 @@ pub struct Pair {
 /// Both lists, and what belongs together.
 #[derive(Debug)]
 pub struct Comparison<'a> {
-    pub wanted: &'a [Hole],
-    pub found: &'a [Found],
+    pub nominal: &'a [Hole],
+    pub actual: &'a [DrilledHole],
     pub tolerances: Tolerances,
     /// What the neighbours must be like, where the reference says it.
     pub pattern: Option<&'a Pattern>,
     /// In the order of the wanted holes.
-    pub pairs: Vec<Pair>,
+    pub pairs: Vec<HolePair>,
     /// Wanted and not there.
     pub missing: Vec<usize>,
     /// There and not wanted.
@@ -43,7 +43,7 @@ pub struct Comparison<'a> {
 impl<'a> Comparison<'a> {
     pub fn new(
         wanted: &'a [Hole],
-        found: &'a [Found],
+        found: &'a [DrilledHole],
         tolerances: Tolerances,
         pattern: Option<&'a Pattern>,
     ) -> Self {
@@ -65,46 +65,46 @@ impl<'a> Comparison<'a> {
                 if let Some(deviation) = Deviation::new(&wanted[other], &bottom, &hole.axis)
                     && deviation.phi() <= 2.0 * reach
                 {
-                    candidates.push(Pair { wanted: other, found: index, deviation });
+                    candidates.push(HolePair { wanted: other, found: index, deviation });
                 }
             });
             candidates[before..].sort_unstable_by_key(|pair| pair.wanted);
         }
         let (taken_for, is_taken) = nearest_first(&candidates, wanted.len(), found.len());
-        let pairs: Vec<Pair> = taken_for.iter().flatten().map(|index| candidates[*index]).collect();
+        let pairs: Vec<HolePair> = taken_for.iter().flatten().map(|index| candidates[*index]).collect();
         // Holes that are a part of a list keep the numbers that they have there.
-        let lines = found.iter().map(|hole| hole.first + 1).max().unwrap_or(0);
+        let lines = found.iter().map(|hole| hole.first_on_line + 1).max().unwrap_or(0);
         let mut on_line = vec![None; lines];
         for pair in &pairs {
-            on_line[found[pair.found].first] = Some(pair.wanted);
+            on_line[found[pair.found].first_on_line] = Some(pair.wanted);
         }
         let missing = (0..wanted.len()).filter(|index| taken_for[*index].is_none()).collect();
         let extra = (0..found.len()).filter(|index| !is_taken[*index]).collect();
-        Self { wanted, found, tolerances, pattern, pairs, missing, extra, on_line }
+        Self { nominal: wanted, actual: found, tolerances, pattern, pairs, missing, extra, on_line }
     }
 
     /// The wanted hole that was drilled already on the line of one that nobody asked for.
     pub fn wanted_on_line_of(&self, extra: usize) -> Option<usize> {
-        self.on_line[self.found[extra].first]
+        self.on_line[self.actual[extra].first_on_line]
     }
 
     /// Nothing is missing, nothing too many, and every axis lies in its zone.
     pub fn all_in_place(&self) -> bool {
-        let in_zone = |pair: &Pair| pair.deviation.phi() <= self.tolerances.position;
+        let in_zone = |pair: &HolePair| pair.deviation.phi() <= self.tolerances.position;
         self.missing.is_empty() && self.extra.is_empty() && self.pairs.iter().all(in_zone)
     }
 
     /// A wanted hole's name.
     pub fn id(&self, wanted: usize) -> &str {
-        self.wanted[wanted].id.as_deref().unwrap_or("?")
+        self.nominal[wanted].id.as_deref().unwrap_or("?")
     }
 }
 
 /// Which of the candidates each wanted hole is taken for, and which of the drilled ones are taken: the nearest first, of
 /// equally near ones the first in the list.
-fn nearest_first(candidates: &[Pair], wanted: usize, found: usize) -> (Vec<Option<usize>>, Vec<bool>) {
+fn nearest_first(candidates: &[HolePair], wanted: usize, found: usize) -> (Vec<Option<usize>>, Vec<bool>) {
     // The bits of numbers that aren't negative are in the order of the numbers.
-    let nearness = |(index, pair): (usize, &Pair)| (pair.deviation.phi().to_bits(), index);
+    let nearness = |(index, pair): (usize, &HolePair)| (pair.deviation.phi().to_bits(), index);
     let mut order: Vec<(u64, usize)> = candidates.iter().enumerate().map(nearness).collect();
     order.sort_unstable();
     let (mut taken_for, mut is_taken) = (vec![None; wanted], vec![false; found]);
@@ -118,7 +118,7 @@ fn nearest_first(candidates: &[Pair], wanted: usize, found: usize) -> (Vec<Optio
     (taken_for, is_taken)
 }
 
-impl Found {
+impl DrilledHole {
     /// The deepest point any tool reached, on the hole's axis.
     pub fn bottom(&self) -> Point3<f64> {
         self.entry - self.axis.into_inner() * self.depth

@@ -1,12 +1,12 @@
 //! Holds the holes a program makes against the wanted ones: which is which, how far off, and whether that will do.
 mod causes;
 mod checks;
+mod displacement;
 pub mod flutes;
+mod hole_finding;
 mod matching;
 mod neighbours;
 mod not_checked;
-mod objection;
-mod off;
 pub mod position;
 mod rounding;
 mod rows;
@@ -14,14 +14,14 @@ mod rows;
 mod tests;
 mod verdict;
 
-pub use matching::{Comparison, Pair};
-pub use neighbours::{Around, Distance, Neighbours};
-pub use objection::Objection;
-pub use verdict::{Answer, Extra, Finding, HoleVerdict, OnPart, Placed, Verdict};
+pub use hole_finding::HoleFinding;
+pub use matching::{Comparison, HolePair};
+pub use neighbours::{Distance, HoleNeighbours, Neighbours};
+pub use verdict::{Answer, ExtraHole, Finding, HoleGeometry, HoleVerdict, PartPoint, Verdict};
 
-use self::rounding::Rounding;
+use self::rounding::RoundingDeviation;
 use crate::diag::Severity;
-use crate::holes::Extracted;
+use crate::holes::HoleExtraction;
 use crate::machine::Machine;
 use crate::part::reference::Reference;
 use crate::source::Span;
@@ -50,7 +50,7 @@ impl Tolerances {
 
 /// The verdict on a program. `locate` names the program and the line of a block.
 pub fn verify(
-    extracted: &Extracted,
+    extracted: &HoleExtraction,
     reference: &Reference,
     tolerances: Tolerances,
     machine: &Machine,
@@ -58,7 +58,7 @@ pub fn verify(
 ) -> Verdict {
     let pattern = reference.pattern.as_ref();
     let comparison = Comparison::new(&reference.holes, &extracted.holes, tolerances, pattern);
-    let rounding = Rounding::of(&comparison, machine);
+    let rounding = RoundingDeviation::of(&comparison, machine);
     let mut objections = Vec::new();
     checks::mirrored::check(&comparison, machine, &mut objections);
     for check in checks::ALL {
@@ -69,7 +69,7 @@ pub fn verify(
     checks::tool_short::check(&comparison, machine, &mut objections);
     let stopped = extracted.findings.iter().any(|finding| finding.severity == Severity::Alarm);
     checks::stopped::check(&comparison, stopped, &mut objections);
-    checks::alike::check(&comparison, machine, &mut objections);
+    checks::common_shift::check(&comparison, machine, &mut objections);
     let (reaches, conduct) = (&extracted.reaches, &reference.conduct);
     checks::reach::check(&comparison, reaches, conduct, machine, &mut objections);
     let mut motion = extracted.findings.clone();

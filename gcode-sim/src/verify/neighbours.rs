@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Comparison;
-use crate::holes::near::PointTree;
+use crate::holes::point_tree::PointTree;
 use crate::part::honeycomb::{Pattern, azimuth};
 
 /// A hole has so many at most.
@@ -37,7 +37,7 @@ pub struct Distance {
 
 /// Of one hole.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
-pub struct Around {
+pub struct HoleNeighbours {
     pub count: usize,
     pub min: f64,
     pub max: f64,
@@ -51,14 +51,14 @@ pub struct Around {
 pub(super) fn neighbours(
     comparison: &Comparison<'_>,
     pattern: &Pattern,
-) -> (Vec<Option<Around>>, Neighbours) {
-    let found = comparison.found.iter().map(|hole| (hole.bottom(), hole.axis.into_inner()));
-    let lines: Vec<usize> = comparison.found.iter().map(|hole| hole.first).collect();
+) -> (Vec<Option<HoleNeighbours>>, Neighbours) {
+    let found = comparison.actual.iter().map(|hole| (hole.bottom(), hole.axis.into_inner()));
+    let lines: Vec<usize> = comparison.actual.iter().map(|hole| hole.first_on_line).collect();
     let (around, places) = around(found, &lines, pattern);
-    let wanted = comparison.wanted.iter().map(|hole| (Point3::from(hole.entry), Vector3::from(hole.axis)));
-    let apart: Vec<usize> = (0..comparison.wanted.len()).collect();
+    let wanted = comparison.nominal.iter().map(|hole| (Point3::from(hole.entry), Vector3::from(hole.axis)));
+    let apart: Vec<usize> = (0..comparison.nominal.len()).collect();
     let (around_wanted, _) = self::around(wanted, &apart, pattern);
-    let mut names = vec![None; comparison.found.len()];
+    let mut names = vec![None; comparison.actual.len()];
     for pair in &comparison.pairs {
         names[pair.found] = Some(comparison.id(pair.wanted));
     }
@@ -71,7 +71,7 @@ pub(super) fn neighbours(
     let min = known().min_by(|a, b| a.1.min.total_cmp(&b.1.min));
     // Of equal ones the first, as for the smallest.
     let max = known().rev().max_by(|a, b| a.1.max.total_cmp(&b.1.max));
-    let six = |around: &Option<Around>| around.is_some_and(|around| around.count == SIX);
+    let six = |around: &Option<HoleNeighbours>| around.is_some_and(|around| around.count == SIX);
     let inner = comparison.pairs.iter().filter(|pair| six(&around_wanted[pair.wanted]));
     let summary = Neighbours {
         metric: pattern.metric.name(),
@@ -90,11 +90,11 @@ fn around(
     holes: impl Iterator<Item = (Point3<f64>, Vector3<f64>)>,
     lines: &[usize],
     pattern: &Pattern,
-) -> (Vec<Option<Around>>, Vec<Point3<f64>>) {
+) -> (Vec<Option<HoleNeighbours>>, Vec<Point3<f64>>) {
     let nowhere = Point3::from(Vector3::repeat(f64::INFINITY));
     let places: Vec<_> = holes.map(|(on, out)| pattern.crossing(&on, &out).unwrap_or(nowhere)).collect();
     let here: Vec<usize> = (0..places.len()).filter(|index| places[*index] != nowhere).collect();
-    let mut near = vec![Near::default(); places.len()];
+    let mut near = vec![NearestSix::default(); places.len()];
     let here = without_crowds(here, lines, &places, &mut near);
     let tree = PointTree::new(here.iter().map(|index| places[*index]));
     // Halfway to those that are no neighbours any more.
@@ -108,7 +108,7 @@ fn around(
             near[other].add(distance, one);
         }
     });
-    (near.iter().map(Near::around).collect(), places)
+    (near.iter().map(NearestSix::around).collect(), places)
 }
 
 /// The holes without the eighth and more on one spot: those are nobody's neighbours, and have the first six round them. So as many
@@ -117,7 +117,7 @@ fn without_crowds(
     mut holes: Vec<usize>,
     lines: &[usize],
     places: &[Point3<f64>],
-    near: &mut [Near],
+    near: &mut [NearestSix],
 ) -> Vec<usize> {
     let mut left = Vec::with_capacity(holes.len());
     for line in holes.chunk_by_mut(|one, other| lines[*one] == lines[*other]) {
@@ -139,12 +139,12 @@ fn without_crowds(
 
 /// The neighbours of a hole with their distances: the six nearest, the nearest first, of equally near ones the first.
 #[derive(Clone, Copy, Default)]
-struct Near {
+struct NearestSix {
     count: usize,
     near: [(f64, usize); SIX],
 }
 
-impl Near {
+impl NearestSix {
     fn add(&mut self, distance: f64, other: usize) {
         let new = (distance, other);
         if self.count < SIX {
@@ -160,10 +160,10 @@ impl Near {
         self.near[place] = new;
     }
 
-    fn around(&self) -> Option<Around> {
+    fn around(&self) -> Option<HoleNeighbours> {
         let near = &self.near[..self.count];
         let ((min, nearest), (max, farthest)) = (*near.first()?, *near.last()?);
-        Some(Around { count: self.count, min, max, nearest, farthest })
+        Some(HoleNeighbours { count: self.count, min, max, nearest, farthest })
     }
 }
 
@@ -203,7 +203,7 @@ mod tests {
     }
 
     /// All distances, sorted: count, the least and the sixth, and whose they are.
-    fn by_looking_at_all(places: &[Point3<f64>], pattern: &Pattern) -> Vec<Option<Around>> {
+    fn by_looking_at_all(places: &[Point3<f64>], pattern: &Pattern) -> Vec<Option<HoleNeighbours>> {
         let reach = (pattern.pitch + pattern.abreast()) / 2.0;
         let round = |index: usize| {
             let others = (0..places.len()).filter(|other| *other != index);
@@ -213,7 +213,7 @@ mod tests {
             all.sort_by(|a, b| a.partial_cmp(b).unwrap());
             all.truncate(6);
             let ((min, nearest), (max, farthest)) = (*all.first()?, *all.last()?);
-            Some(Around { count: all.len(), min, max, nearest, farthest })
+            Some(HoleNeighbours { count: all.len(), min, max, nearest, farthest })
         };
         (0..places.len()).map(round).collect()
     }

@@ -1,11 +1,11 @@
 //! What a verdict on holes says nothing about, in words.
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::{Comparison, Pair};
-use crate::holes::Extracted;
+use super::{Comparison, HolePair};
+use crate::holes::HoleExtraction;
 use crate::machine::{HeadKind, Machine};
-use crate::motion::Lengthening;
-use crate::part::conduct::Duty;
+use crate::motion::LengthCompensation;
+use crate::part::process::ToolProcess;
 use crate::part::reference::Reference;
 use crate::source::Span;
 use crate::units::Deg;
@@ -13,7 +13,7 @@ use crate::units::Deg;
 /// What a pass says nothing about, in words: nobody should take it for checked.
 pub(super) fn lines(
     comparison: &Comparison<'_>,
-    extracted: &Extracted,
+    extracted: &HoleExtraction,
     reference: &Reference,
     machine: &Machine,
     locate: &dyn Fn(Span) -> (String, u32),
@@ -22,7 +22,8 @@ pub(super) fn lines(
     all.extend(diameters(comparison, machine));
     all.extend(lengths(extracted, machine));
     all.extend(conduct(extracted, reference, machine));
-    let along_feed = comparison.pairs.iter().all(|pair| comparison.found[pair.found].off_tool == Deg::ZERO);
+    let along_feed =
+        comparison.pairs.iter().all(|pair| comparison.actual[pair.found].tool_axis_deviation == Deg::ZERO);
     if machine.head.kind == HeadKind::Free && along_feed {
         all.push("head angles: the head is not known, each axis is taken along its feed".to_owned());
     }
@@ -36,12 +37,12 @@ pub(super) fn lines(
 
 /// Whose diameters aren't checked: by which tools, where the tool table has others.
 fn diameters(comparison: &Comparison<'_>, machine: &Machine) -> Vec<String> {
-    let unknown = |pair: &&Pair| {
-        comparison.wanted[pair.wanted].diameter.is_some() && comparison.found[pair.found].diameter.is_none()
+    let unknown = |pair: &&HolePair| {
+        comparison.nominal[pair.wanted].diameter.is_some() && comparison.actual[pair.found].diameter.is_none()
     };
     let mut made: BTreeMap<Option<u32>, Vec<&str>> = BTreeMap::new();
     for pair in comparison.pairs.iter().filter(unknown) {
-        let tool = comparison.found[pair.found].tool.filter(|_| !machine.tools.is_empty());
+        let tool = comparison.actual[pair.found].tool.filter(|_| !machine.tools.is_empty());
         made.entry(tool).or_default().push(comparison.id(pair.wanted));
     }
     let words = |(tool, ids): (Option<u32>, Vec<&str>)| match (tool, ids.as_slice()) {
@@ -64,16 +65,16 @@ fn some(ids: &[&str]) -> String {
 }
 
 /// Tools that cut and whose lengths the machine file doesn't have: which offset stands for each.
-fn lengths(extracted: &Extracted, machine: &Machine) -> Vec<String> {
+fn lengths(extracted: &HoleExtraction, machine: &Machine) -> Vec<String> {
     let unknown = extracted.cuttings.iter().filter(|cutting| machine.length_of(cutting.tool).is_none());
-    let tools: BTreeSet<_> = unknown.map(|cutting| (cutting.tool, cutting.by)).collect();
-    let words = |(tool, by): (Option<u32>, Lengthening)| {
+    let tools: BTreeSet<_> = unknown.map(|cutting| (cutting.tool, cutting.compensation)).collect();
+    let words = |(tool, by): (Option<u32>, LengthCompensation)| {
         let whose = tool.map_or("the tool's length".to_owned(), |number| format!("the length of T{number}"));
         let taken = match by {
-            Lengthening::Off | Lengthening::Plus(0) | Lengthening::Minus(0) => {
+            LengthCompensation::Off | LengthCompensation::Plus(0) | LengthCompensation::Minus(0) => {
                 "its tip to be what is programmed".to_owned()
             }
-            Lengthening::Plus(h) | Lengthening::Minus(h) => format!("H{h} to hold it"),
+            LengthCompensation::Plus(h) | LengthCompensation::Minus(h) => format!("H{h} to hold it"),
         };
         format!("{whose}: the machine file doesn't have it, and takes {taken}")
     };
@@ -81,7 +82,7 @@ fn lengths(extracted: &Extracted, machine: &Machine) -> Vec<String> {
 }
 
 /// What the reference doesn't say of how the part is to be worked.
-fn conduct(extracted: &Extracted, reference: &Reference, machine: &Machine) -> Option<String> {
+fn conduct(extracted: &HoleExtraction, reference: &Reference, machine: &Machine) -> Option<String> {
     let conduct = &reference.conduct;
     if extracted.conduct != *conduct {
         return Some(
@@ -89,8 +90,8 @@ fn conduct(extracted: &Extracted, reference: &Reference, machine: &Machine) -> O
         );
     }
     let tools: BTreeSet<_> = extracted.cuttings.iter().map(|cutting| cutting.tool).collect();
-    let unsaid = |of: &dyn Fn(&Duty) -> Option<f64>| {
-        tools.iter().any(|tool| conduct.duty(*tool).and_then(of).is_none())
+    let unsaid = |of: &dyn Fn(&ToolProcess) -> Option<f64>| {
+        tools.iter().any(|tool| conduct.tool_process(*tool).and_then(of).is_none())
     };
     let turns = machine.table.turning().next().is_some();
     let missing = [

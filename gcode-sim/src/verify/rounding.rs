@@ -2,21 +2,21 @@
 //! head's angle that is set by hand, the worst way round, at the hole's place.
 use nalgebra::{Point3, Vector3};
 
-use super::{Comparison, Pair};
-use crate::holes::Found;
+use super::{Comparison, HolePair};
+use crate::holes::DrilledHole;
 use crate::machine::{Frame, HeadKind, LinkMotion, Machine};
-use crate::motion::{Axis, Position};
+use crate::motion::{AxisIndex, Position};
 use crate::units::Deg;
 
 /// What half an increment of an axis, or of the head's angle, moves the hole's axis by, sideways, at the worse end, in mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Share {
+pub(super) struct AxisRounding {
     /// Of the axis; `None` of a head that is set by hand.
     letter: Option<char>,
     pub moves: f64,
 }
 
-impl Share {
+impl AxisRounding {
     /// `X`, or `head`.
     pub(super) fn name(&self) -> String {
         self.letter.map_or("head".to_owned(), String::from)
@@ -25,11 +25,11 @@ impl Share {
 
 /// The worst cases of all pairs.
 #[derive(Debug)]
-pub(super) struct Rounding<'a> {
+pub(super) struct RoundingDeviation<'a> {
     comparison: &'a Comparison<'a>,
     machine: &'a Machine,
     /// The axes that have to be rounded at all.
-    axes: Vec<Axis>,
+    axes: Vec<AxisIndex>,
     /// What it can make of each pair's position, in their order, as a diameter in mm.
     pub phis: Vec<f64>,
 }
@@ -37,12 +37,12 @@ pub(super) struct Rounding<'a> {
 /// How both ends of a hole's axis move sideways for half an increment of an axis; `None` of a head that is set by hand.
 type Moved = (Option<char>, [Vector3<f64>; 2]);
 
-impl<'a> Rounding<'a> {
+impl<'a> RoundingDeviation<'a> {
     pub(super) fn of(comparison: &'a Comparison<'a>, machine: &'a Machine) -> Self {
         let axes = rounded_axes(comparison, machine);
         let mut rounding = Self { comparison, machine, axes, phis: Vec::new() };
         let (mut table, mut moved) = (None, Vec::new());
-        let phi = |pair: &Pair| {
+        let phi = |pair: &HolePair| {
             rounding.moved(pair, &mut table, &mut moved);
             2.0 * farthest(&moved)
         };
@@ -51,12 +51,12 @@ impl<'a> Rounding<'a> {
     }
 
     /// The axes that move this pair at all, the largest share first.
-    pub(super) fn shares(&self, pair: usize) -> Vec<Share> {
+    pub(super) fn shares(&self, pair: usize) -> Vec<AxisRounding> {
         let mut moved = Vec::new();
         self.moved(&self.comparison.pairs[pair], &mut None, &mut moved);
-        let mut shares: Vec<Share> = moved
+        let mut shares: Vec<AxisRounding> = moved
             .iter()
-            .map(|(letter, [entry, bottom])| Share {
+            .map(|(letter, [entry, bottom])| AxisRounding {
                 letter: *letter,
                 moves: entry.norm().max(bottom.norm()),
             })
@@ -68,8 +68,8 @@ impl<'a> Rounding<'a> {
     }
 
     /// `table` is where it stood for the last pair: all holes of a row are drilled while it stands still.
-    fn moved(&self, pair: &Pair, table: &mut Option<Table>, moved: &mut Vec<Moved>) {
-        let (wanted, found) = (&self.comparison.wanted[pair.wanted], &self.comparison.found[pair.found]);
+    fn moved(&self, pair: &HolePair, table: &mut Option<Table>, moved: &mut Vec<Moved>) {
+        let (wanted, found) = (&self.comparison.nominal[pair.wanted], &self.comparison.actual[pair.found]);
         let machine = self.machine;
         if table.as_ref().is_none_or(|table| machine.table.differs(&table.at, &found.at)) {
             *table = Some(Table::at(machine, &self.axes, found.at));
@@ -103,8 +103,8 @@ struct Table {
 }
 
 impl Table {
-    fn at(machine: &Machine, axes: &[Axis], at: Position) -> Self {
-        let beside = |axis: &Axis| {
+    fn at(machine: &Machine, axes: &[AxisIndex], at: Position) -> Self {
+        let beside = |axis: &AxisIndex| {
             machine.table.has(*axis).then(|| {
                 let mut next = at;
                 next[*axis] += machine.increment.size() / 2.0;
@@ -116,12 +116,13 @@ impl Table {
 }
 
 /// An axis that stands at the same whole number of mm or degrees in every hole has nothing to round.
-fn rounded_axes(comparison: &Comparison<'_>, machine: &Machine) -> Vec<Axis> {
-    let Some(first) = comparison.pairs.first().map(|pair| comparison.found[pair.found].at) else {
+fn rounded_axes(comparison: &Comparison<'_>, machine: &Machine) -> Vec<AxisIndex> {
+    let Some(first) = comparison.pairs.first().map(|pair| comparison.actual[pair.found].at) else {
         return Vec::new();
     };
-    let moves = |axis: Axis| {
-        let varies = comparison.pairs.iter().any(|pair| comparison.found[pair.found].at[axis] != first[axis]);
+    let moves = |axis: AxisIndex| {
+        let varies =
+            comparison.pairs.iter().any(|pair| comparison.actual[pair.found].at[axis] != first[axis]);
         machine.carries(axis) && (varies || first[axis].fract() != 0.0)
     };
     machine.axes.iter().map(|(axis, _)| axis).filter(|axis| moves(*axis)).collect()
@@ -129,7 +130,13 @@ fn rounded_axes(comparison: &Comparison<'_>, machine: &Machine) -> Vec<Axis> {
 
 /// How a point of the hole's axis, `above` its bottom, moves on the part when `axis`, which doesn't carry the part, goes half
 /// an increment; `frame` is the part's where the hole was found.
-fn half_increment(machine: &Machine, axis: Axis, found: &Found, frame: &Frame, above: f64) -> Vector3<f64> {
+fn half_increment(
+    machine: &Machine,
+    axis: AxisIndex,
+    found: &DrilledHole,
+    frame: &Frame,
+    above: f64,
+) -> Vector3<f64> {
     let half = machine.increment.size() / 2.0;
     if let HeadKind::Axis { axis: head, .. } = machine.head.kind
         && head == axis
@@ -150,11 +157,11 @@ fn half_increment(machine: &Machine, axis: Axis, found: &Found, frame: &Frame, a
 /// How far a millimetre below its entry a hole stands aside when the angle that a head is set to by hand is rounded by
 /// half an increment: the feed runs along the rounded angle, through the entry. An angle of whole degrees has nothing
 /// to round.
-fn head_by_hand(machine: &Machine, found: &Found, frame: &Frame) -> Option<Vector3<f64>> {
+fn head_by_hand(machine: &Machine, found: &DrilledHole, frame: &Frame) -> Option<Vector3<f64>> {
     // Of a head that nobody described the axis is the feed's, unless a message to the operator set it.
     let set = match machine.head.kind {
         HeadKind::Manual { .. } => true,
-        HeadKind::Free => found.off_tool != Deg::ZERO,
+        HeadKind::Free => found.tool_axis_deviation != Deg::ZERO,
         HeadKind::Fixed(_) | HeadKind::Axis { .. } => false,
     };
     let out = frame.rotation * found.axis.into_inner();

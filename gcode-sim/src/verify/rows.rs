@@ -5,7 +5,7 @@ use crate::units::Deg;
 
 /// Holes of one azimuth.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Row {
+pub(super) struct PatternRow {
     /// 0 to 360.
     pub(super) azimuth: Deg,
     /// The least x, mm.
@@ -16,28 +16,28 @@ pub(super) struct Row {
 
 /// All rows in the order of their azimuths.
 #[derive(Debug)]
-pub(super) struct Rows {
-    pub(super) rows: Vec<Row>,
+pub(super) struct PatternRows {
+    pub(super) rows: Vec<PatternRow>,
     /// From each row to the next, from the last one round to the first.
     pub(super) gaps: Vec<Deg>,
     /// The mean of those that are about as large as most: single ones are rounded to the rotary's increment.
     pub(super) usual: Deg,
     /// From hole to hole in the first row that has several, mm, as usual; and that row.
-    pub(super) spacing: Option<(f64, Row)>,
+    pub(super) spacing: Option<(f64, PatternRow)>,
 }
 
 /// Fewer rows show no order.
 const FEWEST: usize = 4;
 
-impl Rows {
+impl PatternRows {
     /// `None` where there are too few to speak of, and where all holes are in their places: what is said of rows only
     /// explains what is wrong with holes.
     pub(super) fn of(comparison: &Comparison<'_>, pattern: &Pattern) -> Option<Self> {
         if comparison.all_in_place() {
             return None;
         }
-        let mut places: Vec<(Deg, f64, usize)> = Vec::with_capacity(comparison.found.len());
-        for (index, hole) in comparison.found.iter().enumerate() {
+        let mut places: Vec<(Deg, f64, usize)> = Vec::with_capacity(comparison.actual.len());
+        for (index, hole) in comparison.actual.iter().enumerate() {
             // A hole that misses the cylinder is in no row; the others' rows are still told.
             let Some(at) = pattern.crossing(&hole.bottom(), &hole.axis) else { continue };
             places.push((Deg(azimuth(&at).0.rem_euclid(360.0)), at.x, index));
@@ -45,7 +45,7 @@ impl Rows {
         places.sort_by(|a, b| a.0.0.total_cmp(&b.0.0));
         // What is drilled at one angle lies at one angle; a row drilled twice may lie near by.
         let same = pattern.step().0 / 100.0;
-        let mut rows: Vec<Row> = Vec::new();
+        let mut rows: Vec<PatternRow> = Vec::new();
         let mut along: Vec<Vec<f64>> = Vec::new();
         let mut last = Deg(f64::NEG_INFINITY);
         for (azimuth, start, first) in places {
@@ -57,7 +57,7 @@ impl Rows {
                     }
                 }
                 _ => {
-                    rows.push(Row { azimuth, start, first });
+                    rows.push(PatternRow { azimuth, start, first });
                     along.push(vec![start]);
                 }
             }
@@ -92,7 +92,7 @@ impl Rows {
     /// Whether most rows stand whole numbers of the usual gap from the first, to so many degrees: single rows that are turned
     /// change the mean and leave it to fit no other.
     pub(super) fn fit(&self, within: Deg) -> bool {
-        let off = |row: &&Row| {
+        let off = |row: &&PatternRow| {
             let gaps = (row.azimuth - self.rows[0].azimuth).0 / self.usual.0;
             (gaps - gaps.round()).abs() * self.usual.0 <= within.0
         };
@@ -101,7 +101,7 @@ impl Rows {
 
     /// Whether every row begins where the first does, where every second one should begin half a pitch later.
     pub(super) fn in_step(&self, pattern: &Pattern) -> bool {
-        let off = |row: &Row| {
+        let off = |row: &PatternRow| {
             let pitches = (row.start - self.rows[0].start) / pattern.pitch;
             (pitches - pitches.round()).abs()
         };

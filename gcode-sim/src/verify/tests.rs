@@ -5,12 +5,12 @@
 use proptest::prelude::*;
 
 use super::{Answer, Tolerances, Verdict, verify};
-use crate::holes::Extractor;
-use crate::holes::script::Script;
+use crate::holes::HoleExtractor;
+use crate::holes::event_script::EventScript;
 use crate::job::Job;
 use crate::machine::{Head, HeadKind, Machine, Tool};
+use crate::part::nominal::NominalPart;
 use crate::part::reference::Reference;
-use crate::part::wanted::Wanted;
 use crate::units::Deg;
 
 #[derive(Clone, Copy, Debug)]
@@ -55,7 +55,7 @@ impl Section {
                 place.azimuth
             );
         }
-        Wanted::of_job(&Job::parse(&text).unwrap()).unwrap().into_holes().unwrap()
+        NominalPart::of_job(&Job::parse(&text).unwrap()).unwrap().into_holes().unwrap()
     }
 }
 
@@ -73,7 +73,7 @@ struct Way {
 
 const RIGHT: Way = Way { sign: 1.0, shift: [0.0; 3], lean: 0.0, depth: 15.0, set_head: true };
 
-fn drill(script: Script, section: Section, place: Place, way: Way) -> Script {
+fn drill(script: EventScript, section: Section, place: Place, way: Way) -> EventScript {
     let (x, y, angle) = section.above(place, 0.0);
     let angle = angle + Deg(way.lean);
     let at = |along: f64| {
@@ -87,13 +87,13 @@ fn drill(script: Script, section: Section, place: Place, way: Way) -> Script {
     script.rapid(&turn).rapid(&over).rapid(&at(20.0)).feed(&at(-way.depth)).rapid(&at(20.0)).rapid(&high)
 }
 
-fn start(section: Section) -> Script {
-    Script::new().rapid(&format!("Y{:.3}", 2.0 * section.a.max(section.b) + 100.0))
+fn start(section: Section) -> EventScript {
+    EventScript::new().rapid(&format!("Y{:.3}", 2.0 * section.a.max(section.b) + 100.0))
 }
 
-fn judge(machine: &Machine, reference: &Reference, script: &Script) -> Verdict {
-    let mut extractor = Extractor::new(machine).with_surface(reference.surface);
-    script.play(&mut extractor);
+fn judge(machine: &Machine, reference: &Reference, script: &EventScript) -> Verdict {
+    let mut extractor = HoleExtractor::new(machine).with_surface(reference.surface);
+    script.emit_to(&mut extractor);
     let locate = |span: crate::source::Span| ("O8101".to_owned(), span.start);
     verify(&extractor.finish(), reference, Tolerances::of(reference, None), machine, &locate)
 }
@@ -116,18 +116,18 @@ fn five() -> Vec<Place> {
     ]
 }
 
-fn all(way: Way) -> Script {
+fn all(way: Way) -> EventScript {
     five().into_iter().fold(start(PAPER), |script, place| drill(script, PAPER, place, way))
 }
 
 /// All as it should be but for the hole with this number, counted from 0.
-fn all_but(fault: usize, way: Way) -> Script {
+fn all_but(fault: usize, way: Way) -> EventScript {
     let with = |(index, place)| (place, if index == fault { way } else { RIGHT });
     let places = five().into_iter().enumerate().map(with);
     places.fold(start(PAPER), |script, (place, way)| drill(script, PAPER, place, way))
 }
 
-fn verdict_on(script: &Script) -> Verdict {
+fn verdict_on(script: &EventScript) -> Verdict {
     judge(&Machine::default(), &PAPER.reference(&five()), script)
 }
 
@@ -137,7 +137,13 @@ fn five_right_holes_pass_and_rounding_explains_what_is_left() {
     assert_eq!(verdict.verdict, Answer::Pass, "{:?}", codes(&verdict));
     assert_eq!((verdict.holes.len(), codes(&verdict).len()), (5, 0));
     for hole in &verdict.holes {
-        assert!(hole.phi <= hole.rounding + 1e-9, "{} {} {}", hole.id, hole.phi, hole.rounding);
+        assert!(
+            hole.position_deviation <= hole.rounding + 1e-9,
+            "{} {} {}",
+            hole.id,
+            hole.position_deviation,
+            hole.rounding
+        );
     }
     // Half of 0.001° at the largest radius, 1158.8·cos 30°, is 0.00876 mm; X and Y add half of 0.001 each, sideways.
     let b = 1158.8 * Deg(30.0).cos() * Deg(0.0005).to_rad();
@@ -179,7 +185,11 @@ fn a_hole_0_08_mm_aside_fails_by_its_position_alone() {
     for shift in [[0.08, 0.0, 0.0], [0.0, 0.0, 0.08]] {
         let verdict = verdict_on(&all_but(0, Way { shift, ..RIGHT }));
         assert_eq!((verdict.verdict, codes(&verdict)), (Answer::Fail, vec!["hole-position"]));
-        assert!((verdict.holes[0].phi - 0.16).abs() < 0.002, "{}", verdict.holes[0].phi);
+        assert!(
+            (verdict.holes[0].position_deviation - 0.16).abs() < 0.002,
+            "{}",
+            verdict.holes[0].position_deviation
+        );
         assert_eq!(verdict.holes.iter().filter(|hole| hole.ok).count(), 4);
         assert!(verdict.worst_from.unwrap().contains("more than rounding"));
     }
@@ -259,7 +269,7 @@ fn too_shallow_and_too_deep_fail_by_the_depth() {
 fn a_hole_finished_by_the_drill_alone_has_the_wrong_diameter() {
     let tool = |number, diameter| Tool { number, length: None, diameter: Some(diameter) };
     let machine = Machine { tools: vec![tool(1, 5.9), tool(2, 6.0)], ..Machine::default() };
-    let by = |number: u32, places: &[Place], script: Script| {
+    let by = |number: u32, places: &[Place], script: EventScript| {
         places.iter().fold(script.tool(number), |script, place| drill(script, PAPER, *place, RIGHT))
     };
     let reference = PAPER.reference(&five());
@@ -325,7 +335,7 @@ proptest! {
         let verdict = judge(&machine, &reference, &script);
         prop_assert_eq!(verdict.verdict, Answer::Pass, "{:?}", codes(&verdict));
         for hole in &verdict.holes {
-            prop_assert!(hole.phi <= hole.rounding + 1e-8, "{} {} {}", hole.id, hole.phi, hole.rounding);
+            prop_assert!(hole.position_deviation <= hole.rounding + 1e-8, "{} {} {}", hole.id, hole.position_deviation, hole.rounding);
         }
 
         // The same holes with a head that has a pivot and a tool of a length: the pivot point is programmed.

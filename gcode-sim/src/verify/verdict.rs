@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use super::rounding::{Rounding, Share};
-use super::{Around, Comparison, Neighbours, Objection};
+use super::rounding::{AxisRounding, RoundingDeviation};
+use super::{Comparison, HoleFinding, HoleNeighbours, Neighbours};
 use crate::diag::{Diagnostic, Severity, Site};
-use crate::motion::{Call, Calls};
+use crate::motion::{Call, CallChain};
 use crate::part::hole::{Hole, Origin};
 use crate::source::Span;
 
@@ -37,7 +37,7 @@ pub struct Verdict {
     pub holes: Vec<HoleVerdict>,
     /// The ids of wanted holes that aren't there.
     pub missing: Vec<String>,
-    pub extra: Vec<Extra>,
+    pub extra: Vec<ExtraHole>,
     pub findings: Vec<Finding>,
     /// Of a part where it matters how far neighbours stand.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -53,7 +53,8 @@ pub struct Verdict {
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct HoleVerdict {
     pub id: String,
-    pub phi: f64,
+    #[serde(rename = "phi")]
+    pub position_deviation: f64,
     pub at_entry: f64,
     pub at_bottom: f64,
     pub depth_error: f64,
@@ -64,8 +65,8 @@ pub struct HoleVerdict {
     pub out_of_tolerance: f64,
     /// What rounding alone can make of phi here.
     pub rounding: f64,
-    pub nominal: Placed,
-    pub actual: Placed,
+    pub nominal: HoleGeometry,
+    pub actual: HoleGeometry,
     pub from: Origin,
     /// The calls that led to that block, innermost first.
     pub calls: Vec<Origin>,
@@ -73,7 +74,7 @@ pub struct HoleVerdict {
     pub objections: Vec<String>,
     /// What stands round it, of a part where that matters.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub neighbours: Option<Around>,
+    pub neighbours: Option<HoleNeighbours>,
     /// Which of the holes that the program makes it is, counted from 0.
     #[serde(skip)]
     pub found: usize,
@@ -81,7 +82,7 @@ pub struct HoleVerdict {
 
 /// A hole as an inspector writes it down; the actual one where its axis crosses the plane of the nominal entry.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
-pub struct Placed {
+pub struct HoleGeometry {
     pub entry: [f64; 3],
     pub axis: [f64; 3],
     pub diameter: Option<f64>,
@@ -90,7 +91,7 @@ pub struct Placed {
 
 /// A hole nobody asked for.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
-pub struct Extra {
+pub struct ExtraHole {
     #[serde(flatten)]
     pub hole: Hole,
     pub why: String,
@@ -114,18 +115,18 @@ pub struct Finding {
     pub from: Option<Origin>,
     /// Of a finding on flutes: where on the part, the worst first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub sites: Vec<OnPart>,
+    pub sites: Vec<PartPoint>,
 }
 
 /// A place on the part, mm.
 #[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
-pub struct OnPart {
+pub struct PartPoint {
     /// Counted from 1; null where no pass is: a missing flute, a rapid between two of them.
     pub pass: Option<usize>,
     pub at: [f64; 3],
 }
 
-impl From<&Site> for OnPart {
+impl From<&Site> for PartPoint {
     fn from(site: &Site) -> Self {
         Self { pass: site.pass.map(|pass| pass + 1), at: site.at.coords.into() }
     }
@@ -133,12 +134,12 @@ impl From<&Site> for OnPart {
 
 pub(super) fn verdict(
     comparison: &Comparison<'_>,
-    rounding: &Rounding<'_>,
-    objections: Vec<Objection>,
+    rounding: &RoundingDeviation<'_>,
+    objections: Vec<HoleFinding>,
     findings: &[Diagnostic],
     locate: &dyn Fn(Span) -> (String, u32),
 ) -> Verdict {
-    let mut against: Vec<Vec<String>> = vec![Vec::new(); comparison.wanted.len()];
+    let mut against: Vec<Vec<String>> = vec![Vec::new(); comparison.nominal.len()];
     let failed = |finding: &Diagnostic| Severity::Error <= finding.severity;
     for objection in objections.iter().filter(|objection| failed(&objection.finding)) {
         if let Some(wanted) = objection.wanted {
@@ -155,7 +156,8 @@ pub(super) fn verdict(
         })
         .collect();
     let fails = objections.iter().any(|o| failed(&o.finding)) || findings.iter().any(failed);
-    let worst = (0..holes.len()).max_by(|a, b| holes[*a].phi.total_cmp(&holes[*b].phi).then(b.cmp(a)));
+    let worst = (0..holes.len())
+        .max_by(|a, b| holes[*a].position_deviation.total_cmp(&holes[*b].position_deviation).then(b.cmp(a)));
     let about_holes = objections.iter().map(|o| (o.wanted, &o.finding, false));
     let told = about_holes.chain(findings.iter().map(|f| (None, f, true)));
     Verdict {
@@ -163,7 +165,7 @@ pub(super) fn verdict(
         tolerance: comparison.tolerances.position,
         depth_tolerance: comparison.tolerances.depth,
         verdict: if fails { Answer::Fail } else { Answer::Pass },
-        worst: worst.map(|index| holes[index].phi),
+        worst: worst.map(|index| holes[index].position_deviation),
         worst_from: worst.map(|index| worst_from(&holes[index], &rounding.shares(index))),
         rounding: rounding.phis.iter().copied().reduce(f64::max),
         missing: comparison.missing.iter().map(|index| comparison.id(*index).to_owned()).collect(),
@@ -218,7 +220,7 @@ impl Verdict {
     }
 
     /// Adds what is round each hole, and the summary.
-    pub(super) fn say_neighbours(&mut self, (around, summary): (Vec<Option<Around>>, Neighbours)) {
+    pub(super) fn say_neighbours(&mut self, (around, summary): (Vec<Option<HoleNeighbours>>, Neighbours)) {
         for hole in &mut self.holes {
             hole.neighbours = around[hole.found];
         }
@@ -251,18 +253,18 @@ pub(super) fn readable(findings: impl Iterator<Item = Diagnostic>) -> Vec<Diagno
 
 fn hole_verdict(
     comparison: &Comparison<'_>,
-    pair: &super::Pair,
+    pair: &super::HolePair,
     rounding: f64,
     objections: Vec<String>,
     locate: &dyn Fn(Span) -> (String, u32),
 ) -> HoleVerdict {
     let (wanted, found, deviation) =
-        (&comparison.wanted[pair.wanted], &comparison.found[pair.found], &pair.deviation);
+        (&comparison.nominal[pair.wanted], &comparison.actual[pair.found], &pair.deviation);
     let phi = deviation.phi();
     let (program, line) = locate(found.place.block);
     HoleVerdict {
         id: comparison.id(pair.wanted).to_owned(),
-        phi,
+        position_deviation: phi,
         at_entry: deviation.at_entry,
         at_bottom: deviation.at_bottom,
         depth_error: deviation.depth_error,
@@ -270,13 +272,13 @@ fn hole_verdict(
         tilt: deviation.tilt.0,
         out_of_tolerance: (phi - comparison.tolerances.position).max(0.0),
         rounding,
-        nominal: Placed {
+        nominal: HoleGeometry {
             entry: wanted.entry,
             axis: wanted.axis,
             diameter: wanted.diameter,
             depth: wanted.depth,
         },
-        actual: Placed {
+        actual: HoleGeometry {
             entry: deviation.entry.coords.into(),
             axis: found.axis.into_inner().into(),
             diameter: found.diameter,
@@ -290,13 +292,13 @@ fn hole_verdict(
     }
 }
 
-fn extra(comparison: &Comparison<'_>, index: usize, locate: &dyn Fn(Span) -> (String, u32)) -> Extra {
-    let found = &comparison.found[index];
-    Extra { hole: found.hole(locate), why: super::checks::surplus::why(comparison, index), found: index }
+fn extra(comparison: &Comparison<'_>, index: usize, locate: &dyn Fn(Span) -> (String, u32)) -> ExtraHole {
+    let found = &comparison.actual[index];
+    ExtraHole { hole: found.hole(locate), why: super::checks::extra::why(comparison, index), found: index }
 }
 
 /// In one line: which end, how far, and how much of it rounding is to blame for.
-fn worst_from(hole: &HoleVerdict, shares: &[Share]) -> String {
+fn worst_from(hole: &HoleVerdict, shares: &[AxisRounding]) -> String {
     let (end, off) = match hole.at_bottom > hole.at_entry {
         true => ("bottom", hole.at_bottom),
         false => ("entry", hole.at_entry),
@@ -304,7 +306,7 @@ fn worst_from(hole: &HoleVerdict, shares: &[Share]) -> String {
     let shares: Vec<_> = shares.iter().map(|s| format!("{} {:.4}", s.name(), s.moves)).collect();
     let shares = if shares.is_empty() { String::new() } else { format!(" ({})", shares.join(", ")) };
     // What can be explained by rounding is compared with room for the arithmetic itself.
-    let blame = match hole.phi <= hole.rounding + 1e-6 {
+    let blame = match hole.position_deviation <= hole.rounding + 1e-6 {
         true => "within what rounding explains",
         false => "more than rounding explains",
     };
@@ -315,7 +317,7 @@ fn worst_from(hole: &HoleVerdict, shares: &[Share]) -> String {
 }
 
 /// The chain of calls, one place each.
-fn calls(calls: &Calls, locate: &dyn Fn(Span) -> (String, u32)) -> Vec<Origin> {
+fn calls(calls: &CallChain, locate: &dyn Fn(Span) -> (String, u32)) -> Vec<Origin> {
     let chain = std::iter::successors(calls.as_deref(), |call| call.outer.as_deref());
     let place = |call: &Call| {
         let (program, line) = locate(call.from);

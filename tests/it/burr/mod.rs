@@ -1,5 +1,5 @@
 //! Burrs from job to verdict: random jobs, both forms of the program, how many moves there are, what the macro refuses.
-mod wish;
+mod sample_jobs;
 
 use gcode_gen::check::{Programs, check};
 use gcode_gen::families;
@@ -7,15 +7,15 @@ use gcode_gen::package::{Package, file_name};
 use gcode_sim::exec::Outcome;
 use gcode_sim::job::Job;
 use gcode_sim::machine::Machine;
-use gcode_sim::motion::{Event, EventKind, Position, Sink};
-use gcode_sim::part::wanted::Wanted;
+use gcode_sim::motion::{Event, EventKind, EventSink, Position};
+use gcode_sim::part::nominal::NominalPart;
 use gcode_sim::session::{Request, grind, run};
 use gcode_sim::units::{Deg, ln};
 use gcode_sim::verify::Answer;
 use gcode_sim::verify::flutes::FluteVerdict;
 use proptest::prelude::*;
 
-use self::wish::{Wish, example, wishes};
+use self::sample_jobs::{Wish, example, wishes};
 
 /// The same with two flutes, where their number is nothing to the test.
 fn two_flutes() -> Wish {
@@ -60,7 +60,7 @@ proptest! {
 /// The verdict on an emitted program in which `from` is replaced.
 fn replaced(from: &str, to: &str) -> FluteVerdict {
     let job = two_flutes().job();
-    let Wanted::Flutes(wanted) = Wanted::of_job(&job).unwrap() else { panic!("a burr has flutes") };
+    let NominalPart::Flutes(wanted) = NominalPart::of_job(&job).unwrap() else { panic!("a burr has flutes") };
     let mut package = families::emit(&job);
     for program in &mut package.programs {
         program.text = program.text.replace(from, to);
@@ -110,7 +110,7 @@ fn an_offset_that_is_off_is_told_as_that() {
 #[derive(Default)]
 struct Path(Vec<(bool, Position, f64)>);
 
-impl Sink for Path {
+impl EventSink for Path {
     fn event(&mut self, event: &Event<'_>) {
         match &event.kind {
             EventKind::Rapid { to } => self.0.push((true, *to, event.seconds.0)),
@@ -206,7 +206,7 @@ fn there_are_as_few_moves_as_hold_the_chord_error() {
 fn each_axis_sign_counts() {
     let job = two_flutes().job();
     let package = families::emit(&job);
-    let Wanted::Flutes(wanted) = Wanted::of_job(&job).unwrap() else { panic!("a burr has flutes") };
+    let NominalPart::Flutes(wanted) = NominalPart::of_job(&job).unwrap() else { panic!("a burr has flutes") };
     for letter in ["X", "Y", "A", "B", "C"] {
         let (before, after) = package.machine.split_once(&format!("letter = \"{letter}\"")).unwrap();
         let turned = after.replacen("sign = 1", "sign = -1", 1);
@@ -220,7 +220,7 @@ fn each_axis_sign_counts() {
 #[test]
 fn without_a_wheel_there_is_no_verdict() {
     let job = example().job();
-    let Wanted::Flutes(wanted) = Wanted::of_job(&job).unwrap() else { panic!("a burr has flutes") };
+    let NominalPart::Flutes(wanted) = NominalPart::of_job(&job).unwrap() else { panic!("a burr has flutes") };
     let package = Package { machine: String::new(), ..families::emit(&job) };
     let error = grind(&request(&package), &mut Programs(&package), &wanted).unwrap_err().to_string();
     assert!(error.starts_with("the machine file has no [wheel]"), "{error}");
@@ -271,7 +271,7 @@ fn the_macro_refuses_what_can_not_be_ground() {
 /// The verdict on a program with more blocks before its end, at C 0 with the wheel clear of the burr.
 fn with(blocks: &str) -> FluteVerdict {
     let job = two_flutes().job();
-    let Wanted::Flutes(wanted) = Wanted::of_job(&job).unwrap() else { panic!("a burr has flutes") };
+    let NominalPart::Flutes(wanted) = NominalPart::of_job(&job).unwrap() else { panic!("a burr has flutes") };
     let mut package = families::emit(&job);
     let main = package.programs.iter_mut().find(|program| program.number == 8400).unwrap();
     assert!(main.text.contains(" G00 C0.\n"));
@@ -312,7 +312,7 @@ fn what_goes_into_the_blank_without_a_pass_is_told() {
 }
 
 fn example_depth() -> f64 {
-    let Wanted::Flutes(wanted) = Wanted::of_job(&example().job()).unwrap() else {
+    let NominalPart::Flutes(wanted) = NominalPart::of_job(&example().job()).unwrap() else {
         panic!("a burr has flutes")
     };
     wanted.tooth_depth.max(wanted.surface_tolerance)

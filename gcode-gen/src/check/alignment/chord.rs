@@ -6,7 +6,7 @@ use gcode_sim::motion::Position;
 use gcode_sim::session::Run;
 use gcode_sim::units::Deg;
 
-use super::{Bench, CheckError, Tried, common, search};
+use super::{CheckError, TrialProgram, TrialResult, common, search};
 use crate::families::alignment::CHORD_MATCH;
 
 type Point = [f64; 3];
@@ -17,9 +17,9 @@ const TRUE_PAIR: [usize; 2] = [3, 8];
 /// How a part stands that the run-out has set right: shift along y in mm, turned about y in degrees.
 const STANDS: [(f64, f64); 2] = [(-0.3, 0.25), (0.1, -0.2)];
 
-pub(super) fn tried(bench: &Bench<'_>) -> Result<Tried, CheckError> {
+pub(super) fn tried(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError> {
     let job = bench.job;
-    let mut tried = Tried::default();
+    let mut tried = TrialResult::default();
     let (mut off, allowed) = (0.0_f64, allowed(job));
     let mut farthest = 0.0_f64;
     for (high, turned) in STANDS {
@@ -70,7 +70,7 @@ pub(super) fn tried(bench: &Bench<'_>) -> Result<Tried, CheckError> {
 }
 
 /// Candidates that the program touches itself, on a part that stands too high: they have to be points of its surface.
-fn touched(bench: &Bench<'_>, tried: &mut Tried) -> Result<(), CheckError> {
+fn touched(bench: &TrialProgram<'_>, tried: &mut TrialResult) -> Result<(), CheckError> {
     let job = bench.job;
     let Surface { a, b } = job.surface;
     let high = 0.3;
@@ -85,7 +85,7 @@ fn touched(bench: &Bench<'_>, tried: &mut Tried) -> Result<(), CheckError> {
     for program in package.programs.iter_mut().filter(|program| program.number == CHORD_MATCH) {
         program.text = format!("%\nO{CHORD_MATCH}\nM99\n%\n");
     }
-    let run = Bench { package: &package, ..*bench }.run(part, Vec::new())?;
+    let run = TrialProgram { package: &package, ..*bench }.run(part, Vec::new())?;
     let count = job.chord.candidates;
     for first in (501..501 + 3 * count).chain(531..531 + 3 * count).step_by(3) {
         let [x, y, z] = [0, 1, 2].map(|axis| common(&run, first + axis));
@@ -144,7 +144,7 @@ fn best(job: &Alignment, [e, f]: &[[Point; 10]; 2]) -> ([usize; 2], f64) {
 }
 
 /// Where a point of the misplaced part stands in the corrected work coordinates, with the rotary at its corrected 0.
-fn corrected(bench: &Bench<'_>, run: &Run, part: Placement, p: Point) -> Result<Point, CheckError> {
+fn corrected(bench: &TrialProgram<'_>, run: &Run, part: Placement, p: Point) -> Result<Point, CheckError> {
     let machine = Machine { part, ..bench.machine()? };
     let offset = |axis: usize| common(run, 5221 + axis as u32);
     let letter = bench.job.machine.rotary.letter;

@@ -5,17 +5,17 @@ use gcode_sim::machine::Placement;
 use gcode_sim::part::surface::Surface;
 use gcode_sim::report::diagnostic;
 use gcode_sim::session::follow;
-use gcode_sim::stylus::{Pass, Reading};
+use gcode_sim::stylus::{Reading, ReadingPass};
 
-use super::{Bench, CheckError, Tried};
+use super::{CheckError, TrialProgram, TrialResult};
 
-pub(super) fn tried(bench: &Bench<'_>) -> Result<Tried, CheckError> {
+pub(super) fn tried(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError> {
     let job = bench.job;
     let surface = Surface::Ellipsoid { a: job.surface.a, b: job.surface.b };
     let request = bench.request(Placement::default())?;
     let following =
         follow(&request, &mut bench.programs(), surface, job.probe_radius).map_err(|e| bench.broken(&e))?;
-    let mut tried = Tried { seconds: following.run.control.seconds().0, ..Tried::default() };
+    let mut tried = TrialResult { seconds: following.run.control.seconds().0, ..TrialResult::default() };
     let sources = following.run.control.memory().sources();
     let findings = following.followed.findings.iter().filter(|finding| Severity::Warning <= finding.severity);
     tried.refusals.extend(findings.map(|finding| diagnostic::render(finding, sources)));
@@ -52,6 +52,6 @@ pub(super) fn tried(bench: &Bench<'_>) -> Result<Tried, CheckError> {
     Ok(tried)
 }
 
-fn ends(pass: &Pass) -> Vec<Reading> {
+fn ends(pass: &ReadingPass) -> Vec<Reading> {
     pass.readings.first().into_iter().chain(pass.readings.last()).copied().collect()
 }

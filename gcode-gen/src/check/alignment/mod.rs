@@ -8,20 +8,20 @@ mod sine;
 
 use gcode_sim::diag::Severity;
 use gcode_sim::exec::{Outcome, Value};
-use gcode_sim::holes::Extractor;
+use gcode_sim::holes::HoleExtractor;
 use gcode_sim::job::Alignment;
 use gcode_sim::machine::{Machine, Placement};
 use gcode_sim::part::surface::Surface;
 use gcode_sim::report::diagnostic;
 use gcode_sim::session::{Request, Run, run};
 
-use super::{CheckError, Checked, Judgement, Programs, told};
+use super::{CheckError, CheckedPackage, PackageVerdict, Programs, told};
 use crate::families::alignment;
 use crate::package::{Package, file_name};
 
 /// What one program was found to do.
 #[derive(Default)]
-struct Tried {
+struct TrialResult {
     /// A paragraph for the terminal.
     report: String,
     refusals: Vec<String>,
@@ -31,7 +31,7 @@ struct Tried {
     seconds: f64,
 }
 
-type Trial = fn(&Bench<'_>) -> Result<Tried, CheckError>;
+type Trial = fn(&TrialProgram<'_>) -> Result<TrialResult, CheckError>;
 
 /// What each main program has to find.
 const TRIALS: &[(u32, Trial)] = &[
@@ -41,19 +41,19 @@ const TRIALS: &[(u32, Trial)] = &[
     (alignment::ELLIPSE, ellipse::tried),
 ];
 
-pub(super) fn check(job: &Alignment, package: &Package) -> Result<Checked, CheckError> {
-    let mut checked = Checked {
+pub(super) fn check(job: &Alignment, package: &Package) -> Result<CheckedPackage, CheckError> {
+    let mut checked = CheckedPackage {
         refusals: Vec::new(),
         warnings: Vec::new(),
         seconds: 0.0,
         report: String::new(),
         pictures: Vec::new(),
-        judgement: Judgement::Measured,
+        judgement: PackageVerdict::Measured,
     };
     for main in &package.mains {
         let trial = TRIALS.iter().find(|(number, _)| number == main);
         let (_, trial) = trial.ok_or_else(|| told(&file_name(*main), &"nothing says what it has to find"))?;
-        let tried = trial(&Bench { job, package, main: *main })?;
+        let tried = trial(&TrialProgram { job, package, main: *main })?;
         checked.refusals.extend(tried.refusals);
         checked.warnings.extend(tried.warnings);
         checked.seconds += tried.seconds;
@@ -63,13 +63,13 @@ pub(super) fn check(job: &Alignment, package: &Package) -> Result<Checked, Check
 }
 
 /// One main program of a package, to be run on parts that stand this way and that.
-struct Bench<'p> {
+struct TrialProgram<'p> {
     job: &'p Alignment,
     package: &'p Package,
     main: u32,
 }
 
-impl Bench<'_> {
+impl TrialProgram<'_> {
     fn name(&self) -> String {
         file_name(self.main)
     }
@@ -99,7 +99,7 @@ impl Bench<'_> {
         let mut request = self.request(part)?;
         request.variables = variables;
         let surface = Surface::Ellipsoid { a: self.job.surface.a, b: self.job.surface.b };
-        let mut probe = Extractor::new(&request.machine).with_surface(Some(surface));
+        let mut probe = HoleExtractor::new(&request.machine).with_surface(Some(surface));
         run(&request, &mut self.programs(), &mut probe).map_err(|e| self.broken(&e))
     }
 

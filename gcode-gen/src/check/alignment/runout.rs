@@ -3,14 +3,14 @@ use gcode_sim::exec::Outcome;
 use gcode_sim::job::Alignment;
 use gcode_sim::machine::Placement;
 use gcode_sim::part::surface::Surface;
-use gcode_sim::part::touched::{PassedOn, Touches, Untold};
+use gcode_sim::part::touch_uncertainty::{FitError, FitUncertainty, TouchPlan};
 use gcode_sim::report::figures::short;
 use gcode_sim::session::Run;
 use gcode_sim::units::Deg;
 
 use crate::families::alignment::ALARMS;
 
-use super::{Bench, CheckError, Tried, common, search};
+use super::{CheckError, TrialProgram, TrialResult, common, search};
 
 /// What has to be found to within this: mm, degrees.
 const ALLOWED: [f64; 2] = [0.01, 0.004];
@@ -27,8 +27,8 @@ const STANDS: [[[f64; 3]; 2]; 4] = [
     [[0.2, -0.3, 0.3], [0.2, 0.3, -0.3]],
 ];
 
-pub(super) fn tried(bench: &Bench<'_>) -> Result<Tried, CheckError> {
-    let mut tried = Tried::default();
+pub(super) fn tried(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError> {
+    let mut tried = TrialResult::default();
     let noise = match passed_on(bench.job) {
         Ok(passed) => Noise::of(bench.job, passed),
         Err(why) => {
@@ -87,34 +87,34 @@ fn not_met(run: &Run) -> bool {
 }
 
 /// What the noise of one touch becomes in the results, by the job's own angles and heights.
-fn passed_on(job: &Alignment) -> Result<PassedOn, Untold> {
+fn passed_on(job: &Alignment) -> Result<FitUncertainty, FitError> {
     let runout = &job.runout;
     let sign = f64::from(job.machine.rotary.sign);
     let step = (runout.to - runout.from) / f64::from(runout.readings - 1);
-    let touches = Touches {
+    let touches = TouchPlan {
         surface: Surface::Ellipsoid { a: job.surface.a, b: job.surface.b },
         radius: job.probe_radius,
         heights: runout.heights.into(),
         azimuths: (0..runout.readings).map(|n| Deg(sign * (runout.from + step * f64::from(n)))).collect(),
     };
-    touches.passed_on()
+    touches.uncertainty()
 }
 
-fn untold(job: &Alignment, why: Untold) -> String {
+fn untold(job: &Alignment, why: FitError) -> String {
     let runout = &job.runout;
     let [low, high] = runout.heights.map(short);
     match why {
-        Untold::Missed { height } => {
+        FitError::Missed { height } => {
             format!(
                 "key 'runout.heights': at y {} the ball passes the part and touches nothing",
                 short(height)
             )
         }
-        Untold::Alike if job.surface.a == job.surface.b => {
+        FitError::Degenerate if job.surface.a == job.surface.b => {
             "keys 'surface.a' and 'surface.b' are alike: a sphere has no tilt that touches could find"
                 .to_owned()
         }
-        Untold::Alike => format!(
+        FitError::Degenerate => format!(
             "tilt can't be told from shift at y {low} and {high} over {} {} to {} (keys 'runout.heights', 'runout.angles'): noise of a \
              touch would come out more than 300 times as large; take heights farther apart, or wider angles",
             job.machine.rotary.letter,
@@ -133,7 +133,7 @@ struct Noise {
 }
 
 impl Noise {
-    fn of(job: &Alignment, passed: PassedOn) -> Self {
+    fn of(job: &Alignment, passed: FitUncertainty) -> Self {
         let [x, _, z] = passed.shift;
         let [about_x, about_z] = passed.tilt;
         Self { touch: job.probe_noise, factors: [x.max(z), about_x.max(about_z)] }

@@ -5,17 +5,17 @@ use gcode_sim::job::Alignment;
 use gcode_sim::machine::Placement;
 use gcode_sim::report::figures::short;
 
-use super::{Bench, common};
+use super::{TrialProgram, common};
 use crate::families::alignment::emit;
 
 /// O8211's own margin at both ends of a touch, and what rounding takes.
 const MARGIN: f64 = 0.05;
 
 /// A sentence with the search that would do for parts that stand so; `None` where no search helps.
-pub(super) fn advice(bench: &Bench<'_>, parts: &[Placement]) -> Option<String> {
+pub(super) fn advice(bench: &TrialProgram<'_>, parts: &[Placement]) -> Option<String> {
     let job = Alignment { probe_search: bench.job.surface.a.min(1000.0), ..bench.job.clone() };
     let package = emit(&job);
-    let wide = Bench { job: &job, package: &package, main: bench.main };
+    let wide = TrialProgram { job: &job, package: &package, main: bench.main };
     let mut farthest = 0.0_f64;
     for part in parts {
         let run = wide.run(*part, Vec::new()).ok()?;
@@ -33,7 +33,7 @@ pub(super) fn advice(bench: &Bench<'_>, parts: &[Placement]) -> Option<String> {
 }
 
 /// A sentence with the search that would do for what is met so far from its place; `None` where the job's own does.
-pub(super) fn too_short(bench: &Bench<'_>, what: &str, farthest: f64) -> Option<String> {
+pub(super) fn too_short(bench: &TrialProgram<'_>, what: &str, farthest: f64) -> Option<String> {
     let enough = ((farthest + MARGIN) * 10.0).ceil() / 10.0;
     (enough > bench.job.probe_search && enough <= 1000.0).then(|| {
         format!(

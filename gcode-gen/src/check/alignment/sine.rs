@@ -5,16 +5,16 @@ use gcode_sim::machine::Placement;
 use gcode_sim::report::figures::short;
 use gcode_sim::units::Deg;
 
-use super::{Bench, CheckError, Tried, common};
+use super::{CheckError, TrialProgram, TrialResult, common};
 use crate::families::alignment::{LARGEST_TILT, STEEPEST, gap};
 
 /// Tilts of the part about z, degrees.
 const TILTS: [f64; 3] = [0.0, 0.08, -0.031];
 
-pub(super) fn tried(bench: &Bench<'_>) -> Result<Tried, CheckError> {
+pub(super) fn tried(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError> {
     let table = &bench.job.sine_table;
     let step = table.gauge_blocks.step().mm();
-    let mut tried = Tried::default();
+    let mut tried = TrialResult::default();
     let mut worst = 0.0_f64;
     // After the first run-out the table stands at the job's angle; after another one as the stop before has left it.
     let set = [None, Some(table.phi + 0.05)];

@@ -16,7 +16,7 @@ pub(super) struct Flute {
 }
 
 /// The slope of a flute at a point and how A bends there.
-struct Bend {
+struct SlopeChange {
     /// tan of the helix angle: around over along.
     slope: f64,
     /// radius·A'', A by C in rad: mm.
@@ -53,19 +53,19 @@ impl Flute {
         self.bend(c).slope
     }
 
-    fn bend(&self, c: Deg) -> Bend {
+    fn bend(&self, c: Deg) -> SlopeChange {
         let (arc, tan) = (&self.arc, self.helix.tan());
         let r = arc.station(c).radius;
         match self.law {
             FluteLaw::ConstantHelix => {
-                Bend { slope: tan, around: tan * arc.radius * arc.radius * c.sin() / r }
+                SlopeChange { slope: tan, around: tan * arc.radius * arc.radius * c.sin() / r }
             }
             FluteLaw::Published => {
                 let along = arc.station(c).along;
                 // Of the quotient along/radius: its slope's numerator, and what is left of the second derivative's.
                 let first = arc.radius * (c.cos() * r + c.sin() * along);
                 let second = arc.radius * (arc.beyond * c.sin() + arc.along * c.cos());
-                Bend {
+                SlopeChange {
                     slope: tan * first / (r * arc.radius),
                     around: tan * (second / r + 2.0 * arc.radius * c.sin() * first / (r * r)),
                 }
@@ -80,7 +80,7 @@ impl Flute {
     /// the flute counts.
     fn bending(&self, c: Deg) -> f64 {
         let [meridian, normal] = self.arc.carried(c);
-        let Bend { slope, around } = self.bend(c);
+        let SlopeChange { slope, around } = self.bend(c);
         let across = (meridian * slope - around) / (1.0 + slope * slope).sqrt();
         (normal * normal + across * across).sqrt()
     }
@@ -91,7 +91,7 @@ impl Flute {
     /// half the move times that bending, and would even go back.
     fn steady(&self, c: Deg) -> Deg {
         let [meridian, _] = self.arc.carried(c);
-        let Bend { slope, around } = self.bend(c);
+        let SlopeChange { slope, around } = self.bend(c);
         let along = (meridian + around * slope).abs();
         Deg::from_rad(2.0 * SWING * self.arc.radius * (1.0 + slope * slope) / along)
     }

@@ -2,8 +2,8 @@
 //! written out move by move.
 //!
 //! The method is that of *Machining Rotary Burrs on 5-Axis Grinding Machine*; see `docs/methods/burr.md`.
+mod helix_error;
 mod law;
-mod lean;
 mod machine_file;
 pub mod macros;
 mod nose;
@@ -38,7 +38,7 @@ pub fn emit(job: &Burr) -> Package {
 
 /// Why no program grinds the job's burr within its tolerances, and what would do.
 pub fn refusal(job: &Burr) -> Option<String> {
-    lean::refusal(job)
+    helix_error::refusal(job)
 }
 
 struct Main<'j> {
@@ -51,7 +51,7 @@ struct Main<'j> {
 
 impl<'j> Main<'j> {
     fn new(job: &'j Burr) -> Self {
-        let chord_error = lean::chord_error(job).unwrap_or(job.chord_error);
+        let chord_error = helix_error::chord_error(job).unwrap_or(job.chord_error);
         // Not A, which turns all flutes alike. What axis the number 3 is on a grinder isn't known.
         let start =
             Start { control: job.control, changed: 97, shifted: 98, axes: "XY", cancelled: "BC".to_owned() };

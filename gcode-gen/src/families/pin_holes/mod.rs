@@ -6,7 +6,7 @@
 mod machine_file;
 pub mod macros;
 
-use gcode_sim::job::{AxisDirection, HeadKind, HoleWanted, PinHoles};
+use gcode_sim::job::{AxisDirection, HeadKind, HoleSpec, PinHoles};
 
 use self::macros::{HEAD, HOLE, Resident};
 use super::start::Start;
@@ -154,7 +154,7 @@ impl<'j> Main<'j> {
             .comment("HEAD")
     }
 
-    fn hole_call(&self, pass: &ToolPass<'_>, hole: &HoleWanted) -> Block {
+    fn hole_call(&self, pass: &ToolPass<'_>, hole: &HoleSpec) -> Block {
         let job = self.job;
         Block::call(HOLE)
             .word('A', number(job.surface.a))

@@ -2,7 +2,7 @@
 use maud::{Markup, html};
 
 use super::table;
-use crate::check::Judgement;
+use crate::check::PackageVerdict;
 use crate::sheet::Sheet;
 
 /// What no simulation here looks at, whatever the part.
@@ -14,9 +14,9 @@ const NEVER: &[&str] = &[
 
 pub(super) fn unknown(sheet: &Sheet<'_>) -> Markup {
     let own = match &sheet.checked.judgement {
-        Judgement::Holes(verdict) => verdict.not_checked.as_slice(),
-        Judgement::Flutes(verdict) => verdict.not_checked.as_slice(),
-        Judgement::Measured => &[],
+        PackageVerdict::Holes(verdict) => verdict.not_checked.as_slice(),
+        PackageVerdict::Flutes(verdict) => verdict.not_checked.as_slice(),
+        PackageVerdict::Measured => &[],
     };
     html! {
         div.together {

@@ -4,7 +4,7 @@ use gcode_sim::report::figures::{count, near};
 use maud::{Markup, html};
 
 use super::{blank, cell, kind, mains, table};
-use crate::check::Judgement;
+use crate::check::PackageVerdict;
 use crate::sheet::{BASIS, Sheet};
 
 pub(super) fn facts(sheet: &Sheet<'_>) -> Markup {
@@ -34,14 +34,14 @@ pub(super) fn verdict(sheet: &Sheet<'_>) -> Markup {
         div.verdict {
             b { "PASS. " (BASIS) ". " }
             @match &sheet.checked.judgement {
-                Judgement::Holes(verdict) => {
+                PackageVerdict::Holes(verdict) => {
                     (count(verdict.holes.len(), "hole")) ", all within tolerance"
                     @if let Some(worst) = verdict.worst {
                         "; the worst position is Φ" (near(worst, 4)) " of Φ" (verdict.tolerance)
                     }
                     "."
                 }
-                Judgement::Flutes(verdict) => {
+                PackageVerdict::Flutes(verdict) => {
                     (verdict.sentence())
                     @if let Some(off) = verdict.surface_deviation {
                         "; the contact is at most " (near(off, 4)) " mm off the tooth bottom, " (verdict.tolerance)
@@ -49,7 +49,7 @@ pub(super) fn verdict(sheet: &Sheet<'_>) -> Markup {
                     }
                     "."
                 }
-                Judgement::Measured => {
+                PackageVerdict::Measured => {
                     "On simulated parts that stand in known wrong places:"
                     @for line in sheet.checked.report.lines() { p { (line) } }
                     @for warning in &sheet.checked.warnings { p { b { (warning.trim_end()) } } }

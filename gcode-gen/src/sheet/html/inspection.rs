@@ -5,7 +5,7 @@ use gcode_sim::verify::{HoleVerdict, Verdict};
 use maud::{Markup, html};
 
 use super::{cell, table};
-use crate::check::Judgement;
+use crate::check::PackageVerdict;
 use crate::sheet::measure::{LISTED, characteristics};
 use crate::sheet::{BASIS, Sheet};
 
@@ -17,7 +17,7 @@ pub(super) fn form(sheet: &Sheet<'_>) -> Markup {
         p {
             "In the manner of AS9102, form 3. The columns for results are the inspector's and stay empty here: "
             "a simulation is not a measurement. "
-            @if let Judgement::Holes(_) = sheet.checked.judgement { "Nominal places stand in the tables of holes below." }
+            @if let PackageVerdict::Holes(_) = sheet.checked.judgement { "Nominal places stand in the tables of holes below." }
         }
         div.wide { table {
             thead { tr {
@@ -43,7 +43,7 @@ pub(super) fn form(sheet: &Sheet<'_>) -> Markup {
 
 /// Nominal and predicted places; of many holes the worst ones.
 pub(super) fn holes(sheet: &Sheet<'_>) -> Markup {
-    let Judgement::Holes(verdict) = &sheet.checked.judgement else { return html! {} };
+    let PackageVerdict::Holes(verdict) = &sheet.checked.judgement else { return html! {} };
     let shown = shown(verdict);
     let nominal = shown.iter().map(|hole| {
         let placed = &hole.nominal;
@@ -57,7 +57,7 @@ pub(super) fn holes(sheet: &Sheet<'_>) -> Markup {
         let rest = [
             near(hole.tilt, 4),
             signed_to(hole.depth_error, 4),
-            format!("Φ{}", near(hole.phi, 4)),
+            format!("Φ{}", near(hole.position_deviation, 4)),
             format!("Φ{}", verdict.tolerance),
             near(hole.out_of_tolerance, 4),
         ];
@@ -85,7 +85,7 @@ pub(super) fn holes(sheet: &Sheet<'_>) -> Markup {
 fn shown(verdict: &Verdict) -> Vec<&HoleVerdict> {
     let mut all: Vec<&HoleVerdict> = verdict.holes.iter().collect();
     if all.len() > LISTED {
-        all.sort_by(|a, b| b.phi.total_cmp(&a.phi));
+        all.sort_by(|a, b| b.position_deviation.total_cmp(&a.position_deviation));
         all.truncate(24);
     }
     all

@@ -7,11 +7,11 @@ use maud::{Markup, html};
 
 use super::alignment::overwritten_variables;
 use super::{blank, cell, table};
-use crate::check::Judgement;
+use crate::check::PackageVerdict;
 use crate::order::passes;
 use crate::sheet::Sheet;
-use crate::sheet::duty::tip_is_programmed;
 use crate::sheet::settings::BLOCKS;
+use crate::sheet::stop_instructions::tip_is_programmed;
 
 pub(super) fn tools(sheet: &Sheet<'_>) -> Markup {
     let row = |number: String, name: &str, diameter: f64, length: Markup, speed: f64, feed: String| {
@@ -102,7 +102,7 @@ pub(super) fn tools(sheet: &Sheet<'_>) -> Markup {
 
 /// The order in which the head is set, and the holes made with each setting; only pin holes have it.
 pub(super) fn head_angles(sheet: &Sheet<'_>) -> Markup {
-    let (Job::PinHoles(job), Judgement::Holes(verdict)) = (sheet.job, &sheet.checked.judgement) else {
+    let (Job::PinHoles(job), PackageVerdict::Holes(verdict)) = (sheet.job, &sheet.checked.judgement) else {
         return html! {};
     };
     let by = match job.machine.head.kind {

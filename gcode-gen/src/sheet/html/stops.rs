@@ -5,8 +5,8 @@ use maud::{Markup, html};
 
 use super::{cell, table};
 use crate::sheet::Sheet;
-use crate::sheet::duty::duty;
-use crate::sheet::record::Stop;
+use crate::sheet::record::OperatorStop;
+use crate::sheet::stop_instructions::duty;
 
 pub(super) fn stops(sheet: &Sheet<'_>) -> Markup {
     let stops = &sheet.record.stops;
@@ -67,7 +67,7 @@ fn unknown(waiting: &[String]) -> Markup {
 }
 
 /// The message as the control shows it, and where the program stands.
-fn shown(stop: &Stop) -> Markup {
+fn shown(stop: &OperatorStop) -> Markup {
     let at = stop.at.iter().map(|(program, line)| format!("{program} line {line}")).collect::<Vec<_>>();
     html! {
         b { (stop.kind.name()) } " " span.mono { (stop.text) }

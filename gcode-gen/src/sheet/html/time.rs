@@ -3,7 +3,7 @@ use gcode_sim::report::figures::{near, short, signed_to};
 use maud::{Markup, html};
 
 use super::{cell, table};
-use crate::sheet::cost::{Cost, Taken, costs, taken};
+use crate::sheet::cost::{Cost, MachineTime, costs, taken};
 use crate::sheet::{BASIS, Sheet};
 
 pub(super) fn time(sheet: &Sheet<'_>) -> Markup {
@@ -48,7 +48,7 @@ fn times(count: usize, each: Option<f64>, all: Option<f64>) -> String {
     }
 }
 
-fn parts(taken: &Taken) -> [String; 4] {
+fn parts(taken: &MachineTime) -> [String; 4] {
     [
         taken.minutes.setup.map_or("not given".to_owned(), |minutes| near(minutes, 1)),
         near(taken.run, 1),
@@ -59,7 +59,7 @@ fn parts(taken: &Taken) -> [String; 4] {
 
 const PARTS: [&str; 4] = ["set-up, min", "run, min", "operator stops, min", "tool changes, min"];
 
-fn time_table(own: &Taken) -> Markup {
+fn time_table(own: &MachineTime) -> Markup {
     let sum = (near(own.all(), 1), near(own.all() / 60.0, 2));
     let rows = PARTS.iter().zip(parts(own)).map(|(name, value)| vec![cell(name), cell(value)]);
     let last = vec![html! { b { "machine time, min" } }, html! { b { (sum.0) " (" (sum.1) " h)" } }];
@@ -114,7 +114,7 @@ fn assumed(all: &[Cost]) -> Markup {
     }
 }
 
-fn uncounted(own: &Taken) -> Markup {
+fn uncounted(own: &MachineTime) -> Markup {
     let keys = own.not_counted();
     html! {
         @if !keys.is_empty() {

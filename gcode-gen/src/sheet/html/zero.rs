@@ -6,16 +6,18 @@ use gcode_sim::verify::Verdict;
 use maud::{Markup, html};
 
 use super::drawing::{Anchor, Paper, WIDTH, arrow, centre_line, drawing, line, path, text, thin, zero_sign};
-use crate::check::Judgement;
+use crate::check::PackageVerdict;
 use crate::sheet::Sheet;
-use crate::sheet::duty::tip_is_programmed;
+use crate::sheet::stop_instructions::tip_is_programmed;
 
 pub(super) fn zero(sheet: &Sheet<'_>) -> Markup {
     let (picture, words) = match (sheet.job, &sheet.checked.judgement) {
-        (Job::PinHoles(job), Judgement::Holes(verdict)) => (of_pin_holes(job, verdict), pin_holes(job)),
+        (Job::PinHoles(job), PackageVerdict::Holes(verdict)) => (of_pin_holes(job, verdict), pin_holes(job)),
         (Job::Honeycomb(job), _) => (of_honeycomb(job), honeycomb(job)),
         (Job::Burr(job), _) => (of_burr(job), burr(job)),
-        (Job::PinHoles(job), Judgement::Flutes(_) | Judgement::Measured) => (html! {}, pin_holes(job)),
+        (Job::PinHoles(job), PackageVerdict::Flutes(_) | PackageVerdict::Measured) => {
+            (html! {}, pin_holes(job))
+        }
         (Job::Alignment(job), _) => (of_alignment(job), alignment(job)),
     };
     html! {

@@ -1,16 +1,16 @@
 //! Arithmetic of numbers written out that always alarms: `SQRT[-4]`, `5/0`, `ACOS[1.5]`.
-use crate::alarm::{Alarm, Placed};
+use crate::alarm::{Alarm, LocatedAlarm};
 use crate::check::expressions;
-use crate::check::subject::{Finding, Subject, Unit};
+use crate::check::subject::{CheckContext, ProgramUnit, RuleFinding};
 use crate::control::Settings;
-use crate::exec::known::{atan2, binary, function, power};
+use crate::exec::static_eval::{atan2, binary, function, power};
 use crate::syntax::ast::{BinaryOp, CallForm, Expr, ExprKind, Function};
 
 use super::unreadable::finding;
 
 pub(super) const NAME: &str = "constant-alarm";
 
-pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
+pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut found = Vec::new();
     for (index, block) in unit.blocks.iter().enumerate().filter(|(index, _)| unit.reached[*index]) {
         let mut numbers = Numbers { settings: subject.settings, alarms: Vec::new() };
@@ -25,7 +25,7 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
 /// Computes what needs no variable, and keeps the alarms.
 struct Numbers<'a> {
     settings: &'a Settings,
-    alarms: Vec<Placed>,
+    alarms: Vec<LocatedAlarm>,
 }
 
 impl Numbers<'_> {

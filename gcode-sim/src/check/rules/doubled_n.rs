@@ -3,12 +3,12 @@
 use std::collections::BTreeMap;
 
 use crate::check::parameters;
-use crate::check::subject::{Finding, Subject, Unit};
+use crate::check::subject::{CheckContext, ProgramUnit, RuleFinding};
 use crate::source::Span;
 
 pub(super) const NAME: &str = "doubled-n";
 
-pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
+pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut first: BTreeMap<u32, (Span, bool)> = BTreeMap::new();
     let mut found = Vec::new();
     let parameters = parameters::inside(unit.program);

@@ -1,10 +1,10 @@
 //! A loop that never ends: nothing in it changes what its exits ask, or it has no exit.
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::check::circles::circles;
+use crate::check::components::strongly_connected_components;
 use crate::check::flow::{Jump, raises};
 use crate::check::literal;
-use crate::check::subject::{Finding, Subject, Unit};
+use crate::check::subject::{CheckContext, ProgramUnit, RuleFinding};
 use crate::check::vacancy::{Locals, truth};
 use crate::check::variables::{self, Uses};
 use crate::program::{OpIndex, OpKind};
@@ -15,7 +15,7 @@ pub(super) const NAME: &str = "endless-loop";
 /// Variables from here on are the control's own and change by themselves.
 const FIRST_SYSTEM: u32 = 1000;
 
-pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
+pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut found = Vec::new();
     let mut told = vec![false; unit.program.ops().len()];
     for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.reached[*block]) {
@@ -23,7 +23,7 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
         let OpKind::Statement(While { end, .. } | Do { end, .. }) = *op.kind() else { continue };
         let inside: Vec<OpIndex> = (block..=end).filter(|b| unit.reached[*b]).collect();
         if never_entered(unit, block)
-            || escapes(subject, unit, &inside, |to| (block..=end).contains(&to) && unit.reached[to])
+            || has_exit(subject, unit, &inside, |to| (block..=end).contains(&to) && unit.reached[to])
         {
             continue;
         }
@@ -35,7 +35,7 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
 }
 
 /// Circles that a GOTO closes, each looked at once.
-fn jumps(subject: &Subject<'_>, unit: &Unit<'_>, told: &[bool]) -> Vec<Finding> {
+fn jumps(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>, told: &[bool]) -> Vec<RuleFinding> {
     let mut found = Vec::new();
     let back = |jump: &Jump| {
         let to = jump.to.filter(|to| *to <= jump.block)?;
@@ -44,7 +44,7 @@ fn jumps(subject: &Subject<'_>, unit: &Unit<'_>, told: &[bool]) -> Vec<Finding> 
     if !unit.flow.jumps.iter().any(|jump| back(jump).is_some()) {
         return found;
     }
-    let circle = circles(&unit.flow);
+    let circle = strongly_connected_components(&unit.flow);
     let mut members: BTreeMap<usize, Vec<OpIndex>> = BTreeMap::new();
     for (block, circle) in circle[..unit.flow.ways.len()].iter().enumerate() {
         members.entry(*circle).or_default().push(block);
@@ -53,7 +53,7 @@ fn jumps(subject: &Subject<'_>, unit: &Unit<'_>, told: &[bool]) -> Vec<Finding> 
         let Some(to) = back(jump).filter(|to| circle[*to] == circle[jump.block]) else { continue };
         let around = circle[to];
         let Some(inside) = members.remove(&around) else { continue };
-        if escapes(subject, unit, &inside, |to| circle.get(to) == Some(&around)) {
+        if has_exit(subject, unit, &inside, |to| circle.get(to) == Some(&around)) {
             continue;
         }
         let message = format!("GOTO {} goes round for ever: nothing in between leads out", jump.number);
@@ -63,7 +63,7 @@ fn jumps(subject: &Subject<'_>, unit: &Unit<'_>, told: &[bool]) -> Vec<Finding> 
     found
 }
 
-fn loop_finding(unit: &Unit<'_>, block: OpIndex) -> Finding {
+fn loop_finding(unit: &ProgramUnit<'_>, block: OpIndex) -> RuleFinding {
     match condition(unit, block) {
         Some(condition) => {
             let uses = variables::of_condition(condition);
@@ -87,7 +87,7 @@ fn loop_finding(unit: &Unit<'_>, block: OpIndex) -> Finding {
 }
 
 /// The condition of a WHILE or of an IF … GOTO.
-fn condition<'a>(unit: &'a Unit<'_>, block: OpIndex) -> Option<&'a Condition> {
+fn condition<'a>(unit: &'a ProgramUnit<'_>, block: OpIndex) -> Option<&'a Condition> {
     match variables::statement(&unit.blocks, block) {
         Some(Statement::While { condition, .. } | Statement::IfGoto { condition, .. }) => Some(condition),
         Some(Statement::IfThen { condition, then }) if matches!(**then, Statement::Goto(_)) => {
@@ -97,14 +97,14 @@ fn condition<'a>(unit: &'a Unit<'_>, block: OpIndex) -> Option<&'a Condition> {
     }
 }
 
-fn never_entered(unit: &Unit<'_>, block: OpIndex) -> bool {
+fn never_entered(unit: &ProgramUnit<'_>, block: OpIndex) -> bool {
     condition(unit, block).is_some_and(|condition| truth(condition, &Locals::ANYTHING) == Some(false))
 }
 
 /// Whether anything in a set of blocks can lead out of it.
-fn escapes(
-    subject: &Subject<'_>,
-    unit: &Unit<'_>,
+fn has_exit(
+    subject: &CheckContext<'_>,
+    unit: &ProgramUnit<'_>,
     inside: &[OpIndex],
     contains: impl Fn(OpIndex) -> bool,
 ) -> bool {
@@ -112,10 +112,10 @@ fn escapes(
     inside.iter().copied().any(|block| {
         let op = unit.op(block);
         let ways = &unit.flow.ways[block];
-        if ways.leaves || ways.anywhere || raises(op.kind()) || waits(op.kind()) || is_alarm(op.kind()) {
+        if ways.is_exit || ways.anywhere || raises(op.kind()) || waits(op.kind()) || is_alarm(op.kind()) {
             return true;
         }
-        if unit.flow.after(block).all(&contains) {
+        if unit.flow.successors(block).all(&contains) {
             return false;
         }
         match condition(unit, block) {
@@ -124,7 +124,7 @@ fn escapes(
                     !matches!(variables::statement(&unit.blocks, block), Some(Statement::While { .. }));
                 truth(condition, &Locals::ANYTHING) == Some(leaves_when)
                     || written
-                        .get_or_insert_with(|| Written::by(subject, unit, inside))
+                        .get_or_insert_with(|| WrittenVariables::by(subject, unit, inside))
                         .changes(&variables::of_condition(condition))
             }
             None => true,
@@ -149,14 +149,14 @@ fn waits(kind: &OpKind) -> bool {
 
 /// The variables that some blocks may write, with those of the programs they call.
 #[derive(Default)]
-struct Written {
+struct WrittenVariables {
     numbers: BTreeSet<u32>,
     /// All from this number on.
     from: Option<u32>,
 }
 
-impl Written {
-    fn by(subject: &Subject<'_>, unit: &Unit<'_>, blocks: &[OpIndex]) -> Self {
+impl WrittenVariables {
+    fn by(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>, blocks: &[OpIndex]) -> Self {
         let mut written = Self::default();
         let mut called = BTreeSet::new();
         // A modal call acts in any block that moves.
@@ -177,7 +177,7 @@ impl Written {
         written
     }
 
-    fn add(&mut self, unit: &Unit<'_>, blocks: impl Iterator<Item = OpIndex>, reach: u32) {
+    fn add(&mut self, unit: &ProgramUnit<'_>, blocks: impl Iterator<Item = OpIndex>, reach: u32) {
         for (target, _) in blocks.filter_map(|block| unit.blocks.get(block).and_then(variables::assignment)) {
             match literal::variable(target) {
                 Some(number) if number >= reach => _ = self.numbers.insert(number),

@@ -1,10 +1,10 @@
 //! A jump into a loop from outside: the control finds at END that no DO was passed (PS1124).
-use crate::check::subject::{Finding, Subject, Unit};
+use crate::check::subject::{CheckContext, ProgramUnit, RuleFinding};
 use crate::program::{OpIndex, OpKind, Statement};
 
 pub(super) const NAME: &str = "jump-into-loop";
 
-pub(super) fn find(_: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
+pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut found = Vec::new();
     let around = around(unit);
     for jump in unit.flow.jumps.iter().filter(|jump| unit.reached[jump.block] && !jump.returns) {
@@ -21,7 +21,7 @@ pub(super) fn find(_: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
 }
 
 /// For each block the first and the last block of the loops it stands in, the outer ones first; at most three.
-fn around(unit: &Unit<'_>) -> Vec<Vec<(OpIndex, OpIndex)>> {
+fn around(unit: &ProgramUnit<'_>) -> Vec<Vec<(OpIndex, OpIndex)>> {
     let mut around = vec![Vec::new(); unit.program.ops().len()];
     for (first, op) in unit.program.ops().iter().enumerate() {
         if let OpKind::Statement(Statement::While { end, .. } | Statement::Do { end, .. }) = *op.kind() {

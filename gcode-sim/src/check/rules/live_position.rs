@@ -4,13 +4,13 @@
 //!
 //! #5001… (the end of the block before) and #5061… (kept by G31) don't depend on the moment.
 use crate::check::literal;
-use crate::check::subject::{Finding, Subject, Unit};
+use crate::check::subject::{CheckContext, ProgramUnit, RuleFinding};
 use crate::check::variables;
 use std::ops::RangeInclusive;
 
 use crate::control::Settings;
 use crate::program::codes::{Effect, OneShot};
-use crate::program::{Input, OpIndex, OpKind, Statement, Words};
+use crate::program::{OpIndex, OpKind, Statement, WordOperand, Words};
 
 pub(super) const NAME: &str = "live-position";
 
@@ -21,7 +21,7 @@ const LIVE: [RangeInclusive<u32>; 6] =
 /// Outputs.
 const OUTPUTS: RangeInclusive<u32> = 1100..=1135;
 
-pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
+pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let moving = moving(subject.settings, unit);
     let mut found = Vec::new();
     for (block, written) in unit.blocks.iter().enumerate().filter(|(block, _)| unit.reached[*block]) {
@@ -49,8 +49,8 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
 const HELP: &str = "put a block before it that waits for the move, as G53 or M00 do, or G31";
 
 /// For each block a move that may still be under way before it, where there is one.
-fn moving(settings: &Settings, unit: &Unit<'_>) -> Vec<Option<OpIndex>> {
-    let count = unit.flow.places();
+fn moving(settings: &Settings, unit: &ProgramUnit<'_>) -> Vec<Option<OpIndex>> {
+    let count = unit.flow.block_count();
     let mut moving = vec![None; count];
     let mut seen = vec![false; count];
     let mut open = vec![(0, None)];
@@ -67,7 +67,7 @@ fn moving(settings: &Settings, unit: &Unit<'_>) -> Vec<Option<OpIndex>> {
             None => moving[block],
         };
         let skipped = op.and_then(|op| op.skip()).map(|_| (block + 1, moving[block]));
-        open.extend(unit.flow.after(block).map(|to| (to, after)).chain(skipped));
+        open.extend(unit.flow.successors(block).map(|to| (to, after)).chain(skipped));
     }
     moving.truncate(unit.flow.ways.len());
     moving
@@ -87,7 +87,7 @@ fn of_words(settings: &Settings, words: &Words) -> Option<bool> {
     let mut axis = false;
     for word in &words.list {
         match (word.letter, word.value) {
-            (b'G', Input::G(_, found)) => match found.on(settings.codes).map(|row| row.effect) {
+            (b'G', WordOperand::G(_, found)) => match found.on(settings.codes).map(|row| row.effect) {
                 // G53 waits; G31 ends where its signal comes; G04 and G10 wait on some controls.
                 Some(Effect::OneShot(
                     OneShot::MachineSystem | OneShot::Skip | OneShot::Dwell | OneShot::DataInput,

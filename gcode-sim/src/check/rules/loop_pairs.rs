@@ -1,12 +1,12 @@
 //! DO and END that don't pair: one of the two is missing, two loops of one number stand in one another, or two loops
 //! overlap.
-use crate::check::subject::{Finding, Subject, Unit};
+use crate::check::subject::{CheckContext, ProgramUnit, RuleFinding};
 use crate::source::Span;
 use crate::syntax::ast::{Item, Statement};
 
 pub(super) const NAME: &str = "loop-pairs";
 
-pub(super) fn find(_: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
+pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut found = Vec::new();
     let mut unpaired = Vec::new();
     let mut open: Vec<(i64, usize, Span)> = Vec::new();

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::check::flow::raises;
-use crate::check::subject::{Finding, Subject, Unit};
+use crate::check::subject::{CheckContext, ProgramUnit, RuleFinding};
 use crate::check::unset::{entry, reads};
 use crate::check::vacancy::{Locals, NUMBER, States, UNSET, states, truth};
 use crate::check::variables::{self, Use};
@@ -12,9 +12,9 @@ use crate::syntax::ast::Statement;
 
 pub(super) const NAME: &str = "missing-argument";
 
-pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
+pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut found = Vec::new();
-    let mut known: BTreeMap<(usize, Locals), Vec<Lack>> = BTreeMap::new();
+    let mut known: BTreeMap<(usize, Locals), Vec<MissingArgumentEffect>> = BTreeMap::new();
     for call in unit.calls.iter().filter(|call| unit.reached[call.block] && call.own_locals) {
         let Some(called) = subject.called(call) else { continue };
         let entry = entry(call);
@@ -23,8 +23,8 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
             .or_insert_with(|| lacking(subject, &subject.units[called], entry, call.modal));
         for lack in lacking {
             let finding = match lack {
-                Lack::Refused(message) => unit.error(NAME, call.block, message.clone()),
-                Lack::Reckoned(message) => unit.warning(NAME, call.block, message.clone()),
+                MissingArgumentEffect::Refused(message) => unit.error(NAME, call.block, message.clone()),
+                MissingArgumentEffect::Reckoned(message) => unit.warning(NAME, call.block, message.clone()),
             };
             found.push(finding.help("write the letter with its value"));
         }
@@ -33,7 +33,7 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
 }
 
 /// What comes of a letter that isn't there, in a sentence.
-enum Lack {
+enum MissingArgumentEffect {
     /// The macro stops with its alarm.
     Refused(String),
     /// The macro reckons with 0, which may even be meant.
@@ -41,7 +41,12 @@ enum Lack {
 }
 
 /// What a macro lacks, letter by letter.
-fn lacking(subject: &Subject<'_>, called: &Unit<'_>, entry: Locals, modal: bool) -> Vec<Lack> {
+fn lacking(
+    subject: &CheckContext<'_>,
+    called: &ProgramUnit<'_>,
+    entry: Locals,
+    modal: bool,
+) -> Vec<MissingArgumentEffect> {
     let label = called.program.label();
     let letters = (1..=26).filter_map(|local| Some((local, argument_letter(local)?)));
     let missing: Vec<_> = letters.filter(|(local, _)| entry.0[*local] == UNSET).collect();
@@ -59,7 +64,7 @@ fn lacking(subject: &Subject<'_>, called: &Unit<'_>, entry: Locals, modal: bool)
         {
             told.insert(*local as u32);
             let message = format!("{label} needs {letter} (#{local}): without it, it stops with {alarm}");
-            lacks.push(Lack::Refused(message));
+            lacks.push(MissingArgumentEffect::Refused(message));
         }
     }
     // Beyond a refusal nothing is read, and a modal macro may find what its last pass left.
@@ -74,14 +79,14 @@ fn lacking(subject: &Subject<'_>, called: &Unit<'_>, entry: Locals, modal: bool)
             let message = format!(
                 "{label} reckons with {letter} (#{local}) in line {line}: without it, it counts as 0"
             );
-            lacks.push(Lack::Reckoned(message));
+            lacks.push(MissingArgumentEffect::Reckoned(message));
         }
     }
     lacks
 }
 
 /// The alarm that every way through a program ends in; `None` where it can end otherwise.
-fn refusal(subject: &Subject<'_>, unit: &Unit<'_>, states: &States) -> Option<String> {
+fn refusal(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>, states: &States) -> Option<String> {
     let ops = unit.program.ops();
     let mut first = None;
     // One past the last block is the program's end.
@@ -98,7 +103,7 @@ fn refusal(subject: &Subject<'_>, unit: &Unit<'_>, states: &States) -> Option<St
             if sure && first.is_none() {
                 first = Some(block);
             }
-        } else if unit.flow.ways[block].leaves || matches!(ops[block].kind(), OpKind::Alarm(_)) {
+        } else if unit.flow.ways[block].is_exit || matches!(ops[block].kind(), OpKind::Alarm(_)) {
             return None;
         }
     }
@@ -106,7 +111,7 @@ fn refusal(subject: &Subject<'_>, unit: &Unit<'_>, states: &States) -> Option<St
 }
 
 /// `MC3007 (R MISSING)`.
-fn alarm(subject: &Subject<'_>, unit: &Unit<'_>, block: OpIndex) -> String {
+fn alarm(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>, block: OpIndex) -> String {
     let written = &unit.blocks[block];
     let number = variables::assignment(written)
         .and_then(|(_, value)| crate::check::literal::constant(value))

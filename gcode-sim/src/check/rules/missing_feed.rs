@@ -1,8 +1,8 @@
 //! A feed move before any F, whichever way the program has taken: PS0011.
 use crate::alarm::Alarm;
-use crate::check::subject::{Finding, Role, Subject, Unit};
+use crate::check::subject::{CheckContext, ProgramUnit, Role, RuleFinding};
 use crate::program::codes::Effect;
-use crate::program::{Input, OpIndex, OpKind, Words};
+use crate::program::{OpIndex, OpKind, WordOperand, Words};
 
 use super::unreadable::finding;
 
@@ -11,7 +11,7 @@ pub(super) const NAME: &str = "missing-feed";
 /// G01, G02 and G03, × 10.
 const FEEDS: [u32; 3] = [10, 20, 30];
 
-pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
+pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     // Whoever calls a program may have set it before.
     if unit.role != Role::Main {
         return Vec::new();
@@ -28,8 +28,8 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
 }
 
 /// Whether some way to each block may have passed an F; `None` where no way leads to it.
-fn fed(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Option<bool>> {
-    let mut fed: Vec<Option<bool>> = vec![None; unit.flow.places()];
+fn fed(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Option<bool>> {
+    let mut fed: Vec<Option<bool>> = vec![None; unit.flow.block_count()];
     // Where a call with Q starts, anything may have been before.
     let mut open: Vec<(OpIndex, bool)> =
         unit.starts.iter().enumerate().map(|(nth, start)| (*start, nth > 0)).collect();
@@ -40,14 +40,14 @@ fn fed(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Option<bool>> {
         }
         *known = Some(before);
         let after = before || block < unit.flow.ways.len() && may_give(subject, unit, block);
-        open.extend(unit.flow.after(block).map(|to| (to, after)));
+        open.extend(unit.flow.successors(block).map(|to| (to, after)));
     }
     fed.truncate(unit.flow.ways.len());
     fed
 }
 
 /// Whether a block has an F, or calls what may have one.
-fn may_give(subject: &Subject<'_>, unit: &Unit<'_>, block: OpIndex) -> bool {
+fn may_give(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>, block: OpIndex) -> bool {
     let here = match unit.op(block).kind() {
         OpKind::Words(words) => gives(words),
         OpKind::If { .. } => true,
@@ -71,11 +71,11 @@ fn gives(words: &Words) -> bool {
 }
 
 /// G01, G02 or G03 with an axis, and no other code that would take the axis words.
-fn feeds(subject: &Subject<'_>, words: &Words) -> bool {
+fn feeds(subject: &CheckContext<'_>, words: &Words) -> bool {
     let axis = words.list.iter().any(|word| subject.settings.axes.find(word.letter).is_some());
     let mut feeds = false;
     for word in &words.list {
-        let Input::G(code, row) = word.value else { continue };
+        let WordOperand::G(code, row) = word.value else { continue };
         feeds |= FEEDS.contains(&code);
         match row.on(subject.settings.codes).map(|row| row.effect) {
             Some(Effect::OneShot(_) | Effect::Cycle(Some(_))) | None => return false,

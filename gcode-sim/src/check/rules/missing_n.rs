@@ -1,10 +1,10 @@
 //! Jumps to a sequence number that isn't there: PS0128 at GOTO, PS0078 at M99 P.
 use crate::check::calls::CalledAs;
-use crate::check::subject::{Finding, Role, Subject, Unit};
+use crate::check::subject::{CheckContext, ProgramUnit, Role, RuleFinding};
 
 pub(super) const NAME: &str = "missing-n";
 
-pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
+pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut found = Vec::new();
     for jump in unit.flow.jumps.iter().filter(|jump| unit.reached[jump.block]) {
         let number = jump.number;

@@ -1,14 +1,14 @@
 //! An H or D that the control has no tool offset for (PS0030).
 use crate::alarm::Alarm;
 use crate::check::literal;
-use crate::check::subject::{Finding, Subject, Unit};
+use crate::check::subject::{CheckContext, ProgramUnit, RuleFinding};
 use crate::program::OpKind;
 
 use super::unreadable::finding;
 
 pub(super) const NAME: &str = "missing-offset";
 
-pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
+pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let most = subject.settings.tool_offsets;
     let mut found = Vec::new();
     for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.reached[*block]) {

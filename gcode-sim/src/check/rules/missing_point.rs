@@ -4,9 +4,9 @@
 //! and more.
 use crate::check::literal::without_point;
 use crate::check::parameters;
-use crate::check::subject::{Finding, Subject, Unit};
+use crate::check::subject::{CheckContext, ProgramUnit, RuleFinding};
 use crate::control::Settings;
-use crate::program::{Coded, Input, OpKind, Words};
+use crate::program::{LoweredWord, OpKind, WordOperand, Words};
 use crate::syntax::ast::Decimal;
 
 pub(super) const NAME: &str = "missing-point";
@@ -16,7 +16,7 @@ const WITH_Q: [u32; 4] = [730, 760, 830, 870];
 /// A peck or a dwell of this many increments may be meant: many programs write `G4 X500`.
 const LEAST_MEANT: u64 = 100;
 
-pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
+pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let settings = subject.settings;
     if settings.calculator_input || in_increments(unit, settings) {
         return Vec::new();
@@ -48,11 +48,11 @@ fn words(kind: &OpKind) -> Option<&Words> {
 }
 
 fn has(words: &Words, codes: &[u32]) -> bool {
-    words.list.iter().any(|word| matches!(word.value, Input::G(code, _) if codes.contains(&code)))
+    words.list.iter().any(|word| matches!(word.value, WordOperand::G(code, _) if codes.contains(&code)))
 }
 
 /// The words of a block that are lengths, angles or seconds.
-fn measures<'a>(words: &'a Words, settings: &'a Settings) -> impl Iterator<Item = &'a Coded> {
+fn measures<'a>(words: &'a Words, settings: &'a Settings) -> impl Iterator<Item = &'a LoweredWord> {
     let plain = words.list.iter().filter(move |word| is_measure(words, word, settings));
     // The letters of a macro call that a control scales: all but D E F H M S T.
     let arguments = words.call().into_iter().flat_map(|call| &call.arguments);
@@ -61,7 +61,7 @@ fn measures<'a>(words: &'a Words, settings: &'a Settings) -> impl Iterator<Item 
     plain.filter(move |word| word.letter != b'K' || !drills(words)).chain(scaled)
 }
 
-fn is_measure(words: &Words, word: &Coded, settings: &Settings) -> bool {
+fn is_measure(words: &Words, word: &LoweredWord, settings: &Settings) -> bool {
     let axis = settings.axes.find(word.letter).is_some();
     match word.letter {
         // Look-ahead.
@@ -87,13 +87,15 @@ fn drills(words: &Words) -> bool {
 }
 
 /// A program without any point whose numbers are of 1 mm and more counts in increments on purpose.
-fn in_increments(unit: &Unit<'_>, settings: &Settings) -> bool {
+fn in_increments(unit: &ProgramUnit<'_>, settings: &Settings) -> bool {
     let mut large = false;
     for words in unit.program.ops().iter().filter_map(|op| words(op.kind())) {
         for word in measures(words, settings) {
             match word.value {
-                Input::Literal(Decimal { places: Some(_), .. }) => return false,
-                Input::Literal(number) => large |= number.digits as f64 >= settings.increment.per_unit(),
+                WordOperand::Literal(Decimal { places: Some(_), .. }) => return false,
+                WordOperand::Literal(number) => {
+                    large |= number.digits as f64 >= settings.increment.per_unit()
+                }
                 _ => {}
             }
         }

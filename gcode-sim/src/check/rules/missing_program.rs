@@ -1,10 +1,10 @@
 //! Calls of programs that are neither in the file nor in the folders: PS0076, or PS0310 by name.
 use crate::check::calls::CalledAs;
-use crate::check::subject::{Finding, Subject, Unit};
+use crate::check::subject::{CheckContext, ProgramUnit, RuleFinding};
 
 pub(super) const NAME: &str = "missing-program";
 
-pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
+pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut found = Vec::new();
     let mut told: Vec<&CalledAs> = Vec::new();
     for call in unit.calls.iter().filter(|call| unit.reached[call.block]) {

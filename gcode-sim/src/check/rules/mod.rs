@@ -28,8 +28,8 @@ mod unset_variable;
 
 use crate::diag::Diagnostic;
 
-use super::silence::Silence;
-use super::subject::{Finding, Subject, Unit};
+use super::subject::{CheckContext, ProgramUnit, RuleFinding};
+use super::suppression::Suppressions;
 
 /// One thing that can be wrong with a program.
 pub struct Rule {
@@ -37,7 +37,7 @@ pub struct Rule {
     pub name: &'static str,
     /// What it finds, in a line.
     pub about: &'static str,
-    find: fn(&Subject<'_>, &Unit<'_>) -> Vec<Finding>,
+    find: fn(&CheckContext<'_>, &ProgramUnit<'_>) -> Vec<RuleFinding>,
 }
 
 /// All rules in the order their findings of one block are told.
@@ -80,11 +80,11 @@ pub(super) fn names() -> Vec<&'static str> {
 }
 
 /// What all rules find, the silenced left out: program by program, block by block.
-pub(super) fn findings(subject: &Subject<'_>) -> Vec<Diagnostic> {
+pub(super) fn findings(subject: &CheckContext<'_>) -> Vec<Diagnostic> {
     let mut all = Vec::new();
     for unit in &subject.units {
-        let silence = Silence::new(unit);
-        let mut found: Vec<Finding> = ALL.iter().flat_map(|rule| (rule.find)(subject, unit)).collect();
+        let silence = Suppressions::new(unit);
+        let mut found: Vec<RuleFinding> = ALL.iter().flat_map(|rule| (rule.find)(subject, unit)).collect();
         found.retain(|finding| !silence.silences(finding));
         found.sort_by_key(|finding| finding.block);
         all.extend(found.into_iter().map(|finding| finding.diagnostic));

@@ -1,18 +1,18 @@
 //! A variable that the control doesn't have (PS0115), can't write (PS0116) or can't read (PS1115).
-use crate::alarm::{Alarm, Placed};
-use crate::check::subject::{Finding, Subject, Unit};
+use crate::alarm::{Alarm, LocatedAlarm};
+use crate::check::subject::{CheckContext, ProgramUnit, RuleFinding};
 use crate::check::{literal, variables};
-use crate::exec::known::Variables;
+use crate::exec::static_eval::VariableTable;
 
 use super::unreadable::finding;
 
 pub(super) const NAME: &str = "no-such-variable";
 
-pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
-    let known = Variables::new(subject.settings);
+pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+    let known = VariableTable::new(subject.settings);
     let mut found = Vec::new();
     for (index, block) in unit.blocks.iter().enumerate().filter(|(index, _)| unit.reached[*index]) {
-        let mut tell = |alarm: Placed| {
+        let mut tell = |alarm: LocatedAlarm| {
             // What a run here lacks is no fault of the program.
             if !matches!(alarm.node, Alarm::NotSimulated { .. }) {
                 found.push(finding(subject, unit, NAME, index, &alarm));

@@ -1,10 +1,10 @@
 //! A comment that isn't closed: what stands behind it on the line is comment too, and some controls refuse the line.
-use crate::check::subject::{Finding, Subject, Unit};
+use crate::check::subject::{CheckContext, ProgramUnit, RuleFinding};
 use crate::syntax::ast::CommentMark;
 
 pub(super) const NAME: &str = "open-comment";
 
-pub(super) fn find(_: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
+pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut found = Vec::new();
     for (index, block) in unit.blocks.iter().enumerate() {
         for comment in block.comments.iter().filter(|comment| comment.mark == CommentMark::Unclosed) {

@@ -1,12 +1,12 @@
 //! `=`, `<` and `>` in a condition: a control compares with EQ, NE, LT, LE, GT and GE.
 use crate::alarm::Alarm;
-use crate::check::subject::{Finding, Subject, Unit};
+use crate::check::subject::{CheckContext, ProgramUnit, RuleFinding};
 
 use super::unreadable::{alarms, finding, refused};
 
 pub(super) const NAME: &str = "relation-symbol";
 
-pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
+pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let of_all = alarms(unit).map(|(block, alarm)| (block, alarm.clone()));
     let all = of_all.chain(refused(subject, unit));
     let signs = all.filter(|(_, alarm)| matches!(alarm.node, Alarm::RelationSymbol));

@@ -1,12 +1,12 @@
 //! `(` where `[` was meant: to a control round brackets are a comment, and what stands in them is gone.
 use crate::alarm::Alarm;
-use crate::check::subject::{Finding, Subject, Unit};
+use crate::check::subject::{CheckContext, ProgramUnit, RuleFinding};
 
 use super::unreadable::{alarms, finding};
 
 pub(super) const NAME: &str = "round-brackets";
 
-pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
+pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let alarms = alarms(unit).filter(|(_, alarm)| matches!(alarm.node, Alarm::RoundBrackets { .. }));
     alarms.map(|(block, alarm)| finding(subject, unit, NAME, block, alarm)).collect()
 }

@@ -3,7 +3,7 @@ use std::f64::consts::PI;
 
 use crate::check::expressions;
 use crate::check::literal::constant;
-use crate::check::subject::{Finding, Subject, Unit};
+use crate::check::subject::{CheckContext, ProgramUnit, RuleFinding};
 use crate::source::Span;
 use crate::syntax::ast::{BinaryOp, CallForm, Expr, ExprKind};
 
@@ -14,7 +14,7 @@ const NEAR: f64 = 0.002;
 /// Six digits behind the point are exact enough: on a metre of diameter 1 µm.
 const EXACT: f64 = 1e-6;
 
-pub(super) fn find(_: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
+pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut found = Vec::new();
     for (index, block) in unit.blocks.iter().enumerate().filter(|(index, _)| unit.reached[*index]) {
         let mut factors = Vec::new();

@@ -1,14 +1,14 @@
 //! More M codes in a block than the control takes: the last counts and the others are lost, or it alarms.
 use crate::alarm::Alarm;
 use crate::check::literal;
-use crate::check::subject::{Finding, Subject, Unit};
+use crate::check::subject::{CheckContext, ProgramUnit, RuleFinding};
 use crate::program::{OpKind, m_codes};
 
 use super::unreadable::finding;
 
 pub(super) const NAME: &str = "several-m-codes";
 
-pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
+pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let settings = subject.settings;
     let most = if settings.three_m_codes { 3 } else { 1 };
     let mut found = Vec::new();

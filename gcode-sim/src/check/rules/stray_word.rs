@@ -1,14 +1,14 @@
 //! A word that no block of this control takes: `X10., Y5.` (PS0053), `X1E3` and axes that it doesn't have (PS0009).
 use crate::alarm::Alarm;
-use crate::check::subject::{Finding, Subject, Unit};
+use crate::check::subject::{CheckContext, ProgramUnit, RuleFinding};
 use crate::program::codes::{Effect, OneShot};
-use crate::program::{Coded, Input, OpKind, Words};
+use crate::program::{LoweredWord, OpKind, WordOperand, Words};
 
 use super::unreadable::finding;
 
 pub(super) const NAME: &str = "stray-word";
 
-pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
+pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut found = Vec::new();
     for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.reached[*block]) {
         let OpKind::Words(words) = op.kind() else { continue };
@@ -28,11 +28,11 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     found
 }
 
-fn alarm(subject: &Subject<'_>, words: &Words, word: &Coded) -> Option<Alarm> {
+fn alarm(subject: &CheckContext<'_>, words: &Words, word: &LoweredWord) -> Option<Alarm> {
     let axes = &subject.settings.axes;
     let has = |effect: Effect| {
         words.list.iter().any(|word| match word.value {
-            Input::G(_, row) => row.on(subject.settings.codes).is_some_and(|row| row.effect == effect),
+            WordOperand::G(_, row) => row.on(subject.settings.codes).is_some_and(|row| row.effect == effect),
             _ => false,
         })
     };

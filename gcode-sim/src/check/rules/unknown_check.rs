@@ -1,11 +1,11 @@
 //! `(CHECK-OFF NAME)` with a name that no rule has: it silences nothing, and its author believes it does.
-use crate::check::silence::Silence;
-use crate::check::subject::{Finding, Subject, Unit};
+use crate::check::subject::{CheckContext, ProgramUnit, RuleFinding};
+use crate::check::suppression::Suppressions;
 
 pub(super) const NAME: &str = "unknown-check";
 
-pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
-    let silence = Silence::new(unit);
+pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+    let silence = Suppressions::new(unit);
     let known = |name: &str| subject.rules.iter().any(|rule| rule.eq_ignore_ascii_case(name));
     let unknown = silence.names().filter(|(name, _)| !known(name)).map(|(name, span)| {
         let block = unit.blocks.iter().position(|b| b.comments.iter().any(|c| c.span == span)).unwrap_or(0);

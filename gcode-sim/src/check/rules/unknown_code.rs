@@ -4,16 +4,16 @@ use std::collections::BTreeSet;
 
 use crate::alarm::Alarm;
 use crate::check::literal;
-use crate::check::subject::{Finding, Subject, Unit};
+use crate::check::subject::{CheckContext, ProgramUnit, RuleFinding};
 use crate::program::codes::{Effect, spelled};
 use crate::program::m_codes::{self, MEffect};
-use crate::program::{Coded, Input, OpKind};
+use crate::program::{LoweredWord, OpKind, WordOperand};
 
 use super::unreadable::{alarms, finding, refused};
 
 pub(super) const NAME: &str = "unknown-code";
 
-pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
+pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let written = alarms(unit).map(|(block, alarm)| (block, alarm.clone()));
     let all = written.chain(refused(subject, unit));
     let improper = all.filter(|(_, alarm)| matches!(alarm.node, Alarm::ImproperGCode { .. }));
@@ -36,9 +36,9 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
 }
 
 /// What is wrong with a code, and whether the control would surely alarm.
-fn about(subject: &Subject<'_>, word: &Coded) -> Option<(String, String, bool)> {
+fn about(subject: &CheckContext<'_>, word: &LoweredWord) -> Option<(String, String, bool)> {
     match (word.letter, word.value) {
-        (b'G', Input::G(code, found)) => {
+        (b'G', WordOperand::G(code, found)) => {
             let row = found.on(subject.settings.codes);
             let name = format!("G{}", spelled(code));
             let calls = subject.settings.code_calls.find(b'G', code).is_some();

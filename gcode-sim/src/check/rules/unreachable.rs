@@ -1,12 +1,12 @@
 //! Blocks that nothing reaches: behind M30, M99, GOTO or a #3000 without a number that something jumps to.
 use crate::check::flow::raises;
-use crate::check::subject::{Finding, Subject, Unit};
+use crate::check::subject::{CheckContext, ProgramUnit, RuleFinding};
 use crate::program::{OpIndex, OpKind, Statement};
 
 pub(super) const NAME: &str = "unreachable";
 
-pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
-    let mut found: Vec<Finding> = Vec::new();
+pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+    let mut found: Vec<RuleFinding> = Vec::new();
     let ops = unit.program.ops();
     let mut block = 0;
     while block < ops.len() {
@@ -34,11 +34,11 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
 }
 
 /// What isn't missed where nothing reaches it.
-fn harmless(unit: &Unit<'_>, block: OpIndex) -> bool {
+fn harmless(unit: &ProgramUnit<'_>, block: OpIndex) -> bool {
     let kind = unit.op(block).kind();
     match kind {
         OpKind::Empty => true,
-        OpKind::Words(words) => unit.flow.ways[block].leaves && words.list.len() <= 1,
+        OpKind::Words(words) => unit.flow.ways[block].is_exit && words.list.len() <= 1,
         // A loop that is always left on the way needs its END all the same.
         OpKind::Statement(Statement::End { start, .. }) => unit.reached[*start],
         _ => raises(kind),

@@ -1,13 +1,13 @@
 //! A #3000 that can't be reached: the check that its author relies on never happens.
 use crate::check::flow::raises;
-use crate::check::subject::{Finding, Role, Subject, Unit};
+use crate::check::subject::{CheckContext, ProgramUnit, Role, RuleFinding};
 use crate::check::vacancy::{Locals, states, truth};
 use crate::check::variables;
 use crate::syntax::ast::Statement;
 
 pub(super) const NAME: &str = "unreachable-alarm";
 
-pub(super) fn find(_: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
+pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     // A called program must stand for all calls, not only those seen here.
     let entry = if unit.role == Role::Main { Locals::UNSET } else { Locals::ANYTHING };
     let states = states(unit, entry);

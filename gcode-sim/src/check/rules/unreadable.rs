@@ -1,13 +1,13 @@
 //! Blocks that stop the control as soon as it reads them: text it can't read, words that can't stand together.
-use crate::alarm::{Alarm, Placed, remedy};
+use crate::alarm::{Alarm, LocatedAlarm, remedy};
 use crate::check::flow::is_loop_alarm;
-use crate::check::subject::{Finding, Subject, Unit};
+use crate::check::subject::{CheckContext, ProgramUnit, RuleFinding};
 use crate::program::{OpKind, Statement};
 use crate::source::Spanned;
 
 pub(super) const NAME: &str = "unreadable";
 
-pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
+pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let alarms = alarms(unit).filter(|(_, alarm)| !has_own_rule(&alarm.node));
     let mut found: Vec<_> = alarms.map(|(block, alarm)| finding(subject, unit, NAME, block, alarm)).collect();
     let refused = refused(subject, unit).filter(|(_, alarm)| !has_own_rule(&alarm.node));
@@ -17,9 +17,9 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
 
 /// The blocks that something reaches and that are written in a way this control doesn't take.
 pub(super) fn refused<'a>(
-    subject: &'a Subject<'_>,
-    unit: &'a Unit<'_>,
-) -> impl Iterator<Item = (usize, Placed)> + 'a {
+    subject: &'a CheckContext<'_>,
+    unit: &'a ProgramUnit<'_>,
+) -> impl Iterator<Item = (usize, LocatedAlarm)> + 'a {
     let ops = unit.program.ops().iter().enumerate().filter(|(block, _)| unit.reached[*block]);
     ops.filter_map(|(block, op)| {
         let form = op.forms().iter().find(|form| !form.node.is_taken(subject.settings))?;
@@ -28,7 +28,7 @@ pub(super) fn refused<'a>(
 }
 
 /// The blocks that raise an alarm as they are read and that something reaches.
-pub(super) fn alarms<'a>(unit: &'a Unit<'_>) -> impl Iterator<Item = (usize, &'a Placed)> {
+pub(super) fn alarms<'a>(unit: &'a ProgramUnit<'_>) -> impl Iterator<Item = (usize, &'a LocatedAlarm)> {
     unit.program.ops().iter().enumerate().filter(|(block, _)| unit.reached[*block]).filter_map(
         |(block, op)| match op.kind() {
             OpKind::Alarm(alarm) => Some((block, alarm)),
@@ -48,12 +48,12 @@ fn has_own_rule(alarm: &Alarm) -> bool {
 
 /// An alarm as a finding: its number, its sentence, its remedy.
 pub(super) fn finding(
-    subject: &Subject<'_>,
-    unit: &Unit<'_>,
+    subject: &CheckContext<'_>,
+    unit: &ProgramUnit<'_>,
     name: &'static str,
     block: usize,
     alarm: &Spanned<Alarm>,
-) -> Finding {
+) -> RuleFinding {
     let row = alarm.node.row();
     let found = unit.error(name, block, format!("{}: {}", row.code, row.message)).on(alarm.span);
     match remedy(&alarm.node, alarm.span, subject.memory.sources()) {

@@ -1,7 +1,7 @@
 //! A local variable that is read before anything has set it: its word disappears, or it counts as 0.
 use std::collections::BTreeMap;
 
-use crate::check::subject::{Finding, Role, Subject, Unit};
+use crate::check::subject::{CheckContext, ProgramUnit, Role, RuleFinding};
 use crate::check::unset::{entry, reads};
 use crate::check::vacancy::{Locals, states};
 use crate::check::variables::Use;
@@ -10,7 +10,7 @@ use crate::source::Span;
 
 pub(super) const NAME: &str = "unset-variable";
 
-pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
+pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut unset: BTreeMap<(OpIndex, u32), (Span, Use)> = BTreeMap::new();
     match unit.role {
         Role::Resident => {}

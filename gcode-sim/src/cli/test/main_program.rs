@@ -2,13 +2,13 @@
 use std::path::{Path, PathBuf};
 
 use crate::check::{CalledAs, called};
-use crate::cli::{Refusal, input};
+use crate::cli::{UsageError, input};
 use crate::control::Settings;
 use crate::program::Memory;
 use crate::syntax::ast::ProgramName;
 
 /// `main.nc`, the only program, or the only one that no other calls: where a main program stands with its macros.
-pub(super) fn of(folder: &Path, programs: &[PathBuf]) -> Result<PathBuf, Refusal> {
+pub(super) fn of(folder: &Path, programs: &[PathBuf]) -> Result<PathBuf, UsageError> {
     let is_main = |path: &&PathBuf| path.file_stem().is_some_and(|stem| stem == "main");
     if let Some(main) = programs.iter().find(is_main) {
         return Ok(main.clone());
@@ -26,11 +26,11 @@ pub(super) fn of(folder: &Path, programs: &[PathBuf]) -> Result<PathBuf, Refusal
     } else {
         format!("several programs that no other calls, {}", names.join(", "))
     };
-    Err(Refusal::new(format!("{} holds {which}: name the one to run main.nc", folder.display())))
+    Err(UsageError::new(format!("{} holds {which}: name the one to run main.nc", folder.display())))
 }
 
 /// The programs that none of the others calls.
-fn uncalled(programs: &[PathBuf]) -> Result<Vec<&PathBuf>, Refusal> {
+fn uncalled(programs: &[PathBuf]) -> Result<Vec<&PathBuf>, UsageError> {
     let settings = Settings::default();
     let mut files = Vec::with_capacity(programs.len());
     for path in programs {

@@ -10,11 +10,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use clap::Args;
 
-use self::case::{ACCEPTED, Case, Tried};
+use self::case::{ACCEPTED, Case, CaseResult};
 use super::format::TestFormat;
-use super::{Refusal, Status, options, output, progress};
+use super::{ExitStatus, UsageError, options, output, progress};
 use crate::changes::Record;
-use crate::report::tested::{Answer, Shard, TestReport};
+use crate::report::test_report::{CaseAnswer, Shard, TestReport};
 use crate::report::{junit, sarif};
 
 #[derive(Debug, Args)]
@@ -56,7 +56,7 @@ pub(super) struct TestArguments {
     format: TestFormat,
 }
 
-pub(super) fn run(arguments: &TestArguments) -> Result<Status, Refusal> {
+pub(super) fn run(arguments: &TestArguments) -> Result<ExitStatus, UsageError> {
     let tolerance = options::tolerance("--tolerance", Some(arguments.tolerance))?.unwrap_or_default();
     if arguments.watch {
         return watch::run(arguments, tolerance);
@@ -70,27 +70,27 @@ pub(super) fn run(arguments: &TestArguments) -> Result<Status, Refusal> {
         // A build server keeps the document in a file: its log has to say why it stops.
         report.refused().for_each(|why| output::tell(&format!("error: {why}\n")));
     }
-    let is_refused = report.cases.iter().any(|case| case.answer == Answer::Refused);
+    let is_refused = report.cases.iter().any(|case| case.answer == CaseAnswer::Refused);
     Ok(match report.cases.iter().all(|case| case.is_good()) {
-        true => Status::Holds,
-        false if is_refused => Status::Refused,
-        false => Status::Fails,
+        true => ExitStatus::Holds,
+        false if is_refused => ExitStatus::Refused,
+        false => ExitStatus::Fails,
     })
 }
 
-fn print(report: &TestReport, format: TestFormat) -> Result<(), Refusal> {
+fn print(report: &TestReport, format: TestFormat) -> Result<(), UsageError> {
     match format {
         TestFormat::Json => output::json(report),
         TestFormat::Text => output::print(&report.text()),
         TestFormat::Junit => {
             let document = junit::document(report);
-            output::print(&document.map_err(|why| Refusal::new(format!("no JUnit XML: {why}")))?)
+            output::print(&document.map_err(|why| UsageError::new(format!("no JUnit XML: {why}")))?)
         }
         TestFormat::Sarif => output::json(&sarif::log(&report.findings(), &options::started_in())),
     }
 }
 
-fn tested(arguments: &TestArguments, tolerance: f64) -> Result<TestReport, Refusal> {
+fn tested(arguments: &TestArguments, tolerance: f64) -> Result<TestReport, UsageError> {
     let (shard, cases) = cases(arguments)?;
     let mut tried = all(&cases, &arguments.libraries, tolerance);
     let accepted = if arguments.accept { accept(&cases, &mut tried)? } else { Vec::new() };
@@ -98,15 +98,18 @@ fn tested(arguments: &TestArguments, tolerance: f64) -> Result<TestReport, Refus
 }
 
 /// The cases that are asked for, and which part of them these are.
-fn cases(arguments: &TestArguments) -> Result<(Option<Shard>, Vec<Case>), Refusal> {
+fn cases(arguments: &TestArguments) -> Result<(Option<Shard>, Vec<Case>), UsageError> {
     let mut cases = find::cases(&arguments.folders)?;
     if cases.is_empty() {
-        return Err(Refusal::new("no cases: a case is a folder with a program (.nc)"));
+        return Err(UsageError::new("no cases: a case is a folder with a program (.nc)"));
     }
     if !arguments.only.is_empty() {
         cases.retain(|case| arguments.only.iter().any(|part| case.name.contains(part.as_str())));
         if cases.is_empty() {
-            return Err(Refusal::new(format!("no case has a name with '{}'", arguments.only.join("' or '"))));
+            return Err(UsageError::new(format!(
+                "no case has a name with '{}'",
+                arguments.only.join("' or '")
+            )));
         }
     }
     let Some(text) = &arguments.shard else { return Ok((None, cases)) };
@@ -116,16 +119,16 @@ fn cases(arguments: &TestArguments) -> Result<(Option<Shard>, Vec<Case>), Refusa
 }
 
 /// `2/4`: the second of four parts.
-fn shard(text: &str) -> Result<(usize, usize), Refusal> {
+fn shard(text: &str) -> Result<(usize, usize), UsageError> {
     let parts =
         text.split_once('/').and_then(|(k, n)| Some((k.trim().parse().ok()?, n.trim().parse().ok()?)));
     parts
         .filter(|(number, of)| (1..=*of).contains(number))
-        .ok_or_else(|| Refusal::new(format!("--shard {text}: write K/N, the second of four parts is 2/4")))
+        .ok_or_else(|| UsageError::new(format!("--shard {text}: write K/N, the second of four parts is 2/4")))
 }
 
 /// Runs the cases on all cores; the answers are in the order of the cases.
-fn all(cases: &[Case], libraries: &[PathBuf], tolerance: f64) -> Vec<Tried> {
+fn all(cases: &[Case], libraries: &[PathBuf], tolerance: f64) -> Vec<CaseResult> {
     let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
     progress::of_cases(cases.len(), &done, || all_of(cases, libraries, tolerance, &next, &done))
 }
@@ -137,7 +140,7 @@ fn all_of(
     tolerance: f64,
     next: &AtomicUsize,
     counted: &AtomicUsize,
-) -> Vec<Tried> {
+) -> Vec<CaseResult> {
     let work = || {
         let mut done = Vec::new();
         loop {
@@ -148,9 +151,9 @@ fn all_of(
         }
     };
     let workers = std::thread::available_parallelism().map_or(1, usize::from).min(cases.len());
-    let mut tried: Vec<(usize, Tried)> = std::thread::scope(|scope| {
+    let mut tried: Vec<(usize, CaseResult)> = std::thread::scope(|scope| {
         let workers: Vec<_> = (0..workers).map(|_| scope.spawn(work)).collect();
-        let join = |worker: std::thread::ScopedJoinHandle<'_, Vec<(usize, Tried)>>| match worker.join() {
+        let join = |worker: std::thread::ScopedJoinHandle<'_, Vec<(usize, CaseResult)>>| match worker.join() {
             Ok(done) => done,
             Err(panic) => std::panic::resume_unwind(panic),
         };
@@ -161,17 +164,17 @@ fn all_of(
 }
 
 /// Writes what came of the cases as what is accepted of them, all files or none.
-fn accept(cases: &[Case], tried: &mut [Tried]) -> Result<Vec<String>, Refusal> {
+fn accept(cases: &[Case], tried: &mut [CaseResult]) -> Result<Vec<String>, UsageError> {
     let mut files = Vec::new();
     let mut names = Vec::new();
-    for (case, Tried { report, record }) in cases.iter().zip(tried.iter_mut()) {
-        let is_other = report.answer != Answer::Same;
+    for (case, CaseResult { report, record }) in cases.iter().zip(tried.iter_mut()) {
+        let is_other = report.answer != CaseAnswer::Same;
         let is_taken = |record: &&Record| is_other && !record.lacks_program();
         let Some(record) = record.as_ref().filter(is_taken) else { continue };
-        let text = record.to_json().map_err(|error| Refusal::new(error.to_string()))?;
+        let text = record.to_json().map_err(|error| UsageError::new(error.to_string()))?;
         files.push((case.folder.join(ACCEPTED), text.into_bytes()));
         names.push(report.name.clone());
-        report.answer = Answer::Same;
+        report.answer = CaseAnswer::Same;
         report.changes.clear();
         report.not_compared.clear();
     }

@@ -6,7 +6,7 @@ mod runout;
 
 pub(super) use file::{File, parse};
 
-use super::{JobControl, PinMachine, SheetWords, Surface};
+use super::{JobControl, PinMachine, SheetInfo, Surface};
 use crate::gauge::GaugeSet;
 
 /// A part to be aligned; lengths in mm, angles in degrees.
@@ -28,7 +28,7 @@ pub struct Alignment {
     pub runout: Runout,
     pub ellipse: EllipsePath,
     pub limits: AlignmentLimits,
-    pub sheet: SheetWords,
+    pub sheet: SheetInfo,
 }
 
 /// The table that sets the angle between the part's bottom face and its axis.

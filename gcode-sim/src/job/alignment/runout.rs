@@ -3,7 +3,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::Runout;
-use crate::job::reader::{Exactly, Spanned};
+use crate::job::reader::{FixedArray, Spanned};
 use crate::job::sections::within;
 use crate::job::{JobError, Reader, Surface};
 
@@ -16,7 +16,7 @@ pub(super) struct FileRunout {
     heights: Spanned<Vec<f64>>,
     /// From, to, and the number of readings (3 to 100): degrees.
     #[schemars(inner(range(min = -360.0, max = 360.0)))]
-    angles: Spanned<Exactly<f64, 3>>,
+    angles: Spanned<FixedArray<f64, 3>>,
     /// The largest shift of the part in y that the fit is believed to find, mm [default: 0.4].
     #[schemars(range(min = 0.01, max = 100.0))]
     y_shift: Option<Spanned<f64>>,

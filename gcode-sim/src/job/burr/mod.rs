@@ -3,7 +3,7 @@ mod file;
 
 pub(super) use file::{File, parse};
 
-use super::{JobControl, SheetWords};
+use super::{JobControl, SheetInfo};
 
 /// A ball-end rotary burr; lengths in mm, angles in degrees.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,7 +19,7 @@ pub struct Burr {
     pub grinder: Grinder,
     pub program: BurrProgram,
     pub tolerance: BurrTolerance,
-    pub sheet: SheetWords,
+    pub sheet: SheetInfo,
 }
 
 impl Burr {

@@ -2,7 +2,7 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::{Clamp, CombMachine, Cylinder, Drill, Honeycomb, Metric, Said, Spacing};
+use super::{Clamp, CombMachine, Cylinder, Drill, Honeycomb, Metric, Spacing, SpecifiedFields};
 use crate::job::reader::{Spanned, names};
 use crate::job::sections::{FileControl, FileRotary, FileTolerance, heights, length, within};
 use crate::job::sheet::FileSheet;
@@ -237,7 +237,7 @@ impl FileDrill {
             speed,
             feed: or("drill.feed", &self.feed, "0.01 to 240000 mm/min", 0.01, 240_000.0, FEED)?,
             peck: or("drill.peck", &self.peck, "0.01 to 9999 mm", 0.01, 9_999.0, diameter)?,
-            said: Said {
+            said: SpecifiedFields {
                 number: self.number.is_some(),
                 speed: self.speed.is_some(),
                 feed: self.feed.is_some(),

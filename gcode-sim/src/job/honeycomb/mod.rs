@@ -3,7 +3,7 @@ mod file;
 
 pub(super) use file::{File, parse};
 
-use super::{JobControl, Rotary, SheetWords};
+use super::{JobControl, Rotary, SheetInfo};
 
 /// A honeycomb on a cylinder about x; lengths in mm, angles in degrees.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,7 +18,7 @@ pub struct Honeycomb {
     pub position_tolerance: f64,
     /// How far a hole's depth may be off.
     pub depth_tolerance: f64,
-    pub sheet: SheetWords,
+    pub sheet: SheetInfo,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,12 +95,12 @@ pub struct Drill {
     pub feed: f64,
     /// Of G83, which a hole deeper than three diameters gets.
     pub peck: f64,
-    pub said: Said,
+    pub said: SpecifiedFields,
 }
 
 /// Which of its numbers the job says: where it doesn't, the default is no demand on other programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Said {
+pub struct SpecifiedFields {
     pub number: bool,
     pub speed: bool,
     pub feed: bool,

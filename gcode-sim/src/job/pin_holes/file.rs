@@ -5,8 +5,8 @@ use schemars::{JsonSchema, Schema};
 use serde::Deserialize;
 use serde_json::json;
 
-use super::tools::{FileTool, ToolsWanted, assign, default_tools};
-use super::{AxisDirection, Head, HeadKind, HoleWanted, MacroSettings, PinHoles, PinMachine, Surface, Tool};
+use super::tools::{FileTool, HoleToolSpec, assign, default_tools};
+use super::{AxisDirection, Head, HeadKind, HoleSpec, MacroSettings, PinHoles, PinMachine, Surface, Tool};
 use crate::job::reader::{Spanned, names};
 use crate::job::sections::{FileControl, FileRotary, FileTolerance, ROTARY_LETTERS, heights, length, within};
 use crate::job::sheet::FileSheet;
@@ -256,14 +256,14 @@ impl FileHead {
 }
 
 impl FileHole {
-    fn tools_wanted(&self) -> ToolsWanted<'_> {
-        ToolsWanted { id: self.id.as_ref(), diameter: &self.diameter, tools: self.tools.as_ref() }
+    fn tools_wanted(&self) -> HoleToolSpec<'_> {
+        HoleToolSpec { id: self.id.as_ref(), diameter: &self.diameter, tools: self.tools.as_ref() }
     }
 
-    fn check(&self, reader: &Reader<'_>, surface: Surface, tools: Vec<u32>) -> Result<HoleWanted, JobError> {
+    fn check(&self, reader: &Reader<'_>, surface: Surface, tools: Vec<u32>) -> Result<HoleSpec, JobError> {
         let a = surface.a;
         let radii = format!("0 to the equatorial radius a = {a} mm");
-        Ok(HoleWanted {
+        Ok(HoleSpec {
             id: self.id.as_ref().clone(),
             radius: reader.number("hole.radius", &self.radius, &radii, within(0.0, a))?,
             azimuth: reader.number(

@@ -4,7 +4,7 @@ mod tools;
 
 pub(super) use file::{File, FileMachine, FileSurface, parse};
 
-use super::{JobControl, Rotary, SheetWords};
+use super::{JobControl, Rotary, SheetInfo};
 
 /// Pin holes on an ellipsoid of revolution; lengths in mm, angles in degrees.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,8 +20,8 @@ pub struct PinHoles {
     /// Whether the job says them: where it doesn't, those of the paper are no demand on other programs.
     pub tools_said: bool,
     pub macros: MacroSettings,
-    pub holes: Vec<HoleWanted>,
-    pub sheet: SheetWords,
+    pub holes: Vec<HoleSpec>,
+    pub sheet: SheetInfo,
 }
 
 /// (x² + z²)/a² + y²/b² = 1.
@@ -94,7 +94,7 @@ pub enum AxisDirection {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub struct HoleWanted {
+pub struct HoleSpec {
     pub id: String,
     /// From the axis of revolution.
     pub radius: f64,

@@ -34,7 +34,7 @@ pub(super) struct FileTool {
 }
 
 /// What a hole says about its tools.
-pub(super) struct ToolsWanted<'f> {
+pub(super) struct HoleToolSpec<'f> {
     pub(super) id: &'f str,
     pub(super) diameter: &'f Spanned<f64>,
     pub(super) tools: Option<&'f Spanned<Vec<i64>>>,
@@ -85,7 +85,7 @@ impl FileTool {
 /// for each diameter of the job, and the tools of each hole.
 pub(super) fn default_tools(
     reader: &Reader<'_>,
-    holes: &[ToolsWanted<'_>],
+    holes: &[HoleToolSpec<'_>],
 ) -> Result<(Vec<Tool>, Vec<Vec<u32>>), JobError> {
     let mut diameters: Vec<f64> = Vec::new();
     let mut of_holes = Vec::new();
@@ -127,12 +127,12 @@ fn tool(number: u32, diameter: f64, name: &str) -> Tool {
 pub(super) fn assign(
     reader: &Reader<'_>,
     tools: &[Tool],
-    holes: &[ToolsWanted<'_>],
+    holes: &[HoleToolSpec<'_>],
 ) -> Result<Vec<Vec<u32>>, JobError> {
     holes.iter().map(|hole| assign_one(reader, tools, hole)).collect()
 }
 
-fn assign_one(reader: &Reader<'_>, tools: &[Tool], hole: &ToolsWanted<'_>) -> Result<Vec<u32>, JobError> {
+fn assign_one(reader: &Reader<'_>, tools: &[Tool], hole: &HoleToolSpec<'_>) -> Result<Vec<u32>, JobError> {
     let diameter = *hole.diameter.as_ref();
     let numbers: Vec<u32> = match hole.tools {
         Some(named) => {

@@ -8,7 +8,7 @@ use super::spread::{FileSpread, LENGTH};
 use crate::job::JobError;
 use crate::job::reader::{Reader, Spanned};
 use crate::machine::Machine;
-use crate::machine::sources::{Drawn, Source};
+use crate::machine::sources::{ErrorSource, SampleParameters};
 
 /// Of a touch probe.
 #[derive(Deserialize, JsonSchema)]
@@ -67,9 +67,9 @@ impl FileErrors {
     pub(super) fn apply(&self, reader: &Reader<'_>, machine: &mut Machine) -> Result<(), JobError> {
         let nominal = machine.clone();
         let collect = || Collector { reader, machine: &nominal, before: "errors.", found: Vec::new() };
-        let mut all: Vec<(Source, Drawn)> = Vec::new();
-        let mut keep = |found: Vec<Source>, seed: u64, wave: f64| {
-            all.extend(found.into_iter().map(|source| (source, Drawn { seed, wave })));
+        let mut all: Vec<(ErrorSource, SampleParameters)> = Vec::new();
+        let mut keep = |found: Vec<ErrorSource>, seed: u64, wave: f64| {
+            all.extend(found.into_iter().map(|source| (source, SampleParameters { seed, wave })));
         };
         if let Some(linear) = &self.linear {
             let mut collector = collect();
@@ -111,7 +111,7 @@ impl FileErrors {
 }
 
 /// Reads the error file of a budget for this machine.
-pub fn error_file(text: &str, machine: &Machine) -> Result<Vec<Source>, JobError> {
+pub fn error_file(text: &str, machine: &Machine) -> Result<Vec<ErrorSource>, JobError> {
     let reader = Reader { text };
     let file: File = toml::from_str(text).map_err(|e| reader.syntax(&e))?;
     let mut collector = Collector { reader: &reader, machine, before: "", found: Vec::new() };
@@ -143,7 +143,7 @@ pub fn error_file(text: &str, machine: &Machine) -> Result<Vec<Source>, JobError
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::machine::error::Spread;
+    use crate::machine::error::Distribution;
     use crate::motion::Position;
 
     #[test]
@@ -187,7 +187,7 @@ seed = 2
         );
         assert!(machine.head.error.swing > 0.0);
         let probe = machine.probe.unwrap();
-        assert_eq!((probe.noise, probe.seed), (Spread::Normal(0.001), 2));
+        assert_eq!((probe.noise, probe.seed), (Distribution::Normal(0.001), 2));
         let other = Machine::parse(&text.replace("seed = 9", "seed = 10")).unwrap();
         assert_ne!(machine.head.error, other.head.error);
         assert_eq!(machine.slides, other.slides);
@@ -237,6 +237,6 @@ seed = 2
         let found = error_file(text, &Machine::default()).unwrap();
         let names: Vec<_> = found.iter().map(|source| source.quantity.name(&Machine::default())).collect();
         assert_eq!(names, ["part.shift.z", "part.runout", "rotary.index"]);
-        assert_eq!(found[0].spread, Spread::Normal(0.03));
+        assert_eq!(found[0].spread, Distribution::Normal(0.03));
     }
 }

@@ -6,7 +6,7 @@ use serde_json::json;
 
 use super::{ROTARY_LETTERS, letter, sign};
 use crate::job::JobError;
-use crate::job::reader::{Exactly, Reader, Spanned, names};
+use crate::job::reader::{FixedArray, Reader, Spanned, names};
 use crate::machine::{Chain, Head, HeadKind};
 use crate::motion::Axes;
 use crate::units::Deg;
@@ -23,7 +23,7 @@ pub(super) struct FileHead {
     #[schemars(range(min = 0.0))]
     pivot: Option<Spanned<f64>>,
     /// From the tip to the spindle, not all 0.
-    direction: Option<Spanned<Exactly<f64, 3>>>,
+    direction: Option<Spanned<FixedArray<f64, 3>>>,
     /// The axis, A, B or C.
     #[schemars(extend("enum" = ROTARY_LETTERS))]
     letter: Option<Spanned<String>>,

@@ -6,8 +6,8 @@ use serde_json::json;
 
 use super::{AXES, lengths, letter, sign};
 use crate::job::JobError;
-use crate::job::reader::{Exactly, Reader, Spanned, names};
-use crate::machine::{Chain, Link};
+use crate::job::reader::{FixedArray, Reader, Spanned, names};
+use crate::machine::{AxisLink, Chain};
 use crate::motion::Axes;
 
 /// An axis that carries the part.
@@ -29,7 +29,7 @@ pub(super) struct FileLink {
     sign: Spanned<i64>,
     /// A point on the axis, machine coordinates, mm [default: the part's origin].
     #[schemars(inner(range(min = -100_000.0, max = 100_000.0)))]
-    centre: Option<Exactly<Spanned<f64>, 3>>,
+    centre: Option<FixedArray<Spanned<f64>, 3>>,
 }
 
 /// One of both; what slides has no centre.
@@ -54,7 +54,7 @@ impl FileLink {
         axes: &Axes,
         inner: &Chain,
         origin: Point3<f64>,
-    ) -> Result<Link, JobError> {
+    ) -> Result<AxisLink, JobError> {
         let axis = letter(reader, "table.letter", &self.letter, axes)?;
         if inner.has(axis) {
             let message = format!("key 'table.letter': {} is there twice", axes.letter(axis));
@@ -77,14 +77,14 @@ impl FileLink {
         }
         let unit = Unit::new_unchecked(reader.choice(&format!("table.{key}"), direction, &DIRECTIONS)?);
         match (&self.centre, key) {
-            (Some(Exactly([x, ..])), "slides") => {
+            (Some(FixedArray([x, ..])), "slides") => {
                 Err(reader.error(x, "key 'table.centre' goes with 'turns' only"))
             }
-            (_, "slides") => Ok(Link::slide(axis, unit, sign)),
+            (_, "slides") => Ok(AxisLink::slide(axis, unit, sign)),
             (Some(centre), _) => {
-                Ok(Link::turn(axis, unit, Point3::from(lengths(reader, "table.centre", centre)?), sign))
+                Ok(AxisLink::turn(axis, unit, Point3::from(lengths(reader, "table.centre", centre)?), sign))
             }
-            (None, _) => Ok(Link::turn(axis, unit, origin, sign)),
+            (None, _) => Ok(AxisLink::turn(axis, unit, origin, sign)),
         }
     }
 }

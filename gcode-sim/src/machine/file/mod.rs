@@ -29,8 +29,8 @@ use wheel::FileWheel;
 use super::{Chain, Head, HeadKind, Machine, Tool};
 use crate::control::{Dialect, Increment};
 use crate::job::JobError;
-use crate::job::reader::{Exactly, Reader, Spanned, names};
-use crate::motion::{Axes, Axis};
+use crate::job::reader::{FixedArray, Reader, Spanned, names};
+use crate::motion::{Axes, AxisIndex};
 
 /// The machine that a program runs on. Every section may be left out: without any it is that of the paper.
 #[derive(Deserialize, JsonSchema)]
@@ -141,9 +141,9 @@ fn length(reader: &Reader<'_>, key: &str, value: &Spanned<f64>) -> Result<f64, J
 fn lengths(
     reader: &Reader<'_>,
     key: &str,
-    values: &Exactly<Spanned<f64>, 3>,
+    values: &FixedArray<Spanned<f64>, 3>,
 ) -> Result<Vector3<f64>, JobError> {
-    let Exactly([x, y, z]) = values;
+    let FixedArray([x, y, z]) = values;
     Ok(Vector3::new(length(reader, key, x)?, length(reader, key, y)?, length(reader, key, z)?))
 }
 
@@ -155,7 +155,12 @@ fn sign(reader: &Reader<'_>, key: &str, value: &Spanned<i64>) -> Result<f64, Job
     }
 }
 
-fn letter(reader: &Reader<'_>, key: &str, value: &Spanned<String>, axes: &Axes) -> Result<Axis, JobError> {
+fn letter(
+    reader: &Reader<'_>,
+    key: &str,
+    value: &Spanned<String>,
+    axes: &Axes,
+) -> Result<AxisIndex, JobError> {
     let found = match value.as_ref().as_bytes() {
         [letter] => axes.find(*letter),
         _ => None,
@@ -181,7 +186,7 @@ impl FileControl {
 mod tests {
     use nalgebra::Point3;
 
-    use super::super::{Link, LinkMotion, Placement};
+    use super::super::{AxisLink, LinkMotion, Placement};
     use super::*;
     use crate::units::Deg;
 
@@ -224,7 +229,7 @@ tilt = [0.0, 0.0, 1.0]
         let machine = Machine::parse(text).unwrap();
         assert_eq!(machine.axes.len(), 5);
         let centre = Point3::new(1.0, 2.5, 3.0);
-        assert_eq!(machine.table.0, [Link::turn(3, Vector3::x_axis(), centre, -1.0)]);
+        assert_eq!(machine.table.0, [AxisLink::turn(3, Vector3::x_axis(), centre, -1.0)]);
         assert_eq!(machine.head.kind, HeadKind::Axis { axis: 4, sign: -1.0, zero: Deg(90.0) });
         assert_eq!(machine.head.pivot, 120.0);
         assert_eq!(machine.tools, [Tool { number: 12, length: Some(80.5), diameter: Some(6.0) }]);

@@ -5,7 +5,7 @@ use serde::Deserialize;
 
 use super::lengths;
 use crate::job::JobError;
-use crate::job::reader::{Exactly, Reader, Spanned};
+use crate::job::reader::{FixedArray, Reader, Spanned};
 use crate::machine::Placement;
 use crate::units::Deg;
 
@@ -15,13 +15,13 @@ use crate::units::Deg;
 pub(super) struct FilePart {
     /// The part's origin in machine coordinates with the table at 0, mm.
     #[schemars(inner(range(min = -100_000.0, max = 100_000.0)))]
-    origin: Option<Exactly<Spanned<f64>, 3>>,
+    origin: Option<FixedArray<Spanned<f64>, 3>>,
     /// Where the real part stands against that, mm.
     #[schemars(inner(range(min = -100_000.0, max = 100_000.0)))]
-    shift: Option<Exactly<Spanned<f64>, 3>>,
+    shift: Option<FixedArray<Spanned<f64>, 3>>,
     /// How it is turned, about x, then y, then z, degrees.
     #[schemars(inner(range(min = -360.0, max = 360.0)))]
-    tilt: Option<Exactly<Spanned<f64>, 3>>,
+    tilt: Option<FixedArray<Spanned<f64>, 3>>,
 }
 
 impl FilePart {

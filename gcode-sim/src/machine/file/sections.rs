@@ -5,9 +5,9 @@ use serde::Deserialize;
 use super::spread::{ANGLE, FileSpread, FileVector, Kind, LENGTH};
 use crate::job::JobError;
 use crate::job::reader::{Reader, Spanned};
-use crate::machine::sources::{Quantity, Source};
+use crate::machine::sources::{ErrorSource, Quantity};
 use crate::machine::{HeadKind, Machine};
-use crate::motion::Axis;
+use crate::motion::AxisIndex;
 
 /// The set-up of the part.
 #[derive(Deserialize, JsonSchema)]
@@ -78,7 +78,7 @@ pub(super) struct Collector<'r, 'm> {
     pub(super) machine: &'m Machine,
     /// `errors.` in a machine file.
     pub(super) before: &'static str,
-    pub(super) found: Vec<Source>,
+    pub(super) found: Vec<ErrorSource>,
 }
 
 impl Collector<'_, '_> {
@@ -95,7 +95,7 @@ impl Collector<'_, '_> {
         if let Some(lacking) = self.lacking(quantity) {
             return Err(self.reader.error(spread, format!("key '{key}': {lacking}")));
         }
-        self.found.push(Source { quantity, spread: spread_checked });
+        self.found.push(ErrorSource { quantity, spread: spread_checked });
         Ok(())
     }
 
@@ -124,7 +124,7 @@ impl Collector<'_, '_> {
         for (letter, spread) in [(b'X', &linear.x), (b'Y', &linear.y), (b'Z', &linear.z)] {
             let Some(written) = spread else { continue };
             let name = char::from(letter).to_ascii_lowercase();
-            let axis: Option<Axis> =
+            let axis: Option<AxisIndex> =
                 self.machine.axes.find(letter).filter(|axis| self.machine.carries(*axis));
             let Some(axis) = axis else {
                 let message =

@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use crate::job::JobError;
 use crate::job::reader::{Reader, Spanned};
-use crate::machine::error::Spread;
+use crate::machine::error::Distribution;
 
 /// How an error is distributed: one of the three.
 #[derive(Deserialize, JsonSchema)]
@@ -71,15 +71,15 @@ impl FileSpread {
         key: &str,
         at: usize,
         kind: Kind,
-    ) -> Result<Spread, JobError> {
+    ) -> Result<Distribution, JobError> {
         let Kind { allowed, most } = kind;
         let number = |name: &str, value: &Spanned<f64>, least: f64| {
             reader.number(&format!("{key}.{name}"), value, allowed, |v| least <= v && v <= most)
         };
         match (&self.fixed, &self.normal, &self.uniform) {
-            (Some(value), None, None) => Ok(Spread::Fixed(number("fixed", value, -most)?)),
-            (None, Some(deviation), None) => Ok(Spread::Normal(number("normal", deviation, 0.0)?)),
-            (None, None, Some(half)) => Ok(Spread::Uniform(number("uniform", half, 0.0)?)),
+            (Some(value), None, None) => Ok(Distribution::Fixed(number("fixed", value, -most)?)),
+            (None, Some(deviation), None) => Ok(Distribution::Normal(number("normal", deviation, 0.0)?)),
+            (None, None, Some(half)) => Ok(Distribution::Uniform(number("uniform", half, 0.0)?)),
             _ => {
                 let message = format!(
                     "key '{key}' has one of normal (standard deviation), uniform (plus and minus), fixed"

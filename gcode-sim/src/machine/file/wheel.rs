@@ -5,7 +5,7 @@ use serde::Deserialize;
 
 use super::{ROTARY_LETTERS, lengths, letter, sign};
 use crate::job::JobError;
-use crate::job::reader::{Exactly, Reader, Spanned};
+use crate::job::reader::{FixedArray, Reader, Spanned};
 use crate::machine::{Chain, Head, HeadKind, Wheel};
 use crate::motion::Axes;
 
@@ -16,7 +16,7 @@ use crate::motion::Axes;
 pub(super) struct FileWheel {
     /// Where it touches, machine coordinates, mm.
     #[schemars(inner(range(min = -100_000.0, max = 100_000.0)))]
-    contact: Exactly<Spanned<f64>, 3>,
+    contact: FixedArray<Spanned<f64>, 3>,
     /// The axis that swivels it about that point, A, B or C [default: none].
     #[schemars(extend("enum" = ROTARY_LETTERS))]
     letter: Option<Spanned<String>>,

@@ -5,7 +5,7 @@
 //! into strips, one below the other, so that holes are as large as the sheet allows.
 use super::super::measure::{bar_length, plain};
 use super::super::role::{Pen, Point};
-use super::super::scene::{Axis, LegendItem, Mark, Misfit, Sample, Scene, Shape, Stroke, Title};
+use super::super::scene::{Axis, LegendItem, Mark, Sample, Scene, Shape, Stroke, Title, ZoneDeviation};
 use super::side::off;
 use super::top::{Cylinder, DrawnHole, NUMBERED, TopView, headline, number_few, standings, turn_name, worst};
 use crate::part::hole::Hole;
@@ -208,19 +208,19 @@ fn marks_along(end: f64, least: f64) -> Vec<f64> {
 }
 
 /// Actual − nominal along the circumference and along x.
-fn misfit(nominal: &Hole, found: &Hole) -> Option<Misfit> {
+fn misfit(nominal: &Hole, found: &Hole) -> Option<ZoneDeviation> {
     let azimuth = Deg::atan2(nominal.axis[1], nominal.axis[2]);
     let end = |depth: f64| {
         let off = off(nominal, found, depth)?;
         Some([off.y * azimuth.cos() - off.z * azimuth.sin(), 0.0 - off.x])
     };
-    Some(Misfit { entry: end(0.0)?, bottom: end(nominal.depth)? })
+    Some(ZoneDeviation { entry: end(0.0)?, bottom: end(nominal.depth)? })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::picture::role::Standing;
+    use crate::picture::role::HoleStatus;
 
     fn hole(x: f64, azimuth: f64, radius: f64) -> Hole {
         let (s, c) = (Deg(azimuth).sin(), Deg(azimuth).cos());
@@ -233,7 +233,7 @@ mod tests {
             id: "1".to_owned(),
             nominal: Some(nominal),
             found: Some(found),
-            standing: Standing::Good,
+            standing: HoleStatus::Good,
             phi: None,
             turn: None,
             remarks: Vec::new(),

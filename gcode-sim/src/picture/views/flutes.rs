@@ -2,7 +2,7 @@
 //!
 //! From the side x points to the right and y up, so the tip is at the left, as on the machine. From the tip z points to
 //! the right and y up.
-use super::super::role::{Pen, Point, Standing};
+use super::super::role::{HoleStatus, Pen, Point};
 use super::super::scene::{Axis, LegendItem, Mark, Sample, Scene, Shape, Stroke, Title};
 use super::helix::HelixCourses;
 
@@ -11,7 +11,7 @@ use super::helix::HelixCourses;
 pub struct FluteView {
     /// Of the program.
     pub name: String,
-    pub verdict: (Standing, String),
+    pub verdict: (HoleStatus, String),
     /// Further lines of the title block.
     pub lines: Vec<String>,
     /// Along the axis and away from it, from the shank's end of the flutes to the pole.
@@ -19,7 +19,7 @@ pub struct FluteView {
     /// Of the circle at which the flutes end.
     pub tip_radius: f64,
     /// Of each pass, in the order in which they are ground.
-    pub flutes: Vec<Vec<Spot>>,
+    pub flutes: Vec<Vec<FlutePoint>>,
     pub faults: Vec<Fault>,
     pub helix: HelixCourses,
 }
@@ -27,17 +27,17 @@ pub struct FluteView {
 /// Where something is wrong.
 #[derive(Clone, Debug)]
 pub struct Fault {
-    pub spot: Spot,
+    pub spot: FlutePoint,
     /// Counted from 0; none where no pass is.
     pub pass: Option<usize>,
-    pub standing: Standing,
+    pub standing: HoleStatus,
     /// What is wrong there, each in few words; empty where another mark of the same finding says it.
     pub what: Vec<&'static str>,
 }
 
 /// A point of a flute in the part's frame, and the direction out of the surface there.
 #[derive(Clone, Copy, Debug)]
-pub struct Spot {
+pub struct FlutePoint {
     pub at: [f64; 3],
     pub out: [f64; 3],
 }
@@ -46,7 +46,7 @@ pub struct Spot {
 const FACING: f64 = 1e-6;
 
 pub fn side_view(view: &FluteView) -> Scene {
-    let seen = Seen { place: |[x, y, _]| [x, y], towards: |[_, _, z]| z };
+    let seen = Viewpoint { place: |[x, y, _]| [x, y], towards: |[_, _, z]| z };
     let mut strokes = seen.flutes(view);
     let below = view.outline.iter().rev().map(|[x, r]| [*x, -r]);
     let mut outline: Vec<Point> = view.outline.iter().copied().chain(below).collect();
@@ -58,7 +58,7 @@ pub fn side_view(view: &FluteView) -> Scene {
 }
 
 pub fn tip_view(view: &FluteView) -> Scene {
-    let seen = Seen { place: |[_, y, z]| [z, y], towards: |[x, _, _]| -x };
+    let seen = Viewpoint { place: |[_, y, z]| [z, y], towards: |[x, _, _]| -x };
     let mut strokes = seen.flutes(view);
     let circle = |radius: f64, pen: Pen| Stroke {
         shape: Shape::Circle { centre: [0.0, 0.0], radius },
@@ -79,20 +79,20 @@ fn axis(name: &str, direction: Point) -> Axis {
 }
 
 /// From where the burr is looked at.
-struct Seen {
+struct Viewpoint {
     /// A point of the part on the sheet.
     place: fn([f64; 3]) -> Point,
     /// How much of a direction comes towards the reader.
     towards: fn([f64; 3]) -> f64,
 }
 
-impl Seen {
+impl Viewpoint {
     /// The stretches of the flutes whose surface faces the reader, and all of a flute with a fault; the longest that is
     /// seen of each pass has its number.
     fn flutes(&self, view: &FluteView) -> Vec<Stroke> {
         let mut strokes = Vec::new();
         for (pass, flute) in view.flutes.iter().enumerate() {
-            let faces = |spot: &Spot| FACING < (self.towards)(spot.out);
+            let faces = |spot: &FlutePoint| FACING < (self.towards)(spot.out);
             let stretches = || {
                 let all = flute.chunk_by(|one, other| faces(one) == faces(other));
                 all.filter(|stretch| 1 < stretch.len()).map(|stretch| (stretch, faces(&stretch[0])))
@@ -144,11 +144,11 @@ fn item(sample: Sample, text: &str) -> LegendItem {
 
 /// All but the axes and the marks.
 fn scene(view: &FluteView, what: &str, strokes: Vec<Stroke>) -> Scene {
-    let is_there = |standing: Standing| view.faults.iter().any(|fault| fault.standing == standing);
+    let is_there = |standing: HoleStatus| view.faults.iter().any(|fault| fault.standing == standing);
     let signs = [
-        (Standing::Bad, "Fault, where it is worst"),
-        (Standing::Missing, "Place of a missing flute"),
-        (Standing::Extra, "Flute nobody asked for"),
+        (HoleStatus::Bad, "Fault, where it is worst"),
+        (HoleStatus::Missing, "Place of a missing flute"),
+        (HoleStatus::Extra, "Flute nobody asked for"),
     ];
     let signs = signs.into_iter().filter(|(standing, _)| is_there(*standing));
     let mut legend: Vec<LegendItem> =
@@ -181,10 +181,10 @@ mod tests {
     use super::*;
 
     fn view(out: [[f64; 3]; 4]) -> FluteView {
-        let spot = |(n, out): (usize, [f64; 3])| Spot { at: [n as f64, 1.0, 2.0], out };
+        let spot = |(n, out): (usize, [f64; 3])| FlutePoint { at: [n as f64, 1.0, 2.0], out };
         FluteView {
             name: "b".to_owned(),
-            verdict: (Standing::Good, "PASS".to_owned()),
+            verdict: (HoleStatus::Good, "PASS".to_owned()),
             lines: Vec::new(),
             outline: vec![[5.0, 2.0], [0.0, 2.0], [-2.0, 0.0]],
             tip_radius: 0.5,

@@ -1,6 +1,6 @@
 //! The helix angle along the flutes: as ground, as asked for with what is allowed, and how far off that.
-use super::super::chart::{Chart, Curve, Graph, Sign};
-use super::super::role::{Pen, Point, Standing};
+use super::super::chart::{Chart, ChartMarker, Curve, Graph};
+use super::super::role::{HoleStatus, Pen, Point};
 use super::super::scene::{LegendItem, Sample, Scene, Title};
 use super::flutes::FluteView;
 
@@ -126,13 +126,13 @@ impl HelixCourses {
         (self.tolerance < worst.off().abs()).then_some(worst)
     }
 
-    fn sign(&self, value: impl Fn(&HelixAt) -> f64) -> Option<Sign> {
+    fn sign(&self, value: impl Fn(&HelixAt) -> f64) -> Option<ChartMarker> {
         let worst = self.fault(self.passes.get(self.worst)?)?;
         let others = self.passes.iter().filter(|pass| self.fault(pass).is_some()).count() - 1;
         let more = if others == 0 { String::new() } else { format!(", and {others} more") };
-        Some(Sign {
+        Some(ChartMarker {
             at: [worst.way, value(&worst)],
-            standing: Standing::Bad,
+            standing: HoleStatus::Bad,
             name: format!("pass {}{more}", self.worst + 1),
         })
     }
@@ -142,7 +142,7 @@ impl HelixCourses {
         let pen = |pen: Pen, text: String| Some(LegendItem { sample: Sample::Pen(pen), text });
         let is_ground = !self.passes.is_empty();
         let fault = self.sign(|at| at.found).map(|_| LegendItem {
-            sample: Sample::Standing(Standing::Bad),
+            sample: Sample::Standing(HoleStatus::Bad),
             text: "Fault: farther off than allowed".to_owned(),
         });
         let worst = format!("Pass {}, the farthest off the law", self.worst + 1);

@@ -2,6 +2,6 @@
 pub(super) mod development;
 pub(super) mod flutes;
 pub(super) mod helix;
-pub(super) mod question;
+pub(super) mod purpose;
 pub(super) mod side;
 pub(super) mod top;

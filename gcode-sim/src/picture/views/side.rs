@@ -2,7 +2,7 @@
 use nalgebra::{UnitQuaternion, Vector3};
 
 use super::super::role::Point;
-use super::super::scene::{Axis, Misfit};
+use super::super::scene::{Axis, ZoneDeviation};
 use crate::part::hole::Hole;
 
 /// The direction that comes towards the reader.
@@ -59,13 +59,13 @@ impl Side {
 
     /// Actual − nominal across the nominal axis, which is turned the shortest way into the line of sight: so a
     /// deviation keeps its length, and the zone is a circle for steep holes too.
-    pub(super) fn misfit(self, nominal: &Hole, found: &Hole) -> Option<Misfit> {
+    pub(super) fn misfit(self, nominal: &Hole, found: &Hole) -> Option<ZoneDeviation> {
         let (axis, towards) = (Vector3::from(nominal.axis), self.towards());
         // A hole drilled from behind is looked at through the part: turned round, it would be off to the wrong side.
         let towards = if axis.dot(&towards) < 0.0 { -towards } else { towards };
         let turn = UnitQuaternion::rotation_between(&axis, &towards).unwrap_or_default();
         let end = |depth: f64| Some(self.seen((turn * off(nominal, found, depth)?).into()));
-        Some(Misfit { entry: end(0.0)?, bottom: end(nominal.depth)? })
+        Some(ZoneDeviation { entry: end(0.0)?, bottom: end(nominal.depth)? })
     }
 }
 

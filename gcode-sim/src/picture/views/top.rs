@@ -2,9 +2,9 @@
 use nalgebra::Vector3;
 
 use super::super::measure::plain;
-use super::super::role::{Pen, Point, Standing};
+use super::super::role::{HoleStatus, Pen, Point};
 use super::super::scene::{LegendItem, Mark, Sample, Scene, Shape, Stroke, Title};
-use super::question::Question;
+use super::purpose::PicturePurpose;
 use super::side::Side;
 use crate::part::hole::Hole;
 
@@ -27,7 +27,7 @@ pub struct TopView {
     pub backwards: bool,
     pub holes: Vec<DrawnHole>,
     /// What the holes are held against.
-    pub question: Question,
+    pub question: PicturePurpose,
     /// How many differences of two revisions no hole shows.
     pub others: usize,
     /// That they end differently.
@@ -56,7 +56,7 @@ pub struct DrawnHole {
     pub id: String,
     pub nominal: Option<Hole>,
     pub found: Option<Hole>,
-    pub standing: Standing,
+    pub standing: HoleStatus,
     /// Position as ISO 1101 has it (diameter), mm.
     pub phi: Option<f64>,
     /// Where the rotary axis stands while the hole is made, degrees.
@@ -119,7 +119,7 @@ const MOST_CIRCLES: usize = 12;
 pub fn top_view(view: &TopView) -> Scene {
     let (near, far): (Vec<_>, Vec<_>) = view.holes.iter().partition(|hole| faces_reader(hole, view));
     let mut marks: Vec<Mark> = near.into_iter().filter_map(|hole| mark(hole, view)).collect();
-    if view.cylinder.is_some() || view.question == Question::Change {
+    if view.cylinder.is_some() || view.question == PicturePurpose::Change {
         number_few(&mut marks);
     }
     let mut strokes: Vec<Stroke> = view.path.iter().filter_map(|piece| path(piece, view.side)).collect();
@@ -142,7 +142,7 @@ pub fn top_view(view: &TopView) -> Scene {
     let title = Title {
         name: view.name.clone(),
         view: format!("Top view, seen from {}", view.side.name()),
-        position: view.tolerance.filter(|_| view.question == Question::Verdict),
+        position: view.tolerance.filter(|_| view.question == PicturePurpose::Verdict),
         verdict: headline(view),
         lines: worst(view).into_iter().chain(view.lines.iter().cloned()).chain(hidden).collect(),
         caution: "Predicted by simulation, not measured".to_owned(),
@@ -190,11 +190,11 @@ pub(super) fn label(hole: &DrawnHole, view: &TopView) -> Vec<String> {
     let turn = hole.turn.map(|turn| format!("{} {}°", view.rotary, signed(turn, 3)));
     let phi = hole.phi.filter(|phi| view.question.tells(*phi, 3)).map(|phi| format!("Φ{phi:.3}"));
     let words = match hole.standing {
-        Standing::Missing | Standing::Extra => vec![view.question.word(hole.standing).to_owned()],
-        Standing::Good | Standing::Bad | Standing::Unjudged => hole.remarks.clone(),
+        HoleStatus::Missing | HoleStatus::Extra => vec![view.question.word(hole.standing).to_owned()],
+        HoleStatus::Good | HoleStatus::Bad | HoleStatus::Unjudged => hole.remarks.clone(),
     };
     label.extend(words);
-    if hole.standing == Standing::Good {
+    if hole.standing == HoleStatus::Good {
         label.extend([turn, phi].into_iter().flatten());
     } else {
         label.extend([phi, turn].into_iter().flatten());
@@ -244,13 +244,13 @@ fn signed(number: f64, places: usize) -> String {
     if text == "-0" { "0".to_owned() } else { text.replace('-', "−") }
 }
 
-fn count(holes: &[DrawnHole], standing: Standing) -> usize {
+fn count(holes: &[DrawnHole], standing: HoleStatus) -> usize {
     holes.iter().filter(|h| h.standing == standing).count()
 }
 
-pub(super) fn headline(view: &TopView) -> Option<(Standing, String)> {
+pub(super) fn headline(view: &TopView) -> Option<(HoleStatus, String)> {
     let of = |standing| count(&view.holes, standing);
-    let counts = [Standing::Good, Standing::Bad, Standing::Missing, Standing::Extra].map(of);
+    let counts = [HoleStatus::Good, HoleStatus::Bad, HoleStatus::Missing, HoleStatus::Extra].map(of);
     let (standing, words) = view.question.headline(counts, view.others)?;
     Some((standing, view.ends.iter().cloned().chain([words]).collect::<Vec<_>>().join("; ")))
 }
@@ -266,9 +266,10 @@ pub(super) fn worst(view: &TopView) -> Option<String> {
 
 /// The signs that are drawn, for the legend.
 pub(super) fn standings(view: &TopView) -> Vec<LegendItem> {
-    let all = [Standing::Good, Standing::Bad, Standing::Missing, Standing::Extra, Standing::Unjudged];
+    let all =
+        [HoleStatus::Good, HoleStatus::Bad, HoleStatus::Missing, HoleStatus::Extra, HoleStatus::Unjudged];
     let drawn = all.into_iter().filter(|standing| 0 < count(&view.holes, *standing));
-    let item = |standing: Standing| LegendItem {
+    let item = |standing: HoleStatus| LegendItem {
         sample: Sample::Standing(standing),
         text: view.question.legend(standing).to_owned(),
     };
@@ -319,7 +320,7 @@ mod tests {
             id: "1".to_owned(),
             nominal: Some(nominal),
             found: Some(found),
-            standing: Standing::Good,
+            standing: HoleStatus::Good,
             phi: Some(0.02),
             turn: Some(-72.0),
             remarks: Vec::new(),

@@ -4,7 +4,7 @@ use maud::{Markup, html};
 use super::lines::Lines;
 use super::words::shown;
 use super::{Difference, MOST_CHANGES, Side, listed};
-use crate::changes::{Unexecuted, Where};
+use crate::changes::{BlockLocation, UnexecutedChange};
 
 pub(super) fn changes(difference: &Difference<'_>, sides: &[Side<'_>]) -> Markup {
     let all = &difference.compared.changes;
@@ -30,7 +30,7 @@ pub(super) fn changes(difference: &Difference<'_>, sides: &[Side<'_>]) -> Markup
             h3 #unexecuted { "Changed blocks that neither run executed" }
             p.note { "Nothing is known of what they do: a guard that wasn't needed, a way that wasn't gone." }
             ol.changes {
-                @for Unexecuted { old, new } in listed(difference.unexecuted) {
+                @for UnexecutedChange { old, new } in listed(difference.unexecuted) {
                     li { (both(old, new, sides)) }
                 }
             }
@@ -42,7 +42,7 @@ pub(super) fn changes(difference: &Difference<'_>, sides: &[Side<'_>]) -> Markup
 }
 
 /// The block before and now.
-fn both(old: &Option<Where>, new: &Option<Where>, sides: &[Side<'_>]) -> Markup {
+fn both(old: &Option<BlockLocation>, new: &Option<BlockLocation>, sides: &[Side<'_>]) -> Markup {
     let of = |word: &str| sides.iter().find(|side| side.word == word).map(|side| side.lines);
     html! {
         @for (word, place) in [("old", old), ("new", new)] {
@@ -54,14 +54,14 @@ fn both(old: &Option<Where>, new: &Option<Where>, sides: &[Side<'_>]) -> Markup 
 }
 
 /// A block and the calls that led to it, each a link to its line.
-pub(super) fn chain(place: &Where, lines: &Lines) -> Markup {
+pub(super) fn chain(place: &BlockLocation, lines: &Lines) -> Markup {
     html! {
         (block(place, lines))
         @for call in &place.calls { div.call { "called from " (block(call, lines)) } }
     }
 }
 
-fn block(place: &Where, lines: &Lines) -> Markup {
+fn block(place: &BlockLocation, lines: &Lines) -> Markup {
     let name = format!("{}:{}", shown(&place.program), place.line);
     html! {
         @match lines.of_place(place) {

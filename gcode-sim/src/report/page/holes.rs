@@ -3,7 +3,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use maud::{Markup, html};
 
-use super::rows::{Row, State, found_rows, judged_rows, paired_rows, tools_of};
+use super::rows::{HoleRowState, HoleTableRow, found_rows, judged_rows, paired_rows, tools_of};
 use super::words::count;
 use super::{Page, Side};
 
@@ -18,7 +18,7 @@ const MOST_ROWS: usize = 5_000;
 #[derive(Debug)]
 pub(super) struct HoleTable {
     columns: Vec<String>,
-    rows: Vec<Row>,
+    rows: Vec<HoleTableRow>,
     /// Rows that aren't on the page.
     cut: usize,
 }
@@ -44,7 +44,7 @@ impl HoleTable {
     }
 
     /// Which row a hole of a side stands in, its name and its state.
-    pub(super) fn of_side(&self, place: usize) -> BTreeMap<usize, (usize, &str, State)> {
+    pub(super) fn of_side(&self, place: usize) -> BTreeMap<usize, (usize, &str, HoleRowState)> {
         let rows = self.rows.iter().enumerate();
         rows.filter_map(|(number, row)| Some((row.holes[place]?, (number, row.id.as_str(), row.state))))
             .collect()
@@ -98,7 +98,7 @@ impl HoleTable {
     }
 }
 
-impl Row {
+impl HoleTableRow {
     fn markup(&self, number: usize, more: bool) -> Markup {
         let to = self.cells.iter().rev().find_map(|cell| cell.links.first()).map(|(anchor, _)| anchor);
         html! {

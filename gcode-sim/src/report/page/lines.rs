@@ -2,7 +2,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::words::shown;
-use crate::changes::Where;
+use crate::changes::BlockLocation;
 use crate::session::Run;
 use crate::source::{SourceId, Span};
 
@@ -55,7 +55,7 @@ impl Lines {
     }
 
     /// The line that a place means, and whose text holds the block: two files without an O number are both `MAIN`.
-    pub(super) fn of_place(&self, place: &Where) -> Option<(SourceId, u32)> {
+    pub(super) fn of_place(&self, place: &BlockLocation) -> Option<(SourceId, u32)> {
         let block = shown(&place.block);
         let holds = |source: &&SourceId| {
             let text = self.texts.iter().find(|text| text.source == **source);

@@ -10,14 +10,14 @@ use super::words::{count, value};
 use super::{Page, Side, heading};
 use crate::changes::common_lines;
 use crate::exec::Value;
-use crate::session::{Executed, Role, Values};
+use crate::session::{Executed, Values, VariableRole};
 use crate::source::SourceId;
 
 /// So many rows of all programs together; of longer ones those lines as well that something on the page leads to.
 const MOST_ROWS: usize = 5_000;
 
 /// What was executed of one side, by text and line.
-struct Done<'a> {
+struct ExecutedLines<'a> {
     blocks: BTreeMap<(SourceId, u32), Vec<&'a Executed>>,
     /// Operator stops that the other side doesn't make in the same way: how, and how many.
     stops: BTreeMap<(SourceId, u32), (&'static str, u64)>,
@@ -32,7 +32,7 @@ type Pair<'a> = Vec<Option<&'a Text>>;
 type Line = Vec<Option<usize>>;
 
 pub(super) fn listing(page: &Page<'_>, sides: &[Side<'_>]) -> Markup {
-    let done: Vec<Done<'_>> = sides.iter().map(|side| executed(page, side)).collect();
+    let done: Vec<ExecutedLines<'_>> = sides.iter().map(|side| executed(page, side)).collect();
     let mut left = MOST_ROWS;
     html! {
         p.note {
@@ -48,7 +48,7 @@ pub(super) fn listing(page: &Page<'_>, sides: &[Side<'_>]) -> Markup {
     }
 }
 
-fn executed<'a>(page: &Page<'_>, side: &Side<'a>) -> Done<'a> {
+fn executed<'a>(page: &Page<'_>, side: &Side<'a>) -> ExecutedLines<'a> {
     let run = &side.seen.revision.simulation.run;
     let sources = run.control.memory().sources();
     let mut blocks: BTreeMap<(SourceId, u32), Vec<&Executed>> = BTreeMap::new();
@@ -69,7 +69,7 @@ fn executed<'a>(page: &Page<'_>, side: &Side<'a>) -> Done<'a> {
         }
     }
     wanted.extend(marked.keys());
-    Done { blocks, stops: marked, wanted }
+    ExecutedLines { blocks, stops: marked, wanted }
 }
 
 /// The texts that belong together: those with the same programs in them, the main programs in any case.
@@ -91,7 +91,7 @@ fn pairs<'a>(sides: &[Side<'a>]) -> Vec<Pair<'a>> {
     pairs
 }
 
-fn program(pair: &Pair<'_>, sides: &[Side<'_>], done: &[Done<'_>], left: &mut usize) -> Markup {
+fn program(pair: &Pair<'_>, sides: &[Side<'_>], done: &[ExecutedLines<'_>], left: &mut usize) -> Markup {
     let Some(named) = pair.iter().rev().flatten().next() else { return html! {} };
     let shown = shown(lines(pair), pair, done, left);
     html! {
@@ -107,8 +107,8 @@ fn program(pair: &Pair<'_>, sides: &[Side<'_>], done: &[Done<'_>], left: &mut us
             }
             @for one in &shown {
                 @match one {
-                    Shown::Line(line) => (row(line, pair, sides, done)),
-                    Shown::Gap(lines) => div.gap {
+                    ListingRow::Line(line) => (row(line, pair, sides, done)),
+                    ListingRow::Gap(lines) => div.gap {
                         (count(*lines)) " lines are left out here: a page holds " (MOST_ROWS)
                         " and those that a hole or a finding leads to"
                     },
@@ -119,29 +119,29 @@ fn program(pair: &Pair<'_>, sides: &[Side<'_>], done: &[Done<'_>], left: &mut us
 }
 
 /// A line, or how many are left out.
-enum Shown {
+enum ListingRow {
     Line(Line),
     Gap(u64),
 }
 
 /// As many lines as are left, and those behind them that something leads to.
-fn shown(lines: Vec<Line>, pair: &Pair<'_>, done: &[Done<'_>], left: &mut usize) -> Vec<Shown> {
-    let mut all: Vec<Shown> = Vec::new();
+fn shown(lines: Vec<Line>, pair: &Pair<'_>, done: &[ExecutedLines<'_>], left: &mut usize) -> Vec<ListingRow> {
+    let mut all: Vec<ListingRow> = Vec::new();
     for line in lines {
         let wanted = || line.iter().zip(pair).zip(done).any(|((at, text), done)| is_wanted(*at, *text, done));
         if *left > 0 || wanted() {
             *left = left.saturating_sub(1);
-            all.push(Shown::Line(line));
-        } else if let Some(Shown::Gap(lines)) = all.last_mut() {
+            all.push(ListingRow::Line(line));
+        } else if let Some(ListingRow::Gap(lines)) = all.last_mut() {
             *lines += 1;
         } else {
-            all.push(Shown::Gap(1));
+            all.push(ListingRow::Gap(1));
         }
     }
     all
 }
 
-fn is_wanted(at: Option<usize>, text: Option<&Text>, done: &Done<'_>) -> bool {
+fn is_wanted(at: Option<usize>, text: Option<&Text>, done: &ExecutedLines<'_>) -> bool {
     at.zip(text).is_some_and(|(at, text)| done.wanted.contains(&(text.source, at as u32 + 1)))
 }
 
@@ -170,14 +170,14 @@ fn lines(pair: &Pair<'_>) -> Vec<Line> {
 }
 
 /// What stands in one half of a row.
-struct Half<'a> {
+struct ListingCell<'a> {
     text: &'a str,
     times: u64,
     values: Vec<String>,
     stop: Option<String>,
 }
 
-fn half<'a>(at: usize, text: &'a Text, done: &Done<'_>) -> Half<'a> {
+fn half<'a>(at: usize, text: &'a Text, done: &ExecutedLines<'_>) -> ListingCell<'a> {
     let executed = done.blocks.get(&(text.source, at as u32 + 1));
     let blocks = executed.into_iter().flatten();
     let mut values: Vec<String> =
@@ -188,7 +188,7 @@ fn half<'a>(at: usize, text: &'a Text, done: &Done<'_>) -> Half<'a> {
         1 => format!("stop {mark}"),
         _ => format!("{} stops {mark}", count(*stops)),
     });
-    Half { text: &text.lines[at], times, values, stop }
+    ListingCell { text: &text.lines[at], times, values, stop }
 }
 
 /// What is read, what is assigned, what is passed.
@@ -200,11 +200,11 @@ fn in_order(values: &[Values]) -> Vec<Values> {
 
 fn said(values: &Values) -> String {
     let (before, sign) = match values.role {
-        Role::Read => ("", ""),
-        Role::Assigned => ("", "← "),
-        Role::Passed => ("→ ", ""),
+        VariableRole::Read => ("", ""),
+        VariableRole::Assigned => ("", "← "),
+        VariableRole::Passed => ("→ ", ""),
     };
-    let word = |one: Value| one.given().map_or_else(|| "vacant".to_owned(), value);
+    let word = |one: Value| one.as_number().map_or_else(|| "vacant".to_owned(), value);
     let (first, last) = (word(values.first), word(values.last));
     let mut text = format!("{before}#{} {sign}{first}", values.number);
     let constant = first == last && values.range.is_none_or(|(low, high)| low == high);
@@ -221,8 +221,8 @@ fn said(values: &Values) -> String {
     text
 }
 
-fn row(line: &Line, pair: &Pair<'_>, sides: &[Side<'_>], done: &[Done<'_>]) -> Markup {
-    let halves: Vec<Option<Half<'_>>> = line
+fn row(line: &Line, pair: &Pair<'_>, sides: &[Side<'_>], done: &[ExecutedLines<'_>]) -> Markup {
+    let halves: Vec<Option<ListingCell<'_>>> = line
         .iter()
         .zip(pair)
         .zip(done)
@@ -248,7 +248,7 @@ fn row(line: &Line, pair: &Pair<'_>, sides: &[Side<'_>], done: &[Done<'_>]) -> M
     }
 }
 
-fn half_of(half: &Half<'_>, line: u32, text: &Text, side: &Side<'_>) -> Markup {
+fn half_of(half: &ListingCell<'_>, line: u32, text: &Text, side: &Side<'_>) -> Markup {
     html! {
         div.half.(side.word).done[half.times > 0] id=(side.lines.anchor(text.source, line)) tabindex="-1" {
             span.line { (line) }
@@ -285,14 +285,14 @@ mod tests {
         let number = Value::Number;
         let one = Values {
             number: 7,
-            role: Role::Read,
+            role: VariableRole::Read,
             times: 1,
             first: number(2.5),
             last: number(2.5),
             range: Some((2.5, 2.5)),
         };
         assert_eq!(said(&one), "#7 2.5");
-        assert_eq!(said(&Values { role: Role::Assigned, ..one }), "#7 ← 2.5");
+        assert_eq!(said(&Values { role: VariableRole::Assigned, ..one }), "#7 ← 2.5");
         let several = Values { times: 4, last: number(1.0), range: Some((1.0, 2.5)), ..one };
         assert_eq!(said(&several), "#7 2.5 … 1 (4×)");
         assert_eq!(said(&Values { range: Some((-3.0, 2.5)), ..several }), "#7 2.5 … 1 (4×, from -3 to 2.5)");

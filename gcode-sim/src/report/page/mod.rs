@@ -6,16 +6,16 @@ mod facts;
 mod holes;
 mod lines;
 mod listing;
+mod messages;
 mod path;
 mod proof;
 mod rows;
 mod stops;
-mod told;
 mod words;
 
 use maud::{Markup, html};
 
-use crate::changes::{Compared, Revision, Unexecuted};
+use crate::changes::{Revision, RevisionDiff, UnexecutedChange};
 use crate::machine::Machine;
 use crate::part::reference::Reference;
 use crate::session::{Request, Trace};
@@ -29,7 +29,7 @@ const MOST_CHANGES: usize = 500;
 
 /// One program with all that was seen of its run.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen<'a> {
+pub struct ObservedProgram<'a> {
     pub request: &'a Request,
     pub revision: &'a Revision,
     pub trace: &'a Trace,
@@ -49,8 +49,8 @@ pub struct Document {
 /// What two revisions do differently, and what counts as the same, mm or degrees.
 #[derive(Clone, Copy, Debug)]
 pub struct Difference<'a> {
-    pub compared: &'a Compared,
-    pub unexecuted: &'a [Unexecuted],
+    pub compared: &'a RevisionDiff,
+    pub unexecuted: &'a [UnexecutedChange],
     pub tolerance: f64,
 }
 
@@ -58,8 +58,8 @@ pub struct Difference<'a> {
 #[derive(Clone, Copy, Debug)]
 pub struct Page<'a> {
     /// The old revision, where two are compared.
-    pub old: Option<(Seen<'a>, Difference<'a>)>,
-    pub new: Seen<'a>,
+    pub old: Option<(ObservedProgram<'a>, Difference<'a>)>,
+    pub new: ObservedProgram<'a>,
     pub machine: &'a Machine,
     pub reference: Option<&'a Reference>,
     /// The flags that the run depends on, as they were given.
@@ -72,7 +72,7 @@ pub struct Page<'a> {
 struct Side<'a> {
     /// `old` and `new`; a program alone is `new`.
     word: &'static str,
-    seen: Seen<'a>,
+    seen: ObservedProgram<'a>,
     lines: &'a Lines,
 }
 
@@ -114,7 +114,7 @@ impl Page<'_> {
                     (path::viewer(&sides, &data))
                     (listing::listing(self, &sides))
                 }))
-                (section("told", "Stops, alarms and findings", told::told(self, &sides)))
+                (section("told", "Stops, alarms and findings", messages::messages(self, &sides)))
                 (section("proof", "What this rests on", proof::proof(self, &sides)))
                 (section("signatures", "Signatures", proof::signatures()))
             }
@@ -122,13 +122,13 @@ impl Page<'_> {
         document(&self.title(), &body, &data)
     }
 
-    fn seen(&self) -> Vec<(&'static str, Seen<'_>)> {
+    fn seen(&self) -> Vec<(&'static str, ObservedProgram<'_>)> {
         let old = self.old.map(|(seen, _)| ("old", seen));
         old.into_iter().chain([("new", self.new)]).collect()
     }
 
     fn title(&self) -> String {
-        let name = |seen: &Seen<'_>| words::shown(&seen.request.name);
+        let name = |seen: &ObservedProgram<'_>| words::shown(&seen.request.name);
         match &self.old {
             Some((old, _)) => format!("Review of {} against {}", name(&self.new), name(old)),
             None => format!("Review of {}", name(&self.new)),

@@ -4,15 +4,15 @@ use std::collections::BTreeMap;
 use super::words::shown;
 use super::{Side, heading};
 use crate::changes::Paired;
-use crate::holes::Found;
+use crate::holes::DrilledHole;
 use crate::part::reference::Reference;
 use crate::report::figures::{near, signed};
 use crate::report::hole_changes::{self, remarks};
-use crate::verify::{Extra, HoleVerdict, Verdict};
+use crate::verify::{ExtraHole, HoleVerdict, Verdict};
 
 /// What is to be said of a hole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum State {
+pub(super) enum HoleRowState {
     Bad,
     Missing,
     Extra,
@@ -24,7 +24,7 @@ pub(super) enum State {
     Unjudged,
 }
 
-impl State {
+impl HoleRowState {
     /// As a class of the page's style and a word of its data.
     pub(super) fn class(self) -> &'static str {
         match self {
@@ -68,9 +68,9 @@ impl Cell {
 }
 
 #[derive(Clone, Debug)]
-pub(super) struct Row {
+pub(super) struct HoleTableRow {
     pub id: String,
-    pub state: State,
+    pub state: HoleRowState,
     pub words: String,
     pub cells: Vec<Cell>,
     /// The hole of each side, counted from 0.
@@ -78,7 +78,7 @@ pub(super) struct Row {
 }
 
 /// The block that finished a hole and the one that called its program.
-fn made_by(side: &Side<'_>, found: &Found) -> Cell {
+fn made_by(side: &Side<'_>, found: &DrilledHole) -> Cell {
     let run = &side.seen.revision.simulation.run;
     let mut links = Vec::new();
     let calls = found.place.calls.as_ref().map(|call| call.from);
@@ -90,7 +90,7 @@ fn made_by(side: &Side<'_>, found: &Found) -> Cell {
     Cell { text, value: None, links }
 }
 
-fn found<'a>(side: &Side<'a>, hole: usize) -> &'a Found {
+fn found<'a>(side: &Side<'a>, hole: usize) -> &'a DrilledHole {
     &side.seen.revision.simulation.extracted.holes[hole]
 }
 
@@ -115,7 +115,7 @@ pub(super) fn tools_of(sides: &[Side<'_>]) -> Vec<Vec<Vec<u32>>> {
 }
 
 /// What a hole is: where, how deep, how wide, by which tools.
-fn described(found: Option<&Found>, tools: &[u32]) -> Vec<Cell> {
+fn described(found: Option<&DrilledHole>, tools: &[u32]) -> Vec<Cell> {
     let entry = |axis: usize| Cell::maybe(found.map(|found| found.entry[axis]), 3);
     vec![
         entry(0),
@@ -136,14 +136,20 @@ const DESCRIBED: [&str; 6] = ["X", "Y", "Z", "Depth", "Φ", "Tools"];
 /// Which of them are the tools.
 const TOOL: usize = 5;
 
-pub(super) fn found_rows(sides: &[Side<'_>], tools: &[Vec<Vec<u32>>]) -> (Vec<String>, Vec<Row>) {
+pub(super) fn found_rows(sides: &[Side<'_>], tools: &[Vec<Vec<u32>>]) -> (Vec<String>, Vec<HoleTableRow>) {
     let Some(side) = sides.last() else { return (Vec::new(), Vec::new()) };
     let holes = side.seen.revision.simulation.extracted.holes.iter().enumerate();
     let rows = holes.map(|(number, hole)| {
         let mut cells = described(Some(hole), tools.last().map_or(&[], |tools| &tools[number]));
         cells.push(made_by(side, hole));
         let words = "not judged".to_owned();
-        Row { id: (number + 1).to_string(), state: State::Unjudged, words, cells, holes: vec![Some(number)] }
+        HoleTableRow {
+            id: (number + 1).to_string(),
+            state: HoleRowState::Unjudged,
+            words,
+            cells,
+            holes: vec![Some(number)],
+        }
     });
     (DESCRIBED.map(str::to_owned).into_iter().chain(["Block".to_owned()]).collect(), rows.collect())
 }
@@ -153,7 +159,7 @@ pub(super) fn paired_rows(
     pairs: &[Paired],
     sides: &[Side<'_>],
     tools: &[Vec<Vec<u32>>],
-) -> (Vec<String>, Vec<Row>) {
+) -> (Vec<String>, Vec<HoleTableRow>) {
     let [old, new] = sides else { return (Vec::new(), Vec::new()) };
     let mut columns = DESCRIBED.map(str::to_owned).to_vec();
     columns.extend(["Moved", "Tilted °", "Deeper"].map(str::to_owned));
@@ -177,15 +183,17 @@ pub(super) fn paired_rows(
         ]);
         let remarks = remarks(pair, was.zip(Some(before)), is.zip(Some(now))).join("; ");
         let (id, state, words) = match (pair.old, pair.new) {
-            (Some(hole), None) => (format!("{}", hole + 1), State::Missing, "lost".to_owned()),
-            (None, Some(hole)) => (format!("new {}", hole + 1), State::Extra, "added".to_owned()),
-            (Some(hole), Some(_)) if pair.changed => (format!("{}", hole + 1), State::Changed, remarks),
+            (Some(hole), None) => (format!("{}", hole + 1), HoleRowState::Missing, "lost".to_owned()),
+            (None, Some(hole)) => (format!("new {}", hole + 1), HoleRowState::Extra, "added".to_owned()),
+            (Some(hole), Some(_)) if pair.changed => {
+                (format!("{}", hole + 1), HoleRowState::Changed, remarks)
+            }
             (hole, _) => {
                 let id = hole.map_or_else(String::new, |hole| (hole + 1).to_string());
-                (id, State::Same, "same".to_owned())
+                (id, HoleRowState::Same, "same".to_owned())
             }
         };
-        Row { id, state, words, cells, holes: vec![pair.old, pair.new] }
+        HoleTableRow { id, state, words, cells, holes: vec![pair.old, pair.new] }
     };
     (columns, pairs.iter().map(row).collect())
 }
@@ -196,7 +204,7 @@ pub(super) fn judged_rows(
     judged: &[(Side<'_>, &Verdict)],
     sides: &[Side<'_>],
     (pairs, tools): (&[Paired], &[Vec<Vec<u32>>]),
-) -> (Vec<String>, Vec<Row>) {
+) -> (Vec<String>, Vec<HoleTableRow>) {
     let changed: BTreeMap<usize, &Paired> =
         pairs.iter().filter(|pair| pair.changed).filter_map(|pair| Some((pair.new?, pair))).collect();
     // What is different about a hole of the new side.
@@ -218,9 +226,11 @@ pub(super) fn judged_rows(
         let found_by: Vec<Option<&HoleVerdict>> = by_id.iter().map(|holes| holes.get(id).copied()).collect();
         let is = found_by.last().copied().flatten();
         let mut cells: Vec<Cell> =
-            found_by.iter().map(|hole| Cell::maybe(hole.map(|hole| hole.phi), 4)).collect();
+            found_by.iter().map(|hole| Cell::maybe(hole.map(|hole| hole.position_deviation), 4)).collect();
         if let [was, is] = found_by.as_slice() {
-            cells.push(Cell::signed(was.zip(*is).map(|(was, is)| is.phi - was.phi)));
+            cells.push(Cell::signed(
+                was.zip(*is).map(|(was, is)| is.position_deviation - was.position_deviation),
+            ));
         }
         cells.extend([
             Cell::maybe(is.map(|hole| hole.at_entry), 4),
@@ -232,17 +242,17 @@ pub(super) fn judged_rows(
             hole.map_or_else(Cell::default, |hole| made_by(side, found(side, hole.found)))
         }));
         let (state, words) = match (is, is.and_then(different)) {
-            (None, _) => (State::Missing, "missing".to_owned()),
+            (None, _) => (HoleRowState::Missing, "missing".to_owned()),
             (Some(hole), Some(words)) if hole.ok => {
-                (State::Altered, format!("in tolerance, but: {}", words.join("; ")))
+                (HoleRowState::Altered, format!("in tolerance, but: {}", words.join("; ")))
             }
-            (Some(hole), None) if hole.ok => (State::Good, "in tolerance".to_owned()),
-            (Some(hole), _) => (State::Bad, hole.objections.join(", ")),
+            (Some(hole), None) if hole.ok => (HoleRowState::Good, "in tolerance".to_owned()),
+            (Some(hole), _) => (HoleRowState::Bad, hole.objections.join(", ")),
         };
         let holes = found_by.iter().map(|hole| hole.map(|hole| hole.found)).collect();
-        Row { id: shown(id), state, words, cells, holes }
+        HoleTableRow { id: shown(id), state, words, cells, holes }
     });
-    let mut rows: Vec<Row> = wanted.collect();
+    let mut rows: Vec<HoleTableRow> = wanted.collect();
     for (place, (side, verdict)) in judged.iter().enumerate() {
         rows.extend(extra_rows(place, side, verdict, columns.len(), sides));
     }
@@ -256,9 +266,9 @@ fn extra_rows(
     verdict: &Verdict,
     columns: usize,
     sides: &[Side<'_>],
-) -> Vec<Row> {
+) -> Vec<HoleTableRow> {
     let of_old = sides.len() == 2 && place == 0;
-    let row = |(number, extra): (usize, &Extra)| {
+    let row = |(number, extra): (usize, &ExtraHole)| {
         let mut cells = vec![Cell::default(); columns - sides.len()];
         let block = made_by(side, found(side, extra.found));
         cells.extend((0..sides.len()).map(|at| if at == place { block.clone() } else { Cell::default() }));
@@ -266,7 +276,13 @@ fn extra_rows(
         holes[place] = Some(extra.found);
         let (of, words) = if of_old { ("old ", "extra in the old") } else { ("", "extra") };
         let id = format!("{of}extra {}", number + 1);
-        Row { id, state: State::Extra, words: format!("{words}: {}", shown(&extra.why)), cells, holes }
+        HoleTableRow {
+            id,
+            state: HoleRowState::Extra,
+            words: format!("{words}: {}", shown(&extra.why)),
+            cells,
+            holes,
+        }
     };
     verdict.extra.iter().enumerate().map(row).collect()
 }

@@ -1,10 +1,10 @@
 //! The operator stops of a side, those marked that the other side doesn't make in the same way.
 use super::{Page, Side};
-use crate::changes::Where;
+use crate::changes::BlockLocation;
 
 /// Where a program waited for the operator.
 pub(super) struct Stop<'a> {
-    pub place: &'a Where,
+    pub place: &'a BlockLocation,
     /// What the other program does instead.
     pub mark: Option<&'static str>,
 }
@@ -19,7 +19,7 @@ pub(super) fn stops<'a>(page: &Page<'_>, side: &Side<'a>) -> Vec<Stop<'a>> {
     let mark = |step: usize| {
         let compared = compared?;
         let is_of = |steps: &[Vec<usize>; 2]| steps[place].binary_search(&step).is_ok();
-        if is_of(&compared.alone) { Some(alone) } else { is_of(&compared.steps).then_some(changed) }
+        if is_of(&compared.unpaired_steps) { Some(alone) } else { is_of(&compared.steps).then_some(changed) }
     };
     let all = side.seen.revision.record.stops();
     all.map(|(step, place)| Stop { place, mark: mark(step) }).collect()

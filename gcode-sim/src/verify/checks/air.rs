@@ -2,28 +2,28 @@
 //! above.
 use nalgebra::Point3;
 
-use super::{Comparison, Objection};
+use super::{Comparison, HoleFinding};
 use crate::diag::Diagnostic;
-use crate::holes::near::PointTree;
+use crate::holes::point_tree::PointTree;
 use crate::part::surface::Surface;
-use crate::verify::objection::{at_the_call, behind, fold};
+use crate::verify::hole_finding::{at_the_call, behind, fold};
 
 pub(in crate::verify) fn check(
     comparison: &Comparison<'_>,
     surface: Option<Surface>,
-    objections: &mut Vec<Objection>,
+    objections: &mut Vec<HoleFinding>,
 ) {
     let Some(surface) = surface else { return };
     if comparison.missing.is_empty() {
         return;
     }
-    let entry = |wanted: &usize| Point3::from(comparison.wanted[*wanted].entry);
+    let entry = |wanted: &usize| Point3::from(comparison.nominal[*wanted].entry);
     let tree = PointTree::new(comparison.missing.iter().map(entry));
-    let mut wanted = vec![false; comparison.wanted.len()];
-    let mut drilled = vec![false; comparison.found.len()];
+    let mut wanted = vec![false; comparison.nominal.len()];
+    let mut drilled = vec![false; comparison.actual.len()];
     let (mut low, mut high, mut first) = (f64::INFINITY, 0.0f64, None);
     for extra in &comparison.extra {
-        let hole = &comparison.found[*extra];
+        let hole = &comparison.actual[*extra];
         let bottom = hole.bottom();
         let Some(top) = surface.exit(&bottom, &hole.axis) else { continue };
         let above = (bottom - top).dot(&hole.axis);
@@ -52,5 +52,5 @@ pub(in crate::verify) fn check(
         "check the zero in the tool's direction (the work offset), the tool's length and its offset, and the depth",
     );
     finding.notes.extend(behind(folded));
-    objections.insert(0, Objection::whole(at_the_call(finding, &comparison.found[first].place)));
+    objections.insert(0, HoleFinding::whole(at_the_call(finding, &comparison.actual[first].place)));
 }

@@ -2,20 +2,20 @@
 //! feeds begin, and never so near that a length set a little wrong would touch.
 use crate::diag::Diagnostic;
 use crate::holes::per_block::again;
-use crate::holes::{CONTACT, Passing, ROUNDED, Way};
-use crate::part::conduct::Conduct;
+use crate::holes::{CONTACT, CloseMotion, CloseMotionKind, ROUNDED};
+use crate::part::process::ProcessLimits;
 
-pub(in crate::verify) fn findings(passings: &[Passing], conduct: &Conduct) -> Vec<Diagnostic> {
+pub(in crate::verify) fn findings(passings: &[CloseMotion], conduct: &ProcessLimits) -> Vec<Diagnostic> {
     let told = passings
         .iter()
         .map(|passing| again(finding(passing, conduct), passing.times).at(passing.place.clone()));
     told.collect()
 }
 
-fn finding(passing: &Passing, conduct: &Conduct) -> Diagnostic {
+fn finding(passing: &CloseMotion, conduct: &ProcessLimits) -> Diagnostic {
     let above = passing.tip.max(0.0);
     match passing.way {
-        Way::Turning { letter, by } => {
+        CloseMotionKind::Turning { letter, by } => {
             let mut message =
                 format!("{letter} turns {:.3}° while the tool stands {above:.3} mm above the part", by.0);
             if passing.tip < CONTACT {
@@ -33,7 +33,7 @@ fn finding(passing: &Passing, conduct: &Conduct) -> Diagnostic {
             );
             Diagnostic::warning("turns-near-part", message).help(help)
         }
-        Way::Low { letter, by } => {
+        CloseMotionKind::Low { letter, by } => {
             let retract = conduct.retract.unwrap_or_default();
             let message = format!(
                 "{letter} turns {:.3}° while the tool stands {above:.3} mm above the part, and the job wants {retract} mm there",
@@ -42,20 +42,20 @@ fn finding(passing: &Passing, conduct: &Conduct) -> Diagnostic {
             Diagnostic::warning("turns-near-part", message)
                 .help(format!("retract to machine.retract before {letter} turns, or correct it in the job"))
         }
-        Way::Past => {
+        CloseMotionKind::RapidPast => {
             let message = format!("the rapid goes past the part {above:.3} mm above the surface");
             let finding = Diagnostic::warning("rapid-near-part", message)
                 .note(format!("a tool length or a part that is {CONTACT} mm off makes it touch"));
             finding.help("go from hole to hole at a safe height")
         }
-        Way::Towards if CONTACT <= passing.tip => {
+        CloseMotionKind::RapidTowards if CONTACT <= passing.tip => {
             let approach = conduct.approach.unwrap_or_default();
             let message =
                 format!("the rapid ends {above:.3} mm above the part, and the job feeds from {approach} mm");
             Diagnostic::warning("rapid-near-part", message)
                 .help("raise R, or the end of the approach, to machine.clearance, or correct it in the job")
         }
-        Way::Towards => {
+        CloseMotionKind::RapidTowards => {
             let message = format!("the rapid ends {above:.3} mm above the part");
             let finding = Diagnostic::warning("rapid-near-part", message);
             finding.help("end it at a clearance from which the feed begins: is R without a point?")

@@ -2,10 +2,10 @@
 use std::collections::BTreeMap;
 
 use crate::diag::{Diagnostic, Severity};
-use crate::holes::Cutting;
+use crate::holes::CutConditions;
 use crate::machine::Machine;
-use crate::motion::{Lengthening, Spindle};
-use crate::part::conduct::Conduct;
+use crate::motion::{LengthCompensation, SpindleDirection};
+use crate::part::process::ProcessLimits;
 
 /// S and F may be off by this part of what is said: of F what an inch rounds to. More is told, …
 const ROUNDED: f64 = 0.005;
@@ -14,8 +14,8 @@ const ROUNDED: f64 = 0.005;
 const OPEN: f64 = 0.25;
 
 pub(in crate::verify) fn findings(
-    cuttings: &[Cutting],
-    conduct: &Conduct,
+    cuttings: &[CutConditions],
+    conduct: &ProcessLimits,
     machine: &Machine,
 ) -> Vec<Diagnostic> {
     let checks = [reversed, speed, feed, peck, length, tool];
@@ -39,25 +39,25 @@ pub(in crate::verify) fn findings(
     told.into_iter().map(counted).collect()
 }
 
-fn reversed(cutting: &Cutting, _: &Conduct, _: &Machine) -> Option<Diagnostic> {
-    (cutting.turning == Spindle::Counterclockwise).then(|| {
+fn reversed(cutting: &CutConditions, _: &ProcessLimits, _: &Machine) -> Option<Diagnostic> {
+    (cutting.spindle_direction == SpindleDirection::Counterclockwise).then(|| {
         Diagnostic::warning("spindle-reversed", format!("{} cuts with M04", name(cutting)))
             .note("a drill that is no left-hand one rubs and breaks; which it is no reference says")
             .help("M03, if the tool isn't a left-hand one")
     })
 }
 
-fn speed(cutting: &Cutting, conduct: &Conduct, _: &Machine) -> Option<Diagnostic> {
-    let wanted = conduct.duty(cutting.tool)?.speed?;
+fn speed(cutting: &CutConditions, conduct: &ProcessLimits, _: &Machine) -> Option<Diagnostic> {
+    let wanted = conduct.tool_process(cutting.tool)?.speed?;
     let found = cutting.speed.0;
     // One that stands is told already.
-    let severity = severity(found, wanted).filter(|_| cutting.turning != Spindle::Off)?;
+    let severity = severity(found, wanted).filter(|_| cutting.spindle_direction != SpindleDirection::Off)?;
     let message = format!("{} cuts at S{found} where S{wanted} is asked for", name(cutting));
     Some(Diagnostic::new(severity, "drill-speed", message).help("correct S, or the tool's speed in the job"))
 }
 
-fn feed(cutting: &Cutting, conduct: &Conduct, _: &Machine) -> Option<Diagnostic> {
-    let wanted = conduct.duty(cutting.tool)?.feed?;
+fn feed(cutting: &CutConditions, conduct: &ProcessLimits, _: &Machine) -> Option<Diagnostic> {
+    let wanted = conduct.tool_process(cutting.tool)?.feed?;
     let off = |found: &f64| (found / wanted).max(wanted / found);
     let found = cutting.feeds.map(|feed| feed.0).into_iter().max_by(|a, b| off(a).total_cmp(&off(b)))?;
     let severity = severity(found, wanted)?;
@@ -72,8 +72,8 @@ fn feed(cutting: &Cutting, conduct: &Conduct, _: &Machine) -> Option<Diagnostic>
     )
 }
 
-fn peck(cutting: &Cutting, conduct: &Conduct, _: &Machine) -> Option<Diagnostic> {
-    let wanted = conduct.duty(cutting.tool)?.peck?;
+fn peck(cutting: &CutConditions, conduct: &ProcessLimits, _: &Machine) -> Option<Diagnostic> {
+    let wanted = conduct.tool_process(cutting.tool)?.peck?;
     let shown = |mm: f64| (mm * 1e3).round() / 1e3;
     if let Some(severity) = severity(cutting.cut, wanted).filter(|_| wanted < cutting.cut) {
         let message = format!(
@@ -95,7 +95,7 @@ fn peck(cutting: &Cutting, conduct: &Conduct, _: &Machine) -> Option<Diagnostic>
 }
 
 /// Another tool than the job's, or none.
-fn tool(cutting: &Cutting, conduct: &Conduct, _: &Machine) -> Option<Diagnostic> {
+fn tool(cutting: &CutConditions, conduct: &ProcessLimits, _: &Machine) -> Option<Diagnostic> {
     let said: Vec<_> = conduct.tools.iter().filter(|duty| duty.offset.is_some()).collect();
     let [first, ..] = said.as_slice() else { return None };
     if said.iter().any(|duty| Some(duty.number) == cutting.tool) {
@@ -126,28 +126,28 @@ pub(in crate::verify) fn severity(found: f64, wanted: f64) -> Option<Severity> {
 }
 
 /// Where the machine file has the tool's length, the holes tell whether the offset is right; else only its number does.
-fn length(cutting: &Cutting, conduct: &Conduct, machine: &Machine) -> Option<Diagnostic> {
+fn length(cutting: &CutConditions, conduct: &ProcessLimits, machine: &Machine) -> Option<Diagnostic> {
     if machine.length_of(cutting.tool).is_some() {
         return None;
     }
-    let asked = conduct.duty(cutting.tool).and_then(|duty| duty.offset);
+    let asked = conduct.tool_process(cutting.tool).and_then(|duty| duty.offset);
     let tool = name(cutting);
     let note =
         "the machine file has no length of it, so that the holes come out alike here whatever is in force";
     let finding = |severity, message| Diagnostic::new(severity, "length-offset", message).note(note);
-    match (cutting.by, asked) {
-        (Lengthening::Minus(h), asked) => {
+    match (cutting.compensation, asked) {
+        (LengthCompensation::Minus(h), asked) => {
             let severity = if asked.is_some() { Severity::Error } else { Severity::Warning };
             let message = format!("{tool} cuts with G44 H{h}: its length is taken away instead of added");
             Some(finding(severity, message).help("G43, if offsets are measured as lengths"))
         }
-        (Lengthening::Off | Lengthening::Plus(0), Some(asked)) => {
+        (LengthCompensation::Off | LengthCompensation::Plus(0), Some(asked)) => {
             let message = format!("{tool} cuts without its length offset, and the job has H{asked} for it");
             Some(finding(Severity::Warning, message).help(format!(
                 "G43 H{asked} before the first hole, if the work zero isn't that of this tool's tip"
             )))
         }
-        (Lengthening::Plus(h), Some(asked)) if h != asked => {
+        (LengthCompensation::Plus(h), Some(asked)) if h != asked => {
             let message = format!(
                 "{tool} cuts with H{h} where the job has H{asked} for it: the length of another tool"
             );
@@ -156,7 +156,7 @@ fn length(cutting: &Cutting, conduct: &Conduct, machine: &Machine) -> Option<Dia
                     .help(format!("G43 H{asked}, or correct the tool's number in the job")),
             )
         }
-        (Lengthening::Plus(h), None) => {
+        (LengthCompensation::Plus(h), None) => {
             let number = cutting.tool.filter(|number| *number != h)?;
             machine.find_tool(h)?;
             let message = format!("{tool} cuts with H{h}, which has the number of another tool");
@@ -165,10 +165,10 @@ fn length(cutting: &Cutting, conduct: &Conduct, machine: &Machine) -> Option<Dia
                     .help(format!("H{number}, if offsets have the numbers of their tools")),
             )
         }
-        (Lengthening::Off | Lengthening::Plus(_), _) => None,
+        (LengthCompensation::Off | LengthCompensation::Plus(_), _) => None,
     }
 }
 
-fn name(cutting: &Cutting) -> String {
+fn name(cutting: &CutConditions) -> String {
     cutting.tool.map_or("the tool".to_owned(), |number| format!("T{number}"))
 }

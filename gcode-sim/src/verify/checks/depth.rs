@@ -1,14 +1,14 @@
 //! Every hole must be as deep as wanted.
-use super::{Comparison, Objection};
+use super::{Comparison, HoleFinding};
 use crate::diag::Diagnostic;
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>) {
+pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
     for pair in &comparison.pairs {
         let error = pair.deviation.depth_error;
         if error.abs() <= comparison.tolerances.depth {
             continue;
         }
-        let nominal = comparison.wanted[pair.wanted].depth;
+        let nominal = comparison.nominal[pair.wanted].depth;
         let message = format!(
             "hole {} is {:.3} mm deep, {nominal} wanted: {:.3} mm too {} ({} allowed)",
             comparison.id(pair.wanted),
@@ -19,11 +19,11 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
         );
         let mut finding = Diagnostic::error("hole-depth", message)
             .help("check the programmed depth, the tool's length and its offset")
-            .at(comparison.found[pair.found].place.clone());
+            .at(comparison.actual[pair.found].place.clone());
         if let Some(note) = factor(nominal, nominal + error) {
             finding = finding.note(note);
         }
-        objections.push(Objection::of(pair.wanted, finding));
+        objections.push(HoleFinding::of(pair.wanted, finding));
     }
 }
 

@@ -1,11 +1,11 @@
 //! The tool that finishes a hole must have the hole's diameter, where both are known.
-use super::{Comparison, Objection};
+use super::{Comparison, HoleFinding};
 use crate::diag::Diagnostic;
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>) {
+pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
     for pair in &comparison.pairs {
-        let found = &comparison.found[pair.found];
-        let (Some(wanted), Some(actual)) = (comparison.wanted[pair.wanted].diameter, found.diameter) else {
+        let found = &comparison.actual[pair.found];
+        let (Some(wanted), Some(actual)) = (comparison.nominal[pair.wanted].diameter, found.diameter) else {
             continue;
         };
         if (actual - wanted).abs() <= comparison.tolerances.diameter {
@@ -17,6 +17,6 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
         let finding = Diagnostic::error("hole-diameter", message)
             .help("finish the hole with the right tool, or correct the tool table")
             .at(found.place.clone());
-        objections.push(Objection::of(pair.wanted, finding));
+        objections.push(HoleFinding::of(pair.wanted, finding));
     }
 }

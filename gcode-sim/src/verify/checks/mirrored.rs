@@ -2,11 +2,11 @@
 //! once, instead of hole by hole only.
 use nalgebra::Unit;
 
-use super::{Comparison, Objection};
+use super::{Comparison, HoleFinding};
 use crate::diag::Diagnostic;
-use crate::holes::Found;
+use crate::holes::DrilledHole;
 use crate::machine::{LinkMotion, Machine};
-use crate::verify::Pair;
+use crate::verify::HolePair;
 
 /// So many of the wanted holes must agree with the mirrored ones.
 const MOST: f64 = 0.8;
@@ -28,18 +28,18 @@ impl Mirrored {
             return None;
         }
         [2, 0, 1].into_iter().find_map(|axis| {
-            let turned: Vec<_> = comparison.found.iter().map(|found| mirror(found, axis)).collect();
+            let turned: Vec<_> = comparison.actual.iter().map(|found| mirror(found, axis)).collect();
             let again =
-                Comparison::new(comparison.wanted, &turned, comparison.tolerances, comparison.pattern);
+                Comparison::new(comparison.nominal, &turned, comparison.tolerances, comparison.pattern);
             // In their zones: a pattern turned round lies near itself in many ways.
             let agree = in_place(&again);
-            if agree <= in_place(comparison) || (agree as f64) < MOST * comparison.wanted.len() as f64 {
+            if agree <= in_place(comparison) || (agree as f64) < MOST * comparison.nominal.len() as f64 {
                 return None;
             }
             let mut explained = Self {
                 axis,
                 agree,
-                wanted: vec![false; again.wanted.len()],
+                wanted: vec![false; again.nominal.len()],
                 found: vec![false; turned.len()],
             };
             for pair in again.pairs.iter().filter(|pair| is_in_place(&again, pair)) {
@@ -54,13 +54,13 @@ impl Mirrored {
 pub(in crate::verify) fn check(
     comparison: &Comparison<'_>,
     machine: &Machine,
-    objections: &mut Vec<Objection>,
+    objections: &mut Vec<HoleFinding>,
 ) {
     let Some(Mirrored { axis, agree, .. }) = Mirrored::of(comparison) else { return };
     let name = ["x", "y", "z"][axis];
     let lie = format!(
         "the holes lie mirrored: with {name} turned round {agree} of {} would be there",
-        comparison.wanted.len()
+        comparison.nominal.len()
     );
     let finding = match turns_across(comparison, machine, axis) {
         true => Diagnostic::error(
@@ -71,8 +71,8 @@ pub(in crate::verify) fn check(
         false => Diagnostic::error("mirror-image", format!("{lie}; no turn of the table does that"))
             .help("is a mirror image (G51.1) left on, or a coordinate's sign the wrong one?"),
     };
-    let place = comparison.found[comparison.extra[0]].place.clone();
-    objections.push(Objection::whole(finding.at(place)));
+    let place = comparison.actual[comparison.extra[0]].place.clone();
+    objections.push(HoleFinding::whole(finding.at(place)));
 }
 
 /// Whether a table that turns the other way mirrors the part so: it turned between the holes, and about another axis.
@@ -81,12 +81,12 @@ fn turns_across(comparison: &Comparison<'_>, machine: &Machine, axis: usize) -> 
     machine.table.0.iter().any(|link| {
         let LinkMotion::Turn { about, .. } = &link.motion else { return false };
         let own = part.rotation.inverse_transform_unit_vector(about);
-        let turned = comparison.found.iter().any(|found| found.at[link.axis] != 0.0);
+        let turned = comparison.actual.iter().any(|found| found.at[link.axis] != 0.0);
         turned && own[axis].abs() < std::f64::consts::FRAC_1_SQRT_2
     })
 }
 
-fn is_in_place(comparison: &Comparison<'_>, pair: &Pair) -> bool {
+fn is_in_place(comparison: &Comparison<'_>, pair: &HolePair) -> bool {
     pair.deviation.phi() <= comparison.tolerances.position
 }
 
@@ -94,7 +94,7 @@ fn in_place(comparison: &Comparison<'_>) -> usize {
     comparison.pairs.iter().filter(|pair| is_in_place(comparison, pair)).count()
 }
 
-fn mirror(found: &Found, axis: usize) -> Found {
+fn mirror(found: &DrilledHole, axis: usize) -> DrilledHole {
     let mut mirrored = found.clone();
     mirrored.entry[axis] = -mirrored.entry[axis];
     let mut out = mirrored.axis.into_inner();

@@ -1,24 +1,24 @@
 //! Every wanted hole must be there.
 use nalgebra::{Point3, Vector3};
 
-use super::{Comparison, Objection};
+use super::{Comparison, HoleFinding};
 use crate::diag::Diagnostic;
-use crate::holes::near::PointTree;
+use crate::holes::point_tree::PointTree;
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>) {
+pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
     // A hole drilled twice is known; it isn't the missing one in a wrong place.
     let extra = comparison.extra.iter().copied();
     let extra = extra.filter(|index| comparison.wanted_on_line_of(*index).is_none());
     let extra: Vec<usize> = extra.collect();
-    let tree = PointTree::new(extra.iter().map(|index| comparison.found[*index].bottom()));
+    let tree = PointTree::new(extra.iter().map(|index| comparison.actual[*index].bottom()));
     for wanted in &comparison.missing {
-        let hole = &comparison.wanted[*wanted];
+        let hole = &comparison.nominal[*wanted];
         let end = Point3::from(hole.entry) - Vector3::from(hole.axis) * hole.depth;
         let message = format!("hole {} is missing", comparison.id(*wanted));
         let finding = Diagnostic::error("hole-missing", message);
         let finding = match tree.nearest(&end) {
             Some((near, distance)) => {
-                let found = &comparison.found[extra[near]];
+                let found = &comparison.actual[extra[near]];
                 let off = found.bottom() - end;
                 finding
                     .note(format!(
@@ -30,6 +30,6 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
             }
             None => finding.help("the program leaves it out"),
         };
-        objections.push(Objection::of(*wanted, finding));
+        objections.push(HoleFinding::of(*wanted, finding));
     }
 }

@@ -1,14 +1,15 @@
 //! The checks: one file each, one line here.
 pub(super) mod air;
-pub(super) mod alike;
-mod aside;
 pub(super) mod clearance;
+pub(super) mod common_shift;
+mod cut_outside;
 pub(super) mod cutting;
 mod depth;
 mod diameter;
+mod explained_by_rows;
+pub(super) mod extra;
 pub(super) mod mirrored;
 mod missing;
-mod of_rows;
 mod overlap;
 mod position;
 pub(super) mod reach;
@@ -20,14 +21,13 @@ mod row_seam;
 mod row_short;
 pub(super) mod signs;
 pub(super) mod stopped;
-pub(super) mod surplus;
 pub(super) mod through;
 pub(super) mod tool_short;
 mod tools;
 
-use super::{Comparison, Objection};
+use super::{Comparison, HoleFinding};
 
-type Check = fn(&Comparison<'_>, &mut Vec<Objection>);
+type Check = fn(&Comparison<'_>, &mut Vec<HoleFinding>);
 
 pub(super) const ALL: &[Check] = &[
     row_group::check,
@@ -35,9 +35,9 @@ pub(super) const ALL: &[Check] = &[
     row_seam::check,
     row_pitch::check,
     missing::check,
-    surplus::check,
+    extra::check,
     position::check,
-    aside::check,
+    cut_outside::check,
     depth::check,
     diameter::check,
     tools::check,

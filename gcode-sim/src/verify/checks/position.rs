@@ -1,19 +1,19 @@
 //! The axis of every hole must lie in its zone: judged unrounded, told apart by whether it leans or stands aside.
-use super::{Comparison, Objection};
+use super::{Comparison, HoleFinding};
 use crate::diag::Diagnostic;
-use crate::verify::Pair;
+use crate::verify::HolePair;
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>) {
+pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
     for pair in &comparison.pairs {
         if pair.deviation.phi() > comparison.tolerances.position {
-            objections.push(Objection::of(pair.wanted, finding(comparison, pair)));
+            objections.push(HoleFinding::of(pair.wanted, finding(comparison, pair)));
         }
     }
 }
 
-fn finding(comparison: &Comparison<'_>, pair: &Pair) -> Diagnostic {
+fn finding(comparison: &Comparison<'_>, pair: &HolePair) -> Diagnostic {
     let deviation = &pair.deviation;
-    let (wanted, found) = (&comparison.wanted[pair.wanted], &comparison.found[pair.found]);
+    let (wanted, found) = (&comparison.nominal[pair.wanted], &comparison.actual[pair.found]);
     let id = comparison.id(pair.wanted);
     let leans = deviation.tilt.tan() * wanted.depth;
     let limits = format!(

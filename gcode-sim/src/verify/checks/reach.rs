@@ -2,13 +2,13 @@
 //! the depth of the holes, and nothing it drilled is right.
 use nalgebra::{Point3, Unit, Vector3};
 
-use super::{Comparison, Objection};
+use super::{Comparison, HoleFinding};
 use crate::diag::Diagnostic;
-use crate::holes::Reach;
+use crate::holes::LengthMismatch;
 use crate::machine::Machine;
-use crate::motion::Lengthening;
-use crate::part::conduct::Conduct;
-use crate::verify::objection::{behind, fold};
+use crate::motion::LengthCompensation;
+use crate::part::process::ProcessLimits;
+use crate::verify::hole_finding::{behind, fold};
 
 /// A feed that ends so near the line of a hole is meant for it, mm, …
 const ASIDE: f64 = 0.5;
@@ -21,17 +21,17 @@ const OF_DEPTHS: [&str; 5] = ["hole-missing", "hole-extra", "hole-depth", "holes
 
 pub(in crate::verify) fn check(
     comparison: &Comparison<'_>,
-    reaches: &[Reach],
-    conduct: &Conduct,
+    reaches: &[LengthMismatch],
+    conduct: &ProcessLimits,
     machine: &Machine,
-    objections: &mut Vec<Objection>,
+    objections: &mut Vec<HoleFinding>,
 ) {
-    let wrong: Vec<&Reach> = reaches.iter().filter(|reach| explains(comparison, reach)).collect();
+    let wrong: Vec<&LengthMismatch> = reaches.iter().filter(|reach| explains(comparison, reach)).collect();
     if wrong.is_empty() {
         return;
     }
     let by_them = |found: usize| {
-        let tool = comparison.found[found].tool;
+        let tool = comparison.actual[found].tool;
         wrong.iter().any(|reach| Some(reach.tool) == tool)
     };
     let pair_of = |wanted: usize| comparison.pairs.iter().find(|pair| pair.wanted == wanted);
@@ -44,35 +44,35 @@ pub(in crate::verify) fn check(
     });
     // With those behind a finding that is folded itself.
     let folded = objections.iter().filter(|objection| objection.folded).count();
-    let mut told: Vec<Objection> =
-        wrong.into_iter().map(|reach| Objection::whole(finding(reach, conduct, machine))).collect();
+    let mut told: Vec<HoleFinding> =
+        wrong.into_iter().map(|reach| HoleFinding::whole(finding(reach, conduct, machine))).collect();
     told[0].finding.notes.extend(behind(folded));
     objections.splice(0..0, told);
 }
 
-fn finding(reach: &Reach, conduct: &Conduct, machine: &Machine) -> Diagnostic {
-    let Reach { tool, beyond, .. } = *reach;
+fn finding(reach: &LengthMismatch, conduct: &ProcessLimits, machine: &Machine) -> Diagnostic {
+    let LengthMismatch { tool, beyond, .. } = *reach;
     let length = machine.length_of(Some(tool)).unwrap_or_default();
     let (by, side) = (shown(beyond.abs()), if beyond > 0.0 { "deeper" } else { "higher" });
-    let own = conduct.duty(Some(tool)).and_then(|duty| duty.offset).unwrap_or(tool);
+    let own = conduct.tool_process(Some(tool)).and_then(|duty| duty.offset).unwrap_or(tool);
     let (how, help) = match reach.by {
-        Lengthening::Off | Lengthening::Plus(0) | Lengthening::Minus(0) => {
+        LengthCompensation::Off | LengthCompensation::Plus(0) | LengthCompensation::Minus(0) => {
             ("without its length offset".to_owned(), format!("G43 H{own} before the first hole"))
         }
-        Lengthening::Plus(h) if h == own => (
+        LengthCompensation::Plus(h) if h == own => (
             format!("with H{h}, which holds {}", shown(length - beyond)),
             format!("H{h} in the control has to hold the length of T{tool}"),
         ),
-        Lengthening::Plus(h) => {
+        LengthCompensation::Plus(h) => {
             (format!("with H{h}, which holds {}", shown(length - beyond)), format!("G43 H{own}"))
         }
-        Lengthening::Minus(h) => {
+        LengthCompensation::Minus(h) => {
             (format!("with G44 H{h}, which takes the length away"), format!("G43 H{own}"))
         }
     };
     let length = shown(length);
     let message = format!("T{tool}, {length} mm long, cuts {how}: its tip is {by} mm {side} than programmed");
-    let other = conduct.tools.first().filter(|_| conduct.duty(Some(tool)).is_none());
+    let other = conduct.tools.first().filter(|_| conduct.tool_process(Some(tool)).is_none());
     let help = match other {
         Some(duty) => format!("put in the job's tool, T{}, or {help}", duty.number),
         None => help,
@@ -89,7 +89,7 @@ fn shown(mm: f64) -> f64 {
 }
 
 /// Whether the tool's holes are beside the wanted depth, and would be right if its tip were where it is programmed.
-fn explains(comparison: &Comparison<'_>, reach: &Reach) -> bool {
+fn explains(comparison: &Comparison<'_>, reach: &LengthMismatch) -> bool {
     let tolerance = comparison.tolerances.depth;
     let is_right = |(depth, wanted): (f64, f64)| (depth - wanted).abs() <= tolerance;
     let is_cut = |(depth, wanted): (f64, f64)| 0.0 < depth && depth <= wanted + tolerance;
@@ -111,7 +111,7 @@ fn explains(comparison: &Comparison<'_>, reach: &Reach) -> bool {
 
 /// How deep a point is in the wanted hole along whose line it lies, and how deep that is wanted.
 fn depth(comparison: &Comparison<'_>, point: &Point3<f64>, axis: &Unit<Vector3<f64>>) -> Option<(f64, f64)> {
-    comparison.wanted.iter().find_map(|hole| {
+    comparison.nominal.iter().find_map(|hole| {
         let out = Vector3::from(hole.axis);
         let from = point - Point3::from(hole.entry);
         let depth = -from.dot(&out);

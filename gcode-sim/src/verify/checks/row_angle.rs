@@ -1,19 +1,19 @@
 //! The rows of a honeycomb stand at the angle with which the pattern closes: another one is told with the distance it
 //! makes round the circumference and the diameter it would be right for.
-use super::{Comparison, Objection};
+use super::{Comparison, HoleFinding};
 use crate::diag::Diagnostic;
 use crate::part::honeycomb::Pattern;
 use crate::units::Deg;
 use crate::verify::causes::causes;
-use crate::verify::objection::at_the_call;
-use crate::verify::rows::Rows;
+use crate::verify::hole_finding::at_the_call;
+use crate::verify::rows::PatternRows;
 
 /// What rounding to the rotary's increment, 0.01° at the coarsest, may make of a turn.
 const ROUNDED: Deg = Deg(0.03);
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>) {
+pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
     let Some(pattern) = comparison.pattern else { return };
-    let Some(rows) = Rows::of(comparison, pattern) else { return };
+    let Some(rows) = PatternRows::of(comparison, pattern) else { return };
     let (usual, wanted) = (rows.usual, rows.wanted(pattern));
     // After a whole turn the error has added up.
     let turn = (usual - wanted).abs() * (360.0 / wanted.0);
@@ -33,7 +33,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
         wanted.0
     );
     let finding = Diagnostic::error("row-angle", message).help(help(pattern));
-    let mut finding = at_the_call(finding, &comparison.found[rows.rows[1].first].place);
+    let mut finding = at_the_call(finding, &comparison.actual[rows.rows[1].first].place);
     if whole(usual) && !whole(wanted) {
         let cut = if usual.0 < wanted.0 { "FIX or ROUND" } else { "FUP or ROUND" };
         finding = finding
@@ -49,11 +49,11 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
             finding = finding.note(causes);
         }
     }
-    objections.push(Objection::whole(finding));
+    objections.push(HoleFinding::whole(finding));
 }
 
 /// The pattern that another number of rows closes with, of rows that stand as evenly round as these do.
-fn closes(pattern: &Pattern, rows: &Rows, usual: Deg) -> Option<String> {
+fn closes(pattern: &Pattern, rows: &PatternRows, usual: Deg) -> Option<String> {
     let count = rows.rows.len() as u32;
     let even = (usual.0 * f64::from(count) - 360.0).abs() < ROUNDED.0;
     (even && count.is_multiple_of(2) && !rows.one_group(pattern)).then(|| {

@@ -1,21 +1,21 @@
 //! A honeycomb has two groups of rows, one half a pitch later in x than the other: where all rows begin alike, one is
 //! missing, or stands where the other does.
-use super::{Comparison, Objection};
+use super::{Comparison, HoleFinding};
 use crate::diag::Diagnostic;
 use crate::part::honeycomb::Pattern;
-use crate::verify::objection::at_the_call;
-use crate::verify::rows::Rows;
+use crate::verify::hole_finding::at_the_call;
+use crate::verify::rows::PatternRows;
 
 /// Rows that begin nearer to one another than this, in mm, begin alike.
 const SAME: f64 = 0.02;
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>) {
+pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
     let Some(pattern) = comparison.pattern.filter(|_| !comparison.missing.is_empty()) else { return };
     let late = |x: f64| (0.25..0.75).contains(&(x / pattern.pitch).fract());
-    let second = comparison.wanted.iter().filter(|hole| late(hole.entry[0])).count();
-    let Some(rows) = Rows::of(comparison, pattern) else { return };
+    let second = comparison.nominal.iter().filter(|hole| late(hole.entry[0])).count();
+    let Some(rows) = PatternRows::of(comparison, pattern) else { return };
     if let Some(finding) = one_shifted(comparison, pattern, &rows) {
-        objections.push(Objection::whole(finding));
+        objections.push(HoleFinding::whole(finding));
         return;
     }
     if !rows.in_step(pattern) {
@@ -36,7 +36,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
             format!(
                 "one of two groups of rows is missing, half of the pattern: all {count} rows {begin}, none is \
                  staggered; {second} of {} wanted holes belong to the other group",
-                comparison.wanted.len()
+                comparison.nominal.len()
             ),
             format!(
                 "drill the second group too: {:.4}° further round than the first, half a pitch ({half:.3} mm) later in x",
@@ -48,13 +48,15 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
             format!("every second row begins half a pitch later in x: {half:.3} mm"),
         ),
     };
-    let finding =
-        at_the_call(Diagnostic::error("row-group", message).help(help), &comparison.found[first.first].place);
-    objections.push(Objection::whole(finding));
+    let finding = at_the_call(
+        Diagnostic::error("row-group", message).help(help),
+        &comparison.actual[first.first].place,
+    );
+    objections.push(HoleFinding::whole(finding));
 }
 
 /// One group begins where it should and the other doesn't.
-fn one_shifted(comparison: &Comparison<'_>, pattern: &Pattern, rows: &Rows) -> Option<Diagnostic> {
+fn one_shifted(comparison: &Comparison<'_>, pattern: &Pattern, rows: &PatternRows) -> Option<Diagnostic> {
     if rows.rows.len() != pattern.rows as usize {
         return None;
     }
@@ -87,6 +89,6 @@ fn one_shifted(comparison: &Comparison<'_>, pattern: &Pattern, rows: &Rows) -> O
     let help = "the first group begins at x 0, the second half a pitch later; all holes of a row follow from its first";
     Some(at_the_call(
         Diagnostic::error("row-group", message).help(help),
-        &comparison.found[first[group].first].place,
+        &comparison.actual[first[group].first].place,
     ))
 }

@@ -1,13 +1,13 @@
 //! Whole rows of a honeycomb that nobody drilled are named as rows.
 use nalgebra::Point3;
 
-use super::{Comparison, Objection};
+use super::{Comparison, HoleFinding};
 use crate::diag::Diagnostic;
 use crate::part::honeycomb::Pattern;
 use crate::units::Deg;
-use crate::verify::objection::{at_the_call, behind, fold};
+use crate::verify::hole_finding::{at_the_call, behind, fold};
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>) {
+pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
     let Some(pattern) = comparison.pattern else { return };
     let Some(last) = comparison.pairs.last() else { return };
     // Half of the pattern is told as that, and rows at other angles as those.
@@ -19,7 +19,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
     if rows.is_empty() {
         return;
     }
-    let row = |wanted: usize| pattern.row_of(&Point3::from(comparison.wanted[wanted].entry));
+    let row = |wanted: usize| pattern.row_of(&Point3::from(comparison.nominal[wanted].entry));
     let gone = |wanted: usize| rows.contains(&row(wanted));
     let count = comparison.missing.iter().filter(|wanted| gone(**wanted)).count();
     let folded = fold(objections, &["hole-missing"], |objection| objection.wanted.is_some_and(gone));
@@ -48,18 +48,18 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
     };
     let mut finding = Diagnostic::error("row-missing", message).help(help);
     finding.notes.extend(behind(folded));
-    let place = &comparison.found[last.found].place;
-    objections.insert(0, Objection::whole(at_the_call(finding, place)));
+    let place = &comparison.actual[last.found].place;
+    objections.insert(0, HoleFinding::whole(at_the_call(finding, place)));
 }
 
 /// Rows of which no hole is there, and near which nothing is drilled that nobody asked for.
 fn missing_rows(comparison: &Comparison<'_>, pattern: &Pattern) -> Vec<usize> {
     let mut there = vec![false; pattern.rows as usize];
     for pair in &comparison.pairs {
-        there[pattern.row_of(&Point3::from(comparison.wanted[pair.wanted].entry))] = true;
+        there[pattern.row_of(&Point3::from(comparison.nominal[pair.wanted].entry))] = true;
     }
     for extra in &comparison.extra {
-        let hole = &comparison.found[*extra];
+        let hole = &comparison.actual[*extra];
         if let Some(at) = pattern.crossing(&hole.bottom(), &hole.axis)
             && comparison.wanted_on_line_of(*extra).is_none()
         {
@@ -68,7 +68,7 @@ fn missing_rows(comparison: &Comparison<'_>, pattern: &Pattern) -> Vec<usize> {
     }
     let mut wanted = vec![false; there.len()];
     for hole in &comparison.missing {
-        wanted[pattern.row_of(&Point3::from(comparison.wanted[*hole].entry))] = true;
+        wanted[pattern.row_of(&Point3::from(comparison.nominal[*hole].entry))] = true;
     }
     (0..there.len()).filter(|row| wanted[*row] && !there[*row]).collect()
 }

@@ -1,16 +1,16 @@
 //! In a row the holes stand at the pitch with which the pattern closes: another one is told with what it adds up to.
-use super::{Comparison, Objection};
+use super::{Comparison, HoleFinding};
 use crate::diag::Diagnostic;
 use crate::verify::causes::causes;
-use crate::verify::objection::at_the_call;
-use crate::verify::rows::Rows;
+use crate::verify::hole_finding::at_the_call;
+use crate::verify::rows::PatternRows;
 
 /// Pitches nearer than this, in mm, are the same: holes are rounded to the increment.
 const FOLLOWS: f64 = 0.002;
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>) {
+pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
     let Some(pattern) = comparison.pattern else { return };
-    let Some(rows) = Rows::of(comparison, pattern) else { return };
+    let Some(rows) = PatternRows::of(comparison, pattern) else { return };
     let Some((spacing, row)) = rows.spacing else { return };
     // The pitch that follows from another number of rows is told with their angle.
     let follows = (spacing - pattern.pitch_of(rows.rows.len() as u32)).abs() < FOLLOWS;
@@ -27,7 +27,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
         pattern.pitch
     );
     let mut finding =
-        at_the_call(Diagnostic::error("row-pitch", message), &comparison.found[row.first].place);
+        at_the_call(Diagnostic::error("row-pitch", message), &comparison.actual[row.first].place);
     if let Some(asked) = pattern.asked
         && (spacing - asked).abs() < (spacing - pattern.pitch).abs()
     {
@@ -40,5 +40,5 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
         finding = finding.note(causes);
     }
     let finding = finding.help("compute the pitch from the number of rows that close, after the angle");
-    objections.push(Objection::whole(finding));
+    objections.push(HoleFinding::whole(finding));
 }

@@ -1,15 +1,15 @@
 //! Round the cylinder the last row stands as far from the first as all others from their next: else there is a seam.
-use super::{Comparison, Objection};
+use super::{Comparison, HoleFinding};
 use crate::diag::Diagnostic;
-use crate::verify::objection::at_the_call;
-use crate::verify::rows::Rows;
+use crate::verify::hole_finding::at_the_call;
+use crate::verify::rows::PatternRows;
 
 /// A gap that differs by less than this part of a row is no seam.
 const SHARE: f64 = 0.05;
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>) {
+pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
     let Some(pattern) = comparison.pattern else { return };
-    let Some(rows) = Rows::of(comparison, pattern) else { return };
+    let Some(rows) = PatternRows::of(comparison, pattern) else { return };
     let odd = |gap: f64| (gap - rows.usual.0).abs() > SHARE * pattern.step().0;
     let seams: Vec<usize> = (0..rows.gaps.len()).filter(|index| odd(rows.gaps[*index].0)).collect();
     // Many odd gaps are no seam: there rows are missing, or stand anyhow.
@@ -31,5 +31,5 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
         pattern.arc(rows.usual)
     );
     let finding = Diagnostic::error("row-seam", message).help("the angle from row to row must divide 360: take a whole number of rows first, then the angle, then the pitch");
-    objections.push(Objection::whole(at_the_call(finding, &comparison.found[before.first].place)));
+    objections.push(HoleFinding::whole(at_the_call(finding, &comparison.actual[before.first].place)));
 }

@@ -1,12 +1,12 @@
 //! Where a honeycomb ends too early, as with a length that is too small, that is told instead of what it looks
 //! like.
-use super::{Comparison, Objection};
+use super::{Comparison, HoleFinding};
 use crate::diag::Diagnostic;
-use crate::verify::objection::{at_the_call, behind, fold};
+use crate::verify::hole_finding::{at_the_call, behind, fold};
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>) {
+pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
     let (Some(_), Some(_)) = (comparison.pattern, comparison.missing.first()) else { return };
-    let x = |wanted: usize| comparison.wanted[wanted].entry[0];
+    let x = |wanted: usize| comparison.nominal[wanted].entry[0];
     let Some(last) = comparison.pairs.iter().max_by(|a, b| x(a.wanted).total_cmp(&x(b.wanted))) else {
         return;
     };
@@ -30,5 +30,5 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
     finding.notes.extend(behind(folded));
     // A missing group is what that looks like.
     objections.retain(|objection| objection.finding.code != "row-group");
-    objections.insert(0, Objection::whole(at_the_call(finding, &comparison.found[last.found].place)));
+    objections.insert(0, HoleFinding::whole(at_the_call(finding, &comparison.actual[last.found].place)));
 }

@@ -1,9 +1,13 @@
 //! Where the run stopped before its end, what it left out says nothing more: one sentence, and nothing of rows.
-use super::{Comparison, Objection};
+use super::{Comparison, HoleFinding};
 use crate::diag::Diagnostic;
-use crate::verify::objection::{behind, fold};
+use crate::verify::hole_finding::{behind, fold};
 
-pub(in crate::verify) fn check(comparison: &Comparison<'_>, stopped: bool, objections: &mut Vec<Objection>) {
+pub(in crate::verify) fn check(
+    comparison: &Comparison<'_>,
+    stopped: bool,
+    objections: &mut Vec<HoleFinding>,
+) {
     if !stopped || comparison.missing.is_empty() {
         return;
     }
@@ -16,10 +20,10 @@ pub(in crate::verify) fn check(comparison: &Comparison<'_>, stopped: bool, objec
         return;
     }
     fold(objections, &["hole-missing"], |_| true);
-    let (missing, all) = (comparison.missing.len(), comparison.wanted.len());
+    let (missing, all) = (comparison.missing.len(), comparison.nominal.len());
     let message = format!("the run stopped before its end: {missing} of {all} holes are missing");
     let mut finding = Diagnostic::error("hole-missing", message)
         .help("what stopped it comes first: the holes behind it were never begun");
     finding.notes.extend(behind(missing));
-    objections.insert(0, Objection::whole(finding));
+    objections.insert(0, HoleFinding::whole(finding));
 }

@@ -2,11 +2,11 @@
 //! leaves the verdict alone. The part may be thinner than its surface says, a shell or cut off, so silence is no proof.
 use nalgebra::{Point3, Unit, Vector3};
 
-use super::{Comparison, Objection};
+use super::{Comparison, HoleFinding};
 use crate::diag::Diagnostic;
 use crate::part::hole::Hole;
 use crate::part::surface::Surface;
-use crate::verify::objection::behind;
+use crate::verify::hole_finding::behind;
 
 /// Fewer holes are told one by one.
 const FEWEST: usize = 3;
@@ -14,7 +14,7 @@ const FEWEST: usize = 3;
 pub(in crate::verify) fn check(
     comparison: &Comparison<'_>,
     surface: Option<Surface>,
-    objections: &mut Vec<Objection>,
+    objections: &mut Vec<HoleFinding>,
 ) {
     let Some(surface) = surface else { return };
     let thin = |(wanted, hole): (usize, &Hole)| {
@@ -25,9 +25,9 @@ pub(in crate::verify) fn check(
         let thick = thickness(&surface, hole);
         (thick < hole.depth).then_some((wanted, thick))
     };
-    let through: Vec<(usize, f64)> = comparison.wanted.iter().enumerate().filter_map(thin).collect();
+    let through: Vec<(usize, f64)> = comparison.nominal.iter().enumerate().filter_map(thin).collect();
     let sentence = |which: &str, wanted: usize, thick: f64| {
-        let depth = comparison.wanted[wanted].depth;
+        let depth = comparison.nominal[wanted].depth;
         let message =
             format!("{which} through: {depth} mm deep where the part is {thick:.1} mm thick along its axis");
         Diagnostic::warning("hole-through", message).help(
@@ -36,15 +36,15 @@ pub(in crate::verify) fn check(
     };
     let many = FEWEST <= through.len();
     if let Some((wanted, thick)) = through.first().filter(|_| many) {
-        let (count, all, id) = (through.len(), comparison.wanted.len(), comparison.id(*wanted));
+        let (count, all, id) = (through.len(), comparison.nominal.len(), comparison.id(*wanted));
         let mut finding =
             sentence(&format!("{count} of {all} holes go through; {id}, the first, goes"), *wanted, *thick);
         finding.notes.extend(behind(count));
-        objections.push(Objection::whole(finding));
+        objections.push(HoleFinding::whole(finding));
     }
     objections.extend(through.into_iter().map(|(wanted, thick)| {
         let finding = sentence(&format!("hole {} goes", comparison.id(wanted)), wanted, thick);
-        Objection { folded: many, ..Objection::of(wanted, finding) }
+        HoleFinding { folded: many, ..HoleFinding::of(wanted, finding) }
     }));
 }
 

@@ -3,16 +3,16 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Point3, Vector3};
 
-use super::{Comparison, Objection};
+use super::{Comparison, HoleFinding};
 use crate::diag::Diagnostic;
 use crate::machine::Machine;
-use crate::motion::Place;
+use crate::motion::Backtrace;
 
 /// The deepest cut of one tool.
 struct Deepest<'a> {
     wanted: usize,
     depth: f64,
-    place: &'a Place,
+    place: &'a Backtrace,
     /// In so many holes it goes deeper than it is long.
     holes: usize,
 }
@@ -20,17 +20,18 @@ struct Deepest<'a> {
 pub(in crate::verify) fn check(
     comparison: &Comparison<'_>,
     machine: &Machine,
-    objections: &mut Vec<Objection>,
+    objections: &mut Vec<HoleFinding>,
 ) {
     // A length of 0 is that of a tool whose tip is programmed.
     let length = |tool: u32| machine.find_tool(tool)?.length.filter(|length| 0.0 < *length);
     let mut short: BTreeMap<u32, (f64, Deepest<'_>)> = BTreeMap::new();
     for pair in &comparison.pairs {
-        let (wanted, found) = (&comparison.wanted[pair.wanted], &comparison.found[pair.found]);
+        let (wanted, found) = (&comparison.nominal[pair.wanted], &comparison.actual[pair.found]);
         let below = |p: &Point3<f64>| (Point3::from(wanted.entry) - p).dot(&Vector3::from(wanted.axis));
         let last = (found.tool, below(&found.bottom()), &found.place);
-        let cuts = found.others.iter().map(|cut| (cut.tool, below(&cut.bottom), &cut.place)).chain([last]);
-        let mut deepest: BTreeMap<u32, (f64, &Place)> = BTreeMap::new();
+        let cuts =
+            found.earlier_passes.iter().map(|cut| (cut.tool, below(&cut.bottom), &cut.place)).chain([last]);
+        let mut deepest: BTreeMap<u32, (f64, &Backtrace)> = BTreeMap::new();
         for (tool, depth, place) in cuts {
             let Some((tool, _)) = tool.and_then(|tool| Some((tool, length(tool)?))) else { continue };
             let before = deepest.entry(tool).or_insert((depth, place));
@@ -59,6 +60,6 @@ pub(in crate::verify) fn check(
         let finding = Diagnostic::warning("tool-short", message)
             .help("is the length in the machine file that from the spindle's gauge line to the tip? Else take a longer tool")
             .at(place.clone());
-        objections.push(Objection::of(wanted, finding));
+        objections.push(HoleFinding::of(wanted, finding));
     }
 }

@@ -4,23 +4,23 @@
 //! Sister tools are no fault, so it warns and leaves the verdict alone.
 use std::collections::BTreeMap;
 
-use super::{Comparison, Objection};
+use super::{Comparison, HoleFinding};
 use crate::diag::Diagnostic;
-use crate::holes::Found;
+use crate::holes::DrilledHole;
 
 /// Fewer holes of one diameter don't show what is usual.
 const FEWEST: usize = 3;
 
-pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>) {
+pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
     // Diameters are what somebody wrote down: equal ones are equal bits.
     let mut alike: BTreeMap<u64, Vec<usize>> = BTreeMap::new();
     for (index, pair) in comparison.pairs.iter().enumerate() {
-        if let Some(diameter) = comparison.wanted[pair.wanted].diameter {
+        if let Some(diameter) = comparison.nominal[pair.wanted].diameter {
             alike.entry(diameter.to_bits()).or_default().push(index);
         }
     }
     for (diameter, group) in alike.into_iter().filter(|(_, group)| FEWEST <= group.len()) {
-        let found = |index: &usize| &comparison.found[comparison.pairs[*index].found];
+        let found = |index: &usize| &comparison.actual[comparison.pairs[*index].found];
         let Some(usual) = most_common(group.iter().map(|index| tools(found(index)))) else { continue };
         for index in &group {
             let cuts = |tool: &u32| tools(found(index)).any(|other| other == *tool);
@@ -38,15 +38,15 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
             );
             let finding = Diagnostic::warning("hole-tools", message)
                 .help("was a call left out?")
-                .at(comparison.found[pair.found].place.clone());
-            objections.push(Objection::of(pair.wanted, finding));
+                .at(comparison.actual[pair.found].place.clone());
+            objections.push(HoleFinding::of(pair.wanted, finding));
         }
     }
 }
 
 /// The tools that cut in a hole.
-fn tools(found: &Found) -> impl Iterator<Item = u32> + '_ {
-    found.others.iter().map(|cut| cut.tool).chain([found.tool]).flatten()
+fn tools(found: &DrilledHole) -> impl Iterator<Item = u32> + '_ {
+    found.earlier_passes.iter().map(|cut| cut.tool).chain([found.tool]).flatten()
 }
 
 /// The tools, each once, that more than half of the holes get.

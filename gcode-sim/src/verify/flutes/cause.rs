@@ -1,5 +1,5 @@
 //! Why the contact is off the tooth bottom: between the programmed points alone, or at these too, and by what they are off.
-use crate::flutes::{Pass, Sample};
+use crate::flutes::{GrindingPass, Sample};
 use crate::part::flutes::Flutes;
 
 /// What explains where the contact of a pass is, at its programmed points.
@@ -24,7 +24,7 @@ const LEFT: f64 = 0.2;
 
 impl Cause {
     /// `most`: the largest distance of the pass from the tooth bottom, mm.
-    pub(super) fn of(wanted: &Flutes, pass: &Pass, most: f64) -> Self {
+    pub(super) fn of(wanted: &Flutes, pass: &GrindingPass, most: f64) -> Self {
         let points: Vec<&Sample> = pass.trace.programmed().collect();
         let largest = points.iter().map(|point| point.off.abs()).fold(0.0, f64::max);
         if largest <= (ON * most).max(wanted.surface_tolerance) {

@@ -1,12 +1,12 @@
 //! What all flutes have alike, all along, in another way than is wanted: said once, and as what it is.
 use super::cause::Cause;
-use crate::flutes::{ARITHMETIC, Pass, Window};
+use crate::flutes::{ARITHMETIC, GrindingPass, Window};
 use crate::part::flutes::Flutes;
 use crate::units::Deg;
 
 /// What the helix angle is of instead.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Instead {
+pub enum CommonDeviation {
     /// The other law.
     Law,
     /// The wanted law with another helix angle on the cylinder; of the other sign it is the other hand.
@@ -21,7 +21,7 @@ pub(super) fn hand(helix: Deg) -> &'static str {
 }
 
 /// How far above the tooth bottom all passes are alike, where that is more than is allowed, mm.
-pub(super) fn depth(wanted: &Flutes, passes: &[Pass]) -> Option<f64> {
+pub(super) fn depth(wanted: &Flutes, passes: &[GrindingPass]) -> Option<f64> {
     let depths: Option<Vec<f64>> = passes
         .iter()
         .map(|pass| {
@@ -38,8 +38,8 @@ pub(super) fn depth(wanted: &Flutes, passes: &[Pass]) -> Option<f64> {
     (alike && wanted.surface_tolerance + ARITHMETIC < mean.abs()).then_some(mean)
 }
 
-impl Instead {
-    pub(super) fn of(wanted: &Flutes, passes: &[Pass]) -> Option<Self> {
+impl CommonDeviation {
+    pub(super) fn of(wanted: &Flutes, passes: &[GrindingPass]) -> Option<Self> {
         let allowed = wanted.helix_tolerance.0;
         let windows: Vec<Window<'_>> =
             passes.iter().flat_map(|pass| pass.trace.windows(wanted.gauge)).collect();

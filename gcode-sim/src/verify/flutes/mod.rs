@@ -3,21 +3,21 @@
 mod cause;
 mod checks;
 mod common;
-mod near;
-mod round;
+mod path_distance;
+mod spacing;
 mod speed;
 mod verdict;
 
-pub use common::Instead;
-pub use round::Round;
+pub use common::CommonDeviation;
+pub use spacing::FluteSpacing;
 pub use speed::{SpeedRange, WorstSpeed};
 pub use verdict::{Angles, FluteVerdict, Law, WantedFlutes, in_words};
 
 use nalgebra::Point3;
 
 use crate::diag::Diagnostic;
-use crate::flutes::{Ground, Trace};
-use crate::motion::Place;
+use crate::flutes::{GrindingResult, Trace};
+use crate::motion::Backtrace;
 use crate::part::flutes::Flutes;
 use crate::source::Span;
 use crate::units::Deg;
@@ -25,16 +25,16 @@ use crate::units::Deg;
 /// What the checks look at.
 pub struct Inspection<'g> {
     pub wanted: &'g Flutes,
-    pub ground: &'g Ground,
+    pub ground: &'g GrindingResult,
     /// The flutes round the burr.
-    pub round: Round,
+    pub round: FluteSpacing,
     pub helix: HelixRange,
     /// `None` where nothing is ground.
     pub speed: Option<SpeedRange>,
     /// How far above the tooth bottom all flutes are ground, alike all along, where that is too much, mm.
     pub depth: Option<f64>,
     /// What all flutes have instead of the wanted helix angle, all along.
-    pub instead: Option<Instead>,
+    pub instead: Option<CommonDeviation>,
 }
 
 impl Inspection<'_> {
@@ -88,11 +88,11 @@ impl WorstHelix {
 
     /// The block that goes farthest off the law there, or a gauge length beside it. One point out of place makes two
     /// moves wrong, there and back: the first of them is its block.
-    pub fn place<'g>(&self, trace: &'g Trace, gauge: f64) -> Option<&'g Place> {
+    pub fn place<'g>(&self, trace: &'g Trace, gauge: f64) -> Option<&'g Backtrace> {
         let samples = &trace.samples;
         let [first, last] = self.ends.map(|end| samples[end].along);
         let (low, high) = (first.min(last) - gauge, first.max(last) + gauge);
-        let mut blocks: Vec<(&Place, f64)> = Vec::new();
+        let mut blocks: Vec<(&Backtrace, f64)> = Vec::new();
         for pair in samples.windows(2).filter(|pair| (low..=high).contains(&pair[1].along)) {
             let off = (pair[1].around - pair[1].wanted) - (pair[0].around - pair[0].wanted);
             let place = trace.place(&pair[1]);
@@ -111,7 +111,7 @@ impl HelixRange {
         Self { least: angle, most: angle, worst: None, of_passes: Vec::new() }
     }
 
-    fn of(wanted: &Flutes, ground: &Ground) -> Option<Self> {
+    fn of(wanted: &Flutes, ground: &GrindingResult) -> Option<Self> {
         let gauge = wanted.gauge;
         let mut range: Option<Self> = None;
         for (pass, ground) in ground.passes.iter().enumerate() {
@@ -146,18 +146,18 @@ impl HelixRange {
 /// The verdict on a program. `locate` names the program and the line of a block.
 pub fn verify_flutes(
     wanted: &Flutes,
-    ground: &Ground,
+    ground: &GrindingResult,
     locate: &dyn Fn(Span) -> (String, u32),
 ) -> FluteVerdict {
     let measured = HelixRange::of(wanted, ground);
     let inspection = Inspection {
         wanted,
         ground,
-        round: Round::of(wanted, &ground.passes),
+        round: FluteSpacing::of(wanted, &ground.passes),
         helix: measured.clone().unwrap_or_else(|| HelixRange::only(Deg::ZERO)),
         speed: SpeedRange::of(wanted, &ground.passes),
         depth: common::depth(wanted, &ground.passes),
-        instead: Instead::of(wanted, &ground.passes),
+        instead: CommonDeviation::of(wanted, &ground.passes),
     };
     let mut findings: Vec<Diagnostic> = ground.findings.clone();
     for check in checks::ALL {

@@ -1,8 +1,8 @@
 //! How fast the contact runs along the flutes: its own way over the time that the moves take.
 use nalgebra::Point3;
 
-use crate::flutes::{Pass, Trace};
-use crate::motion::Place;
+use crate::flutes::{GrindingPass, Trace};
+use crate::motion::Backtrace;
 use crate::part::flutes::Flutes;
 
 /// The speed may be off by this part of the wanted one: between two programmed points the axes run evenly and the contact
@@ -41,9 +41,9 @@ impl WorstSpeed {
     }
 
     /// The block of the stretch that is most times too fast or too slow, taken alone.
-    pub fn place<'t>(&self, trace: &'t Trace) -> Option<&'t Place> {
+    pub fn place<'t>(&self, trace: &'t Trace) -> Option<&'t Backtrace> {
         let [first, last] = self.ends;
-        let mut blocks: Vec<(&Place, f64, f64)> = Vec::new();
+        let mut blocks: Vec<(&Backtrace, f64, f64)> = Vec::new();
         for pair in trace.samples[first..=last].windows(2) {
             let place = trace.place(&pair[1]);
             let (way, seconds) = (pair[1].way - pair[0].way, pair[1].seconds - pair[0].seconds);
@@ -58,7 +58,7 @@ impl WorstSpeed {
 }
 
 impl SpeedRange {
-    pub(super) fn of(wanted: &Flutes, passes: &[Pass]) -> Option<Self> {
+    pub(super) fn of(wanted: &Flutes, passes: &[GrindingPass]) -> Option<Self> {
         let mut range: Option<Self> = None;
         for (pass, ground) in passes.iter().enumerate() {
             let mut worst: Option<WorstSpeed> = None;

@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::Inspection;
 use super::speed::ALLOWED;
 use crate::diag::{Diagnostic, Severity};
-use crate::flutes::{Ground, Window};
+use crate::flutes::{GrindingResult, Window};
 use crate::job::FluteLaw;
 use crate::part::flutes::Flutes;
 use crate::source::Span;
@@ -213,7 +213,11 @@ pub(super) fn verdict(
 }
 
 /// What the verdict says nothing about.
-fn not_checked(wanted: &Flutes, ground: &Ground, locate: &dyn Fn(Span) -> (String, u32)) -> Vec<String> {
+fn not_checked(
+    wanted: &Flutes,
+    ground: &GrindingResult,
+    locate: &dyn Fn(Span) -> (String, u32),
+) -> Vec<String> {
     let mut all = vec![
         "the wheel's width, form and body: it is one point, so whether it gouges a neighbouring tooth beside its contact \
          isn't known"
@@ -238,7 +242,7 @@ fn not_checked(wanted: &Flutes, ground: &Ground, locate: &dyn Fn(Span) -> (Strin
     if ground.offset.is_none() {
         all.push("the job's c_offset: the machine file has no axis C that turns about z".to_owned());
     }
-    let unseen = ground.unseen;
+    let unseen = ground.unchecked_rapids;
     if 0 < unseen {
         let moves = if unseen == 1 { "1 move" } else { &format!("{unseen} moves") };
         all.push(format!(

@@ -1,9 +1,9 @@
 //! As many flutes as are wanted, no more and no fewer.
 use super::super::Inspection;
-use super::super::round::SAME;
+use super::super::spacing::SAME;
 use super::twice;
 use crate::diag::{Diagnostic, Site};
-use crate::flutes::Kind;
+use crate::flutes::CollisionKind;
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
     let (found, wanted) = (inspection.round.flutes.len(), inspection.wanted.count as usize);
@@ -52,11 +52,11 @@ fn missing(inspection: &Inspection<'_>, found: usize, wanted: usize) -> Diagnost
     let missing = |message: String| Diagnostic::error("flute-missing", message);
     let sites = inspection.round.absent(inspection.wanted).into_iter().map(|at| Site { pass: None, at });
     let dives = inspection.ground.dives.iter();
-    let rapid: Vec<_> = dives.filter(|dive| matches!(dive.kind, Kind::RapidPass(_))).collect();
+    let rapid: Vec<_> = dives.filter(|dive| matches!(dive.kind, CollisionKind::RapidPass(_))).collect();
     if let Some(first) = rapid.first() {
         let all: u64 = rapid.iter().map(|dive| dive.times).sum();
         let which = match first.kind {
-            Kind::RapidPass(number) if all == 1 => format!("flute {number}'s pass is"),
+            CollisionKind::RapidPass(number) if all == 1 => format!("flute {number}'s pass is"),
             _ => format!("{all} passes are"),
         };
         return missing(format!("{found} flutes where {wanted} are wanted: {which} made in rapid motion"))

@@ -2,48 +2,48 @@
 //! straight in where a pass begins and straight out where one ends.
 use super::super::Inspection;
 use crate::diag::{Diagnostic, Site};
-use crate::flutes::Kind;
+use crate::flutes::CollisionKind;
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
     for dive in &inspection.ground.dives {
         let depth = dive.depth;
         let message = match dive.kind {
-            Kind::Rapid => {
+            CollisionKind::Rapid => {
                 format!("rapid motion while the wheel touches the blank, {depth:.3} mm below its surface")
             }
-            Kind::RapidPass(_) => {
+            CollisionKind::RapidPass(_) => {
                 format!(
                     "rapid motion along a flute while the wheel touches the blank, {depth:.3} mm below its surface"
                 )
             }
-            Kind::Below => {
+            CollisionKind::Below => {
                 format!("a feed that doesn't turn A takes the wheel {depth:.3} mm below the tooth bottom")
             }
-            Kind::Sideways(by) => format!(
+            CollisionKind::Sideways(by) => format!(
                 "a feed that doesn't turn A takes the wheel {by:.3} mm along the burr in the cut, {depth:.3} mm below the \
                  blank's surface"
             ),
-            Kind::Near => {
+            CollisionKind::Near => {
                 format!(
                     "the rapid ends with the wheel {:.3} mm off the blank, and the job wants {} mm",
                     -depth,
                     inspection.wanted.clearance.unwrap_or_default()
                 )
             }
-            Kind::Pit => {
+            CollisionKind::Pit => {
                 format!("the wheel is fed {depth:.3} mm below the blank's surface where no pass begins")
             }
         };
         let help = match dive.kind {
-            Kind::RapidPass(_) => "grind with G01: G00 stays in force until another motion code",
-            Kind::Near => "end it at machine.clearance from the blank, or correct that in the job",
-            Kind::Rapid | Kind::Below | Kind::Sideways(_) | Kind::Pit => {
+            CollisionKind::RapidPass(_) => "grind with G01: G00 stays in force until another motion code",
+            CollisionKind::Near => "end it at machine.clearance from the blank, or correct that in the job",
+            CollisionKind::Rapid | CollisionKind::Below | CollisionKind::Sideways(_) | CollisionKind::Pit => {
                 "move Y clear of the burr first, then turn A and C"
             }
         };
         let again = dive.times - 1;
         let note = match dive.kind {
-            Kind::RapidPass(_) => match again {
+            CollisionKind::RapidPass(_) => match again {
                 0 => Some(dive.moves - 1)
                     .filter(|more| 0 < *more)
                     .map(|more| format!("and {more} more moves of this pass")),
@@ -52,15 +52,19 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
                     dive.moves
                 )),
             },
-            Kind::Rapid | Kind::Below | Kind::Sideways(_) | Kind::Pit | Kind::Near => {
-                (0 < again).then(|| format!("and {again} more of this block"))
-            }
+            CollisionKind::Rapid
+            | CollisionKind::Below
+            | CollisionKind::Sideways(_)
+            | CollisionKind::Pit
+            | CollisionKind::Near => (0 < again).then(|| format!("and {again} more of this block")),
         };
         let finding = match dive.kind {
-            Kind::Near => Diagnostic::warning("wheel-near-burr", message),
-            Kind::Rapid | Kind::RapidPass(_) | Kind::Below | Kind::Sideways(_) | Kind::Pit => {
-                Diagnostic::error("wheel-into-burr", message)
-            }
+            CollisionKind::Near => Diagnostic::warning("wheel-near-burr", message),
+            CollisionKind::Rapid
+            | CollisionKind::RapidPass(_)
+            | CollisionKind::Below
+            | CollisionKind::Sideways(_)
+            | CollisionKind::Pit => Diagnostic::error("wheel-into-burr", message),
         };
         let finding = finding.help(help).at(dive.place.clone()).on([Site { pass: None, at: dive.at }]);
         findings.push(note.into_iter().fold(finding, Diagnostic::note));

@@ -4,16 +4,16 @@ use nalgebra::Point3;
 use super::super::Inspection;
 use super::on_passes;
 use crate::diag::Diagnostic;
-use crate::flutes::{Begun, Pass};
+use crate::flutes::{FirstOccurrence, GrindingPass};
 
 /// How far an end may be off: along the axis at the shank, mm, and by the polar angle at the tip, degrees.
 const AT_SHANK: f64 = 0.05;
 const AT_TIP: f64 = 0.1;
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
-    let wrong = |pass: &Pass| {
+    let wrong = |pass: &GrindingPass| {
         let (message, at) = wrong(inspection, pass)?;
-        Some((message, Begun { place: pass.place.clone(), at }))
+        Some((message, FirstOccurrence { place: pass.place.clone(), at }))
     };
     findings.extend(on_passes(inspection, wrong, |message| {
         Diagnostic::error("flute-end", message)
@@ -22,7 +22,7 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
 }
 
 /// What is wrong with a pass, and the end where it is.
-fn wrong(inspection: &Inspection<'_>, pass: &Pass) -> Option<(String, Point3<f64>)> {
+fn wrong(inspection: &Inspection<'_>, pass: &GrindingPass) -> Option<(String, Point3<f64>)> {
     let wanted = inspection.wanted;
     let samples = || pass.trace.samples.iter();
     let start = samples().max_by(|a, b| a.at.x.total_cmp(&b.at.x))?;

@@ -3,17 +3,17 @@ use super::super::Inspection;
 use super::helix::follow;
 use super::on_passes;
 use crate::diag::Diagnostic;
-use crate::flutes::{Begun, Pass};
+use crate::flutes::{FirstOccurrence, GrindingPass};
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
     // That is told with the helix angle.
     if follow(inspection) {
         return;
     }
-    let wrong = |pass: &Pass| {
+    let wrong = |pass: &GrindingPass| {
         let message = wrong(inspection, pass)?;
         let at = pass.trace.samples.first()?.at;
-        Some((message, Begun { place: pass.place.clone(), at }))
+        Some((message, FirstOccurrence { place: pass.place.clone(), at }))
     };
     findings.extend(on_passes(inspection, wrong, |message| {
         Diagnostic::error("flute-head", message)
@@ -21,7 +21,7 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
     }));
 }
 
-fn wrong(inspection: &Inspection<'_>, pass: &Pass) -> Option<String> {
+fn wrong(inspection: &Inspection<'_>, pass: &GrindingPass) -> Option<String> {
     let (wanted, tolerance) = (inspection.wanted.helix, inspection.wanted.helix_tolerance);
     let (least, most) = pass.head?;
     if 1e-9 < most.0 - least.0 {

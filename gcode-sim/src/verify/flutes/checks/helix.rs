@@ -1,8 +1,8 @@
 //! The helix angle along every flute is that of the law asked for.
 use super::super::common::hand;
-use super::super::{Inspection, Instead};
+use super::super::{CommonDeviation, Inspection};
 use crate::diag::{Diagnostic, Site};
-use crate::flutes::Pass;
+use crate::flutes::GrindingPass;
 use crate::job::FluteLaw;
 use crate::units::Deg;
 
@@ -48,7 +48,7 @@ fn all_alike(inspection: &Inspection<'_>) -> Option<(String, &'static str)> {
         all => format!("all {all} flutes have"),
     };
     Some(match inspection.instead? {
-        Instead::Law => {
+        CommonDeviation::Law => {
             let other = match wanted.law {
                 FluteLaw::ConstantHelix => FluteLaw::Published,
                 FluteLaw::Published => FluteLaw::ConstantHelix,
@@ -59,7 +59,7 @@ fn all_alike(inspection: &Inspection<'_>) -> Option<(String, &'static str)> {
                 "compute A by the job's law (H of the call)",
             )
         }
-        Instead::Helix(helix) if helix.0 * wanted.helix.0 < 0.0 => (
+        CommonDeviation::Helix(helix) if helix.0 * wanted.helix.0 < 0.0 => (
             format!(
                 "{flutes} the other hand: {}, with a helix of {:.1}°, where {:.1}°, {}, is asked for",
                 hand(helix),
@@ -69,11 +69,11 @@ fn all_alike(inspection: &Inspection<'_>) -> Option<(String, &'static str)> {
             ),
             "A turns the wrong way round: check its sign, and that of the helix angle in the program",
         ),
-        Instead::Helix(helix) => (
+        CommonDeviation::Helix(helix) => (
             format!("{flutes} a helix of {:.1}° where {:.1}° is asked for", helix.0, wanted.helix.0),
             "check the helix angle and the radius that A is computed from, and that A is in degrees",
         ),
-        Instead::Deep => (
+        CommonDeviation::Deep => (
             format!("{flutes} another helix angle on the wanted diameter than {:.1}°", wanted.helix.0),
             "it comes of the diameter they are ground to, on which the angle is the wanted one: see flute-surface",
         ),
@@ -82,16 +82,16 @@ fn all_alike(inspection: &Inspection<'_>) -> Option<(String, &'static str)> {
 
 /// Where all heads stand at the angle that all flutes have: that they do isn't told by itself.
 fn heads(inspection: &Inspection<'_>) -> Option<String> {
-    let Some(Instead::Helix(helix)) = inspection.instead else { return None };
+    let Some(CommonDeviation::Helix(helix)) = inspection.instead else { return None };
     follow(inspection).then(|| format!("so is the head B set, to {:.1}° in all passes", helix.0))
 }
 
 /// Whether every pass has its head at the helix angle that all flutes have instead of the wanted one.
 pub(super) fn follow(inspection: &Inspection<'_>) -> bool {
-    let Some(Instead::Helix(helix)) = inspection.instead else { return false };
+    let Some(CommonDeviation::Helix(helix)) = inspection.instead else { return false };
     let tolerance = inspection.wanted.helix_tolerance;
     let there = |angle: Deg| (angle - helix).abs() <= tolerance;
-    let stands = |pass: &Pass| {
+    let stands = |pass: &GrindingPass| {
         pass.head.is_some_and(|(least, most)| there(least) && there(most) && most.0 - least.0 <= 1e-9)
     };
     inspection.helix.worst.is_some_and(|worst| tolerance < worst.off())

@@ -34,7 +34,7 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
                 gap.found.0, gap.x, gap.polar.0, wanted.index_tolerance.0
             );
             let name = inspection.name(gap.pass);
-            let note = match gap.astray {
+            let note = match gap.index_error {
                 Some(off) => {
                     Some(format!("{name} stands {:.3}° from its place between the others there", off.0))
                 }

@@ -16,7 +16,7 @@ mod wheel;
 
 use super::Inspection;
 use crate::diag::{Diagnostic, Site};
-use crate::flutes::{Begun, Pass};
+use crate::flutes::{FirstOccurrence, GrindingPass};
 
 type Check = fn(&Inspection<'_>, &mut Vec<Diagnostic>);
 
@@ -41,12 +41,12 @@ pub(super) const ALL: &[Check] = &[
 /// what of a pass is, at which block and where on the burr.
 fn on_passes<'g, T>(
     inspection: &Inspection<'g>,
-    wrong: impl Fn(&'g Pass) -> Option<(T, Begun)>,
+    wrong: impl Fn(&'g GrindingPass) -> Option<(T, FirstOccurrence)>,
     told: impl FnOnce(T) -> Diagnostic,
 ) -> Option<Diagnostic> {
     let passes = inspection.ground.passes.iter().enumerate();
     let mut all = passes.filter_map(|(index, pass)| Some((index, wrong(pass)?)));
-    let (index, (what, Begun { place, at })) = all.next()?;
+    let (index, (what, FirstOccurrence { place, at })) = all.next()?;
     let others: Vec<Site> = all.map(|(index, (_, begun))| Site { pass: Some(index), at: begun.at }).collect();
     let finding = told(what).at(place);
     let finding = match others.len() {

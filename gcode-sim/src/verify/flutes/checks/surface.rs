@@ -2,12 +2,12 @@
 use super::super::Inspection;
 use super::super::cause::Cause;
 use crate::diag::{Diagnostic, Site};
-use crate::flutes::{ARITHMETIC, Pass, Sample};
+use crate::flutes::{ARITHMETIC, GrindingPass, Sample};
 
 pub(super) fn check<'g>(inspection: &Inspection<'g>, findings: &mut Vec<Diagnostic>) {
     let allowed = inspection.wanted.surface_tolerance;
     // Of every pass its worst place.
-    let of_pass = |(index, pass): (usize, &'g Pass)| {
+    let of_pass = |(index, pass): (usize, &'g GrindingPass)| {
         let worst = pass.trace.samples.iter().max_by(|a, b| a.off.abs().total_cmp(&b.off.abs()))?;
         (allowed + ARITHMETIC < worst.off.abs()).then_some((index, worst))
     };

@@ -1,6 +1,6 @@
 //! No flute is ground a second time.
 use super::super::Inspection;
-use super::super::round::Again;
+use super::super::spacing::RepeatedPass;
 use crate::diag::{Diagnostic, Severity, Site};
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
@@ -39,6 +39,6 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
 }
 
 /// In words which pass goes over which flute.
-pub(super) fn sentence(again: Again) -> String {
+pub(super) fn sentence(again: RepeatedPass) -> String {
     format!("pass {} goes over the flute of pass {} again", again.pass + 1, again.first + 1)
 }

@@ -1,13 +1,13 @@
 //! The wheel turns and goes into the blank as fast as the job says.
 use super::super::Inspection;
 use crate::diag::{Diagnostic, Site};
-use crate::motion::Place;
+use crate::motion::Backtrace;
 use crate::verify::checks::cutting::severity;
 
 /// Something that the program does, and where.
 struct Done<'g> {
     found: f64,
-    place: &'g Place,
+    place: &'g Backtrace,
     site: Site,
 }
 

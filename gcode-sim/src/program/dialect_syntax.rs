@@ -1,0 +1,71 @@
+//! Ways of writing that not every control takes: noted in a block when it is lowered, held against the control's
+//! settings when a run gets there.
+use crate::alarm::Alarm;
+use crate::control::Settings;
+
+use super::codes;
+
+/// One way of writing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DialectSyntax {
+    /// Letters in lower case.
+    LowerCase,
+    /// `WH[…]DO1`, `GO 5`.
+    ShortWord,
+    /// `=`, `<>`, `<`, `&` and the like in a condition.
+    Signs,
+    /// `#1=1 #2=2`.
+    SeveralAssignments,
+    /// `IF[…]` before words or an assignment, without THEN.
+    PlainIf,
+    /// `IF[…]THEN` before words.
+    ThenWords,
+    /// `IF[…]THEN GOTO 5`.
+    ThenGoto,
+    /// POW, MOD, ATAN with a comma: by its name.
+    NewFunction(&'static str),
+    /// FUP, LN and others that controls with few functions lack.
+    MoreFunction(&'static str),
+    /// `<NAME>`, SETVN, `[#NAME]`, PRM and the like.
+    NewWord(&'static str),
+    /// A G code × 10 that lowering takes for a call.
+    Code(u32),
+    /// `#30057.21`: a bit of a variable, or the variable of the nearest number.
+    Fraction,
+}
+
+impl DialectSyntax {
+    /// Whether a control takes it.
+    pub fn is_taken(self, settings: &Settings) -> bool {
+        let unsure = &settings.unsure;
+        match self {
+            Self::LowerCase => unsure.lower_case,
+            Self::ShortWord => unsure.short_words,
+            Self::Signs => unsure.signs,
+            Self::SeveralAssignments => unsure.several_assignments,
+            Self::PlainIf => settings.plain_if,
+            Self::ThenWords => settings.then_takes_words,
+            Self::ThenGoto => unsure.then_takes_goto,
+            Self::NewFunction(_) => unsure.new_functions,
+            Self::MoreFunction(_) => settings.more_functions,
+            Self::NewWord(_) => settings.new_words,
+            Self::Code(code) => codes::find(code).on(settings.codes).is_some(),
+            Self::Fraction => !settings.bits_of_variables,
+        }
+    }
+
+    /// What a control raises that doesn't take it.
+    pub fn alarm(self) -> Alarm {
+        match self {
+            Self::LowerCase => Alarm::LowerCase,
+            Self::ShortWord => Alarm::ShortWord,
+            Self::Signs => Alarm::RelationSymbol,
+            Self::SeveralAssignments => Alarm::MacroFormat { what: "two assignments in one block".into() },
+            Self::PlainIf | Self::ThenWords | Self::ThenGoto => Alarm::IfFormat,
+            Self::NewFunction(name) | Self::MoreFunction(name) => Alarm::Expression { text: name.into() },
+            Self::NewWord(word) => Alarm::NotAWord { text: word.into() },
+            Self::Code(code) => Alarm::ImproperGCode { code: codes::spelled(code) },
+            Self::Fraction => Alarm::NotSimulated { what: "a bit of a variable, #n.m".into() },
+        }
+    }
+}
