@@ -1,5 +1,5 @@
 //! The order of work: by tool, then by radius and direction (one setting of the head), then by azimuth.
-use gcode_sim::job::{AxisDirection, HoleSpec, PinHoles, Tool};
+use gcode_part::job::{AxisDirection, HoleSpec, PinHoles, Tool};
 
 /// One tool and the holes it makes.
 #[derive(Debug)]
@@ -43,7 +43,7 @@ pub fn passes(job: &PinHoles) -> Vec<ToolPass<'_>> {
 
 #[cfg(test)]
 mod tests {
-    use gcode_sim::job::Job;
+    use gcode_part::job::Job;
 
     use super::*;
 

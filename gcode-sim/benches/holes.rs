@@ -3,13 +3,13 @@
 use std::fmt::Write as _;
 
 use divan::counter::ItemsCount;
-use gcode_sim::job::Job;
-use gcode_sim::machine::Machine;
-use gcode_sim::part::nominal::NominalPart;
-use gcode_sim::part::reference::Reference;
-use gcode_sim::program::NoLibrary;
-use gcode_sim::session::{Request, Simulation, simulate};
-use gcode_sim::verify::{Answer, Tolerances};
+use gcode_inspect::machine::Machine;
+use gcode_inspect::verify::{Answer, Tolerances};
+use gcode_lang::program::NoLibrary;
+use gcode_part::job::Job;
+use gcode_part::part::nominal::NominalPart;
+use gcode_part::part::reference::Reference;
+use gcode_session::{Request, Simulation, simulate};
 
 fn main() {
     divan::main();

@@ -2,15 +2,15 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use gcode_sim::changes::{Record, Revision, changes};
+use gcode_control::Limits;
+use gcode_inspect::machine::{Machine, Probe};
+use gcode_lang::program::Library;
+use gcode_lang::units::Deg;
+use gcode_part::part::probed::ProbedPart;
+use gcode_review::{Record, Revision, changes};
+use gcode_session::Request;
 use gcode_sim::cli::library::Folders;
-use gcode_sim::exec::Limits;
-use gcode_sim::machine::{Machine, Probe};
-use gcode_sim::part::probed::ProbedPart;
-use gcode_sim::program::Library;
 use gcode_sim::report::changes::ChangesReport;
-use gcode_sim::session::Request;
-use gcode_sim::units::Deg;
 use gcode_tests::workspace;
 
 /// Blocks of a program that are looked at: the first rows of a honeycomb tell what its macro does, and the whole is held

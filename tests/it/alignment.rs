@@ -4,18 +4,18 @@ use std::path::Path;
 use nalgebra::{Point3, Rotation3, Translation3, Vector3};
 use proptest::prelude::*;
 
+use gcode_control::{Outcome, Value};
 use gcode_gen::check::Programs;
 use gcode_gen::families;
 use gcode_gen::package::file_name;
-use gcode_sim::exec::{Outcome, Value};
-use gcode_sim::holes::HoleExtractor;
-use gcode_sim::job::Job;
-use gcode_sim::machine::{Frame, Machine, Placement};
-use gcode_sim::part::nominal::NominalPart;
-use gcode_sim::part::surface::Surface;
-use gcode_sim::session::{Request, Run, run, simulate};
-use gcode_sim::units::Deg;
-use gcode_sim::verify::{Answer, Tolerances, Verdict};
+use gcode_inspect::holes::HoleExtractor;
+use gcode_inspect::machine::{Frame, Machine, Placement};
+use gcode_inspect::verify::{Answer, Tolerances, Verdict};
+use gcode_lang::units::Deg;
+use gcode_part::job::Job;
+use gcode_part::part::nominal::NominalPart;
+use gcode_part::part::surface::Surface;
+use gcode_session::{Request, Run, run, simulate};
 
 fn example(name: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples").join(name);

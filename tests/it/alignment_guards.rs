@@ -1,7 +1,7 @@
 //! What the measurements refuse before the ball moves, and where they leave the rotary: modes that change coordinates, a start from
 //! which the way leads through the part.
-use gcode_sim::machine::Placement;
-use gcode_sim::session::Run;
+use gcode_inspect::machine::Placement;
+use gcode_session::Run;
 use gcode_tests::alignment::{Bench, alarm, marks, standing, value};
 
 /// A main program of the example, behind these blocks.

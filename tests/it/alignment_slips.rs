@@ -1,7 +1,7 @@
 //! Slips at the machine while a part is set up: a wrong ball, a lost point, points left over from before, a table that isn't
 //! at the angle that a program believes.
-use gcode_sim::machine::Placement;
-use gcode_sim::session::Run;
+use gcode_inspect::machine::Placement;
+use gcode_session::Run;
 use gcode_tests::alignment::{Bench, alarm, kept, marks, standing, vacant, value};
 
 /// A main program, with a text of the package changed, on a part that stands so.

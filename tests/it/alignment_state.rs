@@ -2,9 +2,9 @@
 //! half written that the next program would take for whole.
 use std::collections::{BTreeMap, BTreeSet};
 
+use gcode_control::{Control, Limits, Observer};
 use gcode_gen::package::file_name;
-use gcode_sim::exec::{Control, Limits, Observer};
-use gcode_sim::machine::Placement;
+use gcode_inspect::machine::Placement;
 use gcode_tests::alignment::{Bench, alarm, kept, marks, standing, vacant, value};
 use gcode_tests::workspace;
 

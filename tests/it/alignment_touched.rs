@@ -1,6 +1,6 @@
 //! Points of the chord that the probe touched correct y and nothing else; and a run-out that is broken off leaves no result.
-use gcode_sim::exec::{Limits, Outcome};
-use gcode_sim::machine::Placement;
+use gcode_control::{Limits, Outcome};
+use gcode_inspect::machine::Placement;
 use gcode_tests::alignment::{Bench, alarm, standing, vacant, value};
 
 /// By hand, to first order: at x the part stands higher by y, by δ·x·(1 − b²/a²) for a tilt δ about z, and by dx·(b²/a²)·x/Y for a

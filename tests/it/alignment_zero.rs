@@ -2,7 +2,7 @@
 //! itself is taken for the part, as docs/methods/alignment.md says.
 use std::fmt::Write;
 
-use gcode_sim::machine::Placement;
+use gcode_inspect::machine::Placement;
 use gcode_tests::alignment::{Bench, alarm, marks, standing, value};
 use gcode_tests::workspace;
 

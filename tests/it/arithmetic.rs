@@ -10,7 +10,7 @@ fn value(expression: &str) -> Result<f64, String> {
     let program = format!("O1\n#1=2.5\n#2=-7\n#3=0\n#5=1000.125\n#100={expression}\nM30\n");
     let ran = expect::run(program.as_bytes());
     match ran.outcome {
-        gcode_sim::exec::Outcome::Alarm(stopped) => Err(stopped.alarm.code().to_string()),
+        gcode_control::Outcome::Alarm(stopped) => Err(stopped.alarm.code().to_string()),
         _ => Ok(ran.control.variables().find(|(n, _)| *n == 100).map_or(0.0, |(_, v)| v)),
     }
 }

@@ -3,15 +3,15 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
 
+use gcode_control::{Control, Outcome};
 use gcode_gen::check::Programs;
 use gcode_gen::families;
 use gcode_gen::package::file_name;
-use gcode_sim::exec::{Control, Outcome};
-use gcode_sim::job::Job;
-use gcode_sim::machine::Machine;
-use gcode_sim::part::nominal::NominalPart;
-use gcode_sim::program::Memory;
-use gcode_sim::session::Request;
+use gcode_inspect::machine::Machine;
+use gcode_lang::program::Memory;
+use gcode_part::job::Job;
+use gcode_part::part::nominal::NominalPart;
+use gcode_session::Request;
 
 /// Blocks executed of each program, by the name of its file.
 fn blocks(job: &Job) -> BTreeMap<String, u64> {

@@ -5,10 +5,10 @@ use std::sync::atomic::AtomicUsize;
 
 use gcode_gen::check::check;
 use gcode_gen::families;
-use gcode_sim::budget::{Budget, Question, budget};
-use gcode_sim::job::Job;
-use gcode_sim::machine::{Machine, error_file};
-use gcode_sim::part::nominal::NominalPart;
+use gcode_inspect::budget::{Budget, Question, budget};
+use gcode_inspect::machine::{Machine, error_file};
+use gcode_part::job::Job;
+use gcode_part::part::nominal::NominalPart;
 
 fn example(name: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples").join(name);

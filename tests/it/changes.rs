@@ -1,5 +1,5 @@
 //! Laws of `diff`: a program and itself are the same, whatever its numbers, comments and spaces.
-use gcode_sim::changes::{Record, changes};
+use gcode_review::{Record, changes};
 use gcode_tests::changes::{found, messages, revision};
 use proptest::prelude::*;
 
@@ -297,7 +297,7 @@ fn another_end_is_one_entry_that_names_its_block() {
     let old = "O1\nG0 X1.\nM30\n";
     let shown = |new: &str| -> Vec<String> {
         let found = found(old, new);
-        let line = |place: &Option<gcode_sim::changes::BlockLocation>| place.as_ref().map(|place| place.line);
+        let line = |place: &Option<gcode_review::BlockLocation>| place.as_ref().map(|place| place.line);
         let each = found.iter();
         each.map(|c| format!("{} {:?} {:?}: {}", c.code, line(&c.old), line(&c.new), c.message)).collect()
     };

@@ -1,12 +1,12 @@
 //! `check` on what stands in this repository: nothing to find in macros and examples, a page and a case for each rule.
 use std::path::{Path, PathBuf};
 
-use gcode_sim::check::rules::ALL;
-use gcode_sim::check::{Checked, check};
+use gcode_lang::control::Settings;
+use gcode_lang::diag::Severity;
+use gcode_lang::program::NoLibrary;
+use gcode_lint::rules::ALL;
+use gcode_lint::{Checked, check};
 use gcode_sim::cli::library::Folders;
-use gcode_sim::control::Settings;
-use gcode_sim::diag::Severity;
-use gcode_sim::program::NoLibrary;
 use gcode_tests::workspace;
 
 /// The programs below `dir`.

@@ -3,7 +3,7 @@ use std::path::Path;
 
 use gcode_gen::families;
 use gcode_gen::package::Program;
-use gcode_sim::job::Job;
+use gcode_part::job::Job;
 use gcode_tests::workspace;
 
 /// The file must hold `text`, byte for byte; `cargo xtask bless` writes it.

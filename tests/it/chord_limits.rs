@@ -2,17 +2,17 @@
 //! emitted program itself; and what the ellipse sees. The tables of docs/methods/alignment.md are what comes out here.
 use std::fmt::Write;
 
+use gcode_control::Outcome;
 use gcode_gen::check::Programs;
 use gcode_gen::families;
 use gcode_gen::package::Package;
-use gcode_sim::exec::Outcome;
-use gcode_sim::job::{Alignment, Job};
-use gcode_sim::machine::random::RandomStream;
-use gcode_sim::machine::{Machine, Setup};
-use gcode_sim::motion::Position;
-use gcode_sim::part::surface::Surface;
-use gcode_sim::session::{Request, follow, run};
-use gcode_sim::units::Deg;
+use gcode_inspect::machine::random::RandomStream;
+use gcode_inspect::machine::{Machine, Setup};
+use gcode_lang::motion::Position;
+use gcode_lang::units::Deg;
+use gcode_part::job::{Alignment, Job};
+use gcode_part::part::surface::Surface;
+use gcode_session::{Request, follow, run};
 use gcode_tests::workspace;
 use nalgebra::{Point3, distance};
 

@@ -1,10 +1,10 @@
 //! Laws of cutter compensation and corner words: the tool's centre keeps the radius, and what waits is told in the end.
 use std::fmt::Write;
 
-use gcode_sim::control::Settings;
-use gcode_sim::exec::{Control, Limits, Outcome};
-use gcode_sim::motion::{Event, EventKind, EventSink, Position};
-use gcode_sim::program::{Memory, NoLibrary};
+use gcode_control::{Control, Limits, Outcome};
+use gcode_lang::control::Settings;
+use gcode_lang::motion::{Event, EventKind, EventSink, Position};
+use gcode_lang::program::{Memory, NoLibrary};
 use proptest::prelude::*;
 
 type Point = (f64, f64);

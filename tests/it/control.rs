@@ -1,8 +1,8 @@
 //! Laws of the control: it never panics, and it runs the same program the same way every time.
-use gcode_sim::control::Settings;
-use gcode_sim::exec::{Control, Limits, Outcome};
-use gcode_sim::motion::{Event, EventSink};
-use gcode_sim::program::{Memory, NoLibrary};
+use gcode_control::{Control, Limits, Outcome};
+use gcode_lang::control::Settings;
+use gcode_lang::motion::{Event, EventSink};
+use gcode_lang::program::{Memory, NoLibrary};
 use proptest::prelude::*;
 
 /// Everything told, as text.

@@ -1,17 +1,17 @@
 //! The ellipse program of an alignment: the ball's distance from the surface along the emitted path, the count of moves, what
 //! is refused, and the reading on a misplaced part.
+use gcode_control::Outcome;
 use gcode_gen::check::Programs;
 use gcode_gen::families;
 use gcode_gen::package::Package;
-use gcode_sim::alarm::AlarmCode;
-use gcode_sim::exec::Outcome;
-use gcode_sim::job::Job;
-use gcode_sim::machine::Machine;
-use gcode_sim::motion::{Event, EventKind, EventSink};
-use gcode_sim::part::indicator::tilted;
-use gcode_sim::part::surface::Surface;
-use gcode_sim::session::{Request, StylusRun, follow, run};
-use gcode_sim::units::{Deg, Mm};
+use gcode_inspect::machine::Machine;
+use gcode_lang::alarm::AlarmCode;
+use gcode_lang::motion::{Event, EventKind, EventSink};
+use gcode_lang::units::{Deg, Mm};
+use gcode_part::job::Job;
+use gcode_part::part::indicator::tilted;
+use gcode_part::part::surface::Surface;
+use gcode_session::{Request, StylusRun, follow, run};
 use nalgebra::Vector3;
 
 /// An ellipsoid, the ends of the path, the ball, the chord error, the control.
@@ -271,9 +271,10 @@ fn the_machine_finds_what_the_formula_of_figure_5_says() {
         let machine = Machine::parse(&text).unwrap();
         let program = b"O1\nG21 G90 G94 G00 X1500. Y200.\nG31 X1000. F100.\n#500=#5061\nM30\n%\n";
         let mut request = Request::new("O1.nc", program.as_slice(), machine);
-        request.settings.increment = gcode_sim::control::Increment::IsC;
+        request.settings.increment = gcode_lang::control::Increment::IsC;
         let surface = MELON.surface();
-        let mut probe = gcode_sim::holes::HoleExtractor::new(&request.machine).with_surface(Some(surface));
+        let mut probe =
+            gcode_inspect::holes::HoleExtractor::new(&request.machine).with_surface(Some(surface));
         let ran = run(&request, &mut Programs(&MELON.package()), &mut probe).unwrap();
         let x = ran.control.variable(500).unwrap().number();
         let said = tilted(Mm(1158.8), Mm(724.3), Mm(200.0), Deg(tilt)).unwrap();

@@ -2,10 +2,10 @@
 //! change; tried on what the families emit, on every example with its macros, and on the programs that other tests are about.
 use std::path::Path;
 
-use gcode_sim::changes::{Record, Revision, changes};
-use gcode_sim::machine::Machine;
-use gcode_sim::program::Library;
-use gcode_sim::session::Request;
+use gcode_inspect::machine::Machine;
+use gcode_lang::program::Library;
+use gcode_review::{Record, Revision, changes};
+use gcode_session::Request;
 use gcode_tests::workspace;
 
 use crate::accepted::{folders, mains, request};
@@ -106,7 +106,7 @@ fn what_the_families_emit_rewritten_is_no_change() {
     let less = [("flutes = 16", "flutes = 1"), ("length = 300.0", "length = 20.0")];
     for family in gcode_gen::families::ALL {
         let job = less.iter().fold(family.new_job.to_owned(), |job, (from, to)| job.replace(from, to));
-        let package = gcode_gen::families::emit(&gcode_sim::job::Job::parse(&job).unwrap());
+        let package = gcode_gen::families::emit(&gcode_part::job::Job::parse(&job).unwrap());
         let mut other = package.clone();
         other.programs.iter_mut().for_each(|program| program.text = rewrite(&program.text));
         for main in &package.mains {

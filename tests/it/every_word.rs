@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::Path;
 
-use gcode_sim::changes::{Change, Record, Revision, changes};
+use gcode_control::Limits;
+use gcode_lang::program::Library;
+use gcode_review::{Change, Record, Revision, changes};
 use gcode_sim::cli::library::Folders;
-use gcode_sim::exec::Limits;
-use gcode_sim::program::Library;
 use gcode_tests::workspace;
 use serde_json::Value;
 
@@ -140,7 +140,7 @@ fn is_more(main: &str, slip: &Slip) -> bool {
 fn shown(main: &str, program: &str, slip: &Slip, is_idle: bool, found: &[Change]) -> String {
     let what = if is_idle { "nothing different" } else { "different" };
     let entries = found.iter().map(|change| {
-        let at = |place: &Option<gcode_sim::changes::BlockLocation>| place.as_ref().map(|place| place.line);
+        let at = |place: &Option<gcode_review::BlockLocation>| place.as_ref().map(|place| place.line);
         format!("    {} {:?} {:?}: {}\n", change.code, at(&change.old), at(&change.new), change.message)
     });
     let entries: String = entries.collect();

@@ -51,7 +51,7 @@ fn the_examples_pictures_are_drawn_like_that_now() {
             std::fs::copy(&drawn, &kept).unwrap();
         }
         let (kept, drawn) = (std::fs::read(&kept).unwrap(), std::fs::read(&drawn).unwrap());
-        let difference = gcode_sim::picture::compare(&kept, &drawn, 1).unwrap();
+        let difference = gcode_draw::compare(&kept, &drawn, 1).unwrap();
         assert!(difference.is_none(), "{name} is drawn otherwise now; run cargo xtask bless");
     }
 }

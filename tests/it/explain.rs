@@ -2,23 +2,23 @@
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-use gcode_sim::changes::CODES;
-use gcode_sim::diag::{Diagnostic, Severity};
-use gcode_sim::exec::Outcome;
-use gcode_sim::machine::Machine;
-use gcode_sim::part::nominal::NominalPart;
-use gcode_sim::part::probed::ProbedPart;
-use gcode_sim::program::NoLibrary;
+use gcode_control::Outcome;
+use gcode_inspect::machine::Machine;
+use gcode_inspect::verify::Tolerances;
+use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_lang::program::NoLibrary;
+use gcode_part::part::nominal::NominalPart;
+use gcode_part::part::probed::ProbedPart;
+use gcode_review::CODES;
+use gcode_session::{Request, follow, grind, simulate};
 use gcode_sim::report::explain::{self, PAGES, Page};
-use gcode_sim::session::{Request, follow, grind, simulate};
-use gcode_sim::verify::Tolerances;
 use gcode_tests::{expect, workspace};
 
 use crate::house_rules::below;
 
 /// The codes that the table of alarms can give; all that programs raise themselves are `MC3000`.
 fn alarms() -> BTreeSet<String> {
-    let text = include_str!("../../gcode-sim/src/alarm/table.rs");
+    let text = include_str!("../../gcode-sim/crates/gcode-lang/src/alarm/table.rs");
     let mut codes = BTreeSet::new();
     for (family, name) in [("Ps(", "PS"), ("Ot(", "OT"), ("Sim(", "SIM")] {
         for rest in text.split(&format!("({family}")).skip(1) {

@@ -1,9 +1,9 @@
 //! Findings on flutes say where on the burr, by pass and by place.
-use gcode_sim::machine::Machine;
-use gcode_sim::part::nominal::NominalPart;
-use gcode_sim::program::NoLibrary;
-use gcode_sim::session::{GrindingRun, Request, grind};
-use gcode_sim::verify::PartPoint;
+use gcode_inspect::machine::Machine;
+use gcode_inspect::verify::PartPoint;
+use gcode_lang::program::NoLibrary;
+use gcode_part::part::nominal::NominalPart;
+use gcode_session::{GrindingRun, Request, grind};
 use nalgebra::Vector3;
 
 /// The sites of the finding of that code.

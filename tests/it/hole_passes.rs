@@ -1,6 +1,6 @@
 //! Passes of a hole that aren't its last, and what leads to them and back: a changed pilot is told at its hole, and nothing is
 //! told with it that it doesn't explain.
-use gcode_sim::machine::Machine;
+use gcode_inspect::machine::Machine;
 use gcode_tests::changes::{found_on, messages};
 
 /// T1 makes both holes 4 mm deep, T2 the first of them to its end at 12 mm.

@@ -1,16 +1,16 @@
 //! The emitted honeycomb programs on the control: random jobs, called wrongly, with faults put in, counted.
 use std::path::Path;
 
+use gcode_control::Outcome;
 use gcode_gen::check::{Programs, check};
 use gcode_gen::families;
 use gcode_gen::package::Package;
-use gcode_sim::alarm::Alarm;
-use gcode_sim::exec::Outcome;
-use gcode_sim::job::Job;
-use gcode_sim::machine::Machine;
-use gcode_sim::motion::{Event, EventKind, EventSink, Position};
-use gcode_sim::session::{Request, Run, run};
-use gcode_sim::verify::{Answer, Verdict};
+use gcode_inspect::machine::Machine;
+use gcode_inspect::verify::{Answer, Verdict};
+use gcode_lang::alarm::Alarm;
+use gcode_lang::motion::{Event, EventKind, EventSink, Position};
+use gcode_part::job::Job;
+use gcode_session::{Request, Run, run};
 use proptest::prelude::*;
 
 /// A small job: diameter 100, pitch 20, length 90: 9 rows of each group, 5 and 4 holes.

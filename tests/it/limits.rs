@@ -2,11 +2,11 @@
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-use gcode_sim::exec::{Outcome, Progress};
-use gcode_sim::machine::Machine;
-use gcode_sim::motion::{Event, EventSink};
-use gcode_sim::program::NoLibrary;
-use gcode_sim::session::{Request, run};
+use gcode_control::{Outcome, Progress};
+use gcode_inspect::machine::Machine;
+use gcode_lang::motion::{Event, EventSink};
+use gcode_lang::program::NoLibrary;
+use gcode_session::{Request, run};
 use gcode_tests::{expect, fuzz};
 use proptest::prelude::*;
 

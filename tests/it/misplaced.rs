@@ -6,14 +6,14 @@ use proptest::prelude::*;
 
 use gcode_gen::check::check;
 use gcode_gen::families;
-use gcode_sim::job::Job;
-use gcode_sim::machine::{Machine, Placement};
-use gcode_sim::part::hole::{Hole, HoleList, Unit};
-use gcode_sim::part::reference::Reference;
-use gcode_sim::program::NoLibrary;
-use gcode_sim::session::{Request, simulate};
-use gcode_sim::units::Deg;
-use gcode_sim::verify::{Tolerances, Verdict};
+use gcode_inspect::machine::{Machine, Placement};
+use gcode_inspect::verify::{Tolerances, Verdict};
+use gcode_lang::program::NoLibrary;
+use gcode_lang::units::Deg;
+use gcode_part::job::Job;
+use gcode_part::part::hole::{Hole, HoleList, Unit};
+use gcode_part::part::reference::Reference;
+use gcode_session::{Request, simulate};
 
 /// One axial hole at radius `r` with its mouth at height `y` and 15 deep, drilled at each angle of B.
 fn drilled(r: f64, y: f64, angles: &[f64], machine: &Machine, reference: &Reference) -> Verdict {

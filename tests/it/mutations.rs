@@ -2,7 +2,7 @@
 //! the programs that other tests are about.
 use std::path::{Path, PathBuf};
 
-use gcode_sim::changes::{Change, Record, Revision, changes};
+use gcode_review::{Change, Record, Revision, changes};
 use gcode_tests::workspace;
 
 use crate::accepted::{folders, mains, request};

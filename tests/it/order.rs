@@ -1,6 +1,6 @@
 //! Holes, passes of them and cuts that are made at another time: one entry, at the block that was moved, with what
 //! the cut is made with otherwise because of that.
-use gcode_sim::changes::Change;
+use gcode_review::Change;
 use gcode_tests::changes::{found, messages};
 
 /// The lines of an entry, before and now.

@@ -1,17 +1,17 @@
 //! The emitted pin-hole programs on the control: edited by hand, called wrongly, with the printed equation, counted.
 use std::path::Path;
 
+use gcode_control::Outcome;
 use gcode_gen::check::{Programs, check};
 use gcode_gen::families;
 use gcode_gen::package::Package;
-use gcode_sim::alarm::Alarm;
-use gcode_sim::exec::Outcome;
-use gcode_sim::job::Job;
-use gcode_sim::machine::Machine;
-use gcode_sim::motion::{Event, EventKind, EventSink, Position};
-use gcode_sim::part::nominal::NominalPart;
-use gcode_sim::session::{Request, Run, run, simulate};
-use gcode_sim::verify::{Answer, Tolerances, Verdict};
+use gcode_inspect::machine::Machine;
+use gcode_inspect::verify::{Answer, Tolerances, Verdict};
+use gcode_lang::alarm::Alarm;
+use gcode_lang::motion::{Event, EventKind, EventSink, Position};
+use gcode_part::job::Job;
+use gcode_part::part::nominal::NominalPart;
+use gcode_session::{Request, Run, run, simulate};
 
 /// The main job of the examples.
 fn melon() -> String {

@@ -3,8 +3,8 @@ use std::fmt::Write;
 
 use gcode_gen::check::{CheckedPackage, check};
 use gcode_gen::families;
-use gcode_sim::job::Job;
-use gcode_sim::verify::Answer;
+use gcode_inspect::verify::Answer;
+use gcode_part::job::Job;
 use proptest::prelude::*;
 
 /// Everything a job can differ in; numbers as a drawing has them, with more digits than the control's increment.

@@ -1,6 +1,6 @@
 //! What a run alone doesn't show: what a program finds as it was left, places that are the same here alone, pulses,
 //! guards that no run needed.
-use gcode_sim::changes::{changes, unexecuted};
+use gcode_review::{changes, unexecuted};
 use gcode_tests::changes::{messages, revision};
 
 /// `PROGRAM` with one thing written otherwise.

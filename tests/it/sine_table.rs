@@ -1,14 +1,14 @@
 //! The sine table's program on the control: heights worked out by hand, and what it refuses.
 use std::path::Path;
 
+use gcode_control::Outcome;
 use gcode_gen::check::Programs;
 use gcode_gen::families;
 use gcode_gen::package::Package;
-use gcode_sim::alarm::AlarmCode;
-use gcode_sim::exec::Outcome;
-use gcode_sim::job::Job;
-use gcode_sim::machine::Machine;
-use gcode_sim::session::{Request, Run, run};
+use gcode_inspect::machine::Machine;
+use gcode_lang::alarm::AlarmCode;
+use gcode_part::job::Job;
+use gcode_session::{Request, Run, run};
 
 fn package() -> Package {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/alignment/job.toml");

@@ -1,6 +1,6 @@
 //! One cause is one entry, at the block that somebody has edited, and nothing it says is false.
-use gcode_sim::changes::Change;
-use gcode_sim::machine::Machine;
+use gcode_inspect::machine::Machine;
+use gcode_review::Change;
 use gcode_tests::changes::{found_on, texts};
 
 fn found_by(machine: &str, old: &str, new: &str) -> Vec<Change> {

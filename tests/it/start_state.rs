@@ -3,10 +3,10 @@
 use gcode_gen::check::Programs;
 use gcode_gen::families;
 use gcode_gen::package::Package;
-use gcode_sim::job::Job;
-use gcode_sim::machine::Machine;
-use gcode_sim::motion::{Event, EventKind, EventSink};
-use gcode_sim::session::{Request, Run, run};
+use gcode_inspect::machine::Machine;
+use gcode_lang::motion::{Event, EventKind, EventSink};
+use gcode_part::job::Job;
+use gcode_session::{Request, Run, run};
 use gcode_tests::alignment::{alarm, value};
 
 /// A family with its main program, and its macros with their alarms; the main program has the first one's, and the next for shifts.

@@ -1,15 +1,15 @@
 //! The programs of an alignment on a part that stands somehow, and what they leave in the control.
+use gcode_control::{Limits, Observer, Outcome};
 use gcode_gen::check::Programs;
 use gcode_gen::families;
 use gcode_gen::package::Package;
-use gcode_sim::alarm::AlarmCode;
-use gcode_sim::exec::{Limits, Observer, Outcome};
-use gcode_sim::holes::HoleExtractor;
-use gcode_sim::job::{Alignment, Job};
-use gcode_sim::machine::{Machine, Placement};
-use gcode_sim::part::surface::Surface;
-use gcode_sim::session::{Request, Run, run_observed};
-use gcode_sim::units::Deg;
+use gcode_inspect::holes::HoleExtractor;
+use gcode_inspect::machine::{Machine, Placement};
+use gcode_lang::alarm::AlarmCode;
+use gcode_lang::units::Deg;
+use gcode_part::job::{Alignment, Job};
+use gcode_part::part::surface::Surface;
+use gcode_session::{Request, Run, run_observed};
 
 use crate::workspace;
 

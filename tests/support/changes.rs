@@ -1,8 +1,8 @@
 //! What `diff` finds between two programs, as the tests of it ask.
-use gcode_sim::changes::{Change, Revision, changes};
-use gcode_sim::machine::Machine;
-use gcode_sim::program::NoLibrary;
-use gcode_sim::session::Request;
+use gcode_inspect::machine::Machine;
+use gcode_lang::program::NoLibrary;
+use gcode_review::{Change, Revision, changes};
+use gcode_session::Request;
 
 /// From how many mm on a difference is one.
 const TOLERANCE: f64 = 0.0001;

@@ -3,9 +3,9 @@
 //! Programs it calls stand in the same file. A comment `(@KEY=VALUE)` is a setting of the control.
 use std::fmt::Write as _;
 
-use gcode_sim::check::{Checked, check};
-use gcode_sim::program::NoLibrary;
-use gcode_sim::source::Span;
+use gcode_lang::program::NoLibrary;
+use gcode_lang::source::Span;
+use gcode_lint::{Checked, check};
 
 use crate::{Case, expect};
 

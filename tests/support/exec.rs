@@ -4,9 +4,9 @@
 //! is one, is the end as it was worked out by hand, in the words of [`crate::expect`].
 use std::fmt::Write as _;
 
-use gcode_sim::exec::{AlarmStop, Outcome};
-use gcode_sim::motion::{Call, EventKind, LengthCompensation};
-use gcode_sim::source::Span;
+use gcode_control::{AlarmStop, Outcome};
+use gcode_lang::motion::{Call, EventKind, LengthCompensation};
+use gcode_lang::source::Span;
 
 use crate::Case;
 use crate::expect::{self, Ran};
@@ -74,7 +74,7 @@ fn line(ran: &Ran, span: Span) -> u32 {
 
 fn event(ran: &Ran, kind: &EventKind) -> String {
     let axes = &ran.control.settings().axes;
-    let at = |to: &gcode_sim::motion::Position| {
+    let at = |to: &gcode_lang::motion::Position| {
         let moved = axes.iter().filter(|(axis, letter)| "XYZ".contains(*letter) || to[*axis] != 0.0);
         let words: Vec<_> = moved.map(|(axis, letter)| format!("{letter}{:.4}", to[axis])).collect();
         words.join(" ")

@@ -23,11 +23,11 @@
 //! A comment `(@KEY=VALUE)` in the program is a setting of the control, by the name it has on the command line.
 use std::fmt::Write as _;
 
-use gcode_sim::control::Settings;
-use gcode_sim::exec::{Control, Limits, Outcome, Value};
-use gcode_sim::motion::{Event, EventKind, EventSink, Position};
-use gcode_sim::program::{Memory, NoLibrary};
-use gcode_sim::source::Span;
+use gcode_control::{Control, Limits, Outcome, Value};
+use gcode_lang::control::Settings;
+use gcode_lang::motion::{Event, EventKind, EventSink, Position};
+use gcode_lang::program::{Memory, NoLibrary};
+use gcode_lang::source::Span;
 
 /// Everything the machine was told, and a control at the end of its run.
 pub struct Ran {

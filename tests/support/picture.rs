@@ -3,13 +3,13 @@
 //!
 //! `says.snap` beside it has the picture's words. With an `other.toml` the picture is the comparison of both. What
 //! was drawn instead, and where it differs, is left in `target/pictures/`.
-use gcode_sim::changes::RevisionDiff;
-use gcode_sim::machine::Machine;
-use gcode_sim::part::hole::Hole;
-use gcode_sim::picture::{
+use gcode_draw::{
     Cylinder, Difference, DrawnHole, HoleStatus, PathKind, PathPiece, PicturePurpose, Sheet, Side, Size,
     TopView, compare, development, lay_out, paint, png, top_view,
 };
+use gcode_inspect::machine::Machine;
+use gcode_part::part::hole::Hole;
+use gcode_review::RevisionDiff;
 use gcode_sim::report::changed_view;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ImageFormat, RgbImage};

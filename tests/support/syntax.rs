@@ -1,10 +1,10 @@
 //! Cases of kind `syntax`: what was read of `case.nc` in words, one line a block; grouping shown in round brackets.
-use gcode_sim::source::{SourceId, Sources};
-use gcode_sim::syntax::ast::{
+use gcode_lang::source::{SourceId, Sources};
+use gcode_lang::syntax::ast::{
     BinaryOp, Block, CallForm, CommentMark, Condition, Expr, ExprKind, Item, OperatorSpelling, PrintPart,
     Program, ProgramName, Statement, Word, WordValue,
 };
-use gcode_sim::syntax::{parse, print::decimal};
+use gcode_lang::syntax::{parse, print::decimal};
 
 use crate::Case;
 

@@ -4,15 +4,15 @@
 //! wanted (holes, or a burr's flutes), `machine.toml`, where there is one, the machine. Where there is no reference the holes are shown.
 use std::fmt::Write as _;
 
-use gcode_sim::diag::Diagnostic;
-use gcode_sim::machine::Machine;
-use gcode_sim::motion::Call;
-use gcode_sim::part::nominal::NominalPart;
-use gcode_sim::program::NoLibrary;
+use gcode_inspect::machine::Machine;
+use gcode_inspect::verify::Tolerances;
+use gcode_lang::diag::Diagnostic;
+use gcode_lang::motion::Call;
+use gcode_lang::program::NoLibrary;
+use gcode_part::part::nominal::NominalPart;
+use gcode_session::{Request, Run, Simulation, grind, simulate};
 use gcode_sim::report::flute_table;
 use gcode_sim::report::verdict_table::{Layout, table};
-use gcode_sim::session::{Request, Run, Simulation, grind, simulate};
-use gcode_sim::verify::Tolerances;
 
 use crate::Case;
 
@@ -62,7 +62,7 @@ fn with_findings(mut shown: String, findings: &[Diagnostic], run: &Run) -> Strin
     shown
 }
 
-fn at(run: &Run, block: gcode_sim::source::Span) -> String {
+fn at(run: &Run, block: gcode_lang::source::Span) -> String {
     let (program, line) = run.locate(block);
     let text = run.control.memory().sources().text(block);
     format!("{program} line {line}: {}", text.trim())

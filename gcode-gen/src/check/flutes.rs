@@ -1,11 +1,10 @@
 //! Runs the programs of a burr and holds the flutes against the job's geometry.
-use gcode_sim::diag::Severity;
-use gcode_sim::machine::Machine;
-use gcode_sim::part::flutes::Flutes;
-use gcode_sim::picture;
+use gcode_inspect::machine::Machine;
+use gcode_inspect::verify::Answer;
+use gcode_lang::diag::Severity;
+use gcode_part::part::flutes::Flutes;
+use gcode_session::{Request, grind};
 use gcode_sim::report::{diagnostic, flute_table, flute_view};
-use gcode_sim::session::{Request, grind};
-use gcode_sim::verify::Answer;
 
 use super::{CheckError, CheckedPackage, PackageVerdict, Programs, main_program, told, warnings};
 use crate::package::{Package, file_name, stem};
@@ -30,9 +29,9 @@ pub(super) fn check(package: &Package, wanted: &Flutes) -> Result<CheckedPackage
         seconds: grinding.run.control.seconds().0,
         report: flute_table::table(&verdict),
         pictures: vec![
-            (stem(main.number), picture::side_view(&view)),
-            (format!("{}-tip", stem(main.number)), picture::tip_view(&view)),
-            (format!("{}-helix", stem(main.number)), picture::helix_graph(&view)),
+            (stem(main.number), gcode_draw::side_view(&view)),
+            (format!("{}-tip", stem(main.number)), gcode_draw::tip_view(&view)),
+            (format!("{}-helix", stem(main.number)), gcode_draw::helix_graph(&view)),
         ],
         judgement: PackageVerdict::Flutes(verdict),
     })

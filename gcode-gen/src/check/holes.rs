@@ -1,14 +1,13 @@
 //! Runs the programs of a part with holes and holds the holes against the job's geometry.
-use gcode_sim::diag::Severity;
-use gcode_sim::job::Job;
-use gcode_sim::machine::Machine;
-use gcode_sim::part::overlap::overlaps;
-use gcode_sim::part::reference::Reference;
-use gcode_sim::picture;
+use gcode_inspect::machine::Machine;
+use gcode_inspect::verify::{Answer, Tolerances, Verdict};
+use gcode_lang::diag::Severity;
+use gcode_part::job::Job;
+use gcode_part::part::overlap::overlaps;
+use gcode_part::part::reference::Reference;
+use gcode_session::{Request, Simulation, simulate};
 use gcode_sim::report::verdict_table::{Layout, table};
 use gcode_sim::report::{diagnostic, top};
-use gcode_sim::session::{Request, Simulation, simulate};
-use gcode_sim::verify::{Answer, Tolerances, Verdict};
 
 use super::{CheckError, CheckedPackage, PackageVerdict, Programs, main_program, told, warnings};
 use crate::package::{Package, file_name, stem};
@@ -32,7 +31,7 @@ pub(super) fn check(
         warnings: warnings(&verdict.diagnostics, simulation.run.control.memory().sources()),
         seconds: simulation.run.control.seconds().0,
         report: table(&verdict, Layout::default()),
-        pictures: vec![(stem(main.number), picture::main_view(&top))],
+        pictures: vec![(stem(main.number), gcode_draw::main_view(&top))],
         judgement: PackageVerdict::Holes(verdict),
     })
 }

@@ -4,15 +4,15 @@ mod alignment;
 mod flutes;
 mod holes;
 
-use gcode_sim::diag::{Diagnostic, Severity};
-use gcode_sim::job::Job;
-use gcode_sim::part::nominal::NominalPart;
-use gcode_sim::picture::Scene;
-use gcode_sim::program::Library;
+use gcode_draw::Scene;
+use gcode_inspect::verify::Verdict;
+use gcode_inspect::verify::flutes::FluteVerdict;
+use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_lang::program::Library;
+use gcode_lang::source::Sources;
+use gcode_part::job::Job;
+use gcode_part::part::nominal::NominalPart;
 use gcode_sim::report::diagnostic;
-use gcode_sim::source::Sources;
-use gcode_sim::verify::Verdict;
-use gcode_sim::verify::flutes::FluteVerdict;
 use schemars::JsonSchema;
 use serde::Serialize;
 

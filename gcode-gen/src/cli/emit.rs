@@ -2,10 +2,10 @@
 use std::path::{Path, PathBuf};
 
 use anstream::adapter::strip_str;
+use gcode_draw::{PictureError, Scene, Size};
+use gcode_part::job::Job;
 use gcode_sim::cli::format::TextFormat;
 use gcode_sim::cli::{ExitStatus, UsageError, input, output, overwrite_guard};
-use gcode_sim::job::Job;
-use gcode_sim::picture::{self, PictureError, Scene, Size};
 
 use crate::check::{CheckError, CheckedPackage, check};
 use crate::families;
@@ -107,7 +107,7 @@ pub(super) fn pictures(checked: &CheckedPackage) -> Result<Vec<(String, Vec<u8>)
     let refused = |error: PictureError| UsageError::new(error.to_string());
     let size = Size::new(1600, 1200).map_err(refused)?;
     let drawn = |(name, scene): &(String, Scene)| {
-        Ok((format!("{name}.png"), picture::draw(scene, size).map_err(refused)?))
+        Ok((format!("{name}.png"), gcode_draw::draw(scene, size).map_err(refused)?))
     };
     checked.pictures.iter().map(drawn).collect()
 }

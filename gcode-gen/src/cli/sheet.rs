@@ -1,9 +1,9 @@
 //! `gcode-gen sheet`: the set-up sheet of a job's programs, after they have been run and held against the job.
 use std::path::Path;
 
+use gcode_part::job::Rates;
 use gcode_sim::cli::format::TextFormat;
 use gcode_sim::cli::{ExitStatus, UsageError, input, output, overwrite_guard};
-use gcode_sim::job::Rates;
 
 use super::emit::{VerifiedPackage, held, pictures};
 use crate::report::SheetReport;

@@ -1,6 +1,6 @@
 //! What the programs and machine files of all families say of the control.
-use gcode_sim::control::Dialect;
-use gcode_sim::job::{JobControl, Rotary};
+use gcode_lang::control::Dialect;
+use gcode_part::job::{JobControl, Rotary};
 
 /// `FANUC-31I, INCREMENT IS-B`, for a comment.
 pub(super) fn remark(control: JobControl) -> String {

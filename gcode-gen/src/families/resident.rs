@@ -1,5 +1,5 @@
 //! What all resident macros share: marks filled in, and what has to be true of the text for any control.
-use gcode_sim::control::Dialect;
+use gcode_lang::control::Dialect;
 
 use super::control::alarm_thousands;
 use super::start::changed;

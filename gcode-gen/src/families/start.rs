@@ -5,8 +5,8 @@
 //! stands on no screen for offsets, and whoever wants one writes it to G54 or to the external offset (by G10 too), which are read as
 //! they are. The resident macros refuse only what bends their formulas, in a block that they execute anyway: they drill or grind in
 //! whatever work offset their caller has chosen, and a G52 there is the usual way to a second pattern or part.
-use gcode_sim::control::{Dialect, Increment};
-use gcode_sim::job::JobControl;
+use gcode_lang::control::{Dialect, Increment};
+use gcode_part::job::JobControl;
 
 use super::control::alarm_thousands;
 use crate::nc::block::Block;

@@ -1,5 +1,5 @@
 //! What a part takes and costs: the simulated run, and the minutes and rates that the user gives.
-use gcode_sim::job::{AlternativeMachine, Minutes, Rates, SheetInfo};
+use gcode_part::job::{AlternativeMachine, Minutes, Rates, SheetInfo};
 
 use super::record::Record;
 

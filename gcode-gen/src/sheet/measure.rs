@@ -1,10 +1,10 @@
 //! What an inspector is asked to measure, one line a characteristic, as form 3 of AS9102 has them.
-use gcode_sim::gauge;
-use gcode_sim::job::{Alignment, Job};
+use gcode_inspect::verify::flutes::FluteVerdict;
+use gcode_inspect::verify::{Distance, HoleVerdict, Neighbours, Verdict};
+use gcode_lang::units::{Deg, Mm};
+use gcode_part::gauge;
+use gcode_part::job::{Alignment, Job};
 use gcode_sim::report::figures::{near, short, signed, signed_to};
-use gcode_sim::units::{Deg, Mm};
-use gcode_sim::verify::flutes::FluteVerdict;
-use gcode_sim::verify::{Distance, HoleVerdict, Neighbours, Verdict};
 
 use crate::check::PackageVerdict;
 

@@ -9,7 +9,7 @@ pub mod record;
 pub mod settings;
 pub mod stop_instructions;
 
-use gcode_sim::job::{Job, Rates};
+use gcode_part::job::{Job, Rates};
 
 use crate::check::{CheckError, CheckedPackage};
 use crate::package::Package;

@@ -1,11 +1,11 @@
 //! A run as the operator lives through it: the tools, the stops in their order, and what the time goes into.
-use gcode_sim::exec::Outcome;
-use gcode_sim::holes::HoleExtractor;
-use gcode_sim::job::Job;
-use gcode_sim::machine::Machine;
-use gcode_sim::motion::{Backtrace, Event, EventKind, EventSink, StopKind};
-use gcode_sim::part::surface::Surface;
-use gcode_sim::session::{Request, Run, SessionError, run};
+use gcode_control::Outcome;
+use gcode_inspect::holes::HoleExtractor;
+use gcode_inspect::machine::Machine;
+use gcode_lang::motion::{Backtrace, Event, EventKind, EventSink, StopKind};
+use gcode_part::job::Job;
+use gcode_part::part::surface::Surface;
+use gcode_session::{Request, Run, SessionError, run};
 
 use crate::check::{CheckError, Programs, told};
 use crate::families::alignment::{RUNOUT, SINE_TABLE};

@@ -1,10 +1,10 @@
 //! Which settings of the control the programs depend on: each switch is turned in turn, and the run held against the one
 //! with all of them as the family of controls has them.
-use gcode_sim::control::{ROWS, SettingRow, Settings};
-use gcode_sim::exec::{Limits, Outcome};
-use gcode_sim::job::Job;
-use gcode_sim::motion::{Event, EventKind, EventSink, Position, StopKind};
-use gcode_sim::session::{Request, SessionError};
+use gcode_control::{Limits, Outcome};
+use gcode_lang::control::{ROWS, SettingRow, Settings};
+use gcode_lang::motion::{Event, EventKind, EventSink, Position, StopKind};
+use gcode_part::job::Job;
+use gcode_session::{Request, SessionError};
 
 use super::record::{ProgramStart, attended, request};
 use crate::check::{CheckError, told};

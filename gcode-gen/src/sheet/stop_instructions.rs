@@ -1,8 +1,8 @@
 //! What the operator does at a stop, step by step, in the order in which it has to be done.
-use gcode_sim::job::{Alignment, HeadKind, Job, PinHoles};
-use gcode_sim::motion::StopKind;
+use gcode_lang::motion::StopKind;
+use gcode_lang::units::Deg;
+use gcode_part::job::{Alignment, HeadKind, Job, PinHoles};
 use gcode_sim::report::figures::{near, short};
-use gcode_sim::units::Deg;
 
 use super::record::OperatorStop;
 

@@ -7,13 +7,13 @@ use clap::Args;
 
 use super::format::TextFormat;
 use super::{ExitStatus, UsageError, input, options, output, overwrite_guard, progress};
-use crate::budget::{MOST_SAMPLES, Question, budget};
-use crate::job::Job;
-use crate::machine::{Machine, error_file};
-use crate::part::nominal::NominalPart;
-use crate::picture::Size;
 use crate::report::budget::BudgetReport;
-use crate::verify::Tolerances;
+use gcode_draw::Size;
+use gcode_inspect::budget::{MOST_SAMPLES, Question, budget};
+use gcode_inspect::machine::{Machine, error_file};
+use gcode_inspect::verify::Tolerances;
+use gcode_part::job::Job;
+use gcode_part::part::nominal::NominalPart;
 
 #[derive(Debug, Args)]
 pub(super) struct BudgetArguments {

@@ -6,7 +6,6 @@ use clap::Args;
 use super::conditions::RunConditions;
 use super::format::FindingFormat;
 use super::{ExitStatus, UsageError, options, output, unused_machine};
-use crate::check::check;
 use crate::report::check::{CheckReport, text};
 use crate::report::sarif::{self, Finding};
 
@@ -58,7 +57,7 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<ExitStatus, UsageError> 
     let program = conditions.of(&arguments.program);
     let (request, mut folders) = options::request(&program)?;
     unused_machine::tell_of_control(&program, &request);
-    let checked = check(request.name.clone(), request.bytes, &request.settings, &mut folders);
+    let checked = gcode_lint::check(request.name.clone(), request.bytes, &request.settings, &mut folders);
     if checked.programs == 0 {
         return Err(UsageError::new(format!("{} holds no program", request.name)));
     }

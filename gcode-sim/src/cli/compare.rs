@@ -5,7 +5,6 @@ use clap::Args;
 
 use super::format::TextFormat;
 use super::{ExitStatus, UsageError, input, output, overwrite_guard};
-use crate::picture;
 use crate::report::pictures::CompareReport;
 
 #[derive(Debug, Args)]
@@ -36,8 +35,8 @@ pub(super) fn run(arguments: &CompareArguments) -> Result<ExitStatus, UsageError
         overwrite_guard::keep(path, &[&arguments.left, &arguments.right])?;
     }
     let (left, right) = (input::bytes(&arguments.left)?, input::bytes(&arguments.right)?);
-    let refused = |error: picture::PictureError| UsageError::new(error.to_string());
-    let difference = picture::compare(&left, &right, arguments.tolerance).map_err(refused)?;
+    let refused = |error: gcode_draw::PictureError| UsageError::new(error.to_string());
+    let difference = gcode_draw::compare(&left, &right, arguments.tolerance).map_err(refused)?;
     let picture = arguments.output.as_ref().filter(|_| !difference.is_none());
     if let Some(path) = picture {
         output::write(path, &difference.png().map_err(refused)?)?;

@@ -6,16 +6,15 @@ use clap::Args;
 use super::conditions::RunConditions;
 use super::format::FindingFormat;
 use super::{ExitStatus, UsageError, options, output, overwrite_guard, page, render, unused_machine};
-use crate::changes::{Revision, RevisionDiff, unexecuted};
-use crate::part::nominal::NominalPart;
-use crate::part::reference::Reference;
-use crate::picture;
 use crate::report::changes::{ChangesReport, change_found};
 use crate::report::page::{Difference, ObservedProgram, Page};
 use crate::report::sarif::{self, FileLocation, Finding};
 use crate::report::{changed_view, diagnostic};
-use crate::session::Trace;
-use crate::verify::Tolerances;
+use gcode_inspect::verify::Tolerances;
+use gcode_part::part::nominal::NominalPart;
+use gcode_part::part::reference::Reference;
+use gcode_review::{Revision, RevisionDiff, unexecuted};
+use gcode_session::Trace;
 
 #[derive(Debug, Args)]
 pub(super) struct DiffArguments {
@@ -78,7 +77,7 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<ExitStatus, UsageError> {
     for request in [&mut old_request, &mut new_request] {
         request.conduct = reference.as_ref().map(|reference| reference.conduct.clone()).unwrap_or_default();
     }
-    let refused = |error: crate::session::SessionError| UsageError::new(error.to_string());
+    let refused = |error: gcode_session::SessionError| UsageError::new(error.to_string());
     let trace = || arguments.page.as_ref().map(|_| Trace::default());
     let (mut old_trace, mut new_trace) = (trace(), trace());
     let old = Revision::observed(&old_request, &mut old_folders, surface, &mut old_trace).map_err(refused)?;
@@ -111,7 +110,7 @@ pub(super) fn run(arguments: &DiffArguments) -> Result<ExitStatus, UsageError> {
         let name = format!("{is} against {was}");
         let (machine, reference) = (&new_request.machine, reference.as_ref());
         let view = changed_view::of_changes(&name, (&old, &new), machine, (&compared, tolerance), reference);
-        let scene = picture::top_view(&view);
+        let scene = gcode_draw::top_view(&view);
         render::write(&scene, "1600x1200", path)?;
         if arguments.format == FindingFormat::Text {
             output::print(&format!("picture: {}\n", path.display()))?;

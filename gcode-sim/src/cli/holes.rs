@@ -6,9 +6,9 @@ use clap::Args;
 use super::conditions::ProgramArguments;
 use super::format::ListFormat;
 use super::{ExitStatus, UsageError, options, output, overwrite_guard, page, progress, unused_machine};
-use crate::part::hole::HoleList;
 use crate::report::holes as report;
-use crate::session::{self, Simulation};
+use gcode_part::part::hole::HoleList;
+use gcode_session::Simulation;
 
 #[derive(Debug, Args)]
 pub(super) struct HolesArguments {
@@ -40,8 +40,9 @@ pub(super) fn run(arguments: &HolesArguments) -> Result<ExitStatus, UsageError> 
         page::tell(path, arguments.format == ListFormat::Text)?;
         return Ok(status);
     }
-    let simulation = progress::of_run(&mut request, |request| session::simulate(request, &mut folders, None))
-        .map_err(|e| UsageError::new(e.to_string()))?;
+    let simulation =
+        progress::of_run(&mut request, |request| gcode_session::simulate(request, &mut folders, None))
+            .map_err(|e| UsageError::new(e.to_string()))?;
     tell(arguments, &simulation)
 }
 

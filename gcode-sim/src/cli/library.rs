@@ -3,9 +3,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::{UsageError, input};
-use crate::program::Library;
-use crate::source::SourceId;
-use crate::syntax::{self, FileItem, ast::ProgramName};
+use gcode_lang::program::Library;
+use gcode_lang::source::SourceId;
+use gcode_lang::syntax::{self, FileItem, ast::ProgramName};
 
 /// The folders to look in, the first that has a program wins.
 pub struct Folders {

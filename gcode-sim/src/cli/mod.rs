@@ -32,9 +32,9 @@ use std::process::ExitCode;
 
 use args::{Arguments, Command};
 
-use crate::diag::{Diagnostic, Severity};
 use crate::report::diagnostic;
-use crate::session::Run;
+use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_session::Run;
 
 /// How a request ended, the same for both programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,12 +4,12 @@ use std::path::Path;
 use super::conditions::ProgramArguments;
 use super::library::Folders;
 use super::{UsageError, input};
-use crate::exec::Limits;
-use crate::job::{Rotary, control_file};
-use crate::machine::{Machine, Probe};
-use crate::part::nominal::NominalPart;
-use crate::part::probed::ProbedPart;
-use crate::session::Request;
+use gcode_control::Limits;
+use gcode_inspect::machine::{Machine, Probe};
+use gcode_part::job::{Rotary, control_file};
+use gcode_part::part::nominal::NominalPart;
+use gcode_part::part::probed::ProbedPart;
+use gcode_session::Request;
 
 /// Reads the program and the machine, and resolves every setting.
 pub(super) fn request(program: &ProgramArguments) -> Result<(Request, Folders), UsageError> {

@@ -4,12 +4,12 @@ use std::path::Path;
 use super::conditions::RunConditions;
 use super::library::Folders;
 use super::{UsageError, input, output};
-use crate::changes::Revision;
-use crate::part::reference::Reference;
-use crate::part::surface::Surface;
 use crate::report::page::{Document, ObservedProgram, Page};
-use crate::session::{Request, Trace};
-use crate::verify::Verdict;
+use gcode_inspect::verify::Verdict;
+use gcode_part::part::reference::Reference;
+use gcode_part::part::surface::Surface;
+use gcode_review::Revision;
+use gcode_session::{Request, Trace};
 
 /// A program's run with all that a page shows of it.
 pub(super) fn watched(

@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::Duration;
 
 use super::output;
-use crate::exec::Progress;
-use crate::session::Request;
+use gcode_control::Progress;
+use gcode_session::Request;
 
 /// Wider than any line shown.
 const WIDTH: usize = 60;

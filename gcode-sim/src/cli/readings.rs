@@ -6,10 +6,9 @@ use clap::Args;
 use super::conditions::ProgramArguments;
 use super::format::ListFormat;
 use super::{ExitStatus, UsageError, options, output, overwrite_guard, render, unused_machine};
-use crate::picture::Size;
 use crate::report::readings::ReadingsReport;
-use crate::session;
-use crate::verify::Answer;
+use gcode_draw::Size;
+use gcode_inspect::verify::Answer;
 
 #[derive(Debug, Args)]
 pub(super) struct ReadingsArguments {
@@ -44,7 +43,7 @@ pub(super) fn run(arguments: &ReadingsArguments) -> Result<ExitStatus, UsageErro
     let (Some(surface), Some(probe)) = (request.part, &request.machine.probe) else {
         return Err(UsageError::new("readings are of a part: --part JOB.toml says which"));
     };
-    let following = session::follow(&request, &mut folders, surface, probe.radius)
+    let following = gcode_session::follow(&request, &mut folders, surface, probe.radius)
         .map_err(|e| UsageError::new(e.to_string()))?;
     let report = ReadingsReport::new(&render::name(&request), &following, probe.radius, tolerance);
     match arguments.format {
@@ -53,7 +52,7 @@ pub(super) fn run(arguments: &ReadingsArguments) -> Result<ExitStatus, UsageErro
         ListFormat::Csv => output::print(&report.csv())?,
     }
     if let Some(path) = &arguments.picture {
-        let refused = |error: crate::picture::PictureError| UsageError::new(error.to_string());
+        let refused = |error: gcode_draw::PictureError| UsageError::new(error.to_string());
         let size: Size = arguments.size.parse().map_err(refused)?;
         output::write(path, &report.plot().draw(size).map_err(refused)?)?;
         if arguments.format == ListFormat::Text {

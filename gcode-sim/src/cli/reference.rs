@@ -5,10 +5,10 @@ use clap::Args;
 
 use super::format::ListFormat;
 use super::{ExitStatus, UsageError, holes, input, output};
-use crate::job::Job;
-use crate::part::nominal::NominalPart;
 use crate::report::flute_table;
-use crate::verify::flutes::WantedFlutes;
+use gcode_inspect::verify::flutes::WantedFlutes;
+use gcode_part::job::Job;
+use gcode_part::part::nominal::NominalPart;
 
 #[derive(Debug, Args)]
 pub(super) struct ReferenceArguments {

@@ -6,14 +6,14 @@ use clap::{Args, ValueEnum};
 use super::conditions::ProgramArguments;
 use super::format::TextFormat;
 use super::{ExitStatus, UsageError, options, output, overwrite_guard, progress, unused_machine};
-use crate::part::flutes::Flutes;
-use crate::part::nominal::NominalPart;
-use crate::part::reference::Reference;
-use crate::picture::{self, Scene, Size, TopView};
 use crate::report::pictures::RenderReport;
 use crate::report::{flute_view, top};
-use crate::session::{self, Request, Simulation};
-use crate::verify::{Tolerances, Verdict};
+use gcode_draw::{Scene, Size, TopView};
+use gcode_inspect::verify::{Tolerances, Verdict};
+use gcode_part::part::flutes::Flutes;
+use gcode_part::part::nominal::NominalPart;
+use gcode_part::part::reference::Reference;
+use gcode_session::{Request, Simulation};
 
 #[derive(Debug, Args)]
 pub(super) struct RenderArguments {
@@ -88,7 +88,7 @@ fn holes(arguments: &RenderArguments, reference: Option<Reference>) -> Result<Ex
     let surface = reference.as_ref().and_then(|r| r.surface);
     request.conduct = reference.as_ref().map(|r| r.conduct.clone()).unwrap_or_default();
     let simulation =
-        progress::of_run(&mut request, |request| session::simulate(request, &mut folders, surface))
+        progress::of_run(&mut request, |request| gcode_session::simulate(request, &mut folders, surface))
             .map_err(|e| UsageError::new(e.to_string()))?;
     let drawn = match &reference {
         Some(reference) => {
@@ -99,13 +99,13 @@ fn holes(arguments: &RenderArguments, reference: Option<Reference>) -> Result<Ex
     };
     let asked = arguments.view.unwrap_or(View::Top);
     let scene = match asked {
-        View::Top => picture::top_view(&drawn),
+        View::Top => gcode_draw::top_view(&drawn),
         View::Side | View::Tip | View::Helix => {
             let message =
                 "the views side, tip and helix are of a burr: --reference JOB.toml of that family is needed";
             return Err(UsageError::new(message));
         }
-        View::Development => picture::development(&drawn).ok_or_else(|| {
+        View::Development => gcode_draw::development(&drawn).ok_or_else(|| {
             let message = "--view development unrolls a cylinder: it needs --reference with a job of one";
             UsageError::new(message)
         })?,
@@ -120,15 +120,16 @@ fn flutes(arguments: &RenderArguments, mut wanted: Flutes) -> Result<ExitStatus,
     unused_machine::tell(&arguments.program, &request);
     let asked = options::tolerance("--tolerance", arguments.tolerance)?;
     wanted.surface_tolerance = asked.unwrap_or(wanted.surface_tolerance);
-    let grinding = progress::of_run(&mut request, |request| session::grind(request, &mut folders, &wanted))
-        .map_err(|e| UsageError::new(e.to_string()))?;
+    let grinding =
+        progress::of_run(&mut request, |request| gcode_session::grind(request, &mut folders, &wanted))
+            .map_err(|e| UsageError::new(e.to_string()))?;
     let verdict = grinding.verify();
     let view = flute_view::of(&name(&request), &grinding, &verdict);
     let asked = arguments.view.unwrap_or(View::Side);
     let scene = match asked {
-        View::Side => picture::side_view(&view),
-        View::Tip => picture::tip_view(&view),
-        View::Helix => picture::helix_graph(&view),
+        View::Side => gcode_draw::side_view(&view),
+        View::Tip => gcode_draw::tip_view(&view),
+        View::Helix => gcode_draw::helix_graph(&view),
         View::Top | View::Development => {
             return Err(UsageError::new("that view is of holes; a burr has the views side, tip and helix"));
         }
@@ -168,9 +169,9 @@ pub(super) fn write(scene: &Scene, size: &str, path: &Path) -> Result<(), UsageE
             png.display()
         )));
     }
-    let refused = |error: picture::PictureError| UsageError::new(error.to_string());
+    let refused = |error: gcode_draw::PictureError| UsageError::new(error.to_string());
     let size: Size = size.parse().map_err(refused)?;
-    let png = picture::draw(scene, size).map_err(refused)?;
+    let png = gcode_draw::draw(scene, size).map_err(refused)?;
     output::write(path, &png)
 }
 

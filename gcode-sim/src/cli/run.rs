@@ -6,10 +6,10 @@ use clap::Args;
 use super::conditions::ProgramArguments;
 use super::format::TextFormat;
 use super::{ExitStatus, UsageError, options, output, overwrite_guard, progress, unused_machine};
-use crate::holes::HoleExtractor;
 use crate::report::run::{MOST_MOVES, Moves, RunReport};
-use crate::session::{self, SessionError};
-use crate::stylus::Rapids;
+use gcode_inspect::holes::HoleExtractor;
+use gcode_inspect::stylus::Rapids;
+use gcode_session::SessionError;
 
 #[derive(Debug, Args)]
 pub(super) struct RunArguments {
@@ -48,7 +48,8 @@ pub(super) fn run(arguments: &RunArguments) -> Result<ExitStatus, UsageError> {
         let mut probe = request.part.map(follow);
         let ball = request.part.zip(request.machine.probe.as_ref());
         let mut rapids = ball.map(|(part, probe)| Rapids::new(&request.machine, part, probe.radius));
-        let run = session::run(request, &mut folders, &mut (&mut moves, &mut (&mut probe, &mut rapids)))?;
+        let run =
+            gcode_session::run(request, &mut folders, &mut (&mut moves, &mut (&mut probe, &mut rapids)))?;
         Ok::<_, SessionError>((run, rapids.map_or_else(Vec::new, Rapids::finish)))
     });
     let (run, rapids) = done.map_err(|error| UsageError::new(error.to_string()))?;

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use super::conditions::ProgramArguments;
 use super::output;
-use crate::control::{Dialect, Increment};
-use crate::session::Request;
+use gcode_lang::control::{Dialect, Increment};
+use gcode_session::Request;
 
 /// The name that the generator gives a machine file.
 const NAME: &str = "machine.toml";

@@ -9,16 +9,15 @@ use super::library::Folders;
 use super::{
     ExitStatus, UsageError, options, output, overwrite_guard, page, progress, render, unused_machine,
 };
-use crate::diag::Diagnostic;
-use crate::part::flutes::Flutes;
-use crate::part::nominal::NominalPart;
-use crate::part::reference::Reference;
-use crate::picture;
 use crate::report::sarif::{self, Finding};
 use crate::report::verdict_table::{Layout, table};
 use crate::report::{flute_table, flute_view};
-use crate::session::{self, Request, Run, Simulation};
-use crate::verify::{Answer, Tolerances, Verdict};
+use gcode_inspect::verify::{Answer, Tolerances, Verdict};
+use gcode_lang::diag::Diagnostic;
+use gcode_part::part::flutes::Flutes;
+use gcode_part::part::nominal::NominalPart;
+use gcode_part::part::reference::Reference;
+use gcode_session::{Request, Run, Simulation};
 
 #[derive(Debug, Args)]
 pub(super) struct VerifyArguments {
@@ -98,7 +97,7 @@ fn flutes(
     mut folders: Folders,
     wanted: &Flutes,
 ) -> Result<ExitStatus, UsageError> {
-    let grinding = progress::of_run(request, |request| session::grind(request, &mut folders, wanted))
+    let grinding = progress::of_run(request, |request| gcode_session::grind(request, &mut folders, wanted))
         .map_err(|error| UsageError::new(error.to_string()))?;
     let verdict = grinding.verify();
     match arguments.format {
@@ -107,7 +106,7 @@ fn flutes(
         FindingFormat::Sarif => sarif(&verdict.diagnostics, &grinding.run)?,
     }
     if let Some(path) = &arguments.picture {
-        let scene = picture::side_view(&flute_view::of(&render::name(request), &grinding, &verdict));
+        let scene = gcode_draw::side_view(&flute_view::of(&render::name(request), &grinding, &verdict));
         render::write(&scene, "1600x1200", path)?;
         if arguments.format == FindingFormat::Text {
             output::print(&format!("picture: {}\n", path.display()))?;
@@ -148,9 +147,10 @@ fn holes(
         page::tell(path, arguments.format == FindingFormat::Text)?;
         return Ok(status);
     }
-    let simulation =
-        progress::of_run(request, |request| session::simulate(request, &mut folders, reference.surface))
-            .map_err(|error| UsageError::new(error.to_string()))?;
+    let simulation = progress::of_run(request, |request| {
+        gcode_session::simulate(request, &mut folders, reference.surface)
+    })
+    .map_err(|error| UsageError::new(error.to_string()))?;
     let verdict = simulation.verify(reference, tolerances, &request.machine);
     tell(arguments, request, reference, &simulation, &verdict)
 }
@@ -172,7 +172,7 @@ fn tell(
     }
     if let Some(path) = &arguments.picture {
         let view = render::view(request, simulation, reference, verdict);
-        render::write(&picture::main_view(&view), "1600x1200", path)?;
+        render::write(&gcode_draw::main_view(&view), "1600x1200", path)?;
         if arguments.format == FindingFormat::Text {
             output::print(&format!("picture: {}\n", path.display()))?;
         }

@@ -4,9 +4,9 @@ use std::fmt::Write;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::budget::{Budget, Question, Share, Statistics};
-use crate::machine::error::Distribution;
-use crate::picture::{Bar, Bars};
+use gcode_draw::{Bar, Bars};
+use gcode_inspect::budget::{Budget, Question, Share, Statistics};
+use gcode_inspect::machine::error::Distribution;
 
 /// Diameters and lengths in mm.
 #[derive(Debug, Serialize, JsonSchema)]

@@ -4,10 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::figures::{count, near};
 use super::hole_changes::remarks;
 use super::top::{Rotary, along, outline, round_up, side, still};
-use crate::changes::{Change, Leg, Paired, Record, Revision, RevisionDiff};
-use crate::machine::Machine;
-use crate::part::reference::Reference;
-use crate::picture::{DrawnHole, HoleStatus, PathKind, PathPiece, PicturePurpose, TopView};
+use gcode_draw::{DrawnHole, HoleStatus, PathKind, PathPiece, PicturePurpose, TopView};
+use gcode_inspect::machine::Machine;
+use gcode_part::part::reference::Reference;
+use gcode_review::{Change, Leg, Paired, Record, Revision, RevisionDiff};
 
 /// No more cuts of each revision than this are drawn, nor more points.
 const MOST_MOVES: usize = 20_000;

@@ -6,8 +6,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::sarif::{FileLocation, Finding};
-use crate::changes::{BlockLocation, Change, Record, Totals, UnexecutedChange};
-use crate::diag::Severity;
+use gcode_lang::diag::Severity;
+use gcode_review::{BlockLocation, Change, Record, Totals, UnexecutedChange};
 
 /// The document of `diff --format json`.
 #[derive(Debug, Serialize, JsonSchema)]

@@ -2,10 +2,10 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::check::Checked;
-use crate::diag::{Diagnostic, Severity};
 use crate::report::diagnostic;
-use crate::source::Span;
+use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_lang::source::Span;
+use gcode_lint::Checked;
 
 /// The document of `check --format json`.
 #[derive(Debug, Serialize, JsonSchema)]

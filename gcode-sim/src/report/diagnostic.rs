@@ -1,9 +1,9 @@
 //! A finding or an alarm as text: what, where with the line underlined, the calls that led there, what to do.
 use annotate_snippets::{Annotation, AnnotationKind, Level, Renderer, Snippet};
 
-use crate::diag::{Diagnostic, Severity};
-use crate::motion::{Backtrace, CallChain};
-use crate::source::{Sources, Span};
+use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_lang::motion::{Backtrace, CallChain};
+use gcode_lang::source::{Sources, Span};
 
 /// How many calls of a chain are shown; the rest is counted.
 const CALLS_SHOWN: usize = 6;
@@ -98,7 +98,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::motion::Call;
+    use gcode_lang::motion::Call;
 
     #[test]
     fn a_message_names_line_call_and_remedy() {

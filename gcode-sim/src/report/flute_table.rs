@@ -1,8 +1,8 @@
 //! The verdict on flutes in words, and the helix angle of both laws side by side.
 use std::fmt::Write;
 
-use crate::verify::Answer;
-use crate::verify::flutes::{FluteVerdict, Law, WantedFlutes};
+use gcode_inspect::verify::Answer;
+use gcode_inspect::verify::flutes::{FluteVerdict, Law, WantedFlutes};
 
 /// Lengths in mm, angles in degrees; judged unrounded, shown rounded.
 pub fn table(verdict: &FluteVerdict) -> String {

@@ -2,13 +2,13 @@
 use nalgebra::Point3;
 
 use super::helix_courses;
-use crate::flutes::GrindingPass;
-use crate::part::profile::Profile;
-use crate::picture::{Fault, FlutePoint, FluteView, HoleStatus};
-use crate::session::GrindingRun;
-use crate::units::Deg;
-use crate::verify::Answer;
-use crate::verify::flutes::{FluteVerdict, in_words};
+use gcode_draw::{Fault, FlutePoint, FluteView, HoleStatus};
+use gcode_inspect::flutes::GrindingPass;
+use gcode_inspect::verify::Answer;
+use gcode_inspect::verify::flutes::{FluteVerdict, in_words};
+use gcode_lang::units::Deg;
+use gcode_part::part::profile::Profile;
+use gcode_session::GrindingRun;
 
 /// Of the program `name`.
 pub fn of(name: &str, grinding: &GrindingRun, verdict: &FluteVerdict) -> FluteView {

@@ -1,11 +1,11 @@
 //! The helix angle along every flute, over the way from the shank's end, for its picture.
-use crate::flutes::{GrindingPass, Trace};
-use crate::job::FluteLaw;
-use crate::part::flutes::Flutes;
-use crate::picture::{HelixAt, HelixCourses};
-use crate::session::GrindingRun;
-use crate::units::Deg;
-use crate::verify::flutes::FluteVerdict;
+use gcode_draw::{HelixAt, HelixCourses};
+use gcode_inspect::flutes::{GrindingPass, Trace};
+use gcode_inspect::verify::flutes::FluteVerdict;
+use gcode_lang::units::Deg;
+use gcode_part::job::FluteLaw;
+use gcode_part::part::flutes::Flutes;
+use gcode_session::GrindingRun;
 
 /// The polar angles that are named along the nose; the tip angle comes last.
 const NAMED: [f64; 6] = [90.0, 75.0, 60.0, 45.0, 30.0, 15.0];

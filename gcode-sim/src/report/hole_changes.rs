@@ -1,8 +1,8 @@
 //! What is different about a hole of two revisions, in a few words each: pictures and pages say the same.
 use super::figures::with_sign;
-use crate::changes::Paired;
-use crate::holes::DrilledHole;
-use crate::units::Deg;
+use gcode_inspect::holes::DrilledHole;
+use gcode_lang::units::Deg;
+use gcode_review::Paired;
 
 /// A hole of one revision, and the tools that make it.
 pub(super) type HoleWithTools<'a> = (&'a DrilledHole, &'a [u32]);
@@ -42,10 +42,10 @@ pub(super) fn tools(numbers: &[u32]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::changes::{Revision, RevisionDiff};
-    use crate::machine::Machine;
-    use crate::program::NoLibrary;
-    use crate::session::Request;
+    use gcode_inspect::machine::Machine;
+    use gcode_lang::program::NoLibrary;
+    use gcode_review::{Revision, RevisionDiff};
+    use gcode_session::Request;
 
     fn told(old: &str, new: &str) -> Vec<Vec<String>> {
         let made = |text: &str| {

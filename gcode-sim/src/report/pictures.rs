@@ -2,7 +2,7 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::picture::Difference;
+use gcode_draw::Difference;
 
 /// The document of `render --format json`.
 #[derive(Debug, Serialize, JsonSchema)]

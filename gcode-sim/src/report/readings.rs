@@ -4,13 +4,13 @@ use std::fmt::Write;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::diag::Severity;
-use crate::exec::Outcome;
-use crate::picture::{Chart, Curve, Graph, Pen, Plot};
 use crate::report::figures::count;
-use crate::session::StylusRun;
-use crate::stylus::{Gap, Reading, ReadingPass};
-use crate::verify::Answer;
+use gcode_control::Outcome;
+use gcode_draw::{Chart, Curve, Graph, Pen, Plot};
+use gcode_inspect::stylus::{Gap, Reading, ReadingPass};
+use gcode_inspect::verify::Answer;
+use gcode_lang::diag::Severity;
+use gcode_session::StylusRun;
 
 /// Lengths in mm.
 #[derive(Debug, Serialize, JsonSchema)]

@@ -6,12 +6,12 @@ use schemars::JsonSchema;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
-use crate::alarm::remedy;
-use crate::changes::BlockLocation;
-use crate::exec::{Outcome, Value, printable};
-use crate::motion::{Axes, Event, EventKind, EventSink, Position};
-use crate::session::Run;
-use crate::source::Span;
+use gcode_control::{Outcome, Value, printable};
+use gcode_lang::alarm::remedy;
+use gcode_lang::motion::{Axes, Event, EventKind, EventSink, Position};
+use gcode_lang::source::Span;
+use gcode_review::BlockLocation;
+use gcode_session::Run;
 
 /// The document of `run --format json`.
 #[derive(Debug, Serialize, JsonSchema)]

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::explain;
-use crate::diag::{Diagnostic, Severity};
-use crate::source::{Sources, Span};
+use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_lang::source::{Sources, Span};
 
 /// One finding with its place in a file, whatever found it.
 #[derive(Clone, Debug)]

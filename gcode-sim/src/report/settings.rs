@@ -4,7 +4,7 @@ use std::fmt::Write;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::control::{CodeCallKind, FAMILIES, RANGES, ROWS};
+use gcode_lang::control::{CodeCallKind, FAMILIES, RANGES, ROWS};
 
 /// The document of `settings --format json`.
 #[derive(Debug, Serialize, JsonSchema)]

@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use super::changes::{change_found, counted, entries, place_in};
 use super::sarif::{FileLocation, Finding};
-use crate::changes::{BlockLocation, Change, Totals};
-use crate::diag::Severity;
+use gcode_lang::diag::Severity;
+use gcode_review::{BlockLocation, Change, Totals};
 
 /// The document of `test --format json`, and what `test --merge` reads.
 #[derive(Debug, Serialize, Deserialize, JsonSchema)]
@@ -187,7 +187,7 @@ impl CaseReport {
         self.ending.as_deref().filter(|words| words.starts_with("alarm"))
     }
 
-    /// As [`crate::changes::Record::lacks_program`].
+    /// As [`gcode_review::Record::lacks_program`].
     fn lacks_program(&self) -> bool {
         self.alarm().is_some_and(|words| words.starts_with("alarm PS0076 "))
     }

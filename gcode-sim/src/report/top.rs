@@ -4,16 +4,16 @@ use std::collections::BTreeMap;
 use nalgebra::Vector3;
 
 use super::figures::with_sign;
-use crate::holes::DrilledHole;
-use crate::machine::{AxisLink, HeadKind, LinkMotion, Machine};
-use crate::motion::AxisIndex;
-use crate::part::hole::Hole;
-use crate::part::honeycomb::Pattern;
-use crate::part::reference::Reference;
-use crate::part::surface::Surface;
-use crate::picture::{Cylinder, DrawnHole, HoleStatus, Side, TopView};
-use crate::session::Simulation;
-use crate::verify::{Neighbours, Verdict};
+use gcode_draw::{Cylinder, DrawnHole, HoleStatus, Side, TopView};
+use gcode_inspect::holes::DrilledHole;
+use gcode_inspect::machine::{AxisLink, HeadKind, LinkMotion, Machine};
+use gcode_inspect::verify::{Neighbours, Verdict};
+use gcode_lang::motion::AxisIndex;
+use gcode_part::part::hole::Hole;
+use gcode_part::part::honeycomb::Pattern;
+use gcode_part::part::reference::Reference;
+use gcode_part::part::surface::Surface;
+use gcode_session::Simulation;
 
 /// The holes of a program nobody has judged.
 pub fn of_holes(name: &str, simulation: &Simulation, machine: &Machine) -> TopView {
@@ -176,7 +176,7 @@ fn apart(neighbours: &Neighbours) -> Option<String> {
 }
 
 /// A picture shows no blocks.
-pub(super) fn nowhere(_: crate::source::Span) -> (String, u32) {
+pub(super) fn nowhere(_: gcode_lang::source::Span) -> (String, u32) {
     (String::new(), 0)
 }
 

@@ -2,7 +2,7 @@
 use std::fmt::Write;
 
 use super::figures::{count, near};
-use crate::verify::{Answer, Distance, HoleVerdict, Neighbours, Verdict};
+use gcode_inspect::verify::{Answer, Distance, HoleVerdict, Neighbours, Verdict};
 
 /// How many ids of missing holes, and how many extra ones, are written out; the rest is counted.
 const LISTED: usize = 12;

@@ -1,7 +1,7 @@
 //! A verdict as the table an inspector knows: nominal, actual, deviation, position, out of tolerance.
 use super::figures::{count, near, signed, signed_to};
 use super::verdict_summary::{made_by, put, summary};
-use crate::verify::{HoleGeometry, HoleVerdict, Verdict};
+use gcode_inspect::verify::{HoleGeometry, HoleVerdict, Verdict};
 
 /// How much of it, and in which order.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -143,8 +143,8 @@ fn said(hole: &HoleVerdict) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::part::hole::Origin;
-    use crate::verify::Answer;
+    use gcode_inspect::verify::Answer;
+    use gcode_part::part::hole::Origin;
 
     fn hole(id: &str, phi: f64, objections: &[&str]) -> HoleVerdict {
         let placed = |x: f64| HoleGeometry {

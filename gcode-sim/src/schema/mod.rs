@@ -6,11 +6,6 @@ mod types;
 use schemars::{JsonSchema, Schema};
 use serde_json::Value;
 
-use crate::changes::AcceptedFile;
-use crate::job::control_file::ControlFile;
-use crate::job::{FileRates, JobFile};
-use crate::machine::{ErrorFile, MachineFile};
-use crate::part::hole::HoleList;
 use crate::report::budget::BudgetReport;
 use crate::report::changes::ChangesReport;
 use crate::report::check::CheckReport;
@@ -20,8 +15,13 @@ use crate::report::readings::ReadingsReport;
 use crate::report::run::RunReport;
 use crate::report::settings::SettingsReport;
 use crate::report::test_report::TestReport;
-use crate::verify::Verdict;
-use crate::verify::flutes::{FluteVerdict, WantedFlutes};
+use gcode_inspect::machine::{ErrorFile, MachineFile};
+use gcode_inspect::verify::Verdict;
+use gcode_inspect::verify::flutes::{FluteVerdict, WantedFlutes};
+use gcode_part::job::control_file::ControlFile;
+use gcode_part::job::{FileRates, JobFile};
+use gcode_part::part::hole::HoleList;
+use gcode_review::AcceptedFile;
 
 /// One kind of document.
 pub struct Format {

@@ -1,18 +1,18 @@
 //! Burrs from job to verdict: random jobs, both forms of the program, how many moves there are, what the macro refuses.
 mod sample_jobs;
 
+use gcode_control::Outcome;
 use gcode_gen::check::{Programs, check};
 use gcode_gen::families;
 use gcode_gen::package::{Package, file_name};
-use gcode_sim::exec::Outcome;
-use gcode_sim::job::Job;
-use gcode_sim::machine::Machine;
-use gcode_sim::motion::{Event, EventKind, EventSink, Position};
-use gcode_sim::part::nominal::NominalPart;
-use gcode_sim::session::{Request, grind, run};
-use gcode_sim::units::{Deg, ln};
-use gcode_sim::verify::Answer;
-use gcode_sim::verify::flutes::FluteVerdict;
+use gcode_inspect::machine::Machine;
+use gcode_inspect::verify::Answer;
+use gcode_inspect::verify::flutes::FluteVerdict;
+use gcode_lang::motion::{Event, EventKind, EventSink, Position};
+use gcode_lang::units::{Deg, ln};
+use gcode_part::job::Job;
+use gcode_part::part::nominal::NominalPart;
+use gcode_session::{Request, grind, run};
 use proptest::prelude::*;
 
 use self::sample_jobs::{Wish, example, wishes};

@@ -1,5 +1,5 @@
 //! Burrs that somebody might wish for, as jobs.
-use gcode_sim::job::Job;
+use gcode_part::job::Job;
 use proptest::prelude::*;
 
 /// The keys of a job that differ from test to test.

@@ -1,6 +1,6 @@
 //! The schema of the control's settings against what the control takes, key by key and value by value.
-use gcode_sim::control::{ROWS, SettingValues, Settings};
-use gcode_sim::job::control_file;
+use gcode_lang::control::{ROWS, SettingValues, Settings};
+use gcode_part::job::control_file;
 use serde_json::{Value, json};
 
 use super::validator;

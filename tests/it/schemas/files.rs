@@ -1,10 +1,10 @@
 //! Schemas of files against their readers: files that are there, and each of them changed in every place.
 use std::path::{Path, PathBuf};
 
-use gcode_sim::control::Settings;
-use gcode_sim::job::control_file;
-use gcode_sim::job::{Job, Rates};
-use gcode_sim::machine::{Machine, error_file};
+use gcode_inspect::machine::{Machine, error_file};
+use gcode_lang::control::Settings;
+use gcode_part::job::control_file;
+use gcode_part::job::{Job, Rates};
 use gcode_tests::workspace;
 use serde_json::Value as Json;
 use toml::{Table, Value};

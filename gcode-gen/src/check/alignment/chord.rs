@@ -1,10 +1,10 @@
 //! The chord program on candidates whose places are known: the best pair is searched for here as well, and E and F have
 //! to get their model coordinates.
-use gcode_sim::job::{Alignment, Surface};
-use gcode_sim::machine::{Machine, Placement};
-use gcode_sim::motion::Position;
-use gcode_sim::session::Run;
-use gcode_sim::units::Deg;
+use gcode_inspect::machine::{Machine, Placement};
+use gcode_lang::motion::Position;
+use gcode_lang::units::Deg;
+use gcode_part::job::{Alignment, Surface};
+use gcode_session::Run;
 
 use super::{CheckError, TrialProgram, TrialResult, common, search};
 use crate::families::alignment::CHORD_MATCH;

@@ -1,11 +1,11 @@
 //! The ellipse program on a part that stands where it should: the ball has to keep its distance from the surface all the way,
 //! between the programmed points too.
-use gcode_sim::diag::Severity;
-use gcode_sim::machine::Placement;
-use gcode_sim::part::surface::Surface;
+use gcode_inspect::machine::Placement;
+use gcode_inspect::stylus::{Reading, ReadingPass};
+use gcode_lang::diag::Severity;
+use gcode_part::part::surface::Surface;
+use gcode_session::follow;
 use gcode_sim::report::diagnostic;
-use gcode_sim::session::follow;
-use gcode_sim::stylus::{Reading, ReadingPass};
 
 use super::{CheckError, TrialProgram, TrialResult};
 

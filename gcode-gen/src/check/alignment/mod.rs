@@ -6,14 +6,14 @@ mod runout;
 mod search;
 mod sine;
 
-use gcode_sim::diag::Severity;
-use gcode_sim::exec::{Outcome, Value};
-use gcode_sim::holes::HoleExtractor;
-use gcode_sim::job::Alignment;
-use gcode_sim::machine::{Machine, Placement};
-use gcode_sim::part::surface::Surface;
+use gcode_control::{Outcome, Value};
+use gcode_inspect::holes::HoleExtractor;
+use gcode_inspect::machine::{Machine, Placement};
+use gcode_lang::diag::Severity;
+use gcode_part::job::Alignment;
+use gcode_part::part::surface::Surface;
+use gcode_session::{Request, Run, run};
 use gcode_sim::report::diagnostic;
-use gcode_sim::session::{Request, Run, run};
 
 use super::{CheckError, CheckedPackage, PackageVerdict, Programs, told};
 use crate::families::alignment;

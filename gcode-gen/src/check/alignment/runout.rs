@@ -1,12 +1,12 @@
 //! The run-out program on parts whose shift and tilt are known: it has to find them by probing alone.
-use gcode_sim::exec::Outcome;
-use gcode_sim::job::Alignment;
-use gcode_sim::machine::Placement;
-use gcode_sim::part::surface::Surface;
-use gcode_sim::part::touch_uncertainty::{FitError, FitUncertainty, TouchPlan};
+use gcode_control::Outcome;
+use gcode_inspect::machine::Placement;
+use gcode_lang::units::Deg;
+use gcode_part::job::Alignment;
+use gcode_part::part::surface::Surface;
+use gcode_part::part::touch_uncertainty::{FitError, FitUncertainty, TouchPlan};
+use gcode_session::Run;
 use gcode_sim::report::figures::short;
-use gcode_sim::session::Run;
-use gcode_sim::units::Deg;
 
 use crate::families::alignment::ALARMS;
 
@@ -173,7 +173,7 @@ impl Noise {
 
 #[cfg(test)]
 mod tests {
-    use gcode_sim::job::Job;
+    use gcode_part::job::Job;
 
     use super::*;
     use crate::families;

@@ -1,8 +1,8 @@
 //! How far before the surface a touch has to begin, where the job's search is too short for a part that stands as wrong as the run-out
 //! has to find.
-use gcode_sim::exec::Outcome;
-use gcode_sim::job::Alignment;
-use gcode_sim::machine::Placement;
+use gcode_control::Outcome;
+use gcode_inspect::machine::Placement;
+use gcode_part::job::Alignment;
 use gcode_sim::report::figures::short;
 
 use super::{TrialProgram, common};
@@ -56,7 +56,7 @@ fn expected(job: &Alignment, height: f64) -> f64 {
 mod tests {
     use crate::check::check;
     use crate::families;
-    use gcode_sim::job::Job;
+    use gcode_part::job::Job;
 
     fn refusals(search: &str) -> String {
         let text = families::alignment::FAMILY

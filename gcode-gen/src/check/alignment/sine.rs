@@ -1,9 +1,9 @@
 //! The sine table's program for tilts either way: the height has to make the angle that takes the tilt away.
-use gcode_sim::gauge::Thickness;
-use gcode_sim::job::SineTable;
-use gcode_sim::machine::Placement;
+use gcode_inspect::machine::Placement;
+use gcode_lang::units::Deg;
+use gcode_part::gauge::Thickness;
+use gcode_part::job::SineTable;
 use gcode_sim::report::figures::short;
-use gcode_sim::units::Deg;
 
 use super::{CheckError, TrialProgram, TrialResult, common};
 use crate::families::alignment::{LARGEST_TILT, STEEPEST, gap};
@@ -85,7 +85,7 @@ fn warnings(table: &SineTable) -> impl Iterator<Item = String> {
 
 #[cfg(test)]
 mod tests {
-    use gcode_sim::job::Job;
+    use gcode_part::job::Job;
 
     use super::*;
     use crate::families::alignment::FAMILY;

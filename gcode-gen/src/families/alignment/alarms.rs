@@ -131,7 +131,7 @@ pub const ALARMS: &[MacroAlarm] = &[
 mod tests {
     use super::super::emit;
     use super::*;
-    use gcode_sim::job::{Alignment, Job};
+    use gcode_part::job::{Alignment, Job};
 
     fn job() -> Alignment {
         match Job::parse(super::super::FAMILY.new_job) {

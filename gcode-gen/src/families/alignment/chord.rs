@@ -1,6 +1,6 @@
 //! Chord matching: of ten candidates for each of two points the pair whose distance is the model's, and the work offset
 //! and B corrected by it.
-use gcode_sim::job::Alignment;
+use gcode_part::job::Alignment;
 
 use super::writes::Writes;
 use super::{Macro, Measurement, begin, common_remarks};

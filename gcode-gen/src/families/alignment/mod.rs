@@ -12,7 +12,7 @@ mod runout;
 mod sine;
 mod writes;
 
-use gcode_sim::job::Alignment;
+use gcode_part::job::Alignment;
 
 use self::resident::{Macro, Resident};
 use self::writes::Writes;

@@ -1,6 +1,6 @@
 //! The resident macros of the measurements: NC texts with marks for what differs between machines and controls.
-use gcode_sim::control::{Dialect, Increment};
-use gcode_sim::job::Alignment;
+use gcode_lang::control::{Dialect, Increment};
+use gcode_part::job::Alignment;
 
 use super::ALL;
 use super::writes::Writes;

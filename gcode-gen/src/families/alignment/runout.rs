@@ -1,6 +1,6 @@
 //! Run-out: the part touched along X at two heights over the petal's angles, and its shift and tilt fitted on the
 //! control. After the operator's correction a second pass shows what remains.
-use gcode_sim::job::Alignment;
+use gcode_part::job::Alignment;
 
 use super::writes::Writes;
 use super::{Macro, Measurement, begin, common_remarks};

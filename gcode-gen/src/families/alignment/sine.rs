@@ -2,9 +2,9 @@
 //!
 //! The macro gives the height and not the blocks: the fewest of a set are a search through all stacks, which is done here for
 //! the job's φ; for the corrected one they are found by the digits of the height, the last one first, as always at the machine.
-use gcode_sim::gauge::{self, SineSetting, Thickness};
-use gcode_sim::job::{Alignment, SineTable};
-use gcode_sim::units::{Deg, Mm};
+use gcode_lang::units::{Deg, Mm};
+use gcode_part::gauge::{self, SineSetting, Thickness};
+use gcode_part::job::{Alignment, SineTable};
 
 use super::writes::Writes;
 use super::{Macro, Measurement};

@@ -3,9 +3,9 @@
 //!
 //! A path that strays by the chord error leans: over the gauge length by the error's part of it, and more near the tip,
 //! where the flute gets narrow within that length. Where this is too much the moves are made for a smaller chord error.
-use gcode_sim::control::Increment;
-use gcode_sim::job::Burr;
-use gcode_sim::units::Deg;
+use gcode_lang::control::Increment;
+use gcode_lang::units::Deg;
+use gcode_part::job::Burr;
 
 use super::law::Flute;
 use super::nose::{Arc, arcs};

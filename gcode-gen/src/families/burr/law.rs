@@ -1,6 +1,6 @@
 //! How far a flute has turned at C, by its law, and how it bends there, which tells how long a straight move may be.
-use gcode_sim::job::FluteLaw;
-use gcode_sim::units::{Deg, ln};
+use gcode_lang::units::{Deg, ln};
+use gcode_part::job::FluteLaw;
 
 use super::nose::Arc;
 

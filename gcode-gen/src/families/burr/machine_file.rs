@@ -1,5 +1,5 @@
 //! The machine file of a burr job: the grinder that `gcode-sim --machine` follows the programs on.
-use gcode_sim::job::Burr;
+use gcode_part::job::Burr;
 
 use crate::families::control;
 

@@ -1,6 +1,6 @@
 //! The resident macro of the burrs: NC text with marks for what differs between machines and controls.
-use gcode_sim::control::{Dialect, Increment};
-use gcode_sim::job::{AxisSigns, Burr};
+use gcode_lang::control::{Dialect, Increment};
+use gcode_part::job::{AxisSigns, Burr};
 
 use crate::families::resident::fill;
 use crate::nc::number::number;

@@ -9,7 +9,7 @@ pub mod macros;
 mod nose;
 mod path;
 
-use gcode_sim::job::{Burr, FluteLaw, Nose, ProgramForm};
+use gcode_part::job::{Burr, FluteLaw, Nose, ProgramForm};
 
 use self::macros::{FLUTE, Resident};
 use self::nose::cylinder;
@@ -212,7 +212,7 @@ fn signs(job: &Burr) -> String {
 
 #[cfg(test)]
 mod tests {
-    use gcode_sim::job::Job;
+    use gcode_part::job::Job;
 
     use super::*;
 

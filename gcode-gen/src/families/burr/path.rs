@@ -1,6 +1,6 @@
 //! The points of one flute as axis positions: along the cylinder, then arc by arc to the tip.
-use gcode_sim::job::Burr;
-use gcode_sim::units::Deg;
+use gcode_lang::units::Deg;
+use gcode_part::job::Burr;
 
 use super::law::Flute;
 use super::nose::{arcs, cylinder};

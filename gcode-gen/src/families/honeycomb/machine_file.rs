@@ -1,7 +1,7 @@
 //! The machine file of a honeycomb job: what `gcode-sim --machine` needs to follow the emitted programs.
 use std::fmt::Write;
 
-use gcode_sim::job::Honeycomb;
+use gcode_part::job::Honeycomb;
 
 use crate::families::control;
 

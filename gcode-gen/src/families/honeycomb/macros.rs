@@ -1,6 +1,6 @@
 //! The resident macro of the honeycomb: NC text with marks for what differs between machines and controls.
-use gcode_sim::control::Dialect;
-use gcode_sim::job::{Clamp, Honeycomb};
+use gcode_lang::control::Dialect;
+use gcode_part::job::{Clamp, Honeycomb};
 
 use crate::families::resident::fill;
 use crate::nc::program::name;

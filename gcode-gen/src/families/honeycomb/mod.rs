@@ -5,7 +5,7 @@
 mod machine_file;
 pub mod macros;
 
-use gcode_sim::job::{Honeycomb, Metric, Spacing};
+use gcode_part::job::{Honeycomb, Metric, Spacing};
 
 use self::macros::{COMB, Resident};
 use super::start::Start;

@@ -1,6 +1,6 @@
 //! The resident macros of the pin holes: NC texts with marks for what differs between machines and controls.
-use gcode_sim::control::{Dialect, Increment};
-use gcode_sim::job::{HeadKind, PinHoles};
+use gcode_lang::control::{Dialect, Increment};
+use gcode_part::job::{HeadKind, PinHoles};
 
 use crate::families::resident::fill;
 use crate::nc::number::number;

@@ -6,7 +6,7 @@
 mod machine_file;
 pub mod macros;
 
-use gcode_sim::job::{AxisDirection, HeadKind, HoleSpec, PinHoles};
+use gcode_part::job::{AxisDirection, HeadKind, HoleSpec, PinHoles};
 
 use self::macros::{HEAD, HOLE, Resident};
 use super::start::Start;

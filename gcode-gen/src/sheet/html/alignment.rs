@@ -1,5 +1,5 @@
 //! What only a part that is set up has: lines to write its readings into, and what to do when a measurement ends in an alarm.
-use gcode_sim::job::{Alignment, Job};
+use gcode_part::job::{Alignment, Job};
 use gcode_sim::report::figures::{near, short};
 use maud::{Markup, html};
 

@@ -1,8 +1,8 @@
 //! The gauge blocks under the sine table, from the thickest to the thinnest; only a part that is set up has them.
-use gcode_sim::gauge;
-use gcode_sim::job::Job;
+use gcode_lang::units::{Deg, Mm};
+use gcode_part::gauge;
+use gcode_part::job::Job;
 use gcode_sim::report::figures::{near, short, signed_to};
-use gcode_sim::units::{Deg, Mm};
 use maud::{Markup, html};
 
 use super::{cell, table};

@@ -1,7 +1,7 @@
 //! What to measure: requirements, room for results, and beside them what the simulation says.
+use gcode_inspect::verify::{HoleVerdict, Verdict};
 use gcode_sim::report::encode::base64;
 use gcode_sim::report::figures::{near, signed, signed_to};
-use gcode_sim::verify::{HoleVerdict, Verdict};
 use maud::{Markup, html};
 
 use super::{cell, table};

@@ -1,8 +1,8 @@
 //! What stands in the machine: the tools, the head's angles in their order, the settings of the control.
-use gcode_sim::job::{HeadKind, Job, PinHoles};
+use gcode_inspect::verify::Verdict;
+use gcode_lang::units::Deg;
+use gcode_part::job::{HeadKind, Job, PinHoles};
 use gcode_sim::report::figures::short;
-use gcode_sim::units::Deg;
-use gcode_sim::verify::Verdict;
 use maud::{Markup, html};
 
 use super::alignment::overwritten_variables;

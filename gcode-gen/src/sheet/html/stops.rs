@@ -1,5 +1,5 @@
 //! The operator's stops in their order: what the control shows, what to do, a box to tick.
-use gcode_sim::job::Job;
+use gcode_part::job::Job;
 use gcode_sim::report::figures::{count, near};
 use maud::{Markup, html};
 

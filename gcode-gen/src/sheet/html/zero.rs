@@ -1,8 +1,8 @@
 //! Where the zero is: a picture of each family, and the offsets and signs in words.
-use gcode_sim::job::{Alignment, Burr, Honeycomb, Job, PinHoles, Surface};
-use gcode_sim::part::flutes::Flutes;
+use gcode_inspect::verify::Verdict;
+use gcode_part::job::{Alignment, Burr, Honeycomb, Job, PinHoles, Surface};
+use gcode_part::part::flutes::Flutes;
 use gcode_sim::report::figures::short;
-use gcode_sim::verify::Verdict;
 use maud::{Markup, html};
 
 use super::drawing::{Anchor, Paper, WIDTH, arrow, centre_line, drawing, line, path, text, thin, zero_sign};

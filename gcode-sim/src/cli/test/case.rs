@@ -3,15 +3,15 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::main_program;
-use crate::changes::{BlockLocation, Change, Record, Revision, changes};
 use crate::cli::conditions::RunConditions;
 use crate::cli::{UsageError, input, options};
-use crate::diag::{Diagnostic, Severity};
-use crate::exec::Limits;
-use crate::part::nominal::NominalPart;
 use crate::report::test_report::{CaseAnswer, CaseReport, FirstFailure};
-use crate::session::{self, Run, SessionError};
-use crate::verify::{self, Tolerances};
+use gcode_control::Limits;
+use gcode_inspect::verify::{self, Tolerances};
+use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_part::part::nominal::NominalPart;
+use gcode_review::{BlockLocation, Change, Record, Revision, changes};
+use gcode_session::{Run, SessionError};
 
 /// The file that holds what was accepted.
 pub(super) const ACCEPTED: &str = "accepted.json";
@@ -109,7 +109,7 @@ impl Case {
                 fails(verdict.verdict, &verdict.diagnostics, &revision.simulation.run)
             }
             Some(NominalPart::Flutes(flutes)) => {
-                let grinding = session::grind(&request, &mut folders, flutes);
+                let grinding = gcode_session::grind(&request, &mut folders, flutes);
                 let grinding = grinding.map_err(|error| UsageError::new(error.to_string()))?;
                 let verdict = grinding.verify();
                 fails(verdict.verdict, &verdict.diagnostics, &grinding.run)

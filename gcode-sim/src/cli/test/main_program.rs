@@ -1,11 +1,11 @@
 //! Which program of a case's folder is the one to run.
 use std::path::{Path, PathBuf};
 
-use crate::check::{CalledAs, called};
 use crate::cli::{UsageError, input};
-use crate::control::Settings;
-use crate::program::Memory;
-use crate::syntax::ast::ProgramName;
+use gcode_lang::control::Settings;
+use gcode_lang::program::Memory;
+use gcode_lang::syntax::ast::ProgramName;
+use gcode_lint::{CalledAs, called};
 
 /// `main.nc`, the only program, or the only one that no other calls: where a main program stands with its macros.
 pub(super) fn of(folder: &Path, programs: &[PathBuf]) -> Result<PathBuf, UsageError> {

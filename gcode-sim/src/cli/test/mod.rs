@@ -13,9 +13,9 @@ use clap::Args;
 use self::case::{ACCEPTED, Case, CaseResult};
 use super::format::TestFormat;
 use super::{ExitStatus, UsageError, options, output, progress};
-use crate::changes::Record;
 use crate::report::test_report::{CaseAnswer, Shard, TestReport};
 use crate::report::{junit, sarif};
+use gcode_review::Record;
 
 #[derive(Debug, Args)]
 pub(super) struct TestArguments {

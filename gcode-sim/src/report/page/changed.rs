@@ -4,7 +4,7 @@ use maud::{Markup, html};
 use super::lines::Lines;
 use super::words::shown;
 use super::{Difference, MOST_CHANGES, Side, listed};
-use crate::changes::{BlockLocation, UnexecutedChange};
+use gcode_review::{BlockLocation, UnexecutedChange};
 
 pub(super) fn changes(difference: &Difference<'_>, sides: &[Side<'_>]) -> Markup {
     let all = &difference.compared.changes;

@@ -4,7 +4,7 @@ use maud::{Markup, html};
 use super::words::{count, duration, shown};
 use super::{Page, Side, heading};
 use crate::report::figures;
-use crate::verify::Answer;
+use gcode_inspect::verify::Answer;
 
 /// The answer in one or two lines.
 pub(super) fn answer(page: &Page<'_>, sides: &[Side<'_>]) -> Markup {

@@ -2,9 +2,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::words::shown;
-use crate::changes::BlockLocation;
-use crate::session::Run;
-use crate::source::{SourceId, Span};
+use gcode_lang::source::{SourceId, Span};
+use gcode_review::BlockLocation;
+use gcode_session::Run;
 
 /// One text.
 #[derive(Clone, Debug)]

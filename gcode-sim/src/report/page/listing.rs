@@ -8,10 +8,10 @@ use super::lines::Text;
 use super::stops::stops;
 use super::words::{count, value};
 use super::{Page, Side, heading};
-use crate::changes::common_lines;
-use crate::exec::Value;
-use crate::session::{Executed, Values, VariableRole};
-use crate::source::SourceId;
+use gcode_control::Value;
+use gcode_lang::source::SourceId;
+use gcode_review::common_lines;
+use gcode_session::{Executed, Values, VariableRole};
 
 /// So many rows of all programs together; of longer ones those lines as well that something on the page leads to.
 const MOST_ROWS: usize = 5_000;

@@ -8,10 +8,10 @@ use super::changed::chain;
 use super::stops::{Stop, stops};
 use super::words::{shown, value};
 use super::{Page, Side, heading};
-use crate::changes::BlockLocation;
-use crate::diag::{Diagnostic, Severity};
-use crate::exec::printable;
-use crate::motion::StopKind;
+use gcode_control::printable;
+use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_lang::motion::StopKind;
+use gcode_review::BlockLocation;
 
 /// More of a kind than this aren't listed.
 const MOST: usize = 200;

@@ -15,12 +15,12 @@ mod words;
 
 use maud::{Markup, html};
 
-use crate::changes::{Revision, RevisionDiff, UnexecutedChange};
-use crate::machine::Machine;
-use crate::part::reference::Reference;
-use crate::session::{Request, Trace};
-use crate::verify::Verdict;
 use document::document;
+use gcode_inspect::machine::Machine;
+use gcode_inspect::verify::Verdict;
+use gcode_part::part::reference::Reference;
+use gcode_review::{Revision, RevisionDiff, UnexecutedChange};
+use gcode_session::{Request, Trace};
 use holes::HoleTable;
 use lines::Lines;
 

@@ -9,9 +9,9 @@ use super::lines::Lines;
 use super::rows::HoleRowState;
 use super::words::{count, shown};
 use super::{Page, Side, heading};
-use crate::changes::BlockLocation;
-use crate::machine::HeadKind;
-use crate::part::hole::Hole;
+use gcode_inspect::machine::HeadKind;
+use gcode_part::part::hole::Hole;
+use gcode_review::BlockLocation;
 
 /// More moves than this aren't drawn, nor more points: the page must turn without a wait.
 const MOST_MOVES: usize = 40_000;

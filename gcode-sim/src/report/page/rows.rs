@@ -3,12 +3,12 @@ use std::collections::BTreeMap;
 
 use super::words::shown;
 use super::{Side, heading};
-use crate::changes::Paired;
-use crate::holes::DrilledHole;
-use crate::part::reference::Reference;
 use crate::report::figures::{near, signed};
 use crate::report::hole_changes::{self, remarks};
-use crate::verify::{ExtraHole, HoleVerdict, Verdict};
+use gcode_inspect::holes::DrilledHole;
+use gcode_inspect::verify::{ExtraHole, HoleVerdict, Verdict};
+use gcode_part::part::reference::Reference;
+use gcode_review::Paired;
 
 /// What is to be said of a hole.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

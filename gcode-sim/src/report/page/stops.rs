@@ -1,6 +1,6 @@
 //! The operator stops of a side, those marked that the other side doesn't make in the same way.
 use super::{Page, Side};
-use crate::changes::BlockLocation;
+use gcode_review::BlockLocation;
 
 /// Where a program waited for the operator.
 pub(super) struct Stop<'a> {

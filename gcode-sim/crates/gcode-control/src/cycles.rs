@@ -1,0 +1,232 @@
+//! Checks a drilling block: its axis, its words, its repeats, and where it ends.
+use super::Executor;
+use super::drill::{CyclePlan, PolarRepeats};
+use super::eval::{Checked, at};
+use super::notes::Note;
+use super::patterns::Pattern;
+use super::pecks::are_too_many;
+use super::plan::BlockPlan;
+use super::state::{CycleLevel, State};
+use super::words::BlockWords;
+use gcode_lang::alarm::Alarm;
+use gcode_lang::motion::{AxisIndex, Position};
+use gcode_lang::program::cycles::{Cycle, Step};
+use gcode_lang::program::modes::{Distance, Plane, Polar, ReturnTo};
+use gcode_lang::source::Span;
+
+impl Executor {
+    /// Whether a block drills: it names an axis or R.
+    pub(super) fn drills(&self, given: &BlockWords) -> bool {
+        given.has(b'R') || self.names_axis(given)
+    }
+
+    /// Z; with FXY 5101#0 the plane's normal or the axis beside it that the block names, which stays the same until
+    /// G80.
+    pub(super) fn drilling_axis(&self, given: &BlockWords, state: &State) -> Result<AxisIndex, Alarm> {
+        let find = |letter: u8| {
+            let missing = Alarm::ImproperAddress { letter: char::from(letter) };
+            self.settings.axes.find(letter).ok_or(missing)
+        };
+        if !self.settings.drills_by_plane {
+            return find(b'Z');
+        }
+        let along = match state.modal.plane {
+            Plane::Xy => b"ZW",
+            Plane::Zx => b"YV",
+            Plane::Yz => b"XU",
+        };
+        let mut named = along.iter().filter(|letter| given.has(**letter));
+        match (state.drilling.axis, named.next(), named.next()) {
+            (_, Some(_), Some(_)) => Err(Alarm::DrillingAxis),
+            (None, named, None) => find(*named.unwrap_or(&along[0])),
+            (Some(axis), named, None) => {
+                let letter = self.settings.axes.letter(axis) as u8;
+                let same = along.contains(&letter) && named.is_none_or(|named| *named == letter);
+                if same { Ok(axis) } else { Err(Alarm::DrillingAxis) }
+            }
+            (_, None, Some(_)) => Err(Alarm::DrillingAxis),
+        }
+    }
+
+    /// Checks a drilling block and works out where it ends.
+    pub(super) fn prepare_drill(
+        &self,
+        plan: &mut BlockPlan,
+        given: &BlockWords,
+        cycle: &'static Cycle,
+        pattern: Option<Pattern>,
+        span: Span,
+    ) -> Checked<()> {
+        let axis = at(self.drilling_axis(given, &plan.state), span)?;
+        let stretch = at(stretch_along(plan, cycle, axis), span)?;
+        let repeats = self.cycle_repeats(given, pattern)?;
+        let incremental = plan.state.modal.distance == Distance::Incremental;
+        let from = *plan.state;
+        // The block's own depth words are not a move.
+        let mut goal = self.goal(given, &mut plan.state)?.programmed;
+        goal[axis] = from.programmed[axis];
+        plan.state.set_unplaced(axis, from.work_zero_unknown >> axis & 1 == 1);
+        self.drilling_words(plan, given, axis, incremental)?;
+        let data = &plan.state.drilling;
+        for (level, letter) in [(data.r, 'R'), (data.z, self.settings.axes.letter(axis))] {
+            if !level.commanded {
+                plan.notes.push(Note::CycleLevelMissing { letter });
+            }
+        }
+        if !self.settings.drills_by_plane && plan.state.modal.plane != Plane::Xy {
+            plan.notes.push(Note::DrillsAlongZ { code: plan.state.modal.plane.code() });
+        }
+        if cycle.needs_q {
+            self.peck_words(plan, given, pattern, span)?;
+        }
+        let (rate, _) = at(self.time_along(&plan.state, 1.0, given.has(b'F')), span)?;
+        plan.commands_axes = true;
+        if cycle.needs_q && are_too_many(&plan.state.drilling.unscaled(stretch), repeats) {
+            let what = "more than a million pecks in one block".into();
+            return Err(Alarm::NotSimulated { what }.at(span));
+        }
+        let rolls =
+            |(axis, letter): (AxisIndex, char)| self.settings.roll_over[axis] && given.has(letter as u8);
+        if incremental && self.settings.axes.iter().any(rolls) {
+            let what = "a drilling cycle with an incremental axis that rolls over".into();
+            return Err(Alarm::NotSimulated { what }.at(span));
+        }
+        if repeats == 0 && !self.settings.unsure.k0_positions {
+            plan.notes.push(Note::CycleRepeatsZero);
+            return Ok(());
+        }
+        let mut step = Position::default();
+        if incremental {
+            for (place, _) in self.settings.axes.iter() {
+                step[place] = goal[place] - from.programmed[place];
+            }
+        }
+        let first = self.plane_axes(plan.state.modal.plane).map_or(0, |(first, _)| first);
+        let shift = plan.state.drilling.q.unwrap_or(0.0).abs();
+        let circle = self.circle(plan, given, incremental, repeats)?;
+        let drill = CyclePlan {
+            cycle,
+            from: State { machine: from.machine, ..*plan.state },
+            hole: goal,
+            step,
+            circle,
+            pattern,
+            repeats: repeats.max(1),
+            axis,
+            shift: (if first == axis { self.other_axis(axis) } else { first }, shift),
+            rate,
+            dwell: plan.state.drilling.p,
+            stretch,
+        };
+        plan.state.programmed = drill.last(self);
+        if repeats == 0 {
+            // Positions only.
+            let mut to = self.to_machine(&plan.state, &plan.state.programmed);
+            to[axis] = from.machine[axis];
+            plan.state.machine = from.machine;
+            self.rapid(plan, &to);
+            return Ok(());
+        }
+        let data = &plan.state.drilling;
+        let (level, unplaced) = if plan.state.modal.return_to == ReturnTo::R && cycle.starts_at_r {
+            (data.r_level(), data.r_unplaced())
+        } else {
+            (data.initial, data.initial_unplaced)
+        };
+        plan.state.set_unplaced(axis, unplaced);
+        plan.state.programmed[axis] = level;
+        plan.state.machine = self.to_machine(&plan.state, &plan.state.programmed);
+        plan.drill = Some(drill);
+        Ok(())
+    }
+
+    fn cycle_repeats(&self, given: &BlockWords, pattern: Option<Pattern>) -> Checked<u32> {
+        let letter = self.settings.cycle_repeats;
+        let repeats = match pattern {
+            Some(pattern) => pattern.count,
+            None => given.count(letter)?.unwrap_or(1),
+        };
+        if repeats > 9999 { Err(Alarm::TooManyDigits.at(given.span(letter))) } else { Ok(repeats) }
+    }
+
+    /// A cycle with pecks needs their depth.
+    fn peck_words(
+        &self,
+        plan: &mut BlockPlan,
+        given: &BlockWords,
+        pattern: Option<Pattern>,
+        span: Span,
+    ) -> Checked<()> {
+        if self.settings.shrinking_pecks && pattern.is_none() {
+            self.shrinking_pecks(plan, given, span)?;
+        }
+        let data = &plan.state.drilling;
+        let none = data.pecks.is_none() && data.q.is_none_or(|q| q == 0.0);
+        if none { Err(Alarm::NoPeckDepth.at(span)) } else { Ok(()) }
+    }
+
+    /// How the holes of a block with K follow one another in polar coordinates; the next block's angle counts from the
+    /// last of them.
+    fn circle(
+        &self,
+        plan: &mut BlockPlan,
+        given: &BlockWords,
+        incremental: bool,
+        repeats: u32,
+    ) -> Checked<Option<PolarRepeats>> {
+        let state = &mut plan.state;
+        let Ok(plane) = self.plane_axes(state.modal.plane) else { return Ok(None) };
+        if state.modal.polar == Polar::Off || !incremental {
+            return Ok(None);
+        }
+        let turn = self.angle(given, self.settings.axes.letter(plane.1) as u8)?.unwrap_or(0.0);
+        let first = state.polar;
+        state.polar.angle += f64::from(repeats.max(1) - 1) * turn;
+        Ok(Some(PolarRepeats { plane, first, angle_step: turn }))
+    }
+
+    fn other_axis(&self, axis: AxisIndex) -> AxisIndex {
+        self.settings.axes.find(b'X').filter(|x| *x != axis).unwrap_or_default()
+    }
+
+    /// The depth, R, P and Q stay in force from hole to hole.
+    fn drilling_words(
+        &self,
+        plan: &mut BlockPlan,
+        given: &BlockWords,
+        axis: AxisIndex,
+        incremental: bool,
+    ) -> Checked<()> {
+        let state = &plan.state;
+        let mut data = state.drilling;
+        if let Some(value) = self.dimension(given, b'R', state)? {
+            data.r = CycleLevel { value, incremental, commanded: true };
+        }
+        if let Some(value) = self.dimension(given, self.settings.axes.letter(axis) as u8, state)? {
+            data.z = CycleLevel { value, incremental, commanded: true };
+        }
+        if let Some(value) = self.dimension(given, b'Q', state)? {
+            // Its sign is ignored.
+            data.q = Some(value.abs());
+        }
+        if let Some(seconds) = self.pause(given)? {
+            data.p = seconds;
+        }
+        plan.state.drilling = data;
+        Ok(())
+    }
+}
+
+/// What G51 makes of a millimetre along the drilling axis; an alarm for what isn't simulated.
+fn stretch_along(plan: &BlockPlan, cycle: &Cycle, axis: AxisIndex) -> Result<f64, Alarm> {
+    let transform = &plan.state.transform;
+    let stretch = transform.scaling.map_or(1.0, |s| s.factor[axis]);
+    let turned = stretch < 0.0 || transform.mirrored >> axis & 1 == 1;
+    // Of cycles with a shift the manual says that G51 leaves them out, not how far.
+    let shifts = stretch != 1.0 && cycle.steps.contains(&Step::Shift);
+    if transform.tilt.is_some() || turned || shifts {
+        let what = "a drilling cycle whose axis is tilted or mirrored, or one with a shift that is scaled";
+        return Err(Alarm::NotSimulated { what: what.into() });
+    }
+    Ok(stretch)
+}

@@ -1,0 +1,125 @@
+//! One move of the programmed path, and the telling of moves of the tool's centre with the time they take.
+use super::{Lookahead, LookaheadRequest};
+use crate::Executor;
+use crate::contour::{Point, Segment};
+use gcode_lang::motion::{Backtrace, EventKind, MAX_AXES, PlanarArc, Position};
+
+/// Moves shorter than this, mm and degrees, are rounding and aren't told.
+const NOTHING: f64 = 1e-9;
+
+/// A move of one block.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct PathMove {
+    pub(super) kind: EventKind,
+    /// What it does in the plane, if it moves there.
+    pub(super) segment: Option<Segment>,
+    pub(super) place: Backtrace,
+}
+
+/// What waits behind a move.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum PendingItem {
+    /// A move of other axes only.
+    Move(PathMove),
+    /// Anything else, with its seconds.
+    Other(EventKind, f64, Backtrace),
+}
+
+/// What is to be told: the event, its seconds, its place.
+pub(super) type ReadyEvent = (EventKind, f64, Backtrace);
+
+impl PathMove {
+    /// `None` for an event that is no move.
+    pub(super) fn new(kind: &EventKind, from: Position, order: &LookaheadRequest) -> Option<Self> {
+        let point = |p: &Position| Point::new(p[order.plane.0], p[order.plane.1]);
+        let to = point(kind.end()?);
+        let segment = match kind {
+            EventKind::Arc { arc, .. } => Segment::Arc {
+                from: point(&from),
+                to,
+                centre: Point::new(arc.centre.0, arc.centre.1),
+                sweep: arc.sweep,
+            },
+            _ => Segment::Line { from: point(&from), to },
+        };
+        let segment = segment.has_length().then_some(segment);
+        Some(Self { kind: kind.clone(), segment, place: order.place.clone() })
+    }
+
+    /// Where it ends on the programmed path.
+    pub(super) fn to(&self) -> Position {
+        self.kind.end().copied().unwrap_or_default()
+    }
+}
+
+impl Lookahead {
+    /// Tells something, or lets it wait behind the move that waits.
+    pub(super) fn defer(&mut self, core: &Executor, held: PendingItem) {
+        if let Some(corner) = &mut self.corner {
+            corner.behind.push(held);
+        } else if self.open.is_some() {
+            self.behind.push(held);
+        } else {
+            self.tell_held(core, held);
+        }
+    }
+
+    /// Moves of other axes go on where the centre stands in the plane.
+    pub(super) fn tell_held(&mut self, core: &Executor, held: PendingItem) {
+        match held {
+            PendingItem::Move(piece) => {
+                let to = self.with(piece.to(), self.point(&self.centre));
+                self.tell_straight(core, &piece, to);
+            }
+            PendingItem::Other(kind, seconds, place) => self.ready.push((kind, seconds, place)),
+        }
+    }
+
+    /// Tells a straight move of a piece's block.
+    pub(super) fn tell_straight(&mut self, core: &Executor, piece: &PathMove, to: Position) {
+        let from = std::mem::replace(&mut self.centre, to);
+        let squares: f64 = (0..MAX_AXES).map(|axis| (to[axis] - from[axis]) * (to[axis] - from[axis])).sum();
+        let length = squares.sqrt();
+        if length < NOTHING {
+            return;
+        }
+        let (kind, seconds) = match piece.kind {
+            EventKind::Feed { rate, .. } | EventKind::Arc { rate, .. } => {
+                (EventKind::Feed { to, rate }, length / rate.0 * 60.0)
+            }
+            EventKind::Skip { rate, touched, .. } => {
+                (EventKind::Skip { to, rate, touched }, length / rate.0 * 60.0)
+            }
+            EventKind::Rapid { .. }
+            | EventKind::Dwell { .. }
+            | EventKind::ToolChange { .. }
+            | EventKind::ToolLength { .. }
+            | EventKind::WorkZeroUnknown { .. }
+            | EventKind::Spindle { .. }
+            | EventKind::Coolant { .. }
+            | EventKind::Auxiliary { .. }
+            | EventKind::Stop { .. } => (EventKind::Rapid { to }, core.rapid_seconds(&from, &to)),
+        };
+        self.ready.push((kind, seconds, piece.place.clone()));
+    }
+
+    /// Tells the move itself, to a point in the plane; an arc at `distance` to its left.
+    pub(super) fn tell_along(&mut self, core: &Executor, piece: &PathMove, end: Point, distance: f64) {
+        let to = self.with(piece.to(), end);
+        let (EventKind::Arc { arc, rate, .. }, Some(segment)) = (&piece.kind, &piece.segment) else {
+            return self.tell_straight(core, piece, to);
+        };
+        let start = self.point(&self.centre);
+        let middle = Point::new(arc.centre.0, arc.centre.1);
+        let radius = ((start - middle).norm() + (end - middle).norm()) / 2.0;
+        let sweep = segment.sweep_between(start, end, distance);
+        let length = radius * sweep.abs().to_rad();
+        if length < NOTHING {
+            return self.tell_straight(core, piece, to);
+        }
+        let arc = PlanarArc { sweep, ..*arc };
+        self.centre = to;
+        let kind = EventKind::Arc { to, arc, rate: *rate };
+        self.ready.push((kind, length / rate.0 * 60.0, piece.place.clone()));
+    }
+}

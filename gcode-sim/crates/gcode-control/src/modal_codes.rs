@@ -1,0 +1,164 @@
+//! The G codes of a block put in force, and what else than a move uses its axis words.
+use super::Executor;
+use super::eval::{Checked, at};
+use super::plan::BlockPlan;
+use super::state::{CycleState, PolarPoint};
+use super::transform_order;
+use super::words::BlockWords;
+use gcode_lang::alarm::Alarm;
+use gcode_lang::program::codes::{Effect, GCodeRow, OneShot, spelled};
+use gcode_lang::program::modes::{CutterSide, Mirror, Polar, Rotation, Scaling};
+use gcode_lang::source::Span;
+
+/// What uses the axis words of a block that doesn't simply move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum AxisWordUse {
+    OneShot(OneShot),
+    AdditionalWork,
+    Scale,
+    MirrorOn,
+    MirrorOff,
+    Rotate,
+    Tilt,
+}
+
+impl Executor {
+    /// 1. Modal G codes in the order they stand in; the answer is what uses the axis words instead of a move.
+    #[inline]
+    pub(super) fn modal_codes(
+        &self,
+        given: &BlockWords,
+        plan: &mut BlockPlan,
+        span: Span,
+    ) -> Checked<Option<AxisWordUse>> {
+        if given.has_non_motion_words() {
+            return self.codes_in_force(given, plan, span);
+        }
+        if let Some(motion) = given.motion {
+            plan.state.set_motion_mode(motion);
+        }
+        Ok(None)
+    }
+
+    /// As [`Executor::modal_codes`], of a block with other codes than those of group 01.
+    #[inline(never)]
+    fn codes_in_force(
+        &self,
+        given: &BlockWords,
+        plan: &mut BlockPlan,
+        span: Span,
+    ) -> Checked<Option<AxisWordUse>> {
+        let state = &mut plan.state;
+        let before = state.modal;
+        let mut act = None;
+        let mut latched = before.cycle.is_some();
+        for row in given.g_codes() {
+            if let Effect::Motion(motion) = row.effect {
+                state.set_motion_mode(motion);
+                latched = false;
+                continue;
+            }
+            let new = at(act_of(row, given, state.modal.cutter), span)?;
+            if new.is_some() && act.is_some() && new != act {
+                let what = "several one-shot G codes in one block".into();
+                return Err(Alarm::NotSimulated { what }.at(span));
+            }
+            act = new.or(act);
+            state.modal.apply(row);
+            if row.effect == Effect::Cycle(None) {
+                state.drilling = CycleState::default();
+                latched = false;
+            }
+        }
+        let modal = state.modal;
+        if modal.plane != before.plane && self.ahead.is_offset() {
+            return Err(Alarm::PlaneInCompensation.at(span));
+        }
+        if modal.plane != before.plane && state.transform.rotation.is_some() {
+            return Err(Alarm::PlaneInRotation.at(span));
+        }
+        if before.scaling == Scaling::On
+            && modal.scaling == Scaling::On
+            && let Some(row) = given.g_codes().find(|row| row.effect.needs_plain_coordinates())
+        {
+            return Err(Alarm::CodeInScaling { code: spelled(row.code) }.at(span));
+        }
+        at(transform_order::check(given, &before, state, self.names_axis(given)), span)?;
+        if modal.scaling == Scaling::Off {
+            state.transform.scaling = None;
+        }
+        if modal.rotation == Rotation::Off {
+            state.transform.rotation = None;
+            state.transform.tilt = None;
+        }
+        if modal.polar == Polar::On && before.polar == Polar::Off {
+            state.polar = PolarPoint::default();
+        }
+        if modal.work != before.work {
+            state.ended = None;
+            self.recompute(state);
+        } else if state.transform != self.state.transform {
+            self.transform_changed(state);
+        }
+        if modal.cycle.is_some() && !latched {
+            let axis = at(self.drilling_axis(given, state), span)?;
+            state.drilling.axis = Some(axis);
+            state.drilling.initial = state.programmed[axis];
+            state.drilling.initial_unplaced = state.work_zero_unknown >> axis & 1 == 1;
+        }
+        // G54 P is G54.1 P.
+        let additional = given.has(b'P')
+            && act.is_none()
+            && modal.cycle.is_none()
+            && given.has_code_beyond_moves(|effect| effect == Effect::Work(1));
+        Ok(if additional { Some(AxisWordUse::AdditionalWork) } else { act })
+    }
+}
+
+/// What uses the axis words because of a code, if anything.
+fn act_of(row: &GCodeRow, given: &BlockWords, cutter: CutterSide) -> Result<Option<AxisWordUse>, Alarm> {
+    Ok(match row.effect {
+        Effect::NotSimulated if (450..=480).contains(&row.code) && cutter != CutterSide::Off => {
+            return Err(Alarm::ToolOffsetInCompensation);
+        }
+        Effect::NotSimulated | Effect::Call => return Err(not_simulated(row.code, row.help)),
+        Effect::NoEffect => {
+            given.accept(b"IPQR");
+            None
+        }
+        Effect::Smoothness => {
+            given.accept(b"EP");
+            None
+        }
+        Effect::OneShot(one) => Some(AxisWordUse::OneShot(one)),
+        Effect::AdditionalWork => Some(AxisWordUse::AdditionalWork),
+        Effect::Scaling(Scaling::On) => Some(AxisWordUse::Scale),
+        Effect::Mirror(Mirror::On) => Some(AxisWordUse::MirrorOn),
+        Effect::Mirror(Mirror::Off) => Some(AxisWordUse::MirrorOff),
+        Effect::Rotation(Rotation::On) => Some(AxisWordUse::Rotate),
+        Effect::Rotation(Rotation::Tilted) => Some(AxisWordUse::Tilt),
+        Effect::Scaling(Scaling::Off)
+        | Effect::Rotation(Rotation::Off)
+        | Effect::Motion(_)
+        | Effect::Plane(_)
+        | Effect::Distance(_)
+        | Effect::StrokeCheck(_)
+        | Effect::FeedMode(_)
+        | Effect::Unit(_)
+        | Effect::Cutter(_)
+        | Effect::Length(_)
+        | Effect::Cycle(_)
+        | Effect::ReturnTo(_)
+        | Effect::SpindleMode(_)
+        | Effect::Work(_)
+        | Effect::NumberedWork(_)
+        | Effect::Cutting(_)
+        | Effect::Polar(_)
+        | Effect::LookAhead => None,
+    })
+}
+
+/// The alarm of a G code that isn't executed.
+pub(super) fn not_simulated(code: u32, help: &str) -> Alarm {
+    Alarm::NotSimulated { what: format!("G{} ({help})", spelled(code)) }
+}

@@ -1,0 +1,215 @@
+//! What a control does without a word and a programmer hardly means: told once for each kind, with its first block.
+use super::Control;
+use gcode_lang::program::codes::spelled;
+use gcode_lang::source::Span;
+
+/// A thing worth telling that is no alarm on a control.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Note {
+    /// G53 in G91 is ignored, and with it the block's motion.
+    MachineMoveIgnored,
+    /// A block had another M code after this one, and only the last counts.
+    MCodeLost { code: u32 },
+    /// P or Q in cycle mode, in a block that names no axis and no R: it drills nothing and stores nothing.
+    CycleDataLost,
+    /// M96 lets a signal call a macro, and no signal comes in a run.
+    InterruptNeverComes,
+    /// G31, and nothing gives a skip signal: no part to touch and no place where it comes.
+    NoSignal,
+    /// A word beside an M code of the machine builder that nothing else in the block reads.
+    WordsPassedOn { code: u32, letter: char },
+    /// `,R` or `,C` in a block that is no cutting move is ignored.
+    CornerIgnored,
+    /// A drilling block with K0 stores its data and drills nothing, which is what K0 is for; whether its X and Y are
+    /// gone to differs between controls.
+    CycleRepeatsZero,
+    /// A call with L0 calls nothing.
+    CallRepeatsZero,
+    /// A code that acts on axes, in a block that names none. G53 so only waits.
+    NoAxis { code: u32 },
+    /// G51 or G68 without axes: about the point where the program stands.
+    CentreDefaulted { code: u32 },
+    /// G68 without R: it turns by nothing, or by 5410 where that is set.
+    NoAngle,
+    /// GOTO or M99 P found one of several blocks with this number.
+    DoubledNumber { number: u32 },
+    /// A jump into a loop, whose END will have no DO.
+    JumpIntoLoop { number: u8 },
+    /// TAN of 90 degrees answers a large number.
+    TangentOf90,
+    /// ATAN of 0 and 0 answers 0.
+    AtanOf0,
+    /// G10 L52 has written a parameter that nothing here depends on.
+    ParameterWithoutEffect { number: u16 },
+    /// The program has letters in lower case, which some controls refuse.
+    LowerCase,
+    /// An M code of more than four digits that is left to the machine builder: M981000 was M98 P1000.
+    LongMCode { code: u32 },
+    /// #5001… are read behind a switch of G51.1, G51 or G68, when the program's coordinates of the tool are others.
+    EndPointBeforeTransform,
+    /// The first move behind such a switch leaves out an axis whose coordinate it has changed.
+    AxisLeftOut,
+    /// DPRNT has printed the lower digits of a number only.
+    DigitsLost,
+    /// A drilling cycle drills though its R or its depth was never commanded.
+    CycleLevelMissing { letter: char },
+    /// G43 or G44 with H0, which is no offset.
+    LengthOffsetZero { code: u32 },
+    /// A block, or the rest of one, behind `/`, which a switch of block skip leaves out.
+    BlockSkip { switch: u8, is_on: bool },
+    /// A drilling cycle goes along Z while G18 or G19 has another plane's normal, as FXY 5101#0 = 0 has it.
+    DrillsAlongZ { code: u32 },
+    /// `#3000=n` with a number beyond those that the manual names.
+    LargeAlarm { number: u16, most: u16 },
+}
+
+impl Note {
+    /// A stable name, what happened, and what to do.
+    pub fn describe(self) -> (&'static str, String, &'static str) {
+        match self {
+            Self::MachineMoveIgnored => {
+                let message = "G53 in G91 is ignored: the axes of the block don't move".to_owned();
+                ("g53-ignored", message, "command G90 with G53")
+            }
+            Self::MCodeLost { code } => {
+                let message = format!("M{code} is lost: of several M codes in a block only the last counts");
+                ("m-code-lost", message, "give each M code a block, or set M3B=1 if the control takes three")
+            }
+            Self::CycleDataLost => {
+                let message = "P or Q is not stored: the block drills nothing".to_owned();
+                ("cycle-data-lost", message, "write P and Q in the block of a hole")
+            }
+            Self::InterruptNeverComes => {
+                let message =
+                    "the macro of M96 is never called: the signal UINT doesn't come in a run".to_owned();
+                ("no-interrupt", message, "call the macro with G65 to see what it does")
+            }
+            Self::NoSignal => {
+                let message = "no skip signal is simulated: G31 goes to its end".to_owned();
+                (
+                    "no-signal",
+                    message,
+                    "give the part with --part, or SKIP, the part of the way where it comes",
+                )
+            }
+            Self::WordsPassedOn { code, letter } => {
+                let message = format!("{letter} goes with M{code:02} to the machine builder's logic");
+                ("words-passed-on", message, "the machine's manual says what the M code takes")
+            }
+            Self::CornerIgnored => {
+                let message = ",R and ,C are ignored: the block is no cutting move".to_owned();
+                ("corner-ignored", message, "write them in a block of G01, G02 or G03")
+            }
+            Self::CycleRepeatsZero => {
+                let message = "K0 stores the cycle without going to the block's X and Y".to_owned();
+                ("no-repeats", message, "K0-MOVES=1 is for a control that goes there")
+            }
+            Self::CallRepeatsZero => {
+                ("no-pass", "L0: the program is not called".to_owned(), "leave L out for one pass")
+            }
+            Self::NoAxis { code } => {
+                let message = format!("G{} names no axis: nothing moves or is set", spelled(code));
+                ("no-axis", message, "name the axes it is for")
+            }
+            Self::CentreDefaulted { code } => {
+                let message =
+                    format!("G{} names no axis: its centre is where the program stands", spelled(code));
+                ("centre-here", message, "name the centre's axes")
+            }
+            Self::NoAngle => {
+                let message =
+                    "G68 without R turns by nothing; a control may have an angle in 5410".to_owned();
+                ("no-angle", message, "write R")
+            }
+            Self::DoubledNumber { number } => {
+                let message =
+                    format!("N{number} is there more than once: which one a jump takes is the control's");
+                ("doubled-number", message, "give each block a number of its own")
+            }
+            Self::JumpIntoLoop { number } => {
+                let message = format!("a jump into the loop DO{number}: its END alarms, PS1124");
+                ("into-loop", message, "jump to the block of its DO or WHILE")
+            }
+            Self::TangentOf90 => {
+                let message =
+                    "TAN of 90 degrees is no number: some controls alarm, here it is a large one".to_owned();
+                (
+                    "tangent-of-90",
+                    message,
+                    "test the angle before; TAN-90-ALARM=1 is for a control that alarms",
+                )
+            }
+            Self::AtanOf0 => {
+                let message = "ATAN of 0 and 0 is no angle: some controls alarm, here it is 0".to_owned();
+                ("atan-of-0", message, "test the two before; ATAN-0-ALARM=1 is for a control that alarms")
+            }
+            Self::ParameterWithoutEffect { number } => {
+                let message = format!("parameter {number} is kept for PRM and has no effect here");
+                ("parameter-without-effect", message, "docs/control.md says what is not simulated")
+            }
+            Self::LowerCase => {
+                let message = "lower case is read as capitals; some controls refuse it".to_owned();
+                ("lower-case", message, "write capitals, or set LOWER-CASE=0 if the control refuses it")
+            }
+            Self::LongMCode { code } => {
+                let message = format!("M{code} calls nothing: it is one M code, left to the machine builder");
+                ("long-m-code", message, "write P before the program's number: M98 P1000")
+            }
+            Self::EndPointBeforeTransform => {
+                let message =
+                    "#5001 and on show the end of the last move as it was programmed, before the switch of \
+                     G51.1, G51 or G68"
+                        .to_owned();
+                ("end-before-switch", message, "read them behind the next move, or before the switch")
+            }
+            Self::AxisLeftOut => {
+                let message =
+                    "an axis left out here stays where the tool stands; after a switch of G51.1, G51 or \
+                               G68 a control may take it elsewhere"
+                        .to_owned();
+                ("axis-left-out", message, "name every axis in the first move after the switch")
+            }
+            Self::DigitsLost => {
+                let message = "DPRNT prints the lower digits only: the format has too few places".to_owned();
+                (
+                    "digits-lost",
+                    message,
+                    "give the format more places; PRINT-EXPANDS=1 is for a control that makes room",
+                )
+            }
+            Self::CycleLevelMissing { letter } => {
+                let message = format!("the cycle drills with {letter} at 0: none was commanded");
+                ("level-missing", message, "write R and the depth in the block that begins the cycle")
+            }
+            Self::LengthOffsetZero { code } => {
+                let message = format!("G{} with H0: no tool length is in force", spelled(code));
+                ("length-of-nothing", message, "write H with the tool's number")
+            }
+            Self::BlockSkip { switch, is_on } => {
+                let (is, does) = if is_on { ("on", "left out") } else { ("off", "carried out") };
+                let message = format!(
+                    "what is behind / is {does}: block skip {switch} is {is}, and all that is told holds for that"
+                );
+                ("block-skip", message, "--control BDT=1 switches block skip 1 on")
+            }
+            Self::DrillsAlongZ { code } => {
+                let message = format!(
+                    "the cycle drills along Z while G{} is in force: a control may drill along that plane's normal",
+                    spelled(code)
+                );
+                ("drill-plane", message, "write G17, or set FXY=1 if the control drills along the normal")
+            }
+            Self::LargeAlarm { number, most } => {
+                let message = format!("#3000={number}: a control's manual names numbers up to {most}");
+                ("large-alarm-number", message, "use a smaller number")
+            }
+        }
+    }
+}
+
+impl Control {
+    /// Each note with the first block it is about.
+    pub fn notes(&self) -> impl Iterator<Item = (Note, Span)> + '_ {
+        self.core.notes.iter().map(|(note, block)| (*note, *block))
+    }
+}

@@ -1,0 +1,130 @@
+//! Parameters in a program: PRM reads them, the blocks between G10 L52 and G11 write them.
+use super::Executor;
+use super::eval::{Checked, integer};
+use super::notes::Note;
+use super::plan::{BlockPlan, TableWrite};
+use super::words::{BlockWords, WordNumber};
+use gcode_lang::alarm::Alarm;
+use gcode_lang::control::{ParameterError, ParameterId, Settings, is_without_effect};
+use gcode_lang::motion::AxisIndex;
+use gcode_lang::program::Words;
+use gcode_lang::program::codes::{Effect, OneShot};
+use gcode_lang::source::Span;
+
+impl Executor {
+    /// `PRM[n]`, `PRM[n,bit]`, `PRM[n]/[axis]`, `PRM[n,bit]/[axis]`.
+    pub(super) fn parameter(&self, number: f64, bit: Option<f64>, axis: Option<f64>) -> Result<f64, Alarm> {
+        let format = || Alarm::ArgumentFormat { function: "PRM".into() };
+        let known = integer(number)?;
+        let unknown = || Alarm::NotSimulated { what: format!("PRM[{known}]") };
+        let place = ParameterId {
+            number: u16::try_from(known).map_err(|_| unknown())?,
+            bit: bit.map(|bit| self.bit(bit).ok_or_else(format)).transpose()?,
+            axis: axis.map(|axis| self.axis_of(axis).map_err(|_| format())).transpose()?,
+        };
+        if let Some(written) = self.parameters.get(&place) {
+            return Ok(*written);
+        }
+        self.settings.parameter(place).map_err(|error| match error {
+            ParameterError::AxisWanted | ParameterError::NoAxis | ParameterError::NoBit => format(),
+            _ => unknown(),
+        })
+    }
+
+    fn bit(&self, bit: f64) -> Option<u8> {
+        (0.0..=7.0).contains(&bit.round()).then_some(bit.round() as u8)
+    }
+
+    /// An axis by its number from 1 on.
+    pub(super) fn axis_of(&self, number: f64) -> Result<AxisIndex, Alarm> {
+        let number = integer(number)?;
+        let axis = usize::try_from(number - 1).ok().filter(|axis| *axis < self.settings.axes.len());
+        axis.ok_or(Alarm::AxisNumber { number })
+    }
+
+    /// A block between G10 L52 and G11: `N_ R_`, with P for an axis and Q for a bit.
+    pub(super) fn prepare_parameter(
+        &self,
+        (words, number): (&Words, Option<u32>),
+        given: &mut BlockWords,
+        plan: &mut BlockPlan,
+        span: Span,
+    ) -> Checked<()> {
+        plan.begin(&self.state);
+        let wrong = |what: &str| Alarm::ParameterFormat { what: what.to_owned() }.at(span);
+        self.collect(words, None, given)?;
+        let mut codes = given.g_codes();
+        match (codes.next(), codes.next()) {
+            (None, _) => {}
+            (Some(code), None) if code.effect == Effect::OneShot(OneShot::DataInputEnd) => {
+                plan.state.parameter_input = false;
+                return match given.unread() {
+                    None if words.call().is_none() => Ok(()),
+                    _ => Err(wrong("words beside G11")),
+                };
+            }
+            _ => return Err(wrong("another G code before G11")),
+        }
+        if given.m_count > 0 || words.call().is_some() {
+            return Err(wrong("an M code before G11"));
+        }
+        let number = number.and_then(|number| u16::try_from(number).ok());
+        let number = number.ok_or_else(|| wrong("N, the parameter's number, is missing or too large"))?;
+        let (raw, _) = given.get(b'R').ok_or_else(|| wrong("R is missing"))?;
+        let axis = match given.count(b'P')? {
+            None => None,
+            Some(axis) => Some(self.axis_of(f64::from(axis)).map_err(|_| wrong("P is no axis"))?),
+        };
+        let bit = match given.count(b'Q')? {
+            None => None,
+            Some(bit) => Some(self.bit(f64::from(bit)).ok_or_else(|| wrong("Q is not 0 to 7"))?),
+        };
+        if given.unread().is_some() {
+            return Err(wrong("other words than N P Q R"));
+        }
+        let place = ParameterId { number, bit, axis };
+        if let WordNumber::Literal(literal) = raw
+            && literal.places.is_none()
+            && literal.digits != 0
+            && Settings::is_length_parameter(place)
+        {
+            let what = format!("R without a point for parameter {number}, a length");
+            return Err(Alarm::NotSimulated { what }.at(given.span(b'R')));
+        }
+        let value = match raw {
+            WordNumber::Literal(literal) => literal.value(),
+            WordNumber::Computed(value) => value,
+        };
+        let known = self.settings.clone().set_parameter(place, value);
+        let kept = known == Err(ParameterError::Unknown) && is_without_effect(number);
+        match known {
+            Ok(()) => {}
+            Err(_) if kept => plan.notes.push(Note::ParameterWithoutEffect { number }),
+            Err(ParameterError::AxisWanted) => return Err(wrong("P, the axis, is missing")),
+            Err(ParameterError::NoAxis) => return Err(wrong("the parameter has no axis P")),
+            Err(ParameterError::NoBit) => return Err(wrong("the parameter has no bit Q")),
+            Err(ParameterError::Value) => return Err(wrong("the parameter can't have this value")),
+            Err(ParameterError::BitWanted) => {
+                let what = format!("parameter {number} without Q, as a whole byte");
+                return Err(Alarm::NotSimulated { what }.at(span));
+            }
+            Err(ParameterError::Unknown | ParameterError::Fixed) => {
+                let what = format!("a change of parameter {number}");
+                return Err(Alarm::NotSimulated { what }.at(span));
+            }
+        }
+        plan.writes.push(TableWrite::Parameter { place, value, kept });
+        Ok(())
+    }
+
+    /// Carries out what [`Executor::prepare_parameter`] has checked.
+    pub(super) fn set_parameter(&mut self, place: ParameterId, value: f64, kept: bool) {
+        self.parameters.insert(place, value);
+        if kept {
+            return;
+        }
+        // It was tried on a copy when the block was checked.
+        let set = self.settings.set_parameter(place, value);
+        debug_assert_eq!(set, Ok(()));
+    }
+}

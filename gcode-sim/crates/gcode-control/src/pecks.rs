@@ -1,0 +1,89 @@
+//! The pecks of G73 and G83: all of Q, or becoming shorter by I, J and K.
+use super::Executor;
+use super::eval::Checked;
+use super::plan::BlockPlan;
+use super::state::{CycleState, PeckSchedule};
+use super::words::BlockWords;
+use gcode_lang::alarm::Alarm;
+use gcode_lang::source::Span;
+
+/// A block with more pecks than this alarms: nobody drills so, and a run must end.
+const PECKS: f64 = 1e6;
+
+impl Executor {
+    /// G73 and G83 of a Haas: the first peck is I, each next one J less, none less than K.
+    pub(super) fn shrinking_pecks(
+        &self,
+        plan: &mut BlockPlan,
+        given: &BlockWords,
+        span: Span,
+    ) -> Checked<()> {
+        let state = &plan.state;
+        let first = self.dimension(given, b'I', state)?;
+        let less = self.dimension(given, b'J', state)?;
+        let least = self.dimension(given, b'K', state)?;
+        let pecks = match (first, less, least) {
+            (None, None, None) => return Ok(()),
+            (Some(first), None, None) => PeckSchedule { first, less: 0.0, least: first },
+            (Some(first), Some(less), Some(least)) => PeckSchedule { first, less, least },
+            _ => {
+                let what = "I, J and K of G73 and G83 in part, or K with Q".into();
+                return Err(Alarm::NotSimulated { what }.at(span));
+            }
+        };
+        if given.has(b'Q') {
+            return Err(Alarm::NotSimulated { what: "G73 and G83 with I and Q".into() }.at(span));
+        }
+        if pecks.first <= 0.0 || pecks.less < 0.0 || pecks.least <= 0.0 || pecks.least > pecks.first {
+            return Err(Alarm::NoPeckDepth.at(span));
+        }
+        plan.state.drilling.pecks = Some(pecks);
+        Ok(())
+    }
+
+    /// From R peck by peck until Z; the last peck is what is left.
+    pub(super) fn peck(&self, (r, z): (f64, f64), data: &CycleState, mut each: impl FnMut(f64, f64, bool)) {
+        let pecks = pecks(r, z, data);
+        let mut last = r;
+        let mut count = 1.0;
+        while count <= pecks {
+            let done = count == pecks;
+            let next = if done { z } else { r + depth(data, count).copysign(z - r) };
+            each(last, next, done);
+            last = next;
+            count += 1.0;
+        }
+    }
+}
+
+/// How deep below R so many pecks lead.
+fn depth(data: &CycleState, count: f64) -> f64 {
+    let Some(PeckSchedule { first, less, least }) = data.pecks else {
+        return count * data.q.unwrap_or(0.0).abs();
+    };
+    // As many pecks as are longer than the shortest, then all as short as that.
+    let longer = if less > 0.0 { ((first - least) / less + 1e-9).floor() + 1.0 } else { count };
+    let shrinking = count.min(longer);
+    shrinking * first - less * shrinking * (shrinking - 1.0) / 2.0 + (count - shrinking) * least
+}
+
+/// How many pecks a hole from R to Z takes.
+fn pecks(r: f64, z: f64, data: &CycleState) -> f64 {
+    let deep = (z - r).abs();
+    if data.pecks.is_none() {
+        return match data.q {
+            Some(q) if q != 0.0 => (deep / q.abs() - 1e-9).ceil().max(1.0),
+            _ => 1.0,
+        };
+    }
+    let mut count = 1.0;
+    while depth(data, count) < deep - 1e-9 && count <= PECKS {
+        count += 1.0;
+    }
+    count
+}
+
+/// Whether a block with so many holes has more pecks than anybody drills.
+pub(super) fn are_too_many(data: &CycleState, holes: u32) -> bool {
+    pecks(data.r_level(), data.z_level(), data) * f64::from(holes.max(1)) > PECKS
+}

@@ -1,0 +1,99 @@
+//! G31 and the machine's answer to it: where the skip signal comes, and where the axes stand then.
+use super::Executor;
+use super::eval::{Checked, at};
+use super::modal_codes::not_simulated;
+use super::notes::Note;
+use super::plan::{BlockPlan, SkipPlan};
+use super::words::BlockWords;
+use gcode_lang::alarm::{Alarm, LocatedAlarm};
+use gcode_lang::motion::{EventKind, EventSink, MAX_AXES, Position, SkipMove, SkipSignal};
+use gcode_lang::program::modes::CutterSide;
+use gcode_lang::source::Span;
+use gcode_lang::units::Seconds;
+
+impl Executor {
+    /// G31: a straight cut that ends where the skip signal comes. It is planned to its end; whether the signal comes
+    /// is asked when everything is known to be in order.
+    pub(super) fn skip(&self, given: &BlockWords, plan: &mut BlockPlan, span: Span) -> Checked<()> {
+        if plan.state.modal.cutter != CutterSide::Off || self.ahead.is_offset() {
+            return Err(Alarm::SkipInCompensation.at(span));
+        }
+        self.skip_signals(given, b'P')?;
+        if given.count(b'Q')?.is_some_and(|torque| !(1..=99).contains(&torque)) {
+            return Err(Alarm::SkipTorque.at(given.span(b'Q')));
+        }
+        if given.has_any(b"PQ") {
+            return Err(not_simulated(310, "multi-step and torque limit skip").at(span));
+        }
+        let goal = self.goal(given, &mut plan.state)?;
+        let (from, to) = (plan.state.machine, goal.machine);
+        let (rate, seconds) = at(self.feed_seconds(&plan.state, &from, &to, given.has(b'F')), span)?;
+        plan.probing = Some(SkipPlan { event: plan.events.len(), from, to, rate, seconds, span });
+        plan.events.push((EventKind::Skip { to, rate, touched: false }, seconds));
+        plan.state.machine = to;
+        plan.state.skip = to;
+        plan.state.programmed = goal.programmed;
+        plan.commands_axes = true;
+        Ok(())
+    }
+
+    /// G31 P and G04 Q name a set of skip signals.
+    pub(super) fn skip_signals(&self, given: &BlockWords, letter: u8) -> Checked<()> {
+        match given.count(letter)? {
+            Some(set) if !(1..=4).contains(&set) => {
+                Err(Alarm::SkipSignals { letter: char::from(letter) }.at(given.span(letter)))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Asks where the signal comes and ends the planned motion there. The alarm, if any, is raised after the motion.
+    pub(super) fn ask_for_signal<S: EventSink>(
+        &self,
+        plan: &mut BlockPlan,
+        sink: &mut S,
+    ) -> Option<LocatedAlarm> {
+        let probing = plan.probing.take()?;
+        let SkipPlan { from, to, rate, seconds, span, .. } = probing;
+        let signal = match self.settings.skip_signal {
+            Some(part) => SkipSignal::At { latched: part, stopped: part },
+            None => {
+                match sink.skip_signal(&SkipMove { from: &from, to: &to, rate, seconds: Seconds(seconds) }) {
+                    Some(signal) => {
+                        // The next touch may come elsewhere, so a loop round this block may end.
+                        self.clock_read.set(true);
+                        signal
+                    }
+                    None => {
+                        plan.notes.push(Note::NoSignal);
+                        SkipSignal::Missed
+                    }
+                }
+            }
+        };
+        let (noted, stopped, alarm) = match signal {
+            SkipSignal::At { latched: noted, stopped } => (noted, stopped, None),
+            SkipSignal::Missed => {
+                return self.settings.missed_skip_alarms.then(|| Alarm::SkipMissed.at(span));
+            }
+            SkipSignal::Broken { stopped, pushed, give } => {
+                (stopped, stopped, Some(Alarm::StylusBroken { pushed, give }.at(span)))
+            }
+        };
+        let after = |part: f64| {
+            let mut place = Position::default();
+            for axis in 0..MAX_AXES {
+                place[axis] = self.clean(from[axis] + part * (to[axis] - from[axis]));
+            }
+            place
+        };
+        let end = after(stopped);
+        plan.events[probing.event] = (EventKind::Skip { to: end, rate, touched: true }, stopped * seconds);
+        plan.state.skip = after(noted);
+        plan.state.machine = end;
+        if !self.settings.unsure.skip_keeps_end {
+            self.recompute(&mut plan.state);
+        }
+        alarm
+    }
+}

@@ -1,0 +1,350 @@
+//! The words of the block at hand, evaluated: what is vacant is not there, and numbers become something only where
+//! the block asks for them.
+use std::cell::Cell;
+
+use super::Executor;
+use super::code_calls::CallingWord;
+use super::eval::{Checked, RoundingTarget, at, integer};
+use super::vars::Value;
+use gcode_lang::alarm::Alarm;
+use gcode_lang::control::{CodeSet, Settings};
+use gcode_lang::program::codes::{self, Effect, GCodeRow};
+use gcode_lang::program::m_codes;
+use gcode_lang::program::modes::Motion;
+use gcode_lang::program::{LoweredWord, WordOperand, Words};
+use gcode_lang::source::Span;
+use gcode_lang::syntax::ast::Decimal;
+use gcode_lang::units::round;
+
+/// The value of a word before anything is made of it.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum WordNumber {
+    Literal(Decimal),
+    Computed(f64),
+}
+
+impl WordNumber {
+    /// The number that stands there, whatever it is at its address.
+    pub(super) fn value(self) -> f64 {
+        match self {
+            Self::Literal(number) => number.value(),
+            Self::Computed(value) => value,
+        }
+    }
+}
+
+/// Letters as bits, A the lowest.
+pub(super) const fn letters(some: &[u8]) -> u32 {
+    let (mut bits, mut place) = (0, 0);
+    while place < some.len() {
+        bits |= 1 << (some[place] - b'A');
+        place += 1;
+    }
+    bits
+}
+
+pub(super) const G_CODES: usize = 12;
+const M_CODES: usize = 3;
+
+/// The words of a block by letter. Kept between blocks and cleared by its mask, so that it costs nothing.
+#[derive(Clone, Debug)]
+pub(super) struct BlockWords {
+    present: u32,
+    /// The letters whose value somebody has asked for.
+    read: Cell<u32>,
+    values: [(WordNumber, Span); 26],
+    g: [Option<&'static GCodeRow>; G_CODES],
+    g_count: usize,
+    /// The last code of group 01.
+    pub(super) motion: Option<Motion>,
+    /// A G code stands in the block that is not of group 01.
+    has_other_g_codes: bool,
+    pub(super) m: [Option<(u32, Span)>; M_CODES],
+    pub(super) m_count: usize,
+    /// `,R` or `,C`.
+    pub(super) corner: Option<(u8, WordNumber, Span)>,
+    /// M codes that a later one of the block has replaced.
+    pub(super) lost_m: Vec<u32>,
+    /// The value in the comment of `G10 L85`.
+    pub(super) punched: Option<u64>,
+}
+
+impl Default for BlockWords {
+    fn default() -> Self {
+        Self {
+            present: 0,
+            read: Cell::new(0),
+            values: [(WordNumber::Computed(0.0), Span::default()); 26],
+            g: [None; G_CODES],
+            g_count: 0,
+            motion: None,
+            has_other_g_codes: false,
+            m: [None; M_CODES],
+            m_count: 0,
+            corner: None,
+            lost_m: Vec::new(),
+            punched: None,
+        }
+    }
+}
+
+impl BlockWords {
+    /// As before the first block.
+    fn clear(&mut self) {
+        self.present = 0;
+        self.read.set(0);
+        self.g_count = 0;
+        self.motion = None;
+        self.has_other_g_codes = false;
+        self.m_count = 0;
+        self.corner = None;
+        self.lost_m.clear();
+        self.punched = None;
+    }
+
+    /// `,R` or `,C`.
+    fn put_corner(&mut self, word: &LoweredWord, raw: WordNumber) -> Result<(), Alarm> {
+        if word.letter == b'A' {
+            return Err(Alarm::NotSimulated { what: "direct drawing dimensions (,A)".into() });
+        }
+        if !matches!(word.letter, b'R' | b'C') || self.corner.is_some() {
+            return Err(Alarm::CornerWords);
+        }
+        self.corner = Some((word.letter, raw, word.span));
+        Ok(())
+    }
+
+    fn put_g(&mut self, row: &'static GCodeRow) -> Result<(), Alarm> {
+        if self.g_count == G_CODES {
+            return Err(Alarm::MacroFormat { what: "too many G codes in one block".into() });
+        }
+        self.g[self.g_count] = Some(row);
+        self.g_count += 1;
+        match row.effect {
+            Effect::Motion(motion) => self.motion = Some(motion),
+            _ => self.has_other_g_codes = true,
+        }
+        Ok(())
+    }
+
+    /// Without M3B the last M code of a block counts; a stop or an end isn't lost in silence.
+    fn put_m(&mut self, code: u32, span: Span, settings: &Settings) -> Result<(), Alarm> {
+        let most = if settings.three_m_codes { M_CODES } else { 1 };
+        let place = self.m_count.min(most - 1);
+        if self.m_count == most
+            && let Some((first, _)) = self.m[place]
+        {
+            if m_codes::ends_or_stops(first) || settings.plural_m_alarms {
+                return Err(Alarm::PluralM { first, second: code });
+            }
+            self.lost_m.push(first);
+        }
+        self.m[place] = Some((code, span));
+        self.m_count = place + 1;
+        Ok(())
+    }
+
+    pub(super) fn has(&self, letter: u8) -> bool {
+        self.present >> (letter - b'A') & 1 == 1
+    }
+
+    /// Whether it has one of some [`letters`].
+    pub(super) fn has_of(&self, letters: u32) -> bool {
+        self.present & letters != 0
+    }
+
+    #[inline]
+    pub(super) fn has_any(&self, some: &[u8]) -> bool {
+        self.has_of(letters(some))
+    }
+
+    /// The first of some [`letters`], in the order of the alphabet, that it has.
+    pub(super) fn first_of(&self, letters: u32) -> Option<u8> {
+        let some = self.present & letters;
+        (some != 0).then(|| b'A' + some.trailing_zeros() as u8)
+    }
+
+    /// Whether a G code stands in it that is not of group 01.
+    pub(super) fn has_non_motion_words(&self) -> bool {
+        self.has_other_g_codes
+    }
+
+    /// The value of a word, which is asked for with this.
+    pub(super) fn get(&self, letter: u8) -> Option<(WordNumber, Span)> {
+        self.read.set(self.read.get() | 1 << (letter - b'A'));
+        self.has(letter).then(|| self.values[usize::from(letter - b'A')])
+    }
+
+    /// Words that the block may have and that change nothing here.
+    pub(super) fn accept(&self, letters: &[u8]) {
+        for letter in letters {
+            self.get(*letter);
+        }
+    }
+
+    /// The first word, by its letter, that nothing in the block had a use for.
+    pub(super) fn unread(&self) -> Option<(char, Span)> {
+        let letter = self.first_of(!self.read.get())?;
+        Some((char::from(letter), self.span(letter)))
+    }
+
+    /// Whether it has `,R` or `,C`.
+    pub(super) fn has_corner(&self) -> bool {
+        self.corner.is_some()
+    }
+
+    pub(super) fn span(&self, letter: u8) -> Span {
+        self.values[usize::from(letter - b'A')].1
+    }
+
+    pub(super) fn g_codes(&self) -> impl Iterator<Item = &'static GCodeRow> + '_ {
+        self.g[..self.g_count].iter().flatten().copied()
+    }
+
+    /// Whether the block has a G code of an effect; those of group 01 are not asked.
+    #[inline(always)]
+    pub(super) fn has_code_beyond_moves(&self, is_it: impl Fn(Effect) -> bool) -> bool {
+        self.has_other_g_codes && self.g_codes().any(|row| is_it(row.effect))
+    }
+
+    /// A count or a number: no point, no minus; a computed value is rounded.
+    pub(super) fn count(&self, letter: u8) -> Checked<Option<u32>> {
+        let Some((raw, span)) = self.get(letter) else { return Ok(None) };
+        at(count(raw, letter), span).map(Some)
+    }
+}
+
+/// A value where only a whole number may stand.
+pub(super) fn count(raw: WordNumber, letter: u8) -> Result<u32, Alarm> {
+    let letter = char::from(letter);
+    let number = match raw {
+        WordNumber::Literal(number) if number.places.is_some() => {
+            return Err(Alarm::IllegalPoint { letter: Some(letter) });
+        }
+        WordNumber::Literal(number) if number.negative && number.digits > 0 => {
+            return Err(Alarm::IllegalMinus { letter });
+        }
+        WordNumber::Literal(number) => i64::try_from(number.digits).map_err(|_| Alarm::TooManyDigits)?,
+        WordNumber::Computed(value) => integer(value)?,
+    };
+    if number < 0 {
+        return Err(Alarm::IllegalMinus { letter });
+    }
+    // Operator's manual, range of command values: eight digits, S five.
+    let most = if letter == 'S' { 99_999 } else { 99_999_999 };
+    if number > most { Err(Alarm::TooManyDigits) } else { Ok(number as u32) }
+}
+
+impl Executor {
+    /// Evaluates every word of a block into `given`, but for those that belong to a call.
+    pub(super) fn collect(
+        &self,
+        words: &Words,
+        calling: Option<&CallingWord>,
+        given: &mut BlockWords,
+    ) -> Checked<()> {
+        given.clear();
+        given.punched = words.punched();
+        match calling {
+            None => words.list.iter().try_for_each(|word| self.take(words, word, given)),
+            Some(calling) => {
+                let mut others =
+                    words.list.iter().enumerate().filter(|(place, word)| !calling.takes(*place, word));
+                others.try_for_each(|(_, word)| self.take(words, word, given))
+            }
+        }
+    }
+
+    /// Evaluates a word and puts it to those of its block.
+    #[inline(always)]
+    fn take(&self, words: &Words, word: &LoweredWord, given: &mut BlockWords) -> Checked<()> {
+        let raw = match &word.value {
+            WordOperand::Literal(number) => WordNumber::Literal(*number),
+            WordOperand::G(code, found) if !word.comma => {
+                let row = found.on(self.settings.codes);
+                let improper = || Alarm::ImproperGCode { code: codes::spelled(*code) }.at(word.span);
+                return at(given.put_g(row.ok_or_else(improper)?), word.span);
+            }
+            value => match self.computed(words, value)? {
+                Value::Number(value) => WordNumber::Computed(value),
+                Value::Vacant => return Ok(()),
+            },
+        };
+        if word.comma || word.axis.is_some() || matches!(word.letter, b'G' | b'M') {
+            return self.put(words, word, raw, given);
+        }
+        self.put_value(word.letter, word.span, raw, given)
+    }
+
+    /// Puts a word that is more than a value at an address to those of its block.
+    #[inline(never)]
+    fn put(&self, words: &Words, word: &LoweredWord, raw: WordNumber, given: &mut BlockWords) -> Checked<()> {
+        if word.comma {
+            return at(given.put_corner(word, raw), word.span);
+        }
+        let letter = match word.axis.and_then(|place| words.axis(place)) {
+            Some(axis) => {
+                let number = self.operand(axis)?.number();
+                self.settings.axes.letter(at(self.axis_of(number), word.span)?) as u8
+            }
+            None => word.letter,
+        };
+        match letter {
+            b'G' => {
+                let row = at(computed_row(raw, self.settings.codes), word.span)?;
+                at(given.put_g(row), word.span)
+            }
+            b'M' => {
+                let code = at(count(raw, b'M'), word.span)?;
+                at(given.put_m(code, word.span, &self.settings), word.span)
+            }
+            letter => self.put_value(letter, word.span, raw, given),
+        }
+    }
+
+    #[inline(always)]
+    fn put_value(&self, letter: u8, span: Span, raw: WordNumber, given: &mut BlockWords) -> Checked<()> {
+        if self.settings.no_repeated_address && given.has(letter) {
+            return Err(Alarm::RepeatedAddress { letter: char::from(letter) }.at(span));
+        }
+        given.present |= 1 << (letter - b'A');
+        given.values[usize::from(letter - b'A')] = (raw, span);
+        Ok(())
+    }
+
+    /// The value of a word, or `None` where it is vacant and the word therefore not there.
+    #[inline]
+    pub(super) fn raw(&self, words: &Words, word: &LoweredWord) -> Checked<Option<WordNumber>> {
+        match &word.value {
+            WordOperand::Literal(number) => Ok(Some(WordNumber::Literal(*number))),
+            value => Ok(self.computed(words, value)?.as_number().map(WordNumber::Computed)),
+        }
+    }
+
+    /// What a value behind an address is that is more than a literal.
+    #[inline(always)]
+    pub(super) fn computed(&self, words: &Words, value: &WordOperand) -> Checked<Value> {
+        match value {
+            WordOperand::Variable { slot, span } => self.load(*slot, span),
+            WordOperand::Code(place) => self.run_code(words.code(*place), RoundingTarget::Increment),
+            WordOperand::Number(number) => Ok(Value::Number(*number)),
+            WordOperand::G(code, _) => Ok(Value::Number(f64::from(*code) / 10.0)),
+            WordOperand::Literal(number) => Ok(Value::Number(number.value())),
+        }
+    }
+}
+
+/// The row of a G code that is computed.
+pub(super) fn computed_row(raw: WordNumber, set: CodeSet) -> Result<&'static GCodeRow, Alarm> {
+    let value = match raw {
+        WordNumber::Computed(value) => value,
+        WordNumber::Literal(number) => return Err(Alarm::ImproperGCode { code: number.value().to_string() }),
+    };
+    // A computed code keeps one decimal.
+    let tenths = round(value * 10.0);
+    if !(0.0..=9999.0).contains(&tenths) {
+        return Err(Alarm::ImproperGCode { code: value.to_string() });
+    }
+    let code = tenths as u32;
+    codes::find(code).on(set).ok_or_else(|| Alarm::ImproperGCode { code: codes::spelled(code) })
+}

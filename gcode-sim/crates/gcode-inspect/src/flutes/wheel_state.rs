@@ -1,0 +1,60 @@
+//! Whether the wheel turns, and which way round, while it grinds.
+use nalgebra::Point3;
+
+use super::GrindingPass;
+use gcode_lang::motion::{Backtrace, EventKind, SpindleDirection};
+use gcode_lang::units::Rpm;
+
+/// The first move of a pass of which something is so, and where it begins on the burr.
+#[derive(Clone, Debug)]
+pub struct FirstOccurrence {
+    pub place: Backtrace,
+    pub at: Point3<f64>,
+}
+
+/// Grinding while no M03 or M04 with a speed is in force.
+#[derive(Clone, Debug)]
+pub struct StoppedWheel {
+    pub begun: FirstOccurrence,
+    /// The last M code since M03, M04 or M05 that went to the machine builder's logic, which may have started the wheel.
+    pub builder: Option<u32>,
+}
+
+/// What the program has said of the wheel so far.
+#[derive(Debug, Default)]
+pub(super) struct WheelState {
+    wheel: SpindleDirection,
+    speed: Rpm,
+    builder: Option<u32>,
+}
+
+impl WheelState {
+    pub(super) fn apply_event(&mut self, kind: &EventKind) {
+        match kind {
+            // At S0 it stands.
+            EventKind::Spindle { speed, turning } => {
+                self.wheel = if *speed == Rpm(0.0) { SpindleDirection::Off } else { *turning };
+                self.speed = *speed;
+                self.builder = None;
+            }
+            EventKind::Auxiliary { code } => self.builder = Some(*code),
+            _ => {}
+        }
+    }
+
+    /// Notes on a pass how the wheel turns during one of its moves.
+    pub(super) fn note(&self, pass: &mut GrindingPass, begun: impl Fn() -> FirstOccurrence) {
+        if self.wheel != SpindleDirection::Off
+            && pass.speeds.last().is_none_or(|(last, _)| *last != self.speed)
+        {
+            pass.speeds.push((self.speed, begun()));
+        }
+        match self.wheel {
+            SpindleDirection::Off if pass.idle.is_none() => {
+                pass.idle = Some(StoppedWheel { begun: begun(), builder: self.builder });
+            }
+            SpindleDirection::Counterclockwise if pass.reversed.is_none() => pass.reversed = Some(begun()),
+            SpindleDirection::Off | SpindleDirection::Clockwise | SpindleDirection::Counterclockwise => {}
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! What a program asks of the machine that the machine file doesn't have: axes, tools, a head set by hand.
+use super::HoleExtractor;
+use crate::machine::HeadMessage;
+use gcode_lang::diag::Diagnostic;
+use gcode_lang::motion::{Event, Position};
+use gcode_lang::units::Deg;
+
+impl HoleExtractor<'_> {
+    /// An axis that the control has and the machine doesn't use was told to move.
+    pub(super) fn idle_axes(&mut self, event: &Event<'_>, from: &Position, to: &Position) {
+        for (axis, letter) in self.machine.axes.iter() {
+            if from[axis] != to[axis] && !self.machine.carries(axis) {
+                self.findings.add("axis-carries-nothing", &event.place(), axis as u32, || {
+                    Diagnostic::warning(
+                        "axis-carries-nothing",
+                        format!("{letter} moves to {}, but nothing is on that axis of the machine", to[axis]),
+                    )
+                    .help(format!(
+                        "say in the machine file what {letter} carries, or leave it out of the program"
+                    ))
+                });
+            }
+        }
+    }
+
+    /// A tool that the machine file has no row for.
+    pub(super) fn check_tool_known(&mut self, event: &Event<'_>, number: u32) {
+        if number != 0 && !self.machine.tools.is_empty() && self.machine.find_tool(number).is_none() {
+            self.findings.add("tool-unknown", &event.place(), number, || {
+                let known: Vec<_> = self.machine.tools.iter().map(|tool| format!("T{}", tool.number)).collect();
+                Diagnostic::warning(
+                    "tool-unknown",
+                    format!(
+                        "T{number} is put in, which the machine file doesn't describe (it has {}): the diameter of what it \
+                         makes isn't checked, its length is taken from the length offset",
+                        known.join(", ")
+                    ),
+                )
+                .help(format!("is it the right tool? If so, give it a [[tool]] with number = {number} and its diameter"))
+            });
+        }
+    }
+
+    /// The operator does what `#3006=1(SET HEAD TO #140)` says: the angle, where the message gives one.
+    pub(super) fn head_message(
+        &mut self,
+        event: &Event<'_>,
+        text: &str,
+        named: &[(u32, f64)],
+    ) -> Option<Deg> {
+        let asked = HeadMessage::of(text, named);
+        if asked == HeadMessage::Other {
+            return None;
+        }
+        if !self.machine.head.is_set_by_hand() {
+            self.findings.add("head-not-manual", &event.place(), 0, || {
+                Diagnostic::warning(
+                    "head-not-manual",
+                    format!(
+                        "the message ({text}) asks for a head set by hand, but the machine's head isn't one"
+                    ),
+                )
+                .help("give kind = \"manual\" under [head] in the machine file, or leave the message out")
+            });
+            return None;
+        }
+        match asked {
+            HeadMessage::Angle(angle) => Some(angle),
+            HeadMessage::Other | HeadMessage::Unclear => {
+                self.findings.add("head-message-unclear", &event.place(), 0, || unclear_head(text));
+                None
+            }
+        }
+    }
+}
+
+/// A message about the head from which no angle can be read.
+pub fn unclear_head(text: &str) -> Diagnostic {
+    let message =
+        format!("the message ({text}) doesn't name one variable with a value: the head stays as it is");
+    Diagnostic::warning("head-message-unclear", message)
+        .help("name the variable that holds the angle, as in #3006=1(SET HEAD TO #140)")
+}

@@ -1,0 +1,62 @@
+//! What a measure of a honeycomb that is wrong by a factor was computed from: numbers that programs take for others.
+use std::f64::consts::PI;
+
+use gcode_part::job::Metric;
+use gcode_part::part::honeycomb::Pattern;
+
+/// Factors closer than this are the same: angles and lengths are rounded to the control's increment.
+const ALIKE: f64 = 5e-5;
+
+/// One number taken for another: the factor it makes, and its words.
+struct Cause {
+    factor: f64,
+    words: String,
+}
+
+/// The fewest causes that together make `factor` of a length round the circumference, in words; `None` where nothing
+/// known does. `asked`: whether the pitch that was asked for may be among them, as it may of an angle; of a pitch itself
+/// the metric may.
+pub(super) fn causes(pattern: &Pattern, factor: f64, asked: bool) -> Option<String> {
+    let all = known(pattern, asked);
+    let mut best: Option<Vec<&Cause>> = None;
+    for set in 1..1u32 << all.len() {
+        let chosen: Vec<_> =
+            all.iter().enumerate().filter(|(i, _)| set >> i & 1 == 1).map(|(_, c)| c).collect();
+        let product: f64 = chosen.iter().map(|cause| cause.factor).product();
+        let fewer = best.as_ref().is_none_or(|best| chosen.len() < best.len());
+        if fewer && (product / factor - 1.0).abs() < ALIKE {
+            best = Some(chosen);
+        }
+    }
+    let words: Vec<_> = best?.into_iter().map(|cause| cause.words.as_str()).collect();
+    Some(format!("just that comes of {}", words.join(" and of ")))
+}
+
+fn known(pattern: &Pattern, asked: bool) -> Vec<Cause> {
+    let Pattern { diameter, outer, bore, .. } = *pattern;
+    let mut all =
+        vec![Cause { factor: 314.0 / (100.0 * PI), words: "3.14 for π (0.0507 % too small)".to_owned() }];
+    for (other, name) in [(bore, "bore"), (outer, "outer diameter")] {
+        if 0.0 < other && other != diameter {
+            let words = format!("the {name}, {other}, for the pitch's diameter, {diameter}");
+            all.push(Cause { factor: other / diameter, words });
+        }
+    }
+    if !asked {
+        let (other, words) = match pattern.metric {
+            Metric::Arc => {
+                (Metric::Chord, "the straight distance (chord) for the one on the developed surface (arc)")
+            }
+            Metric::Chord => {
+                (Metric::Arc, "the distance on the developed surface (arc) for the straight one (chord)")
+            }
+        };
+        all.push(Cause { factor: pattern.pitch_in(other) / pattern.pitch, words: words.to_owned() });
+    }
+    if let Some(pitch) = pattern.asked.filter(|_| asked) {
+        let words = format!("the pitch asked for, {pitch}, for the one that closes, {:.4}", pattern.pitch);
+        all.push(Cause { factor: pattern.pitch / pitch, words });
+    }
+    all.retain(|cause| ALIKE < (cause.factor - 1.0).abs());
+    all
+}

@@ -1,0 +1,174 @@
+//! While a tool cuts it turns and is fed as the reference says of it, and the right length offset is in force.
+use std::collections::BTreeMap;
+
+use crate::holes::CutConditions;
+use crate::machine::Machine;
+use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_lang::motion::{LengthCompensation, SpindleDirection};
+use gcode_part::part::process::ProcessLimits;
+
+/// S and F may be off by this part of what is said: of F what an inch rounds to. More is told, …
+const ROUNDED: f64 = 0.005;
+
+/// … and beyond this part it is no other choice but a slip: an error. Tables of cutting data leave so much open.
+const OPEN: f64 = 0.25;
+
+pub(in crate::verify) fn findings(
+    cuttings: &[CutConditions],
+    conduct: &ProcessLimits,
+    machine: &Machine,
+) -> Vec<Diagnostic> {
+    let checks = [reversed, speed, feed, peck, length, tool];
+    let found = checks.iter().flat_map(|check| cuttings.iter().map(move |cutting| (check, cutting)));
+    let mut told: Vec<(Diagnostic, u64)> = Vec::new();
+    let mut known: BTreeMap<String, usize> = BTreeMap::new();
+    for (check, cutting) in found {
+        let Some(finding) = check(cutting, conduct, machine) else { continue };
+        match known.get(&finding.message) {
+            Some(index) => told[*index].1 += cutting.times,
+            None => {
+                known.insert(finding.message.clone(), told.len());
+                told.push((finding.at(cutting.place.clone()), cutting.times));
+            }
+        }
+    }
+    let counted = |(finding, times): (Diagnostic, u64)| match times {
+        1 => finding,
+        more => finding.note(format!("in {more} cuts; the first of them is here")),
+    };
+    told.into_iter().map(counted).collect()
+}
+
+fn reversed(cutting: &CutConditions, _: &ProcessLimits, _: &Machine) -> Option<Diagnostic> {
+    (cutting.spindle_direction == SpindleDirection::Counterclockwise).then(|| {
+        Diagnostic::warning("spindle-reversed", format!("{} cuts with M04", name(cutting)))
+            .note("a drill that is no left-hand one rubs and breaks; which it is no reference says")
+            .help("M03, if the tool isn't a left-hand one")
+    })
+}
+
+fn speed(cutting: &CutConditions, conduct: &ProcessLimits, _: &Machine) -> Option<Diagnostic> {
+    let wanted = conduct.tool_process(cutting.tool)?.speed?;
+    let found = cutting.speed.0;
+    // One that stands is told already.
+    let severity = severity(found, wanted).filter(|_| cutting.spindle_direction != SpindleDirection::Off)?;
+    let message = format!("{} cuts at S{found} where S{wanted} is asked for", name(cutting));
+    Some(Diagnostic::new(severity, "drill-speed", message).help("correct S, or the tool's speed in the job"))
+}
+
+fn feed(cutting: &CutConditions, conduct: &ProcessLimits, _: &Machine) -> Option<Diagnostic> {
+    let wanted = conduct.tool_process(cutting.tool)?.feed?;
+    let off = |found: &f64| (found / wanted).max(wanted / found);
+    let found = cutting.feeds.map(|feed| feed.0).into_iter().max_by(|a, b| off(a).total_cmp(&off(b)))?;
+    let severity = severity(found, wanted)?;
+    let message = format!(
+        "{} is fed at {} mm/min where {wanted} is asked for",
+        name(cutting),
+        (found * 1e3).round() / 1e3
+    );
+    Some(
+        Diagnostic::new(severity, "drill-feed", message)
+            .help("correct F, or the tool's feed in the job; is G94 in force, and G21?"),
+    )
+}
+
+fn peck(cutting: &CutConditions, conduct: &ProcessLimits, _: &Machine) -> Option<Diagnostic> {
+    let wanted = conduct.tool_process(cutting.tool)?.peck?;
+    let shown = |mm: f64| (mm * 1e3).round() / 1e3;
+    if let Some(severity) = severity(cutting.cut, wanted).filter(|_| wanted < cutting.cut) {
+        let message = format!(
+            "{} cuts {} mm in one go where pecks of {wanted} mm are asked for",
+            name(cutting),
+            shown(cutting.cut)
+        );
+        let finding = Diagnostic::new(severity, "drill-peck", message);
+        return Some(finding.help("G83 with the job's peck for Q, or correct drill.peck in the job"));
+    }
+    let peck = cutting.peck.filter(|peck| *peck < wanted && severity(*peck, wanted).is_some())?;
+    let message =
+        format!("{} goes in by pecks of {} mm where {wanted} mm are asked for", name(cutting), shown(peck));
+    Some(
+        Diagnostic::warning("drill-peck", message)
+            .note("it costs time, and chips are ground twice")
+            .help("correct Q, or drill.peck in the job; does the number have its point?"),
+    )
+}
+
+/// Another tool than the job's, or none.
+fn tool(cutting: &CutConditions, conduct: &ProcessLimits, _: &Machine) -> Option<Diagnostic> {
+    let said: Vec<_> = conduct.tools.iter().filter(|duty| duty.offset.is_some()).collect();
+    let [first, ..] = said.as_slice() else { return None };
+    if said.iter().any(|duty| Some(duty.number) == cutting.tool) {
+        return None;
+    }
+    let names: Vec<_> = said.iter().map(|duty| format!("T{}", duty.number)).collect();
+    let names = names.join(", ");
+    Some(match cutting.tool {
+        None => Diagnostic::warning(
+            "job-tool",
+            format!("the part is cut before any tool is put in: the job has {names}"),
+        )
+        .note("what is in the spindle when the program begins isn't known")
+        .help(format!("T{} M06 before the first hole", first.number)),
+        Some(number) => Diagnostic::warning("job-tool", format!("T{number} cuts, and the job has {names}"))
+            .note("nothing is known of what it is to be run at")
+            .help("put in the job's tool, or correct the number in the job"),
+    })
+}
+
+/// How bad it is that S or F is another one than is said; `None` where it will do.
+pub(in crate::verify) fn severity(found: f64, wanted: f64) -> Option<Severity> {
+    match (found - wanted).abs() / wanted {
+        off if off <= ROUNDED => None,
+        off if off <= OPEN => Some(Severity::Warning),
+        _ => Some(Severity::Error),
+    }
+}
+
+/// Where the machine file has the tool's length, the holes tell whether the offset is right; else only its number does.
+fn length(cutting: &CutConditions, conduct: &ProcessLimits, machine: &Machine) -> Option<Diagnostic> {
+    if machine.length_of(cutting.tool).is_some() {
+        return None;
+    }
+    let asked = conduct.tool_process(cutting.tool).and_then(|duty| duty.offset);
+    let tool = name(cutting);
+    let note =
+        "the machine file has no length of it, so that the holes come out alike here whatever is in force";
+    let finding = |severity, message| Diagnostic::new(severity, "length-offset", message).note(note);
+    match (cutting.compensation, asked) {
+        (LengthCompensation::Minus(h), asked) => {
+            let severity = if asked.is_some() { Severity::Error } else { Severity::Warning };
+            let message = format!("{tool} cuts with G44 H{h}: its length is taken away instead of added");
+            Some(finding(severity, message).help("G43, if offsets are measured as lengths"))
+        }
+        (LengthCompensation::Off | LengthCompensation::Plus(0), Some(asked)) => {
+            let message = format!("{tool} cuts without its length offset, and the job has H{asked} for it");
+            Some(finding(Severity::Warning, message).help(format!(
+                "G43 H{asked} before the first hole, if the work zero isn't that of this tool's tip"
+            )))
+        }
+        (LengthCompensation::Plus(h), Some(asked)) if h != asked => {
+            let message = format!(
+                "{tool} cuts with H{h} where the job has H{asked} for it: the length of another tool"
+            );
+            Some(
+                finding(Severity::Error, message)
+                    .help(format!("G43 H{asked}, or correct the tool's number in the job")),
+            )
+        }
+        (LengthCompensation::Plus(h), None) => {
+            let number = cutting.tool.filter(|number| *number != h)?;
+            machine.find_tool(h)?;
+            let message = format!("{tool} cuts with H{h}, which has the number of another tool");
+            Some(
+                finding(Severity::Warning, message)
+                    .help(format!("H{number}, if offsets have the numbers of their tools")),
+            )
+        }
+        (LengthCompensation::Off | LengthCompensation::Plus(_), _) => None,
+    }
+}
+
+fn name(cutting: &CutConditions) -> String {
+    cutting.tool.map_or("the tool".to_owned(), |number| format!("T{number}"))
+}

@@ -1,0 +1,22 @@
+//! The tool that finishes a hole must have the hole's diameter, where both are known.
+use super::{Comparison, HoleFinding};
+use gcode_lang::diag::Diagnostic;
+
+pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
+    for pair in &comparison.pairs {
+        let found = &comparison.actual[pair.found];
+        let (Some(wanted), Some(actual)) = (comparison.nominal[pair.wanted].diameter, found.diameter) else {
+            continue;
+        };
+        if (actual - wanted).abs() <= comparison.tolerances.diameter {
+            continue;
+        }
+        let tool = found.tool.map_or(String::new(), |tool| format!(" by T{tool}"));
+        let message =
+            format!("hole {} is finished{tool} with Φ{actual}, Φ{wanted} wanted", comparison.id(pair.wanted));
+        let finding = Diagnostic::error("hole-diameter", message)
+            .help("finish the hole with the right tool, or correct the tool table")
+            .at(found.place.clone());
+        objections.push(HoleFinding::of(pair.wanted, finding));
+    }
+}

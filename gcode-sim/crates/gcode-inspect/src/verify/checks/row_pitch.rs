@@ -1,0 +1,44 @@
+//! In a row the holes stand at the pitch with which the pattern closes: another one is told with what it adds up to.
+use super::{Comparison, HoleFinding};
+use crate::verify::causes::causes;
+use crate::verify::hole_finding::at_the_call;
+use crate::verify::rows::PatternRows;
+use gcode_lang::diag::Diagnostic;
+
+/// Pitches nearer than this, in mm, are the same: holes are rounded to the increment.
+const FOLLOWS: f64 = 0.002;
+
+pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
+    let Some(pattern) = comparison.pattern else { return };
+    let Some(rows) = PatternRows::of(comparison, pattern) else { return };
+    let Some((spacing, row)) = rows.spacing else { return };
+    // The pitch that follows from another number of rows is told with their angle.
+    let follows = (spacing - pattern.pitch_of(rows.rows.len() as u32)).abs() < FOLLOWS;
+    if follows && objections.iter().any(|objection| objection.finding.code == "row-angle") {
+        return;
+    }
+    let pitches = (pattern.length / pattern.pitch).floor();
+    let sum = (spacing - pattern.pitch).abs() * pitches;
+    if sum <= comparison.tolerances.position / 2.0 {
+        return;
+    }
+    let message = format!(
+        "the holes of a row stand {spacing:.4} mm apart, {:.4} wanted: over {pitches:.0} pitches that is {sum:.2} mm",
+        pattern.pitch
+    );
+    let mut finding =
+        at_the_call(Diagnostic::error("row-pitch", message), &comparison.actual[row.first].place);
+    if let Some(asked) = pattern.asked
+        && (spacing - asked).abs() < (spacing - pattern.pitch).abs()
+    {
+        finding = finding.note(format!(
+            "{asked} mm are what was asked for; round the circumference the pattern closes with {:.4}",
+            pattern.pitch
+        ));
+    }
+    if let Some(causes) = causes(pattern, spacing / pattern.pitch, false) {
+        finding = finding.note(causes);
+    }
+    let finding = finding.help("compute the pitch from the number of rows that close, after the angle");
+    objections.push(HoleFinding::whole(finding));
+}

@@ -1,0 +1,16 @@
+//! No flute's path runs into its neighbour.
+use super::super::Inspection;
+use gcode_lang::diag::{Diagnostic, Site};
+
+pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
+    let least = 2.0 * inspection.wanted.chord_error;
+    let Some(near) = inspection.round.nearest.filter(|near| near.apart < least) else { return };
+    findings.push(
+        Diagnostic::error(
+            "flutes-meet",
+            format!("neighbouring flutes come as near as {:.4} mm: {least} mm, twice the chord error, is the least", near.apart),
+        )
+        .help("fewer flutes, or a larger tip angle")
+        .on([Site::new(Some(near.pass), near.at)]),
+    );
+}

@@ -1,0 +1,71 @@
+//! The contact stays on the tooth bottom, between the programmed points too.
+use super::super::Inspection;
+use super::super::cause::Cause;
+use crate::flutes::{ARITHMETIC, GrindingPass, Sample};
+use gcode_lang::diag::{Diagnostic, Site};
+
+pub(super) fn check<'g>(inspection: &Inspection<'g>, findings: &mut Vec<Diagnostic>) {
+    let allowed = inspection.wanted.surface_tolerance;
+    // Of every pass its worst place.
+    let of_pass = |(index, pass): (usize, &'g GrindingPass)| {
+        let worst = pass.trace.samples.iter().max_by(|a, b| a.off.abs().total_cmp(&b.off.abs()))?;
+        (allowed + ARITHMETIC < worst.off.abs()).then_some((index, worst))
+    };
+    let mut all: Vec<(usize, &Sample)> =
+        inspection.ground.passes.iter().enumerate().filter_map(of_pass).collect();
+    all.sort_by(|a, b| b.1.off.abs().total_cmp(&a.1.off.abs()));
+    let Some((pass, worst)) = all.first().copied() else { return };
+    let finding = told(inspection, pass, worst);
+    let pass = &inspection.ground.passes[pass];
+    let sites = all.iter().map(|(pass, sample)| Site::new(Some(*pass), sample.at));
+    findings.push(finding.at(pass.trace.place(worst).clone()).on(sites));
+}
+
+fn told(inspection: &Inspection<'_>, pass: usize, worst: &Sample) -> Diagnostic {
+    let wanted = inspection.wanted;
+    let (allowed, radius) = (wanted.surface_tolerance, wanted.profile.radius());
+    let error = |message: String| Diagnostic::error("flute-surface", message);
+    let (side, off) = if worst.off < 0.0 { ("below", -worst.off) } else { ("above", worst.off) };
+    if let Some(depth) = inspection.depth {
+        let flutes = inspection.all_flutes();
+        return error(format!(
+            "{flutes} ground to a diameter of {:.3} mm where {:.3} mm is asked for: the contact is {:.4} mm {side} the tooth \
+             bottom all along, {allowed} mm is allowed",
+            2.0 * (radius + depth),
+            2.0 * radius,
+            depth.abs()
+        ))
+        .help("check Y where the wheel is fed into the blank, the work offset in Y, and wheel.contact in the machine file");
+    }
+    let finding = error(format!(
+        "the contact is {off:.4} mm {side} the tooth bottom at polar angle {:.1}°: {allowed} mm is allowed",
+        worst.polar.0
+    ));
+    match Cause::of(wanted, &inspection.ground.passes[pass], off) {
+        Cause::Between => finding
+            .note("at the programmed points it is within half of that: it strays between them")
+            .help("the moves are too long, or the increment is too coarse for this chord error"),
+        Cause::Depth(depth) => finding
+            .note(format!(
+                "it is {:.4} mm {side} the tooth bottom all along {}, at the programmed points too",
+                depth.abs(),
+                inspection.name(pass)
+            ))
+            .help("check Y where the wheel is fed into the blank"),
+        Cause::Offset([x, y]) => {
+            let [from_x, from_y] = inspection.ground.offset.unwrap_or(wanted.c_offset);
+            finding
+                .note(format!(
+                    "it is off at the programmed points too, as if the end of the cylinder were X{:.3} Y{:.3} from the C axis, \
+                     where it is X{from_x} Y{from_y}: X{x:+.3} Y{y:+.3}",
+                    from_x + x,
+                    from_y + y
+                ))
+                .help("check the numbers from which the program computes X and Y while C turns (I and J of the call), and c_offset")
+        }
+        Cause::Other => finding.help(
+            "X and Y don't keep the arc's centre in place while C turns: check the sign of each axis, the formula for Y, \
+             and c_offset against the machine file's part.origin",
+        ),
+    }
+}

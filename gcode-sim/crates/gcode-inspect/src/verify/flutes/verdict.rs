@@ -1,0 +1,274 @@
+//! The answer on flutes: the numbers of the worst place, both laws side by side, and the findings.
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::Inspection;
+use super::speed::ALLOWED;
+use crate::flutes::{GrindingResult, Window};
+use crate::verify::verdict::{Answer, Finding, finding_of, readable};
+use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_lang::source::Span;
+use gcode_lang::units::Deg;
+use gcode_part::job::FluteLaw;
+use gcode_part::part::flutes::Flutes;
+
+/// As `verify --format json` writes it. Lengths in mm, angles in degrees; nothing is rounded.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct FluteVerdict {
+    /// Says what kind of numbers these are.
+    pub basis: &'static str,
+    pub verdict: Answer,
+    pub law: &'static str,
+    /// That are ground; passes over one that is there already don't count.
+    pub flutes: usize,
+    pub wanted_flutes: usize,
+    /// The largest distance of the contact from the tooth bottom, between the points too; null without a flute.
+    pub surface_deviation: Option<f64>,
+    /// What that may be: the job's chord error, or what was asked for.
+    pub tolerance: f64,
+    pub helix_min: Option<f64>,
+    pub helix_max: Option<f64>,
+    /// Of the law asked for, on the cylinder.
+    pub helix: f64,
+    /// The largest difference from the law asked for.
+    pub helix_error: Option<f64>,
+    pub helix_tolerance: f64,
+    /// The length over which a helix angle is measured.
+    pub gauge: f64,
+    /// The largest difference of a gap between neighbours from an even one.
+    pub index_error: Option<f64>,
+    pub index_tolerance: f64,
+    /// Of the contact along the flutes, mm/min, over a gauge length.
+    pub speed_min: Option<f64>,
+    pub speed_max: Option<f64>,
+    /// What the job asks for, where it does.
+    pub speed: Option<f64>,
+    /// How far it may be off, either way, as a part of it.
+    pub speed_tolerance: f64,
+    /// The least distance between the paths of neighbours, in a straight line.
+    pub nearest: Option<f64>,
+    pub passes: usize,
+    /// Grinding moves of all passes.
+    pub moves: usize,
+    /// A burr has none.
+    pub holes: [(); 0],
+    pub laws: Vec<Law>,
+    pub findings: Vec<Finding>,
+    /// What the verdict says nothing about, in words.
+    pub not_checked: Vec<String>,
+    /// For plots: the helix angle along the flute that is farthest from the law, and which pass that is, counted from 1.
+    #[serde(skip)]
+    pub along: Vec<Angles>,
+    #[serde(skip)]
+    pub along_pass: usize,
+    /// What neighbours' least distance may be: twice the chord error.
+    #[serde(skip)]
+    pub nearest_allowed: f64,
+    /// The findings with their places, for people.
+    #[serde(skip)]
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// The helix angle at one polar angle: measured, and by both laws.
+#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
+pub struct Law {
+    pub theta: f64,
+    /// On the flute that is farthest from the law; null where it isn't measured.
+    pub measured: Option<f64>,
+    pub constant_helix: f64,
+    pub published: f64,
+}
+
+/// What `reference` writes of a burr: what is wanted, without a program.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct WantedFlutes {
+    pub unit: &'static str,
+    /// A burr has none.
+    pub holes: [(); 0],
+    pub flutes: u32,
+    pub law: &'static str,
+    /// Where they begin behind the end of the cylinder, and where the pole is, along the axis.
+    pub start: f64,
+    pub pole: f64,
+    pub tip_angle: f64,
+    pub laws: Vec<Law>,
+}
+
+impl FluteVerdict {
+    /// How many flutes there are, and what else is wrong, in one line.
+    pub fn sentence(&self) -> String {
+        let mut text = match self.flutes <= self.wanted_flutes {
+            true => format!("{} of {} wanted flutes are there", self.flutes, self.wanted_flutes),
+            false => format!("{} flutes are there where {} are wanted", self.flutes, self.wanted_flutes),
+        };
+        let mut said: Vec<&str> = Vec::new();
+        for finding in self.findings.iter().filter(|f| f.severity == "error" || f.severity == "alarm") {
+            let what = in_words(&finding.code).unwrap_or(&finding.code);
+            // The numbers say what is missing and what is too many.
+            let is_counted = matches!(finding.code.as_str(), "flute-missing" | "flute-extra");
+            if !is_counted && !said.contains(&what) {
+                said.push(what);
+                text.push_str(", ");
+                text.push_str(what);
+            }
+        }
+        text
+    }
+}
+
+/// The code of a finding on flutes in few words; `None` of others.
+pub fn in_words(code: &str) -> Option<&'static str> {
+    Some(match code {
+        "flute-missing" => "a flute is missing",
+        "flute-extra" => "a flute too many",
+        "flute-twice" => "a flute is ground twice",
+        "flute-surface" => "contact off the tooth bottom",
+        "flute-helix" => "helix angle out",
+        "flute-index" => "spacing uneven",
+        "flute-end" => "an end out of place",
+        "flute-head" => "the wheel's angle out",
+        "flute-speed" => "speed out",
+        "wheel-speed" => "the wheel's S out",
+        "wheel-feed" => "the feed into the blank out",
+        "burr-offset" => "the burr's place isn't the job's",
+        "spindle-stopped" => "the wheel stands",
+        "flutes-meet" => "neighbours meet",
+        "wheel-into-burr" => "the wheel runs into the burr",
+        _ => return None,
+    })
+}
+
+impl WantedFlutes {
+    pub fn of(wanted: &Flutes) -> Self {
+        Self {
+            unit: "mm",
+            holes: [],
+            flutes: wanted.count,
+            law: wanted.law.name(),
+            start: wanted.start,
+            pole: wanted.profile.pole(),
+            tip_angle: wanted.tip_angle.0,
+            laws: laws(wanted, &[]),
+        }
+    }
+}
+
+/// A measured helix angle.
+#[derive(Clone, Copy, Debug)]
+pub struct Angles {
+    pub polar: Deg,
+    pub helix: Deg,
+}
+
+/// The polar angles of the table; the tip angle comes last.
+const POLAR: [f64; 9] = [90.0, 75.0, 60.0, 45.0, 30.0, 20.0, 15.0, 10.0, 5.0];
+
+pub(super) fn verdict(
+    inspection: &Inspection<'_>,
+    measured: bool,
+    findings: Vec<Diagnostic>,
+    locate: &dyn Fn(Span) -> (String, u32),
+) -> FluteVerdict {
+    let (wanted, ground, helix) = (inspection.wanted, inspection.ground, &inspection.helix);
+    let samples = ground.passes.iter().flat_map(|pass| &pass.trace.samples);
+    let fails = findings.iter().any(|finding| Severity::Error <= finding.severity);
+    let gauge = wanted.gauge;
+    let worst_pass = helix.worst.map_or(0, |worst| worst.pass);
+    let along: Vec<Angles> = ground.passes.get(worst_pass).map_or(Vec::new(), |pass| {
+        let angles = |window: Window<'_>| Angles { polar: window.middle.polar, helix: window.helix };
+        pass.trace.windows(gauge).map(angles).collect()
+    });
+    FluteVerdict {
+        basis: "predicted by simulation, not measured",
+        verdict: if fails { Answer::Fail } else { Answer::Pass },
+        law: wanted.law.name(),
+        flutes: inspection.round.flutes.len(),
+        wanted_flutes: wanted.count as usize,
+        surface_deviation: samples.map(|s| s.off.abs()).reduce(f64::max),
+        tolerance: wanted.surface_tolerance,
+        helix_min: measured.then_some(helix.least.0),
+        helix_max: measured.then_some(helix.most.0),
+        helix: wanted.helix.0,
+        helix_error: helix.worst.map(|worst| worst.off().0),
+        helix_tolerance: wanted.helix_tolerance.0,
+        gauge,
+        index_error: inspection.round.worst_gap.map(|gap| gap.off.0),
+        index_tolerance: wanted.index_tolerance.0,
+        speed_min: inspection.speed.as_ref().map(|range| range.least),
+        speed_max: inspection.speed.as_ref().map(|range| range.most),
+        speed: wanted.speed,
+        speed_tolerance: ALLOWED,
+        nearest: inspection.round.nearest.map(|near| near.apart),
+        passes: ground.passes.len(),
+        moves: ground.passes.iter().map(|pass| pass.moves).sum(),
+        holes: [],
+        laws: laws(wanted, &along),
+        findings: findings.iter().map(|finding| finding_of(finding, None, false, locate)).collect(),
+        not_checked: not_checked(wanted, ground, locate),
+        along,
+        along_pass: worst_pass + 1,
+        nearest_allowed: 2.0 * wanted.chord_error,
+        diagnostics: readable(findings.into_iter()),
+    }
+}
+
+/// What the verdict says nothing about.
+fn not_checked(
+    wanted: &Flutes,
+    ground: &GrindingResult,
+    locate: &dyn Fn(Span) -> (String, u32),
+) -> Vec<String> {
+    let mut all = vec![
+        "the wheel's width, form and body: it is one point, so whether it gouges a neighbouring tooth beside its contact \
+         isn't known"
+            .to_owned(),
+        "which side of the wheel's swivel B is right: only its angle is held against the helix angle".to_owned(),
+        "which way round the wheel has to turn: the job doesn't say".to_owned(),
+    ];
+    if wanted.speed.is_none() {
+        all.push("the speed along the flutes: the job has no program.speed".to_owned());
+    }
+    if wanted.wheel.is_none() {
+        all.push("how fast the wheel turns: the job has no program.wheel".to_owned());
+    }
+    if wanted.plunge.is_none() {
+        all.push("how fast the wheel is fed into the blank: the job has no program.plunge".to_owned());
+    }
+    if wanted.clearance.is_none() {
+        all.push(
+            "how far off the blank rapid motion ends, but for that it doesn't touch: the job has no machine.clearance".to_owned(),
+        );
+    }
+    if ground.offset.is_none() {
+        all.push("the job's c_offset: the machine file has no axis C that turns about z".to_owned());
+    }
+    let unseen = ground.unchecked_rapids;
+    if 0 < unseen {
+        let moves = if unseen == 1 { "1 move" } else { &format!("{unseen} moves") };
+        all.push(format!(
+            "rapid motion up to where the wheel first stands off the blank ({moves}): where the axes stand at the start isn't \
+             known"
+        ));
+    }
+    all.extend(ground.unplaced.as_ref().map(|unplaced| unplaced.in_words(locate(unplaced.place.block))));
+    all
+}
+
+fn laws(wanted: &Flutes, along: &[Angles]) -> Vec<Law> {
+    let tip = wanted.tip_angle.0;
+    let all = POLAR.into_iter().filter(|polar| tip < *polar).chain([tip]);
+    let at = |theta: f64| {
+        let near = |one: &&Angles, other: &&Angles| {
+            (one.polar.0 - theta).abs().total_cmp(&(other.polar.0 - theta).abs())
+        };
+        // At its end a flute is measured half a gauge before it.
+        let nearest = along.iter().min_by(near).filter(|angles| (angles.polar.0 - theta).abs() < 2.5);
+        Law {
+            theta,
+            measured: nearest.map(|angles| angles.helix.0),
+            constant_helix: wanted.angle(FluteLaw::ConstantHelix, Deg(theta)).0,
+            published: wanted.angle(FluteLaw::Published, Deg(theta)).0,
+        }
+    };
+    all.map(at).collect()
+}

@@ -1,0 +1,106 @@
+//! What a verdict on holes says nothing about, in words.
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::{Comparison, HolePair};
+use crate::holes::HoleExtraction;
+use crate::machine::{HeadKind, Machine};
+use gcode_lang::motion::LengthCompensation;
+use gcode_lang::source::Span;
+use gcode_lang::units::Deg;
+use gcode_part::part::process::ToolProcess;
+use gcode_part::part::reference::Reference;
+
+/// What a pass says nothing about, in words: nobody should take it for checked.
+pub(super) fn lines(
+    comparison: &Comparison<'_>,
+    extracted: &HoleExtraction,
+    reference: &Reference,
+    machine: &Machine,
+    locate: &dyn Fn(Span) -> (String, u32),
+) -> Vec<String> {
+    let mut all = Vec::new();
+    all.extend(diameters(comparison, machine));
+    all.extend(lengths(extracted, machine));
+    all.extend(conduct(extracted, reference, machine));
+    let along_feed =
+        comparison.pairs.iter().all(|pair| comparison.actual[pair.found].tool_axis_deviation == Deg::ZERO);
+    if machine.head.kind == HeadKind::Free && along_feed {
+        all.push("head angles: the head is not known, each axis is taken along its feed".to_owned());
+    }
+    let unplaced = extracted.unplaced.as_ref().filter(|_| reference.surface.is_some());
+    all.extend(unplaced.map(|unplaced| unplaced.in_words(locate(unplaced.place.block))));
+    if reference.surface.is_none() {
+        all.push("rapid motion through the part: the reference has no surface, as a job file has".to_owned());
+    }
+    all
+}
+
+/// Whose diameters aren't checked: by which tools, where the tool table has others.
+fn diameters(comparison: &Comparison<'_>, machine: &Machine) -> Vec<String> {
+    let unknown = |pair: &&HolePair| {
+        comparison.nominal[pair.wanted].diameter.is_some() && comparison.actual[pair.found].diameter.is_none()
+    };
+    let mut made: BTreeMap<Option<u32>, Vec<&str>> = BTreeMap::new();
+    for pair in comparison.pairs.iter().filter(unknown) {
+        let tool = comparison.actual[pair.found].tool.filter(|_| !machine.tools.is_empty());
+        made.entry(tool).or_default().push(comparison.id(pair.wanted));
+    }
+    let words = |(tool, ids): (Option<u32>, Vec<&str>)| match (tool, ids.as_slice()) {
+        (None, _) if machine.tools.is_empty() => "diameters: the machine has no tool table".to_owned(),
+        (None, ids) => format!("the diameter of {} made before any tool was put in", some(ids)),
+        (Some(tool), ids) => {
+            format!("the diameter of {} made by T{tool}, which the machine file doesn't describe", some(ids))
+        }
+    };
+    made.into_iter().map(words).collect()
+}
+
+/// `hole 1,` or `63 holes (r0h0 the first),`.
+fn some(ids: &[&str]) -> String {
+    match ids {
+        [one] => format!("hole {one},"),
+        [first, ..] => format!("{} holes ({first} the first),", ids.len()),
+        [] => String::new(),
+    }
+}
+
+/// Tools that cut and whose lengths the machine file doesn't have: which offset stands for each.
+fn lengths(extracted: &HoleExtraction, machine: &Machine) -> Vec<String> {
+    let unknown = extracted.cuttings.iter().filter(|cutting| machine.length_of(cutting.tool).is_none());
+    let tools: BTreeSet<_> = unknown.map(|cutting| (cutting.tool, cutting.compensation)).collect();
+    let words = |(tool, by): (Option<u32>, LengthCompensation)| {
+        let whose = tool.map_or("the tool's length".to_owned(), |number| format!("the length of T{number}"));
+        let taken = match by {
+            LengthCompensation::Off | LengthCompensation::Plus(0) | LengthCompensation::Minus(0) => {
+                "its tip to be what is programmed".to_owned()
+            }
+            LengthCompensation::Plus(h) | LengthCompensation::Minus(h) => format!("H{h} to hold it"),
+        };
+        format!("{whose}: the machine file doesn't have it, and takes {taken}")
+    };
+    tools.into_iter().map(words).collect()
+}
+
+/// What the reference doesn't say of how the part is to be worked.
+fn conduct(extracted: &HoleExtraction, reference: &Reference, machine: &Machine) -> Option<String> {
+    let conduct = &reference.conduct;
+    if extracted.conduct != *conduct {
+        return Some(
+            "how the part is worked: the run was followed without what the reference says of it".to_owned(),
+        );
+    }
+    let tools: BTreeSet<_> = extracted.cuttings.iter().map(|cutting| cutting.tool).collect();
+    let unsaid = |of: &dyn Fn(&ToolProcess) -> Option<f64>| {
+        tools.iter().any(|tool| conduct.tool_process(*tool).and_then(of).is_none())
+    };
+    let turns = machine.table.turning().next().is_some();
+    let missing = [
+        (unsaid(&|duty| duty.speed), "S"),
+        (unsaid(&|duty| duty.feed), "F"),
+        (turns && conduct.clearance.is_none(), "the clearance while an axis turns"),
+        (turns && conduct.retract.is_none(), "the retract before the rotary turns"),
+        (turns && conduct.clamp.is_none(), "the rotary's clamp"),
+    ];
+    let names: Vec<_> = missing.iter().filter(|(missing, _)| *missing).map(|(_, name)| *name).collect();
+    (!names.is_empty()).then(|| format!("{}: the reference doesn't say", names.join(", ")))
+}

@@ -1,0 +1,128 @@
+//! What a local is when a block is reached for the first time, whichever way that is.
+use std::collections::{BTreeMap, BTreeSet};
+
+use gcode_lang::program::OpIndex;
+
+use super::components::strongly_connected_components;
+use super::subject::ProgramUnit;
+use super::vacancy::{Locals, States, UNSET, steps};
+use super::variables;
+
+/// The states of a program with the circles of its ways: what lies on no circle is reached once, so that only circles
+/// are ever gone round again.
+pub(super) struct FirstReach<'a> {
+    unit: &'a ProgramUnit<'a>,
+    states: &'a States,
+    circle: Vec<usize>,
+    /// For each circle the places outside that lead into it.
+    entries: BTreeMap<usize, Vec<OpIndex>>,
+    /// Blocks with locals of theirs that may be set when the block is reached for the first time.
+    set: BTreeSet<(OpIndex, u32)>,
+}
+
+impl<'a> FirstReach<'a> {
+    pub(super) fn new(unit: &'a ProgramUnit<'a>, states: &'a States) -> Self {
+        let circle = strongly_connected_components(&unit.flow);
+        let mut entries: BTreeMap<usize, Vec<OpIndex>> = BTreeMap::new();
+        for place in 0..unit.flow.block_count() {
+            let left = unit.flow.successors(place).filter(|to| circle[*to] != circle[place]);
+            for to in left {
+                entries.entry(circle[to]).or_default().push(place);
+            }
+        }
+        let mut first = Self { unit, states, circle, entries, set: BTreeSet::new() };
+        first.set = first.set_before();
+        first
+    }
+
+    /// Most reads in a circle are told by following each local round it once, with all blocks that read it as ends: what
+    /// one of them finds set there is set on a way that passes none of them before.
+    fn set_before(&self) -> BTreeSet<(OpIndex, u32)> {
+        let mut readers: BTreeMap<(usize, u32), BTreeSet<OpIndex>> = BTreeMap::new();
+        for (block, written) in self.unit.blocks.iter().enumerate() {
+            for number in variables::of_block(written).reads.iter().map(|read| read.number) {
+                if (1..=33).contains(&number) && is_unclear(self.bits(block, number)) {
+                    readers.entry((self.circle[block], number)).or_default().insert(block);
+                }
+            }
+        }
+        let mut set = BTreeSet::new();
+        for ((circle, local), blocks) in readers {
+            let known = self.follow(circle, local, &blocks);
+            let found =
+                blocks.into_iter().filter(|block| known.get(block).is_some_and(|bits| *bits != UNSET));
+            set.extend(found.map(|block| (block, local)));
+        }
+        set
+    }
+
+    /// Whether a local is still unset when a block is reached for the first time: no way to the block that doesn't pass
+    /// it sets the local.
+    pub(super) fn is_unset(&self, block: OpIndex, local: u32) -> bool {
+        let here = self.bits(block, local);
+        if !is_unclear(here) {
+            return here == UNSET;
+        }
+        let alone = || self.follow(self.circle[block], local, &BTreeSet::from([block]));
+        !self.set.contains(&(block, local)) && alone().get(&block) == Some(&UNSET)
+    }
+
+    /// Follows a local once more round a circle, with some blocks as ends: what it may be at each place that is reached.
+    fn follow(&self, circle: usize, local: u32, ends: &BTreeSet<OpIndex>) -> BTreeMap<OpIndex, u8> {
+        let mut around =
+            ComponentState { circle: &self.circle, of: circle, known: BTreeMap::new(), open: Vec::new() };
+        for start in self.unit.starts.iter().filter(|start| self.circle[**start] == circle) {
+            around.join(*start, self.bits(*start, local));
+        }
+        for entry in self.entries.get(&circle).into_iter().flatten() {
+            let Some(state) = &self.states[*entry] else { continue };
+            self.lead(*entry, state, local, &mut around);
+        }
+        while let Some(at) = around.open.pop() {
+            if ends.contains(&at) {
+                continue;
+            }
+            let Some(mut state) = self.states[at] else { continue };
+            state.0[local as usize] = around.known[&at];
+            self.lead(at, &state, local, &mut around);
+        }
+        around.known
+    }
+
+    fn lead(&self, from: OpIndex, state: &Locals, local: u32, around: &mut ComponentState<'_>) {
+        for (to, after) in steps(self.unit, from, state) {
+            around.join(to, after.of(local));
+        }
+    }
+
+    fn bits(&self, place: OpIndex, local: u32) -> u8 {
+        self.states[place].map_or(0, |state| state.of(local))
+    }
+}
+
+/// Whether a local may be unset, and may be set as well.
+fn is_unclear(bits: u8) -> bool {
+    bits & UNSET != 0 && bits != UNSET
+}
+
+/// What the local may be at the places of one circle.
+struct ComponentState<'a> {
+    circle: &'a [usize],
+    of: usize,
+    known: BTreeMap<OpIndex, u8>,
+    /// Places where it has become known to be more.
+    open: Vec<OpIndex>,
+}
+
+impl ComponentState<'_> {
+    fn join(&mut self, place: OpIndex, bits: u8) {
+        if self.circle.get(place) != Some(&self.of) {
+            return;
+        }
+        let known = self.known.entry(place).or_default();
+        if *known | bits != *known {
+            *known |= bits;
+            self.open.push(place);
+        }
+    }
+}

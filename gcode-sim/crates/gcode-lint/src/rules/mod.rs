@@ -1,0 +1,129 @@
+//! The rules: a file each, a line each in [`ALL`].
+mod constant_alarm;
+mod doubled_n;
+mod doubled_program;
+mod endless_loop;
+mod jump_into_loop;
+mod live_position;
+mod loop_pairs;
+mod missing_argument;
+mod missing_feed;
+mod missing_n;
+mod missing_offset;
+mod missing_point;
+mod missing_program;
+mod no_such_variable;
+mod open_comment;
+mod relation_symbol;
+mod round_brackets;
+mod rounded_pi;
+mod several_m_codes;
+mod stray_word;
+mod unknown_check;
+mod unknown_code;
+mod unreachable;
+mod unreachable_alarm;
+mod unreadable;
+mod unset_variable;
+
+use gcode_lang::diag::Diagnostic;
+
+use super::subject::{CheckContext, ProgramUnit, RuleFinding};
+use super::suppression::Suppressions;
+
+/// One thing that can be wrong with a program.
+pub struct Rule {
+    /// The code of its findings, and the name in `(CHECK-OFF NAME)`.
+    pub name: &'static str,
+    /// What it finds, in a line.
+    pub about: &'static str,
+    find: fn(&CheckContext<'_>, &ProgramUnit<'_>) -> Vec<RuleFinding>,
+}
+
+/// All rules in the order their findings of one block are told.
+#[rustfmt::skip]
+pub const ALL: &[Rule] = &[
+    Rule { name: unreadable::NAME, about: "a block that stops the control with an alarm as it is read", find: unreadable::find },
+    Rule { name: round_brackets::NAME, about: "( ) where [ ] was meant: round brackets are a comment", find: round_brackets::find },
+    Rule { name: relation_symbol::NAME, about: "= < > where EQ, LT, GT … must stand", find: relation_symbol::find },
+    Rule { name: loop_pairs::NAME, about: "DO and END that don't pair, or loops that overlap", find: loop_pairs::find },
+    Rule { name: jump_into_loop::NAME, about: "a jump into a loop from outside", find: jump_into_loop::find },
+    Rule { name: missing_n::NAME, about: "a jump to a sequence number that isn't there", find: missing_n::find },
+    Rule { name: doubled_n::NAME, about: "a sequence number that stands twice", find: doubled_n::find },
+    Rule { name: doubled_program::NAME, about: "a program number that stands twice", find: doubled_program::find },
+    Rule { name: unknown_code::NAME, about: "a G or M code the control doesn't have", find: unknown_code::find },
+    Rule { name: missing_program::NAME, about: "a call of a program that isn't there", find: missing_program::find },
+    Rule { name: missing_argument::NAME, about: "a macro call without a letter that the macro needs", find: missing_argument::find },
+    Rule { name: several_m_codes::NAME, about: "more M codes in a block than the control takes", find: several_m_codes::find },
+    Rule { name: no_such_variable::NAME, about: "a variable that isn't there, or can't be read or written so", find: no_such_variable::find },
+    Rule { name: constant_alarm::NAME, about: "arithmetic of numbers that always alarms", find: constant_alarm::find },
+    Rule { name: missing_offset::NAME, about: "an H or D beyond the tool offsets", find: missing_offset::find },
+    Rule { name: missing_feed::NAME, about: "a feed move before any F", find: missing_feed::find },
+    Rule { name: open_comment::NAME, about: "a comment that isn't closed", find: open_comment::find },
+    Rule { name: stray_word::NAME, about: "a word that no block of this control takes", find: stray_word::find },
+    Rule { name: unset_variable::NAME, about: "a local variable that is read before it is set", find: unset_variable::find },
+    Rule { name: missing_point::NAME, about: "a number without a point that means thousandths", find: missing_point::find },
+    Rule { name: rounded_pi::NAME, about: "a rounded π as a factor", find: rounded_pi::find },
+    Rule { name: live_position::NAME, about: "a position read while a move may be under way", find: live_position::find },
+    Rule { name: endless_loop::NAME, about: "a loop that never ends", find: endless_loop::find },
+    Rule { name: unreachable_alarm::NAME, about: "a #3000 that can't be reached", find: unreachable_alarm::find },
+    Rule { name: unreachable::NAME, about: "blocks that nothing reaches", find: unreachable::find },
+    Rule { name: unknown_check::NAME, about: "CHECK-OFF with a name that no rule has", find: unknown_check::find },
+];
+
+/// The name of the rule about numbers without a point.
+pub const MISSING_POINT: &str = missing_point::NAME;
+
+/// The names of all rules.
+pub(super) fn names() -> Vec<&'static str> {
+    ALL.iter().map(|rule| rule.name).collect()
+}
+
+/// What all rules find, the silenced left out: program by program, block by block.
+pub(super) fn findings(subject: &CheckContext<'_>) -> Vec<Diagnostic> {
+    let mut all = Vec::new();
+    for unit in &subject.units {
+        let silence = Suppressions::new(unit);
+        let mut found: Vec<RuleFinding> = ALL.iter().flat_map(|rule| (rule.find)(subject, unit)).collect();
+        found.retain(|finding| !silence.silences(finding));
+        found.sort_by_key(|finding| finding.block);
+        all.extend(found.into_iter().map(|finding| finding.diagnostic));
+    }
+    all
+}
+
+#[cfg(test)]
+pub(super) mod testing {
+    //! Runs all rules over a program and tells what one of them finds.
+    use crate::check;
+    use gcode_lang::control::Settings;
+    use gcode_lang::program::NoLibrary;
+
+    pub const NOWHERE: [u32; 0] = [];
+
+    /// The lines, counted from 1, that a rule finds something in.
+    pub fn lines(rule: &str, text: &str) -> Vec<u32> {
+        let checked = check("test.nc", text.as_bytes(), &Settings::default(), &mut NoLibrary);
+        let of_rule = checked.findings.iter().filter(|f| f.code == rule);
+        of_rule.map(|f| checked.memory.sources().place(f.place.as_ref().unwrap().block).line).collect()
+    }
+
+    /// The messages of a rule.
+    pub fn messages(rule: &str, text: &str) -> Vec<String> {
+        let checked = check("test.nc", text.as_bytes(), &Settings::default(), &mut NoLibrary);
+        checked.findings.into_iter().filter(|f| f.code == rule).map(|f| f.message).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_spelled_as_codes_and_stand_once() {
+        for (place, rule) in ALL.iter().enumerate() {
+            assert!(rule.name.bytes().all(|b| b.is_ascii_lowercase() || b == b'-'), "{}", rule.name);
+            assert!(ALL[..place].iter().all(|other| other.name != rule.name), "{}", rule.name);
+        }
+    }
+}

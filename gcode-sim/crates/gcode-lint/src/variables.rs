@@ -1,0 +1,212 @@
+//! The variables that a block reads and writes, and how it reads them: a vacant one is harmless in some places.
+use gcode_lang::program::OpIndex;
+use gcode_lang::source::Span;
+use gcode_lang::syntax::ast::{
+    Block, CallForm, Condition, Expr, ExprKind, Item, PrintPart, Statement, WordValue,
+};
+
+use super::literal;
+
+/// What is done with the value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Use {
+    /// Held against `#0`: asks whether it is vacant.
+    Tested,
+    /// Stands in another comparison.
+    Compared,
+    /// `#1=#2`, `G65 … A#2`: passed on as it is, vacancy included.
+    Passed,
+    /// The value of a word, which disappears with a vacant one.
+    Word,
+    /// Anything else, where vacant counts as 0.
+    Computed,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub struct Read {
+    pub number: u32,
+    pub usage: Use,
+    pub span: Span,
+}
+
+/// What a block does with variables.
+#[derive(Clone, Debug, Default)]
+pub struct Uses {
+    pub reads: Vec<Read>,
+    /// A variable is read whose number is computed.
+    pub reads_any: bool,
+}
+
+/// The variables that a block reads.
+pub(super) fn of_block(block: &Block) -> Uses {
+    let mut uses = Uses::default();
+    let call = block.items.iter().any(is_macro_call);
+    for item in &block.items {
+        match item {
+            Item::Word(word) => {
+                word.axis.iter().for_each(|axis| uses.expr(axis, Use::Computed));
+                if let WordValue::Expr(expr) = &word.value {
+                    uses.expr(expr, if call { Use::Passed } else { Use::Word });
+                }
+            }
+            Item::Statement(statement) => uses.statement(&statement.node),
+            Item::Skip(_) | Item::Unreadable(_) => {}
+        }
+    }
+    uses
+}
+
+/// The numbers of the variables that a block reads by number or by name, each once.
+pub fn variables_read(block: &Block) -> Vec<u32> {
+    let mut numbers = Vec::new();
+    for read in of_block(block).reads {
+        if !numbers.contains(&read.number) {
+            numbers.push(read.number);
+        }
+    }
+    numbers
+}
+
+/// G65, G66, G66.1: the other words are arguments.
+fn is_macro_call(item: &Item) -> bool {
+    let Item::Word(word) = item else { return false };
+    match &word.value {
+        WordValue::Literal(number) if word.address.letter == b'G' => {
+            let value = number.value();
+            value == 65.0 || value == 66.0 || value == 66.1
+        }
+        _ => false,
+    }
+}
+
+/// The variables that stand in a condition.
+pub(super) fn of_condition(condition: &Condition) -> Uses {
+    let mut uses = Uses::default();
+    uses.condition(condition);
+    uses
+}
+
+impl Uses {
+    fn statement(&mut self, statement: &Statement) {
+        match statement {
+            Statement::Assign { target, value } => {
+                self.index_of(target);
+                self.expr(value, Use::Passed);
+            }
+            Statement::Goto(to) => self.expr(to, Use::Computed),
+            Statement::IfGoto { condition, to } => {
+                self.condition(condition);
+                self.expr(to, Use::Computed);
+            }
+            Statement::IfThen { condition, then } => {
+                self.condition(condition);
+                self.statement(then);
+            }
+            Statement::While { condition, .. } | Statement::If { condition, .. } => self.condition(condition),
+            Statement::Print { parts, .. } => {
+                for part in parts {
+                    if let PrintPart::Value { variable, .. } = part {
+                        self.expr(variable, Use::Computed);
+                    }
+                }
+            }
+            Statement::SetNames { first, .. } => self.expr(first, Use::Computed),
+            Statement::Do(_) | Statement::End(_) | Statement::OpenOutput | Statement::CloseOutput => {}
+        }
+    }
+
+    fn condition(&mut self, condition: &Condition) {
+        match condition {
+            Condition::Compare { left, right, .. } => {
+                let usage = |other: &Expr| match literal::variable(other) {
+                    Some(0 | 3100) => Use::Tested,
+                    _ => Use::Compared,
+                };
+                self.expr(left, usage(right));
+                self.expr(right, usage(left));
+            }
+            Condition::Logic(_, _, left, right) => {
+                self.condition(left);
+                self.condition(right);
+            }
+            Condition::Bracket(inner) => self.condition(inner),
+        }
+    }
+
+    fn expr(&mut self, expr: &Expr, usage: Use) {
+        // What is computed inside a comparison is still part of the comparison.
+        let inside = if matches!(usage, Use::Tested | Use::Compared) { Use::Compared } else { Use::Computed };
+        match &expr.kind {
+            ExprKind::Literal(_) => {}
+            ExprKind::Variable(_) => {
+                match literal::variable(expr) {
+                    Some(0) => {}
+                    Some(number) => self.reads.push(Read { number, usage, span: expr.span }),
+                    None => self.reads_any = true,
+                }
+                self.index_of(expr);
+            }
+            ExprKind::Named(name) => {
+                match literal::variable(expr) {
+                    Some(number) => self.reads.push(Read { number, usage, span: expr.span }),
+                    None => self.reads_any = true,
+                }
+                name.index.iter().for_each(|index| self.expr(index, Use::Computed));
+            }
+            ExprKind::Negate(inner) if usage == Use::Word => self.expr(inner, usage),
+            ExprKind::Bracket(inner) | ExprKind::Plus(inner) => self.expr(inner, usage),
+            ExprKind::Negate(inner) => self.expr(inner, inside),
+            ExprKind::Binary(_, left, right) => {
+                self.expr(left, inside);
+                self.expr(right, inside);
+            }
+            ExprKind::Call(_, CallForm::One(inner)) => self.expr(inner, inside),
+            ExprKind::Call(_, CallForm::Slash(left, right) | CallForm::Comma(left, right)) => {
+                self.expr(left, inside);
+                self.expr(right, inside);
+            }
+            ExprKind::Parameter { number, bit, axis } => {
+                self.reads_any = true;
+                self.expr(number, inside);
+                bit.iter().chain(axis).for_each(|part| self.expr(part, inside));
+            }
+            ExprKind::AxisNumber(_) => {}
+        }
+    }
+
+    /// The number of a variable, where it is computed from others.
+    fn index_of(&mut self, variable: &Expr) {
+        if let ExprKind::Variable(index) = &variable.kind {
+            self.expr(index, Use::Computed);
+        }
+    }
+}
+
+/// What a block assigns, alone or behind IF … THEN.
+pub(super) fn assignment(block: &Block) -> Option<(&Expr, &Expr)> {
+    block.items.iter().find_map(assigned_by)
+}
+
+/// What a part of a block assigns.
+pub(super) fn assigned_by(item: &Item) -> Option<(&Expr, &Expr)> {
+    match item {
+        Item::Statement(statement) => assigned(&statement.node),
+        _ => None,
+    }
+}
+
+pub(super) fn assigned(statement: &Statement) -> Option<(&Expr, &Expr)> {
+    match statement {
+        Statement::Assign { target, value } => Some((target, value)),
+        Statement::IfThen { then, .. } => assigned(then),
+        _ => None,
+    }
+}
+
+/// The statement of a block, where it is one.
+pub(super) fn statement(blocks: &[Block], block: OpIndex) -> Option<&Statement> {
+    blocks.get(block)?.items.iter().find_map(|item| match item {
+        Item::Statement(statement) => Some(&statement.node),
+        _ => None,
+    })
+}

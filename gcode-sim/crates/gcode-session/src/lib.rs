@@ -1,0 +1,332 @@
+//! One program through the whole chain: what the command line, the generator and tests call.
+mod endless_cause;
+mod likely_causes;
+mod places;
+mod trace;
+
+use std::sync::Arc;
+
+use self::places::Places;
+pub use trace::{Executed, Trace, Values, VariableRole};
+
+use gcode_control::{Control, Limits, Note, Observer, Outcome, Progress};
+use gcode_inspect::flutes::{FluteTracker, GrinderError, GrindingResult};
+use gcode_inspect::holes::{HoleExtraction, HoleExtractor};
+use gcode_inspect::machine::Machine;
+use gcode_inspect::stylus::{Rapids, Stylus, StylusReadings};
+use gcode_inspect::verify::flutes::{FluteVerdict, verify_flutes};
+use gcode_inspect::verify::{Tolerances, Verdict, verify};
+use gcode_lang::alarm::{Alarm, AlarmCode, remedy};
+use gcode_lang::control::Settings;
+use gcode_lang::diag::{Diagnostic, Severity};
+use gcode_lang::motion::{Backtrace, EventSink};
+use gcode_lang::program::{Library, Memory};
+use gcode_lang::source::{Bytes, Span};
+use gcode_part::part::flutes::Flutes;
+use gcode_part::part::hole::HoleList;
+use gcode_part::part::process::ProcessLimits;
+use gcode_part::part::reference::Reference;
+use gcode_part::part::surface::Surface;
+
+/// A program to run, and everything its run depends on.
+#[derive(Clone, Debug)]
+pub struct Request {
+    /// The file's name as the user gave it.
+    pub name: String,
+    pub bytes: Bytes,
+    pub settings: Settings,
+    pub machine: Machine,
+    pub limits: Limits,
+    /// Variables set before the start.
+    pub variables: Vec<(u32, f64)>,
+    /// The part's surface, where it is there to be probed.
+    pub part: Option<Surface>,
+    /// How the part is to be worked, as far as the reference says it.
+    pub conduct: ProcessLimits,
+    /// Who sees how far the run is, and may end it.
+    pub progress: Option<Arc<Progress>>,
+}
+
+impl Request {
+    /// A program on a machine, with that machine's control and the limits of [`Limits::default`].
+    pub fn new(name: impl Into<String>, bytes: impl Into<Bytes>, machine: Machine) -> Self {
+        let mut settings =
+            Settings { axes: machine.axes.clone(), increment: machine.increment, ..Settings::default() };
+        settings.become_dialect(machine.dialect);
+        Self {
+            name: name.into(),
+            bytes: bytes.into(),
+            settings,
+            machine,
+            limits: Limits::default(),
+            variables: Vec::new(),
+            part: None,
+            conduct: ProcessLimits::default(),
+            progress: None,
+        }
+    }
+}
+
+/// Why a run can't begin.
+#[derive(Debug, thiserror::Error)]
+pub enum SessionError {
+    #[error("{name} holds no program")]
+    NoProgram { name: String },
+    #[error(
+        "{name}, line {line}: {program} is there twice, and a control refuses the second: give it a number of its own"
+    )]
+    Twice { name: String, line: u32, program: String },
+    #[error("#{number} can't be set: {alarm}")]
+    Variable { number: u32, alarm: Alarm },
+}
+
+/// A run that is over, with the control as it stands.
+#[derive(Debug)]
+pub struct Run {
+    pub control: Control,
+    pub outcome: Outcome,
+}
+
+/// Runs a program and tells `sink` what the machine does.
+pub fn run<S: EventSink>(
+    request: &Request,
+    library: &mut impl Library,
+    sink: &mut S,
+) -> Result<Run, SessionError> {
+    run_observed(request, library, sink, &mut ())
+}
+
+/// As [`run`], with somebody who looks on from block to block.
+pub fn run_observed<S: EventSink>(
+    request: &Request,
+    library: &mut impl Library,
+    sink: &mut S,
+    watcher: &mut impl Observer,
+) -> Result<Run, SessionError> {
+    let mut memory = Memory::default();
+    memory.load(request.name.clone(), request.bytes.clone());
+    if memory.programs().is_empty() {
+        return Err(SessionError::NoProgram { name: request.name.clone() });
+    }
+    if let Some(second) = memory.refused().next() {
+        let line = memory.sources().place(second.span).line;
+        return Err(SessionError::Twice { name: request.name.clone(), line, program: second.label() });
+    }
+    let mut control = Control::new(memory, request.settings.clone());
+    for (number, value) in
+        presets(&request.machine, &request.settings).chain(request.variables.iter().copied())
+    {
+        control.set(number, value).map_err(|alarm| SessionError::Variable { number, alarm })?;
+    }
+    if let Some(progress) = &request.progress {
+        control.show_progress(Arc::clone(progress));
+    }
+    let outcome = control.run_watched(request.limits, library, sink, watcher);
+    Ok(Run { control, outcome })
+}
+
+/// What stands in the control of a machine that is set up: work offsets (#5221…), and the lengths of the tools in
+/// the table as geometry offsets H (#11001…, or #2001… on a Haas).
+fn presets<'a>(machine: &'a Machine, settings: &'a Settings) -> impl Iterator<Item = (u32, f64)> + 'a {
+    let work = machine.offsets.iter().flat_map(|offset| {
+        let first = 5221 + 20 * (offset.code - 54);
+        offset.values.iter().map(move |(axis, value)| (first + *axis as u32, *value))
+    });
+    let lengths = machine.tools.iter().filter_map(move |tool| {
+        let known = (1..=settings.tool_offsets).contains(&(tool.number as usize));
+        let variable = settings.offset_variables.length(tool.number).filter(|_| known)?;
+        Some((variable, tool.length?))
+    });
+    work.chain(lengths)
+}
+
+/// A run with the flutes it ground.
+#[derive(Debug)]
+pub struct GrindingRun {
+    pub run: Run,
+    pub ground: GrindingResult,
+    pub wanted: Flutes,
+}
+
+/// Why flutes can't be followed.
+#[derive(Debug, thiserror::Error)]
+pub enum GrindingError {
+    #[error(transparent)]
+    Machine(#[from] GrinderError),
+    #[error(transparent)]
+    Session(#[from] SessionError),
+}
+
+/// Runs a program and follows the wheel on the burr that is wanted.
+pub fn grind(
+    request: &Request,
+    library: &mut impl Library,
+    wanted: &Flutes,
+) -> Result<GrindingRun, GrindingError> {
+    let mut follower = FluteTracker::new(&request.machine, *wanted)?;
+    let run = run(request, library, &mut follower)?;
+    let mut ground = follower.finish();
+    ground.findings.extend(run.notes());
+    ground.findings.extend(likely_causes::other_offsets(&run, &request.machine, "flutes"));
+    ground.findings.extend(run.stopped());
+    Ok(GrindingRun { run, ground, wanted: *wanted })
+}
+
+impl GrindingRun {
+    /// The flutes against the wanted ones.
+    pub fn verify(&self) -> FluteVerdict {
+        verify_flutes(&self.wanted, &self.ground, &|span| self.run.locate(span))
+    }
+}
+
+/// A run with what an edge finder showed.
+#[derive(Debug)]
+pub struct StylusRun {
+    pub run: Run,
+    pub followed: StylusReadings,
+}
+
+/// Runs a program and reads the ball of an edge finder, of so many mm of radius, along the part's surface; where the
+/// program probes, a probe touches it.
+pub fn follow(
+    request: &Request,
+    library: &mut impl Library,
+    surface: Surface,
+    radius: f64,
+) -> Result<StylusRun, SessionError> {
+    let mut stylus = Stylus::new(&request.machine, surface, radius);
+    let mut rapids = Rapids::new(&request.machine, surface, radius);
+    let mut extractor = HoleExtractor::new(&request.machine).with_surface(Some(surface));
+    let run = run(request, library, &mut (&mut (&mut stylus, &mut rapids), &mut extractor))?;
+    let mut followed = stylus.finish();
+    followed.findings.extend(rapids.finish());
+    followed.findings.extend(run.notes());
+    followed.findings.extend(run.stopped());
+    Ok(StylusRun { run, followed })
+}
+
+/// A run with the holes it made.
+#[derive(Debug)]
+pub struct Simulation {
+    pub run: Run,
+    pub extracted: HoleExtraction,
+}
+
+/// Runs a program and follows the tool; with the surface known, motion inside the part is seen as well, and a machine
+/// that has a probe can touch it.
+pub fn simulate(
+    request: &Request,
+    library: &mut impl Library,
+    surface: Option<Surface>,
+) -> Result<Simulation, SessionError> {
+    simulate_observed(request, library, surface, &mut (), &mut ())
+}
+
+/// As [`simulate`], with another listener beside the one that follows the tool, and somebody who looks on from block to
+/// block.
+pub fn simulate_observed<S: EventSink>(
+    request: &Request,
+    library: &mut impl Library,
+    surface: Option<Surface>,
+    listener: &mut S,
+    watcher: &mut impl Observer,
+) -> Result<Simulation, SessionError> {
+    let mut extractor = HoleExtractor::new(&request.machine)
+        .with_surface(surface.or(request.part))
+        .with_conduct(&request.conduct);
+    let run = run_observed(request, library, &mut (&mut extractor, listener), watcher)?;
+    let mut extracted = extractor.finish();
+    extracted.findings.extend(run.notes());
+    extracted.findings.extend(run.stopped());
+    Ok(Simulation { run, extracted })
+}
+
+impl Simulation {
+    /// The holes against the wanted ones.
+    pub fn verify(&self, reference: &Reference, tolerances: Tolerances, machine: &Machine) -> Verdict {
+        let places = Places::of(&self.run);
+        let locate = |span| places.locate(span);
+        let mut verdict = verify(&self.extracted, reference, tolerances, machine, &locate);
+        let told = verdict.stands();
+        verdict.add_slips(likely_causes::likely_causes(&self.run, machine, told), &locate);
+        verdict
+    }
+
+    /// The document that `holes` writes.
+    pub fn list(&self) -> HoleList {
+        let places = Places::of(&self.run);
+        self.extracted.list(|span| places.locate(span))
+    }
+}
+
+impl Run {
+    /// The program and the line of a block, as people name them: `O8101`, 31.
+    pub fn locate(&self, span: Span) -> (String, u32) {
+        Places::of(self).locate(span)
+    }
+
+    /// What the control did without a word and the programmer hardly meant, as warnings.
+    pub fn notes(&self) -> impl Iterator<Item = Diagnostic> + '_ {
+        self.control.notes().map(|(note, block)| {
+            let (code, message, help) = note.describe();
+            // K0, lower case, block skip, G53 to wait and a centre where the tool stands are meant; the others are slips.
+            let meant = matches!(
+                note,
+                Note::CycleRepeatsZero
+                    | Note::LowerCase
+                    | Note::CentreDefaulted { .. }
+                    | Note::NoAxis { code: 530 }
+                    | Note::BlockSkip { .. }
+            );
+            let severity = if meant { Severity::Note } else { Severity::Warning };
+            Diagnostic::new(severity, code, message).at(Backtrace { block, calls: None }).help(help)
+        })
+    }
+
+    /// Why the run stopped before its end, as a finding; `None` where it didn't.
+    pub fn stopped(&self) -> Option<Diagnostic> {
+        match &self.outcome {
+            Outcome::End => None,
+            Outcome::Alarm(stopped) => {
+                let row = stopped.alarm.row();
+                let mut finding = Diagnostic::new(Severity::Alarm, row.code.to_string(), row.message);
+                finding.place = Some(stopped.place.clone());
+                finding.span = Some(stopped.span);
+                finding.help = remedy(&stopped.alarm, stopped.span, self.control.memory().sources()).or_else(
+                    || match row.code {
+                        // The program's own words are all there is to say.
+                        AlarmCode::Mc(_) => None,
+                        code => Some(format!("gcode-sim explain {code} shows what to write instead")),
+                    },
+                );
+                Some(finding)
+            }
+            Outcome::Limit => Some(self.limit_finding()),
+        }
+    }
+
+    fn limit_finding(&self) -> Diagnostic {
+        let Some((first, last)) = self.control.endless_loop() else {
+            let (blocks, moves) = (self.control.blocks(), self.control.moves());
+            if self.control.is_cancelled() {
+                let message =
+                    format!("the run was ended from outside after {blocks} blocks and {moves} moves");
+                let finding = Diagnostic::new(Severity::Alarm, "limit", message).at(self.control.place());
+                return finding.help("what is told is of the blocks so far");
+            }
+            let message = format!("the program has not ended after {blocks} blocks and {moves} moves");
+            let finding = Diagnostic::new(Severity::Alarm, "limit", message).at(self.control.place());
+            return finding.help("does a loop never end? --max-blocks allows more");
+        };
+        let ((program, from), (other, to)) = (self.locate(first), self.locate(last));
+        let to = if program == other { format!("line {to}") } else { format!("line {to} of {other}") };
+        let message = format!(
+            "the program never ends: from line {from} of {program} to {to} all repeats and nothing changes"
+        );
+        let finding = Diagnostic::new(Severity::Alarm, "limit", message).at(self.control.place());
+        if let Some(why) = endless_cause::unchanged_counter(&self.control, first, last) {
+            return finding.note(why).help("a step that is 0 makes no progress: where does it come from?");
+        }
+        finding.help("a wait for an input ends with --input '#1005=1', a main program's M99 with --cycles 1")
+    }
+}
