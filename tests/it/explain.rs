@@ -31,14 +31,24 @@ fn alarms() -> BTreeSet<String> {
 }
 
 /// Modules that tell no finding of a run, or the rules of `check` and the entries of `diff`, which have their own pages.
-const OTHERS: [&str; 8] = ["changes", "check", "cli", "control", "gauge", "job", "report", "schema"];
+const OTHERS: [&str; 9] = [
+    "crates/gcode-lang/src/control",
+    "crates/gcode-lint",
+    "crates/gcode-part/src/gauge",
+    "crates/gcode-part/src/job",
+    "crates/gcode-part/src/reader",
+    "crates/gcode-review",
+    "src/cli",
+    "src/report",
+    "src/schema",
+];
 
 /// Words that look like a code.
 const WORDS: [&str; 2] = ["left-hand", "right-hand"];
 
 /// The codes of findings: quoted, small letters with a hyphen between them, in all modules that may tell one.
 fn findings() -> BTreeSet<String> {
-    let source = workspace().join("gcode-sim/src");
+    let source = workspace().join("gcode-sim");
     let others = OTHERS.map(|module| source.join(module));
     let mut codes = BTreeSet::new();
     for file in below(&source, "rs") {

@@ -30,42 +30,6 @@ fn all_sources() -> Vec<PathBuf> {
         .collect()
 }
 
-/// The modules of a crate in the order its `lib.rs` lists them.
-fn order(lib: &Path) -> Vec<String> {
-    let text = std::fs::read_to_string(lib).unwrap();
-    let names = text.lines().filter_map(|line| line.strip_prefix("pub mod ")?.strip_suffix(';'));
-    names.map(str::to_owned).collect()
-}
-
-#[test]
-fn a_module_uses_only_the_ones_listed_above_it() {
-    for krate in ["gcode-sim", "gcode-gen"] {
-        let src = workspace().join(krate).join("src");
-        let order = order(&src.join("lib.rs"));
-        for path in sources(&src) {
-            let inside = path.strip_prefix(&src).unwrap();
-            let first = inside.components().next().unwrap().as_os_str().to_str().unwrap();
-            let module = first.trim_end_matches(".rs");
-            let Some(place) = order.iter().position(|m| m == module) else { continue };
-            let text = std::fs::read_to_string(&path).unwrap();
-            for (number, line) in text.lines().enumerate() {
-                for used in line.split("crate::").skip(1) {
-                    let used: String =
-                        used.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
-                    if let Some(at) = order.iter().position(|m| *m == used) {
-                        assert!(
-                            at <= place,
-                            "{}:{}: {module} uses {used}, which comes after it",
-                            path.display(),
-                            number + 1
-                        );
-                    }
-                }
-            }
-        }
-    }
-}
-
 /// The modules that a line names behind `root`, as `crate::` or `gcode_sim::`, one by one or in braces.
 fn named(line: &str, root: &str) -> Vec<String> {
     let word = |text: &str| text.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
@@ -117,21 +81,40 @@ fn every_module_of_a_line_is_seen() {
     assert_eq!(named("use crate::units::Deg;", "crate::"), ["units"]);
 }
 
-/// What is wanted knows no NC code, and the text side knows no geometry: each may use what is named here.
+/// The crates that a crate of gcode-sim depends on, as its Cargo.toml lists them.
+fn dependencies(name: &str) -> Vec<String> {
+    let path = workspace().join("gcode-sim/crates").join(name).join("Cargo.toml");
+    let file: toml::Table = std::fs::read_to_string(path).unwrap().parse().unwrap();
+    file["dependencies"].as_table().unwrap().keys().cloned().collect()
+}
+
+/// The text side knows no geometry, no command line, no picture and no page.
 #[test]
-fn the_two_sides_stay_apart() {
-    uses_only("gcode-sim/src/part", "crate::", &["job", "part", "units"]);
-    let text = ["alarm", "contour", "control", "exec", "motion", "program", "source", "syntax", "units"];
-    for dir in ["exec", "program", "syntax"] {
-        uses_only(&format!("gcode-sim/src/{dir}"), "crate::", &text);
+fn the_language_side_depends_on_no_geometry_and_no_output() {
+    let barred =
+        ["clap", "gcode-draw", "gcode-inspect", "gcode-part", "image", "maud", "nalgebra", "tiny-skia"];
+    for name in ["gcode-lang", "gcode-control", "gcode-lint"] {
+        let found: Vec<_> = dependencies(name).into_iter().filter(|d| barred.contains(&&**d)).collect();
+        assert!(found.is_empty(), "{name} depends on {}", found.join(", "));
     }
+}
+
+/// The nominal part is independent of NC code: its crate uses units and the names of controls alone.
+#[test]
+fn the_nominal_part_knows_no_program() {
+    uses_only("gcode-sim/crates/gcode-part/src", "gcode_lang::", &["control", "units"]);
 }
 
 /// The verifier would agree with the generator's mistakes if they shared a formula: a family may use the job file, the
 /// names of controls and the units, and nothing else.
 #[test]
 fn the_reference_shares_nothing_with_the_generator() {
-    uses_only("gcode-gen/src/families", "gcode_sim::", &["control", "gauge", "job", "units"]);
+    let families = "gcode-gen/src/families";
+    uses_only(families, "gcode_lang::", &["control", "units"]);
+    uses_only(families, "gcode_part::", &["gauge", "job"]);
+    for root in ["gcode_control::", "gcode_inspect::", "gcode_session::", "gcode_sim::"] {
+        uses_only(families, root, &[]);
+    }
 }
 
 #[test]

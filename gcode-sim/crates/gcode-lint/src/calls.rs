@@ -9,7 +9,7 @@ use super::literal;
 
 /// One block that calls.
 #[derive(Debug)]
-pub struct CallSite {
+pub(crate) struct CallSite {
     pub block: OpIndex,
     /// A fresh set of locals; M98 shares the caller's.
     pub own_locals: bool,
@@ -34,7 +34,7 @@ pub enum CalledAs {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub struct Argument {
+pub(crate) struct Argument {
     pub local: usize,
     /// A number, so surely not vacant.
     pub number: bool,

@@ -3,7 +3,7 @@
 use super::flow::ControlFlowGraph;
 
 /// For each place of the ways the number of its circle: two places have the same one if each can lead to the other.
-pub fn strongly_connected_components(flow: &ControlFlowGraph) -> Vec<usize> {
+pub(crate) fn strongly_connected_components(flow: &ControlFlowGraph) -> Vec<usize> {
     let after = |place: usize| flow.successors(place).collect();
     let mut search = Search::new(flow.block_count());
     for place in 0..flow.block_count() {

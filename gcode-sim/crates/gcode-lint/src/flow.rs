@@ -6,7 +6,7 @@ use super::literal;
 
 /// Where a block can go.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Successors {
+pub(crate) struct Successors {
     /// To the next block.
     pub falls_through: bool,
     /// By a jump, a loop, or a return from a call.
@@ -19,7 +19,7 @@ pub struct Successors {
 
 /// A sequence number that a block goes to, and whether it is there.
 #[derive(Clone, Copy, Debug)]
-pub struct Jump {
+pub(crate) struct Jump {
     pub block: OpIndex,
     pub number: u32,
     pub to: Option<OpIndex>,
@@ -28,7 +28,7 @@ pub struct Jump {
 }
 
 #[derive(Debug)]
-pub struct ControlFlowGraph {
+pub(crate) struct ControlFlowGraph {
     pub ways: Vec<Successors>,
     pub jumps: Vec<Jump>,
     numbered: Vec<OpIndex>,
@@ -155,12 +155,12 @@ impl ControlFlowGraph {
 
     /// How many places there are: the blocks, the end of the program one past the last of them, and behind it one that
     /// computed jumps lead to and that leads to every numbered block, which keeps the ways few.
-    pub fn block_count(&self) -> usize {
+    pub(crate) fn block_count(&self) -> usize {
         self.ways.len() + 2
     }
 
     /// The places that can follow a place.
-    pub fn successors(&self, place: OpIndex) -> impl Iterator<Item = OpIndex> + '_ {
+    pub(crate) fn successors(&self, place: OpIndex) -> impl Iterator<Item = OpIndex> + '_ {
         let anywhere = self.ways.len() + 1;
         let ways = self.ways.get(place);
         let jumps = ways.map_or(&[][..], |ways| &ways.jumps);
@@ -171,7 +171,7 @@ impl ControlFlowGraph {
     }
 
     /// Whether anything reaches each block from one of `starts`.
-    pub fn reachable(&self, starts: impl IntoIterator<Item = OpIndex>) -> Vec<bool> {
+    pub(crate) fn reachable(&self, starts: impl IntoIterator<Item = OpIndex>) -> Vec<bool> {
         let mut reached = vec![false; self.block_count()];
         let mut open: Vec<OpIndex> = starts.into_iter().collect();
         while let Some(place) = open.pop() {
@@ -185,7 +185,7 @@ impl ControlFlowGraph {
 }
 
 /// Whether a block is `#3000=…`, alone or behind IF … THEN.
-pub fn raises(kind: &OpKind) -> bool {
+pub(crate) fn raises(kind: &OpKind) -> bool {
     match kind {
         OpKind::Statement(Statement::IfThen { then, .. }) => is_raise(then),
         OpKind::Statement(statement) => is_raise(statement),
@@ -202,6 +202,6 @@ fn is_raise(statement: &Statement) -> bool {
 }
 
 /// Loops without a partner, which a rule of their own tells.
-pub fn is_loop_alarm(alarm: &Alarm) -> bool {
+pub(crate) fn is_loop_alarm(alarm: &Alarm) -> bool {
     matches!(alarm, Alarm::MissingEnd { .. } | Alarm::MissingDo { .. } | Alarm::LoopNumber { .. })
 }

@@ -4,7 +4,7 @@ use gcode_lang::program::{OpKind, Program, WordOperand, Words};
 use super::literal;
 
 /// Whether each block is such a one; G10 itself and G11 are not.
-pub fn inside(program: &Program) -> Vec<bool> {
+pub(crate) fn inside(program: &Program) -> Vec<bool> {
     let mut parameters = false;
     let blocks = program.ops().iter().map(|op| {
         let before = parameters;
@@ -17,7 +17,7 @@ pub fn inside(program: &Program) -> Vec<bool> {
 }
 
 /// What G10 writes: its L.
-pub fn data(words: &Words) -> Option<u32> {
+pub(crate) fn data(words: &Words) -> Option<u32> {
     let l = words.list.iter().find(|word| word.letter == b'L');
     l.filter(|_| has_g(words, 100)).and_then(literal::count)
 }

@@ -13,7 +13,7 @@ use super::flow::ControlFlowGraph;
 
 /// Everything a rule may look at.
 #[derive(Debug)]
-pub struct CheckContext<'a> {
+pub(crate) struct CheckContext<'a> {
     pub memory: &'a Memory,
     pub settings: &'a Settings,
     pub units: Vec<ProgramUnit<'a>>,
@@ -24,7 +24,7 @@ pub struct CheckContext<'a> {
 
 /// One program.
 #[derive(Debug)]
-pub struct ProgramUnit<'a> {
+pub(crate) struct ProgramUnit<'a> {
     /// As written: the tree keeps comments and points.
     pub blocks: Vec<ast::Block>,
     /// As it will run; block and operation have the same index.
@@ -42,7 +42,7 @@ pub struct ProgramUnit<'a> {
 
 /// How a program is entered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Role {
+pub(crate) enum Role {
     /// By the operator: all locals are vacant.
     Main,
     /// Only by calls that are seen here.
@@ -119,7 +119,7 @@ impl<'a> CheckContext<'a> {
     }
 
     /// The unit that a call goes to, where it is here.
-    pub fn called(&self, call: &CallSite) -> Option<usize> {
+    pub(crate) fn called(&self, call: &CallSite) -> Option<usize> {
         let id = call.target.find(self.memory)?;
         self.places.get(&id).copied()
     }
@@ -157,18 +157,18 @@ impl ProgramUnit<'_> {
         if returns && !ends { Role::Resident } else { Role::Main }
     }
 
-    pub fn op(&self, block: OpIndex) -> &Op {
+    pub(crate) fn op(&self, block: OpIndex) -> &Op {
         &self.program.ops()[block]
     }
 
     /// The call that a block makes; a block has one at most, and they are kept in the order of their blocks.
-    pub fn call_in(&self, block: OpIndex) -> Option<&CallSite> {
+    pub(crate) fn call_in(&self, block: OpIndex) -> Option<&CallSite> {
         let place = self.calls.binary_search_by_key(&block, |call| call.block).ok()?;
         self.calls.get(place)
     }
 
     /// A finding about a block.
-    pub fn finding(
+    pub(crate) fn finding(
         &self,
         severity: Severity,
         code: &'static str,
@@ -179,39 +179,49 @@ impl ProgramUnit<'_> {
         RuleFinding { block, diagnostic: Diagnostic::new(severity, code, message).at(place) }
     }
 
-    pub fn error(&self, code: &'static str, block: OpIndex, message: impl Into<String>) -> RuleFinding {
+    pub(crate) fn error(
+        &self,
+        code: &'static str,
+        block: OpIndex,
+        message: impl Into<String>,
+    ) -> RuleFinding {
         self.finding(Severity::Error, code, block, message)
     }
 
-    pub fn warning(&self, code: &'static str, block: OpIndex, message: impl Into<String>) -> RuleFinding {
+    pub(crate) fn warning(
+        &self,
+        code: &'static str,
+        block: OpIndex,
+        message: impl Into<String>,
+    ) -> RuleFinding {
         self.finding(Severity::Warning, code, block, message)
     }
 
-    pub fn note(&self, code: &'static str, block: OpIndex, message: impl Into<String>) -> RuleFinding {
+    pub(crate) fn note(&self, code: &'static str, block: OpIndex, message: impl Into<String>) -> RuleFinding {
         self.finding(Severity::Note, code, block, message)
     }
 }
 
 /// What a rule says of a block.
 #[derive(Debug)]
-pub struct RuleFinding {
+pub(crate) struct RuleFinding {
     pub block: OpIndex,
     pub diagnostic: Diagnostic,
 }
 
 impl RuleFinding {
     /// The exact part of the block.
-    pub fn on(mut self, span: Span) -> Self {
+    pub(crate) fn on(mut self, span: Span) -> Self {
         self.diagnostic.span = Some(span);
         self
     }
 
-    pub fn help(mut self, help: impl Into<String>) -> Self {
+    pub(crate) fn help(mut self, help: impl Into<String>) -> Self {
         self.diagnostic = self.diagnostic.help(help);
         self
     }
 
-    pub fn label(mut self, span: Span, text: impl Into<String>) -> Self {
+    pub(crate) fn label(mut self, span: Span, text: impl Into<String>) -> Self {
         self.diagnostic.labels.push((span, text.into()));
         self
     }

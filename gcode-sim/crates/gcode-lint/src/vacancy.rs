@@ -10,18 +10,18 @@ use super::subject::ProgramUnit;
 use super::{literal, variables};
 
 /// What a local may be, as bits.
-pub const UNSET: u8 = 1;
-pub const EMPTY: u8 = 2;
-pub const NUMBER: u8 = 4;
-pub const ANYTHING: u8 = EMPTY | NUMBER;
+pub(crate) const UNSET: u8 = 1;
+pub(crate) const EMPTY: u8 = 2;
+pub(crate) const NUMBER: u8 = 4;
+pub(crate) const ANYTHING: u8 = EMPTY | NUMBER;
 
 /// The locals #1 to #33; place 0 is not used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Locals(pub [u8; 34]);
+pub(crate) struct Locals(pub [u8; 34]);
 
 impl Locals {
-    pub const UNSET: Self = Self([UNSET; 34]);
-    pub const ANYTHING: Self = Self([ANYTHING; 34]);
+    pub(crate) const UNSET: Self = Self([UNSET; 34]);
+    pub(crate) const ANYTHING: Self = Self([ANYTHING; 34]);
 
     pub(super) fn of(&self, number: u32) -> u8 {
         match number {
@@ -44,10 +44,10 @@ impl Locals {
 }
 
 /// The state at each place of the ways; `None` where nothing leads.
-pub type States = Vec<Option<Locals>>;
+pub(crate) type States = Vec<Option<Locals>>;
 
 /// Follows a program from its first block with what its locals are there.
-pub fn states(unit: &ProgramUnit<'_>, entry: Locals) -> States {
+pub(crate) fn states(unit: &ProgramUnit<'_>, entry: Locals) -> States {
     let mut states: States = vec![None; unit.flow.block_count()];
     let mut open = unit.starts.clone();
     // A call that starts elsewhere brings its own locals.
@@ -223,7 +223,7 @@ fn number(value: Value) -> Option<f64> {
 }
 
 /// The answer of a condition, where it follows from the state.
-pub fn truth(condition: &Condition, state: &Locals) -> Option<bool> {
+pub(crate) fn truth(condition: &Condition, state: &Locals) -> Option<bool> {
     match condition {
         Condition::Compare { left, relation, right, .. } => {
             compare(value_of(left, state), *relation, value_of(right, state))
@@ -263,7 +263,7 @@ fn compare(left: Value, relation: Relation, right: Value) -> Option<bool> {
 }
 
 /// Whether a condition is only true where something has set the local, as `#9 NE #0` is.
-pub fn guards(condition: &Condition, local: u32) -> bool {
+pub(crate) fn guards(condition: &Condition, local: u32) -> bool {
     let mut state = Locals([UNSET | ANYTHING; 34]);
     refine(condition, true, &mut state);
     state.of(local) & UNSET == 0

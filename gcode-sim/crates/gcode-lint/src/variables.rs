@@ -9,7 +9,7 @@ use super::literal;
 
 /// What is done with the value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Use {
+pub(crate) enum Use {
     /// Held against `#0`: asks whether it is vacant.
     Tested,
     /// Stands in another comparison.
@@ -23,7 +23,7 @@ pub enum Use {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub struct Read {
+pub(crate) struct Read {
     pub number: u32,
     pub usage: Use,
     pub span: Span,
@@ -31,7 +31,7 @@ pub struct Read {
 
 /// What a block does with variables.
 #[derive(Clone, Debug, Default)]
-pub struct Uses {
+pub(crate) struct Uses {
     pub reads: Vec<Read>,
     /// A variable is read whose number is computed.
     pub reads_any: bool,

@@ -101,7 +101,7 @@ impl Segment {
             // No arc that is followed is smaller than that by more than rounding: see [`Segment::is_too_small`].
             Self::Arc { centre, sweep, .. } => {
                 let radius = parallel_radius(centre, sweep, at, distance).max(0.0);
-                Curve::Circle { centre: centre, radius }
+                Curve::Circle { centre, radius }
             }
         }
     }

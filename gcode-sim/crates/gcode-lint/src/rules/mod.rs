@@ -99,17 +99,17 @@ pub(super) mod testing {
     use gcode_lang::control::Settings;
     use gcode_lang::program::NoLibrary;
 
-    pub const NOWHERE: [u32; 0] = [];
+    pub(crate) const NOWHERE: [u32; 0] = [];
 
     /// The lines, counted from 1, that a rule finds something in.
-    pub fn lines(rule: &str, text: &str) -> Vec<u32> {
+    pub(crate) fn lines(rule: &str, text: &str) -> Vec<u32> {
         let checked = check("test.nc", text.as_bytes(), &Settings::default(), &mut NoLibrary);
         let of_rule = checked.findings.iter().filter(|f| f.code == rule);
         of_rule.map(|f| checked.memory.sources().place(f.place.as_ref().unwrap().block).line).collect()
     }
 
     /// The messages of a rule.
-    pub fn messages(rule: &str, text: &str) -> Vec<String> {
+    pub(crate) fn messages(rule: &str, text: &str) -> Vec<String> {
         let checked = check("test.nc", text.as_bytes(), &Settings::default(), &mut NoLibrary);
         checked.findings.into_iter().filter(|f| f.code == rule).map(|f| f.message).collect()
     }

@@ -19,7 +19,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
 }
 
 /// In one sentence, for the finding and for the verdict.
-pub fn why(comparison: &Comparison<'_>, extra: usize) -> String {
+pub(crate) fn why(comparison: &Comparison<'_>, extra: usize) -> String {
     let found = &comparison.actual[extra];
     if let Some(wanted) = comparison.wanted_on_line_of(extra) {
         return format!("hole {} is drilled a second time", comparison.id(wanted));
