@@ -6,9 +6,9 @@ use divan::counter::ItemsCount;
 use gcode_inspect::machine::Machine;
 use gcode_inspect::verify::{Answer, Tolerances};
 use gcode_lang::program::NoLibrary;
+use gcode_part::NominalPart;
+use gcode_part::Reference;
 use gcode_part::job::Job;
-use gcode_part::part::nominal::NominalPart;
-use gcode_part::part::reference::Reference;
 use gcode_session::{Request, Simulation, simulate};
 
 fn main() {

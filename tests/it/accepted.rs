@@ -6,7 +6,7 @@ use gcode_control::Limits;
 use gcode_inspect::machine::{Machine, Probe};
 use gcode_lang::program::Library;
 use gcode_lang::units::Deg;
-use gcode_part::part::probed::ProbedPart;
+use gcode_part::ProbedPart;
 use gcode_review::{Record, Revision, changes};
 use gcode_session::Request;
 use gcode_sim::cli::library::Folders;

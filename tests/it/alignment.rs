@@ -12,9 +12,9 @@ use gcode_inspect::holes::HoleExtractor;
 use gcode_inspect::machine::{Frame, Machine, Placement};
 use gcode_inspect::verify::{Answer, Tolerances, Verdict};
 use gcode_lang::units::Deg;
+use gcode_part::NominalPart;
+use gcode_part::Surface;
 use gcode_part::job::Job;
-use gcode_part::part::nominal::NominalPart;
-use gcode_part::part::surface::Surface;
 use gcode_session::{Request, Run, run, simulate};
 
 fn example(name: &str) -> String {

@@ -9,8 +9,8 @@ use gcode_gen::families;
 use gcode_gen::package::file_name;
 use gcode_inspect::machine::Machine;
 use gcode_lang::program::Memory;
+use gcode_part::NominalPart;
 use gcode_part::job::Job;
-use gcode_part::part::nominal::NominalPart;
 use gcode_session::Request;
 
 /// Blocks executed of each program, by the name of its file.

@@ -7,8 +7,8 @@ use gcode_gen::check::check;
 use gcode_gen::families;
 use gcode_inspect::budget::{Budget, Question, budget};
 use gcode_inspect::machine::{Machine, error_file};
+use gcode_part::NominalPart;
 use gcode_part::job::Job;
-use gcode_part::part::nominal::NominalPart;
 
 fn example(name: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples").join(name);

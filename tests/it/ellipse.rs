@@ -8,9 +8,9 @@ use gcode_inspect::machine::Machine;
 use gcode_lang::alarm::AlarmCode;
 use gcode_lang::motion::{Event, EventKind, EventSink};
 use gcode_lang::units::{Deg, Mm};
+use gcode_part::Surface;
 use gcode_part::job::Job;
-use gcode_part::part::indicator::tilted;
-use gcode_part::part::surface::Surface;
+use gcode_part::tilted;
 use gcode_session::{Request, StylusRun, follow, run};
 use nalgebra::Vector3;
 

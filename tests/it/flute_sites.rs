@@ -2,7 +2,7 @@
 use gcode_inspect::machine::Machine;
 use gcode_inspect::verify::PartPoint;
 use gcode_lang::program::NoLibrary;
-use gcode_part::part::nominal::NominalPart;
+use gcode_part::NominalPart;
 use gcode_session::{GrindingRun, Request, grind};
 use nalgebra::Vector3;
 

@@ -10,9 +10,9 @@ use gcode_inspect::machine::{Machine, Placement};
 use gcode_inspect::verify::{Tolerances, Verdict};
 use gcode_lang::program::NoLibrary;
 use gcode_lang::units::Deg;
+use gcode_part::Reference;
 use gcode_part::job::Job;
-use gcode_part::part::hole::{Hole, HoleList, Unit};
-use gcode_part::part::reference::Reference;
+use gcode_part::{Hole, HoleList, Unit};
 use gcode_session::{Request, simulate};
 
 /// One axial hole at radius `r` with its mouth at height `y` and 15 deep, drilled at each angle of B.

@@ -9,8 +9,8 @@ use gcode_inspect::machine::Machine;
 use gcode_inspect::verify::{Answer, Tolerances, Verdict};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{Event, EventKind, EventSink, Position};
+use gcode_part::NominalPart;
 use gcode_part::job::Job;
-use gcode_part::part::nominal::NominalPart;
 use gcode_session::{Request, Run, run, simulate};
 
 /// The main job of the examples.

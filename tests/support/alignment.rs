@@ -7,8 +7,8 @@ use gcode_inspect::holes::HoleExtractor;
 use gcode_inspect::machine::{Machine, Placement};
 use gcode_lang::alarm::AlarmCode;
 use gcode_lang::units::Deg;
+use gcode_part::Surface;
 use gcode_part::job::{Alignment, Job};
-use gcode_part::part::surface::Surface;
 use gcode_session::{Request, Run, run_observed};
 
 use crate::workspace;

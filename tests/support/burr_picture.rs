@@ -4,8 +4,8 @@ use gcode_draw::{Scene, helix_graph, side_view, tip_view};
 use gcode_gen::families;
 use gcode_inspect::machine::Machine;
 use gcode_lang::program::NoLibrary;
+use gcode_part::NominalPart;
 use gcode_part::job::Job;
-use gcode_part::part::nominal::NominalPart;
 use gcode_session::{Request, grind};
 use gcode_sim::report::flute_view;
 

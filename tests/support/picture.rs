@@ -8,7 +8,7 @@ use gcode_draw::{
     TopView, compare, development, lay_out, paint, png, top_view,
 };
 use gcode_inspect::machine::Machine;
-use gcode_part::part::hole::Hole;
+use gcode_part::Hole;
 use gcode_review::RevisionDiff;
 use gcode_sim::report::changed_view;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};

@@ -9,7 +9,7 @@ use gcode_inspect::verify::Tolerances;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::Call;
 use gcode_lang::program::NoLibrary;
-use gcode_part::part::nominal::NominalPart;
+use gcode_part::NominalPart;
 use gcode_session::{Request, Run, Simulation, grind, simulate};
 use gcode_sim::report::flute_table;
 use gcode_sim::report::verdict_table::{Layout, table};

@@ -2,7 +2,7 @@
 use gcode_inspect::machine::Machine;
 use gcode_inspect::verify::Answer;
 use gcode_lang::diag::Severity;
-use gcode_part::part::flutes::Flutes;
+use gcode_part::Flutes;
 use gcode_session::{Request, grind};
 use gcode_sim::report::{diagnostic, flute_table, flute_view};
 

@@ -2,9 +2,9 @@
 use gcode_inspect::machine::Machine;
 use gcode_inspect::verify::{Answer, Tolerances, Verdict};
 use gcode_lang::diag::Severity;
+use gcode_part::Reference;
 use gcode_part::job::Job;
-use gcode_part::part::overlap::overlaps;
-use gcode_part::part::reference::Reference;
+use gcode_part::overlaps;
 use gcode_session::{Request, Simulation, simulate};
 use gcode_sim::report::verdict_table::{Layout, table};
 use gcode_sim::report::{diagnostic, top};

@@ -3,8 +3,8 @@ use gcode_control::Outcome;
 use gcode_inspect::holes::HoleExtractor;
 use gcode_inspect::machine::Machine;
 use gcode_lang::motion::{Backtrace, Event, EventKind, EventSink, StopKind};
+use gcode_part::Surface;
 use gcode_part::job::Job;
-use gcode_part::part::surface::Surface;
 use gcode_session::{Request, Run, SessionError, run};
 
 use crate::check::{CheckError, Programs, told};

@@ -12,8 +12,8 @@ use gcode_draw::Size;
 use gcode_inspect::budget::{MOST_SAMPLES, Question, budget};
 use gcode_inspect::machine::{Machine, error_file};
 use gcode_inspect::verify::Tolerances;
+use gcode_part::NominalPart;
 use gcode_part::job::Job;
-use gcode_part::part::nominal::NominalPart;
 
 #[derive(Debug, Args)]
 pub(super) struct BudgetArguments {

@@ -11,8 +11,8 @@ use crate::report::page::{Difference, ObservedProgram, Page};
 use crate::report::sarif::{self, FileLocation, Finding};
 use crate::report::{changed_view, diagnostic};
 use gcode_inspect::verify::Tolerances;
-use gcode_part::part::nominal::NominalPart;
-use gcode_part::part::reference::Reference;
+use gcode_part::NominalPart;
+use gcode_part::Reference;
 use gcode_review::{Revision, RevisionDiff, unexecuted};
 use gcode_session::Trace;
 

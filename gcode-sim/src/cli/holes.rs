@@ -7,7 +7,7 @@ use super::conditions::ProgramArguments;
 use super::format::ListFormat;
 use super::{ExitStatus, UsageError, options, output, overwrite_guard, page, progress, unused_machine};
 use crate::report::holes as report;
-use gcode_part::part::hole::HoleList;
+use gcode_part::HoleList;
 use gcode_session::Simulation;
 
 #[derive(Debug, Args)]

@@ -6,9 +6,9 @@ use super::library::Folders;
 use super::{UsageError, input};
 use gcode_control::Limits;
 use gcode_inspect::machine::{Machine, Probe};
+use gcode_part::NominalPart;
+use gcode_part::ProbedPart;
 use gcode_part::job::{Rotary, control_file};
-use gcode_part::part::nominal::NominalPart;
-use gcode_part::part::probed::ProbedPart;
 use gcode_session::Request;
 
 /// Reads the program and the machine, and resolves every setting.

@@ -7,8 +7,8 @@ use super::format::ListFormat;
 use super::{ExitStatus, UsageError, holes, input, output};
 use crate::report::flute_table;
 use gcode_inspect::verify::flutes::WantedFlutes;
+use gcode_part::NominalPart;
 use gcode_part::job::Job;
-use gcode_part::part::nominal::NominalPart;
 
 #[derive(Debug, Args)]
 pub(super) struct ReferenceArguments {

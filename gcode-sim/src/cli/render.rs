@@ -10,9 +10,9 @@ use crate::report::pictures::RenderReport;
 use crate::report::{flute_view, top};
 use gcode_draw::{Scene, Size, TopView};
 use gcode_inspect::verify::{Tolerances, Verdict};
-use gcode_part::part::flutes::Flutes;
-use gcode_part::part::nominal::NominalPart;
-use gcode_part::part::reference::Reference;
+use gcode_part::Flutes;
+use gcode_part::NominalPart;
+use gcode_part::Reference;
 use gcode_session::{Request, Simulation};
 
 #[derive(Debug, Args)]

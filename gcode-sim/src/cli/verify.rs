@@ -14,9 +14,9 @@ use crate::report::verdict_table::{Layout, table};
 use crate::report::{flute_table, flute_view};
 use gcode_inspect::verify::{Answer, Tolerances, Verdict};
 use gcode_lang::diag::Diagnostic;
-use gcode_part::part::flutes::Flutes;
-use gcode_part::part::nominal::NominalPart;
-use gcode_part::part::reference::Reference;
+use gcode_part::Flutes;
+use gcode_part::NominalPart;
+use gcode_part::Reference;
 use gcode_session::{Request, Run, Simulation};
 
 #[derive(Debug, Args)]

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use gcode_draw::{Bar, Bars};
 use gcode_inspect::budget::{Budget, Question, Share, Statistics};
-use gcode_inspect::machine::error::Distribution;
+use gcode_inspect::machine::Distribution;
 
 /// Diameters and lengths in mm.
 #[derive(Debug, Serialize, JsonSchema)]

@@ -6,7 +6,7 @@ use super::hole_changes::remarks;
 use super::top::{Rotary, along, outline, round_up, side, still};
 use gcode_draw::{DrawnHole, HoleStatus, PathKind, PathPiece, PicturePurpose, TopView};
 use gcode_inspect::machine::Machine;
-use gcode_part::part::reference::Reference;
+use gcode_part::Reference;
 use gcode_review::{Change, Leg, Paired, Record, Revision, RevisionDiff};
 
 /// No more cuts of each revision than this are drawn, nor more points.

@@ -7,7 +7,7 @@ use gcode_inspect::flutes::GrindingPass;
 use gcode_inspect::verify::Answer;
 use gcode_inspect::verify::flutes::{FluteVerdict, in_words};
 use gcode_lang::units::Deg;
-use gcode_part::part::profile::Profile;
+use gcode_part::Profile;
 use gcode_session::GrindingRun;
 
 /// Of the program `name`.

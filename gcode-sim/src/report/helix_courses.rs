@@ -3,8 +3,8 @@ use gcode_draw::{HelixAt, HelixCourses};
 use gcode_inspect::flutes::{GrindingPass, Trace};
 use gcode_inspect::verify::flutes::FluteVerdict;
 use gcode_lang::units::Deg;
+use gcode_part::Flutes;
 use gcode_part::job::FluteLaw;
-use gcode_part::part::flutes::Flutes;
 use gcode_session::GrindingRun;
 
 /// The polar angles that are named along the nose; the tip angle comes last.

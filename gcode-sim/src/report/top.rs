@@ -9,10 +9,10 @@ use gcode_inspect::holes::DrilledHole;
 use gcode_inspect::machine::{AxisLink, HeadKind, LinkMotion, Machine};
 use gcode_inspect::verify::{Neighbours, Verdict};
 use gcode_lang::motion::AxisIndex;
-use gcode_part::part::hole::Hole;
-use gcode_part::part::honeycomb::Pattern;
-use gcode_part::part::reference::Reference;
-use gcode_part::part::surface::Surface;
+use gcode_part::Hole;
+use gcode_part::Pattern;
+use gcode_part::Reference;
+use gcode_part::Surface;
 use gcode_session::Simulation;
 
 /// The holes of a program nobody has judged.

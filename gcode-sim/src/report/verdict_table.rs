@@ -144,7 +144,7 @@ fn said(hole: &HoleVerdict) -> String {
 mod tests {
     use super::*;
     use gcode_inspect::verify::Answer;
-    use gcode_part::part::hole::Origin;
+    use gcode_part::Origin;
 
     fn hole(id: &str, phi: f64, objections: &[&str]) -> HoleVerdict {
         let placed = |x: f64| HoleGeometry {

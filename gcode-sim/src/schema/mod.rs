@@ -18,9 +18,9 @@ use crate::report::test_report::TestReport;
 use gcode_inspect::machine::{ErrorFile, MachineFile};
 use gcode_inspect::verify::Verdict;
 use gcode_inspect::verify::flutes::{FluteVerdict, WantedFlutes};
+use gcode_part::HoleList;
 use gcode_part::job::control_file::ControlFile;
 use gcode_part::job::{FileRates, JobFile};
-use gcode_part::part::hole::HoleList;
 use gcode_review::AcceptedFile;
 
 /// One kind of document.

@@ -10,8 +10,8 @@ use gcode_inspect::verify::Answer;
 use gcode_inspect::verify::flutes::FluteVerdict;
 use gcode_lang::motion::{Event, EventKind, EventSink, Position};
 use gcode_lang::units::{Deg, ln};
+use gcode_part::NominalPart;
 use gcode_part::job::Job;
-use gcode_part::part::nominal::NominalPart;
 use gcode_session::{Request, grind, run};
 use proptest::prelude::*;
 

@@ -194,7 +194,7 @@ fn results_that_stand_in_the_repository_are_as_their_schemas_say() {
 /// What is wrong with a list of holes is refused by its reader, and by the schema where it can say so.
 #[test]
 fn lists_of_holes_are_refused_alike() {
-    use gcode_part::part::nominal::NominalPart;
+    use gcode_part::NominalPart;
     let text = std::fs::read_to_string(workspace().join("tests/complete/reference.json")).unwrap();
     let validator = validator("reference");
     let both = |text: &str| {

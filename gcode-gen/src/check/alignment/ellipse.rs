@@ -3,7 +3,7 @@
 use gcode_inspect::machine::Placement;
 use gcode_inspect::stylus::{Reading, ReadingPass};
 use gcode_lang::diag::Severity;
-use gcode_part::part::surface::Surface;
+use gcode_part::Surface;
 use gcode_session::follow;
 use gcode_sim::report::diagnostic;
 

@@ -10,8 +10,8 @@ use gcode_control::{Outcome, Value};
 use gcode_inspect::holes::HoleExtractor;
 use gcode_inspect::machine::{Machine, Placement};
 use gcode_lang::diag::Severity;
+use gcode_part::Surface;
 use gcode_part::job::Alignment;
-use gcode_part::part::surface::Surface;
 use gcode_session::{Request, Run, run};
 use gcode_sim::report::diagnostic;
 

@@ -2,9 +2,9 @@
 use gcode_control::Outcome;
 use gcode_inspect::machine::Placement;
 use gcode_lang::units::Deg;
+use gcode_part::Surface;
 use gcode_part::job::Alignment;
-use gcode_part::part::surface::Surface;
-use gcode_part::part::touch_uncertainty::{FitError, FitUncertainty, TouchPlan};
+use gcode_part::{FitError, FitUncertainty, TouchPlan};
 use gcode_session::Run;
 use gcode_sim::report::figures::short;
 

@@ -1,7 +1,7 @@
 //! Where the zero is: a picture of each family, and the offsets and signs in words.
 use gcode_inspect::verify::Verdict;
+use gcode_part::Flutes;
 use gcode_part::job::{Alignment, Burr, Honeycomb, Job, PinHoles, Surface};
-use gcode_part::part::flutes::Flutes;
 use gcode_sim::report::figures::short;
 use maud::{Markup, html};
 

@@ -6,7 +6,7 @@ use super::ink::Px;
 use super::measure::magnification;
 use super::role::HoleStatus;
 use super::scene::{Mark, Scene};
-use gcode_part::point_tree::PointTree;
+use gcode_part::PointTree;
 
 /// Nearer than this, in heights of a line, one sign would cover another: that of a surplus hole moves aside.
 pub(super) const COVERING: f64 = 0.8;

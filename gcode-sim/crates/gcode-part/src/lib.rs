@@ -1,7 +1,40 @@
-//! Job files and the nominal part: surfaces, holes, flutes, patterns, gauge blocks.
-pub mod clusters;
+//! Job files and the nominal part: what the drawing asks for, computed from the geometry of the part and nothing else.
+//!
+//! In goes the text of a job file or of a hole list; out come the surface, the holes or flutes in the part's frame, and the
+//! limits of the process. The crate knows no NC code and shares no formula with the generator.
+mod clusters;
+mod distance;
+mod flutes;
 pub mod gauge;
+mod hole;
+mod honeycomb;
+mod indicator;
 pub mod job;
-pub mod part;
-pub mod point_tree;
+mod nominal;
+mod overlap;
+mod pin_holes;
+mod point_tree;
+mod probed;
+mod process;
+mod profile;
+mod read;
 pub mod reader;
+mod reference;
+mod surface;
+mod touch_uncertainty;
+
+pub use clusters::Clusters;
+pub use distance::Nearest;
+pub use flutes::Flutes;
+pub use hole::{Hole, HoleList, Origin, Unit};
+pub use honeycomb::{Pattern, azimuth};
+pub use indicator::tilted;
+pub use nominal::NominalPart;
+pub use overlap::overlaps;
+pub use point_tree::PointTree;
+pub use probed::ProbedPart;
+pub use process::{ProcessLimits, ToolProcess};
+pub use profile::Profile;
+pub use reference::Reference;
+pub use surface::{Surface, bisect};
+pub use touch_uncertainty::{FitError, FitUncertainty, TouchPlan};

@@ -2,7 +2,7 @@
 use nalgebra::{Point3, Vector3};
 
 /// A part of so few points is looked at point by point: halving it further takes longer.
-pub const FEW: usize = 8;
+pub(crate) const FEW: usize = 8;
 
 /// Points in an order that halves them again and again; the middle one of each part is its node.
 #[derive(Debug, Default)]
@@ -11,7 +11,7 @@ pub struct PointTree {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub struct Node {
+pub(crate) struct Node {
     pub point: Point3<f64>,
     pub index: u32,
     /// Before the node lie points that are less in this coordinate, behind it those that are more.
@@ -20,13 +20,13 @@ pub struct Node {
 
 impl Node {
     /// All coordinates are asked, whichever is outside: that takes less than a branch for each.
-    pub fn is_in(&self, low: &Point3<f64>, high: &Point3<f64>) -> bool {
+    pub(crate) fn is_in(&self, low: &Point3<f64>, high: &Point3<f64>) -> bool {
         let p = &self.point;
         (0..3).fold(true, |inside, i| inside & (low[i] <= p[i]) & (p[i] <= high[i]))
     }
 
     /// The coordinate by which it halves its part, and where.
-    pub fn halves(&self) -> (usize, f64) {
+    pub(crate) fn halves(&self) -> (usize, f64) {
         let axis = usize::from(self.axis);
         (axis, self.point[axis])
     }

@@ -17,7 +17,7 @@ use gcode_inspect::verify::{Comparison, Tolerances};
 use gcode_lang::motion::Position;
 use gcode_lang::source::Span;
 use gcode_lang::units::Deg;
-use gcode_part::part::hole::Hole;
+use gcode_part::Hole;
 
 /// The changes of holes, which is which, and what of the motion they explain.
 pub(super) struct HoleChanges {

@@ -5,7 +5,7 @@ use nalgebra::Point3;
 
 use super::record::{BlockLocation, Record};
 use super::steps::{Step, StepKind};
-use gcode_inspect::machine::path::AxisMotion;
+use gcode_inspect::machine::AxisMotion;
 use gcode_inspect::machine::{HeadMessage, Machine, Setup};
 use gcode_lang::motion::{MAX_AXES, PlanarArc, Position, StopKind};
 

@@ -16,7 +16,7 @@ use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{Axes, Backtrace, CallChain, MAX_AXES, Position};
 use gcode_lang::program::{Library, Program};
 use gcode_lang::source::{Sources, Span};
-use gcode_part::part::surface::Surface;
+use gcode_part::Surface;
 use gcode_session::{Request, Run, SessionError, Simulation};
 
 /// What one revision does.

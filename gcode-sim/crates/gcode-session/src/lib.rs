@@ -22,11 +22,11 @@ use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{Backtrace, EventSink};
 use gcode_lang::program::{Library, Memory};
 use gcode_lang::source::{Bytes, Span};
-use gcode_part::part::flutes::Flutes;
-use gcode_part::part::hole::HoleList;
-use gcode_part::part::process::ProcessLimits;
-use gcode_part::part::reference::Reference;
-use gcode_part::part::surface::Surface;
+use gcode_part::Flutes;
+use gcode_part::HoleList;
+use gcode_part::ProcessLimits;
+use gcode_part::Reference;
+use gcode_part::Surface;
 
 /// A program to run, and everything its run depends on.
 #[derive(Clone, Debug)]

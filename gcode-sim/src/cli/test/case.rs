@@ -9,7 +9,7 @@ use crate::report::test_report::{CaseAnswer, CaseReport, FirstFailure};
 use gcode_control::Limits;
 use gcode_inspect::verify::{self, Tolerances};
 use gcode_lang::diag::{Diagnostic, Severity};
-use gcode_part::part::nominal::NominalPart;
+use gcode_part::NominalPart;
 use gcode_review::{BlockLocation, Change, Record, Revision, changes};
 use gcode_session::{Run, SessionError};
 

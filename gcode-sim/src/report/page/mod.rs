@@ -18,7 +18,7 @@ use maud::{Markup, html};
 use document::document;
 use gcode_inspect::machine::Machine;
 use gcode_inspect::verify::Verdict;
-use gcode_part::part::reference::Reference;
+use gcode_part::Reference;
 use gcode_review::{Revision, RevisionDiff, UnexecutedChange};
 use gcode_session::{Request, Trace};
 use holes::HoleTable;

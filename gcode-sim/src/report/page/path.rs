@@ -10,7 +10,7 @@ use super::rows::HoleRowState;
 use super::words::{count, shown};
 use super::{Page, Side, heading};
 use gcode_inspect::machine::HeadKind;
-use gcode_part::part::hole::Hole;
+use gcode_part::Hole;
 use gcode_review::BlockLocation;
 
 /// More moves than this aren't drawn, nor more points: the page must turn without a wait.

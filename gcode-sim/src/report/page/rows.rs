@@ -7,7 +7,7 @@ use crate::report::figures::{near, signed};
 use crate::report::hole_changes::{self, remarks};
 use gcode_inspect::holes::DrilledHole;
 use gcode_inspect::verify::{ExtraHole, HoleVerdict, Verdict};
-use gcode_part::part::reference::Reference;
+use gcode_part::Reference;
 use gcode_review::Paired;
 
 /// What is to be said of a hole.

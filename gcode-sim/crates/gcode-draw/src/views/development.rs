@@ -9,7 +9,7 @@ use super::super::scene::{Axis, LegendItem, Mark, Sample, Scene, Shape, Stroke, 
 use super::side::off;
 use super::top::{Cylinder, DrawnHole, NUMBERED, TopView, headline, number_few, standings, turn_name, worst};
 use gcode_lang::units::Deg;
-use gcode_part::part::hole::Hole;
+use gcode_part::Hole;
 
 /// The scene of a development; `None` of a part that is no cylinder.
 pub fn development(view: &TopView) -> Option<Scene> {

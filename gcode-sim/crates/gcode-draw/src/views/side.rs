@@ -3,7 +3,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use super::super::role::Point;
 use super::super::scene::{Axis, ZoneDeviation};
-use gcode_part::part::hole::Hole;
+use gcode_part::Hole;
 
 /// The direction that comes towards the reader.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -6,7 +6,7 @@ use super::super::role::{HoleStatus, Pen, Point};
 use super::super::scene::{LegendItem, Mark, Sample, Scene, Shape, Stroke, Title};
 use super::purpose::PicturePurpose;
 use super::side::Side;
-use gcode_part::part::hole::Hole;
+use gcode_part::Hole;
 
 /// What a top view is made of. Everything but the holes may be unknown.
 #[derive(Clone, Debug, Default)]

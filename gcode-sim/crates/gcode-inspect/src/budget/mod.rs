@@ -19,7 +19,7 @@ pub use statistics::Statistics;
 use crate::machine::Machine;
 use crate::machine::random::RandomStream;
 use crate::machine::sources::ErrorSource;
-use gcode_part::part::hole::Hole;
+use gcode_part::Hole;
 
 /// More samples than this would need more memory than a computer in a shop has: 16 bytes each.
 pub const MOST_SAMPLES: usize = 20_000_000;

@@ -6,7 +6,7 @@ use crate::machine::{HeadKind, LinkMotion, Machine, Setup};
 use crate::verify::position::Deviation;
 use gcode_lang::motion::Position;
 use gcode_lang::units::Deg;
-use gcode_part::part::hole::Hole;
+use gcode_part::Hole;
 
 /// Where the axes stand where the feed begins and where it ends, rounded to the increment as the control does.
 #[derive(Clone, Debug)]

@@ -21,7 +21,7 @@ use crate::machine::{LinkMotion, Machine, Wheel};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{AxisIndex, Backtrace, Event, EventKind, EventSink, PlanarArc, Position};
 use gcode_lang::units::{Deg, Rpm};
-use gcode_part::part::flutes::Flutes;
+use gcode_part::Flutes;
 
 /// More moves than this aren't kept: no burr has so many, but a loop that never ends makes them.
 const MOVES: usize = 500_000;

@@ -3,8 +3,8 @@ use nalgebra::Point3;
 
 use gcode_lang::motion::Backtrace;
 use gcode_lang::units::Deg;
+use gcode_part::Flutes;
 use gcode_part::job::FluteLaw;
-use gcode_part::part::flutes::Flutes;
 
 /// One point of the path; lengths in mm.
 #[derive(Clone, Copy, Debug)]

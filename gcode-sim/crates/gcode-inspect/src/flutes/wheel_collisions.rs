@@ -6,7 +6,7 @@ use super::ARITHMETIC;
 use crate::holes::ROUNDED;
 use crate::holes::per_block::PerBlock;
 use gcode_lang::motion::Backtrace;
-use gcode_part::part::flutes::Flutes;
+use gcode_part::Flutes;
 
 /// How the wheel came into the burr where no pass was.
 #[derive(Clone, Copy, Debug, PartialEq)]

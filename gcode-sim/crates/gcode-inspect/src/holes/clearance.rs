@@ -7,8 +7,8 @@ use crate::machine::path::AxisMotion;
 use crate::machine::{LinkMotion, Pose};
 use gcode_lang::motion::{Backtrace, Event};
 use gcode_lang::units::Deg;
-use gcode_part::part::distance::Nearest;
-use gcode_part::part::surface::Surface;
+use gcode_part::Nearest;
+use gcode_part::Surface;
 
 /// So near to the part nobody sets a tool, mm: a tool length or a part is easily off by as much.
 pub const CONTACT: f64 = 0.1;

@@ -5,18 +5,18 @@ use gcode_lang::units::{MmPerMin, Rpm, Seconds};
 
 /// Events in order; event n stands in line n, counted from 1.
 #[derive(Clone, Default)]
-pub struct EventScript {
+pub(crate) struct EventScript {
     at: Position,
     events: Vec<EventKind>,
 }
 
 impl EventScript {
     /// A run with the spindle turning.
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self::default().with(EventKind::Spindle { turning: SpindleDirection::Clockwise, speed: Rpm(1500.0) })
     }
 
-    pub fn with(mut self, event: EventKind) -> Self {
+    pub(crate) fn with(mut self, event: EventKind) -> Self {
         self.events.push(event);
         self
     }
@@ -30,27 +30,27 @@ impl EventScript {
     }
 
     /// `rapid("X10 B90")`
-    pub fn rapid(mut self, words: &str) -> Self {
+    pub(crate) fn rapid(mut self, words: &str) -> Self {
         let to = self.go(words);
         self.with(EventKind::Rapid { to })
     }
 
-    pub fn feed(mut self, words: &str) -> Self {
+    pub(crate) fn feed(mut self, words: &str) -> Self {
         let to = self.go(words);
         self.with(EventKind::Feed { to, rate: MmPerMin(10.0) })
     }
 
-    pub fn tool(self, number: u32) -> Self {
+    pub(crate) fn tool(self, number: u32) -> Self {
         self.with(EventKind::ToolChange { number })
     }
 
     /// The operator is asked to set the head to this angle.
-    pub fn head(self, angle: f64) -> Self {
+    pub(crate) fn head(self, angle: f64) -> Self {
         let text = "SET HEAD TO #140".to_owned();
         self.with(EventKind::Stop { kind: StopKind::Message, text, named: vec![(140, angle)] })
     }
 
-    pub fn emit_to(&self, sink: &mut impl EventSink) {
+    pub(crate) fn emit_to(&self, sink: &mut impl EventSink) {
         for (line, kind) in (1..).zip(&self.events) {
             let block = Span { source: SourceId(0), start: line, end: line };
             sink.event(&Event { kind, seconds: Seconds::ZERO, block, calls: &None });

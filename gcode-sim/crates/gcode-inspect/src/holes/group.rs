@@ -6,8 +6,8 @@ use nalgebra::{Point3, Unit, Vector3};
 use crate::machine::Machine;
 use gcode_lang::motion::{Backtrace, Position};
 use gcode_lang::units::Deg;
-use gcode_part::clusters::Clusters;
-use gcode_part::point_tree::PointTree;
+use gcode_part::Clusters;
+use gcode_part::PointTree;
 
 /// Passes belong to one hole when one's bottom lies this near the other's line, in mm, …
 const ASIDE: f64 = 0.5;

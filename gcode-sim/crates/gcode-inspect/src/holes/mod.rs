@@ -3,20 +3,20 @@ mod clamping;
 mod clearance;
 mod cutting;
 #[cfg(test)]
-pub mod event_script;
+pub(crate) mod event_script;
 mod findings;
 mod group;
 mod length_mismatch;
 mod line;
 mod line_findings;
 mod machine_requests;
-pub mod per_block;
+pub(crate) mod per_block;
 mod probing;
 mod rapids;
-pub mod spindle;
+pub(crate) mod spindle;
 #[cfg(test)]
 mod tests;
-pub mod work_zero;
+pub(crate) mod work_zero;
 
 use nalgebra::Point3;
 
@@ -45,9 +45,9 @@ use gcode_lang::motion::{
 };
 use gcode_lang::source::Span;
 use gcode_lang::units::Rpm;
-use gcode_part::part::hole::{Hole, HoleList, Origin, Unit};
-use gcode_part::part::process::ProcessLimits;
-use gcode_part::part::surface::Surface;
+use gcode_part::ProcessLimits;
+use gcode_part::Surface;
+use gcode_part::{Hole, HoleList, Origin, Unit};
 
 /// More passes than this aren't kept: no part has so many holes, but a loop that never ends drills them, and must not
 /// fill the memory.

@@ -6,14 +6,14 @@ use gcode_lang::source::Span;
 
 /// Entries in the order in which they first came up; `K` tells kinds at one block from one another.
 #[derive(Clone, Debug)]
-pub struct PerBlock<K, T> {
+pub(crate) struct PerBlock<K, T> {
     list: Vec<Counted<T>>,
     index: BTreeMap<(u32, u32, K), usize>,
 }
 
 /// What came up, and how often.
 #[derive(Clone, Debug)]
-pub struct Counted<T> {
+pub(crate) struct Counted<T> {
     pub value: T,
     pub times: u64,
 }
@@ -26,7 +26,12 @@ impl<K, T> Default for PerBlock<K, T> {
 
 impl<K: Ord, T> PerBlock<K, T> {
     /// Counts one more at a block. The first makes the entry; of a later one the caller sees what is there.
-    pub fn count(&mut self, block: Span, kind: K, first: impl FnOnce() -> T) -> (usize, &mut Counted<T>) {
+    pub(crate) fn count(
+        &mut self,
+        block: Span,
+        kind: K,
+        first: impl FnOnce() -> T,
+    ) -> (usize, &mut Counted<T>) {
         let next = self.list.len();
         let index = *self.index.entry((block.source.0, block.start, kind)).or_insert(next);
         if index == next {
@@ -37,17 +42,17 @@ impl<K: Ord, T> PerBlock<K, T> {
         (index, entry)
     }
 
-    pub fn get_mut(&mut self, index: usize) -> Option<&mut Counted<T>> {
+    pub(crate) fn get_mut(&mut self, index: usize) -> Option<&mut Counted<T>> {
         self.list.get_mut(index)
     }
 
-    pub fn into_entries(self) -> impl Iterator<Item = Counted<T>> {
+    pub(crate) fn into_entries(self) -> impl Iterator<Item = Counted<T>> {
         self.list.into_iter()
     }
 }
 
 /// With a note of how often more it came up at its block.
-pub fn again(finding: Diagnostic, times: u64) -> Diagnostic {
+pub(crate) fn again(finding: Diagnostic, times: u64) -> Diagnostic {
     match times {
         0 | 1 => finding,
         2 => finding.note("and once more at the same block"),

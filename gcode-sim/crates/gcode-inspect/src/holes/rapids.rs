@@ -6,7 +6,7 @@ use super::line::CuttingLine;
 use crate::machine::path::AxisMotion;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::Event;
-use gcode_part::part::surface::Surface;
+use gcode_part::Surface;
 
 /// Motion less than this below the surface, in mm, isn't told.
 pub(super) const TOUCH: f64 = 0.01;

@@ -7,7 +7,7 @@ use gcode_lang::motion::{Backtrace, SpindleDirection};
 
 /// The finding: nothing is cut so. It is a warning where an M code went to the machine builder's logic before, `builder`,
 /// for that may be what starts the spindle.
-pub fn stopped(message: &str, builder: Option<u32>) -> Diagnostic {
+pub(crate) fn stopped(message: &str, builder: Option<u32>) -> Diagnostic {
     let severity = if builder.is_some() { Severity::Warning } else { Severity::Error };
     let finding = Diagnostic::new(severity, "spindle-stopped", message);
     builder.into_iter().fold(finding, |finding, code| {

@@ -5,7 +5,7 @@ use super::event_script::EventScript;
 use super::{DrilledHole, HoleExtraction, HoleExtractor};
 use crate::machine::{Head, HeadKind, Machine, Tool};
 use gcode_lang::motion::{EventKind, StopKind};
-use gcode_part::part::surface::Surface;
+use gcode_part::Surface;
 
 fn extract(machine: &Machine, surface: Option<Surface>, script: &EventScript) -> HoleExtraction {
     let mut extractor = HoleExtractor::new(machine).with_surface(surface);

@@ -8,7 +8,7 @@ use super::rapids::TOUCH;
 use crate::machine::Machine;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{AxisIndex, Backtrace, Event};
-use gcode_part::part::surface::Surface;
+use gcode_part::Surface;
 
 /// The sine of the angle up to which an axis leads along a hole.
 const ALONG: f64 = 1e-3;
@@ -25,7 +25,7 @@ pub struct UnknownWorkZero {
 
 /// Which axes stand so now, and which will when the next move has ended.
 #[derive(Clone, Debug, Default)]
-pub struct WorkZeroTracker {
+pub(crate) struct WorkZeroTracker {
     now: u8,
     then: u8,
     /// The first rapid, the axes of all of them, how many they are.
@@ -34,7 +34,7 @@ pub struct WorkZeroTracker {
 
 impl WorkZeroTracker {
     /// What the control says of the next move's end, of axes on which something is.
-    pub fn apply_event(&mut self, machine: &Machine, axes: u8) {
+    pub(crate) fn apply_event(&mut self, machine: &Machine, axes: u8) {
         // A move that leads nowhere isn't told.
         self.now = self.then;
         self.then = machine
@@ -45,17 +45,17 @@ impl WorkZeroTracker {
     }
 
     /// The axes that stood so before a move and those that do after it.
-    pub fn advance(&mut self) -> (u8, u8) {
+    pub(crate) fn advance(&mut self) -> (u8, u8) {
         (std::mem::replace(&mut self.now, self.then), self.then)
     }
 
-    pub fn note_rapid(&mut self, event: &Event<'_>, axes: u8) {
+    pub(crate) fn note_rapid(&mut self, event: &Event<'_>, axes: u8) {
         let (_, all, times) = self.rapids.get_or_insert_with(|| (event.place(), 0, 0));
         *all |= axes;
         *times += 1;
     }
 
-    pub fn finish(self, machine: &Machine) -> Option<UnknownWorkZero> {
+    pub(crate) fn finish(self, machine: &Machine) -> Option<UnknownWorkZero> {
         let unplaced =
             |(place, axes, times)| UnknownWorkZero { place, letters: letters(machine, axes), times };
         self.rapids.map(unplaced)

@@ -1,25 +1,28 @@
 //! The machine as data: which axes carry the part, which carry the tool, the head, the tools, and where the part
 //! stands. Forward kinematics is the definition; everything else has to agree with it.
 mod chain;
-pub mod error;
+pub(crate) mod error;
 mod file;
 mod from_job;
 mod head;
 mod inverse;
-pub mod path;
+pub(crate) mod path;
 mod probe;
-pub mod random;
-pub mod sources;
+pub(crate) mod random;
+pub(crate) mod sources;
 mod touch;
 mod wheel;
 
 use nalgebra::{IsometryMatrix3, Point3, Translation3, Unit, Vector3};
 
 pub use chain::{AxisLink, Chain, LinkMotion};
+pub use error::Distribution;
 pub use file::error_file;
 pub use file::{ErrorFile, File as MachineFile};
 pub use head::{Head, HeadKind, HeadMessage};
+pub use path::AxisMotion;
 pub use probe::Probe;
+pub use random::RandomStream;
 pub use wheel::Wheel;
 
 use gcode_lang::control::{Dialect, Increment};

@@ -5,7 +5,7 @@ use super::path::AxisMotion;
 use super::random::RandomStream;
 use super::{Machine, Probe, Setup};
 use gcode_lang::motion::{SkipMove, SkipSignal};
-use gcode_part::part::surface::{Surface, bisect};
+use gcode_part::{Surface, bisect};
 
 /// The ball's way is taken as chords that stray from it by no more than this, mm.
 const STRAY: f64 = 1e-5;

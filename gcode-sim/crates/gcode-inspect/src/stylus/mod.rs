@@ -15,7 +15,7 @@ use crate::machine::path::AxisMotion;
 use crate::machine::{Machine, Placement};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{Backtrace, Event, EventSink};
-use gcode_part::part::surface::Surface;
+use gcode_part::Surface;
 
 use self::ball::{Ball, BallMove, BallUpdate};
 use self::unread::{Unread, UnreadFeeds, UnreadReason};

@@ -5,7 +5,7 @@ use crate::machine::Machine;
 use crate::machine::path::AxisMotion;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::{Event, EventKind, EventSink, Position};
-use gcode_part::part::surface::Surface;
+use gcode_part::Surface;
 
 use super::ball::{Ball, BallMove, BallUpdate};
 

@@ -1,8 +1,8 @@
 //! What a measure of a honeycomb that is wrong by a factor was computed from: numbers that programs take for others.
 use std::f64::consts::PI;
 
+use gcode_part::Pattern;
 use gcode_part::job::Metric;
-use gcode_part::part::honeycomb::Pattern;
 
 /// Factors closer than this are the same: angles and lengths are rounded to the control's increment.
 const ALIKE: f64 = 5e-5;

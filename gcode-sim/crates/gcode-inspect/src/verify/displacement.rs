@@ -8,8 +8,8 @@ use crate::holes::DrilledHole;
 use crate::machine::Machine;
 use gcode_lang::motion::AxisIndex;
 use gcode_lang::units::Deg;
-use gcode_part::part::hole::Hole;
-use gcode_part::part::honeycomb::{Pattern, azimuth};
+use gcode_part::Hole;
+use gcode_part::{Pattern, azimuth};
 
 /// A drilled hole leans by less than this where only slides are wrong.
 const LEANS: Deg = Deg(0.01);

@@ -4,9 +4,9 @@ use nalgebra::{Point3, Vector3};
 use super::Tolerances;
 use super::position::Deviation;
 use crate::holes::DrilledHole;
-use gcode_part::part::hole::Hole;
-use gcode_part::part::honeycomb::Pattern;
-use gcode_part::point_tree::PointTree;
+use gcode_part::Hole;
+use gcode_part::Pattern;
+use gcode_part::PointTree;
 
 /// A drilled hole can be a wanted one when its axis passes the wanted entry and bottom this near, in mm.
 const REACH: f64 = 5.0;

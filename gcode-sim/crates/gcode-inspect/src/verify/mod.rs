@@ -7,7 +7,7 @@ mod hole_finding;
 mod matching;
 mod neighbours;
 mod not_checked;
-pub mod position;
+pub(crate) mod position;
 mod rounding;
 mod rows;
 #[cfg(test)]
@@ -24,7 +24,7 @@ use crate::holes::HoleExtraction;
 use crate::machine::Machine;
 use gcode_lang::diag::Severity;
 use gcode_lang::source::Span;
-use gcode_part::part::reference::Reference;
+use gcode_part::Reference;
 
 /// What a hole may be off by.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,8 +6,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Comparison;
-use gcode_part::part::honeycomb::{Pattern, azimuth};
-use gcode_part::point_tree::PointTree;
+use gcode_part::PointTree;
+use gcode_part::{Pattern, azimuth};
 
 /// A hole has so many at most.
 const SIX: usize = 6;

@@ -7,8 +7,8 @@ use crate::machine::{HeadKind, Machine};
 use gcode_lang::motion::LengthCompensation;
 use gcode_lang::source::Span;
 use gcode_lang::units::Deg;
-use gcode_part::part::process::ToolProcess;
-use gcode_part::part::reference::Reference;
+use gcode_part::Reference;
+use gcode_part::ToolProcess;
 
 /// What a pass says nothing about, in words: nobody should take it for checked.
 pub(super) fn lines(

@@ -2,7 +2,7 @@
 use nalgebra::{Point3, Unit, Vector3};
 
 use gcode_lang::units::Deg;
-use gcode_part::part::hole::Hole;
+use gcode_part::Hole;
 
 /// An actual hole against a nominal one; lengths in mm, unrounded.
 #[derive(Clone, Copy, Debug, PartialEq)]

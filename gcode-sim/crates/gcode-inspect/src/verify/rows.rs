@@ -1,7 +1,7 @@
 //! The rows round a cylinder that the drilled holes stand in: at which azimuth, and where each begins in x.
 use super::Comparison;
 use gcode_lang::units::Deg;
-use gcode_part::part::honeycomb::{Pattern, azimuth};
+use gcode_part::{Pattern, azimuth};
 
 /// Holes of one azimuth.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -9,9 +9,9 @@ use crate::holes::HoleExtractor;
 use crate::holes::event_script::EventScript;
 use crate::machine::{Head, HeadKind, Machine, Tool};
 use gcode_lang::units::Deg;
+use gcode_part::NominalPart;
+use gcode_part::Reference;
 use gcode_part::job::Job;
-use gcode_part::part::nominal::NominalPart;
-use gcode_part::part::reference::Reference;
 
 #[derive(Clone, Copy, Debug)]
 struct Section {

@@ -9,7 +9,7 @@ use super::{Comparison, HoleFinding, HoleNeighbours, Neighbours};
 use gcode_lang::diag::{Diagnostic, Severity, Site};
 use gcode_lang::motion::{Call, CallChain};
 use gcode_lang::source::Span;
-use gcode_part::part::hole::{Hole, Origin};
+use gcode_part::{Hole, Origin};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]

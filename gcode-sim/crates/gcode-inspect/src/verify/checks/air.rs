@@ -5,8 +5,8 @@ use nalgebra::Point3;
 use super::{Comparison, HoleFinding};
 use crate::verify::hole_finding::{at_the_call, behind, fold};
 use gcode_lang::diag::Diagnostic;
-use gcode_part::part::surface::Surface;
-use gcode_part::point_tree::PointTree;
+use gcode_part::PointTree;
+use gcode_part::Surface;
 
 pub(in crate::verify) fn check(
     comparison: &Comparison<'_>,

@@ -3,7 +3,7 @@
 use crate::holes::per_block::again;
 use crate::holes::{CONTACT, CloseMotion, CloseMotionKind, ROUNDED};
 use gcode_lang::diag::Diagnostic;
-use gcode_part::part::process::ProcessLimits;
+use gcode_part::ProcessLimits;
 
 pub(in crate::verify) fn findings(passings: &[CloseMotion], conduct: &ProcessLimits) -> Vec<Diagnostic> {
     let told = passings

@@ -9,7 +9,7 @@ use crate::verify::hole_finding::{at_the_call, behind, fold};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::AxisIndex;
 use gcode_lang::units::Deg;
-use gcode_part::part::honeycomb::Pattern;
+use gcode_part::Pattern;
 
 /// Fewer holes are told one by one.
 const FEWEST: usize = 3;

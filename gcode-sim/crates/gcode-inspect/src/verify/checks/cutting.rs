@@ -5,7 +5,7 @@ use crate::holes::CutConditions;
 use crate::machine::Machine;
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::motion::{LengthCompensation, SpindleDirection};
-use gcode_part::part::process::ProcessLimits;
+use gcode_part::ProcessLimits;
 
 /// S and F may be off by this part of what is said: of F what an inch rounds to. More is told, …
 const ROUNDED: f64 = 0.005;

@@ -5,7 +5,7 @@ use nalgebra::Point3;
 use super::{Comparison, HoleFinding};
 use crate::verify::rows::{PatternRow, PatternRows};
 use gcode_lang::units::Deg;
-use gcode_part::part::honeycomb::{Pattern, azimuth};
+use gcode_part::{Pattern, azimuth};
 
 /// What rounding to an increment, 0.01 at the coarsest, leaves between a hole and its place in its row, mm and degrees.
 const ROUNDED: f64 = 0.03;

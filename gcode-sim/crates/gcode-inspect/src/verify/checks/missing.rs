@@ -3,7 +3,7 @@ use nalgebra::{Point3, Vector3};
 
 use super::{Comparison, HoleFinding};
 use gcode_lang::diag::Diagnostic;
-use gcode_part::point_tree::PointTree;
+use gcode_part::PointTree;
 
 pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
     // A hole drilled twice is known; it isn't the missing one in a wrong place.

@@ -1,7 +1,7 @@
 //! Wanted holes that cut into each other, which the drawing may mean: told, not failed. A pattern sees to its own.
 use super::{Comparison, HoleFinding};
 use gcode_lang::diag::{Diagnostic, Severity};
-use gcode_part::part::overlap::overlaps;
+use gcode_part::overlaps;
 
 pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
     if comparison.pattern.is_some() {

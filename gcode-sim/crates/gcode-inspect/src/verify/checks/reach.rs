@@ -8,7 +8,7 @@ use crate::machine::Machine;
 use crate::verify::hole_finding::{behind, fold};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::LengthCompensation;
-use gcode_part::part::process::ProcessLimits;
+use gcode_part::ProcessLimits;
 
 /// A feed that ends so near the line of a hole is meant for it, mm, …
 const ASIDE: f64 = 0.5;

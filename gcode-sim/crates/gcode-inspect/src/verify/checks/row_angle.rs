@@ -6,7 +6,7 @@ use crate::verify::hole_finding::at_the_call;
 use crate::verify::rows::PatternRows;
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::units::Deg;
-use gcode_part::part::honeycomb::Pattern;
+use gcode_part::Pattern;
 
 /// What rounding to the rotary's increment, 0.01° at the coarsest, may make of a turn.
 const ROUNDED: Deg = Deg(0.03);

@@ -4,7 +4,7 @@ use super::{Comparison, HoleFinding};
 use crate::verify::hole_finding::at_the_call;
 use crate::verify::rows::PatternRows;
 use gcode_lang::diag::Diagnostic;
-use gcode_part::part::honeycomb::Pattern;
+use gcode_part::Pattern;
 
 /// Rows that begin nearer to one another than this, in mm, begin alike.
 const SAME: f64 = 0.02;

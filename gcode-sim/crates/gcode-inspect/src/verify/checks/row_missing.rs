@@ -5,7 +5,7 @@ use super::{Comparison, HoleFinding};
 use crate::verify::hole_finding::{at_the_call, behind, fold};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::units::Deg;
-use gcode_part::part::honeycomb::Pattern;
+use gcode_part::Pattern;
 
 pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
     let Some(pattern) = comparison.pattern else { return };

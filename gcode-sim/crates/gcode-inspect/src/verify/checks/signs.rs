@@ -3,8 +3,8 @@ use nalgebra::{Unit, Vector3};
 
 use crate::machine::{LinkMotion, Machine};
 use gcode_lang::diag::Diagnostic;
-use gcode_part::part::reference::Reference;
-use gcode_part::part::surface::Surface;
+use gcode_part::Reference;
+use gcode_part::Surface;
 
 /// Of an axis that stands more askew than this to the part's nobody can say which way it turns.
 const ASKEW: f64 = 0.5;

@@ -5,8 +5,8 @@ use nalgebra::{Point3, Unit, Vector3};
 use super::{Comparison, HoleFinding};
 use crate::verify::hole_finding::behind;
 use gcode_lang::diag::Diagnostic;
-use gcode_part::part::hole::Hole;
-use gcode_part::part::surface::Surface;
+use gcode_part::Hole;
+use gcode_part::Surface;
 
 /// Fewer holes are told one by one.
 const FEWEST: usize = 3;

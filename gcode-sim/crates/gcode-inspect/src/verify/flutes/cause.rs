@@ -1,6 +1,6 @@
 //! Why the contact is off the tooth bottom: between the programmed points alone, or at these too, and by what they are off.
 use crate::flutes::{GrindingPass, Sample};
-use gcode_part::part::flutes::Flutes;
+use gcode_part::Flutes;
 
 /// What explains where the contact of a pass is, at its programmed points.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 use super::cause::Cause;
 use crate::flutes::{ARITHMETIC, GrindingPass, Window};
 use gcode_lang::units::Deg;
-use gcode_part::part::flutes::Flutes;
+use gcode_part::Flutes;
 
 /// What the helix angle is of instead.
 #[derive(Clone, Copy, Debug, PartialEq)]

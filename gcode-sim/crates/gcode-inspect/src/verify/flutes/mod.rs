@@ -20,7 +20,7 @@ use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::Backtrace;
 use gcode_lang::source::Span;
 use gcode_lang::units::Deg;
-use gcode_part::part::flutes::Flutes;
+use gcode_part::Flutes;
 
 /// What the checks look at.
 pub struct Inspection<'g> {

@@ -4,7 +4,7 @@ use nalgebra::Point3;
 use super::path_distance;
 use crate::flutes::{GrindingPass, Sample, shorter};
 use gcode_lang::units::Deg;
-use gcode_part::part::flutes::Flutes;
+use gcode_part::Flutes;
 
 /// The passes by their place round the burr.
 #[derive(Clone, Debug, Default)]

@@ -3,7 +3,7 @@ use nalgebra::Point3;
 
 use crate::flutes::{GrindingPass, Trace};
 use gcode_lang::motion::Backtrace;
-use gcode_part::part::flutes::Flutes;
+use gcode_part::Flutes;
 
 /// The speed may be off by this part of the wanted one: between two programmed points the axes run evenly and the contact
 /// doesn't, and by so much emitted moves let it swing.

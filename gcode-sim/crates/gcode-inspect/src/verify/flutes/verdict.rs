@@ -9,8 +9,8 @@ use crate::verify::verdict::{Answer, Finding, finding_of, readable};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::source::Span;
 use gcode_lang::units::Deg;
+use gcode_part::Flutes;
 use gcode_part::job::FluteLaw;
-use gcode_part::part::flutes::Flutes;
 
 /// As `verify --format json` writes it. Lengths in mm, angles in degrees; nothing is rounded.
 #[derive(Clone, Debug, Serialize, JsonSchema)]

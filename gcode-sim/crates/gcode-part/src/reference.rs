@@ -3,7 +3,7 @@ use super::hole::{Hole, HoleList, Unit};
 use super::honeycomb::Pattern;
 use super::process::ProcessLimits;
 use super::read;
-pub use super::read::ReferenceError;
+pub(crate) use super::read::ReferenceError;
 use super::surface::Surface;
 
 /// What the holes of a program are held against.
