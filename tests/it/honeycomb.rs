@@ -68,9 +68,9 @@ fn the_small_job_counted_by_hand() {
     let verdict = verdict(SMALL, &[]);
     assert_eq!((verdict.verdict, verdict.holes.len()), (Answer::Pass, 9 * 5 + 9 * 4));
     let neighbours = verdict.neighbours.unwrap();
-    assert!((neighbours.wanted - 20.153_326_3).abs() < 1e-6, "{}", neighbours.wanted);
+    assert!((neighbours.nominal - 20.153_326_3).abs() < 1e-6, "{}", neighbours.nominal);
     // Even rows without their ends; of odd ones the inner two have both neighbours in the row.
-    assert_eq!((neighbours.with_six, neighbours.with_six_wanted), (9 * 3 + 9 * 2, 45));
+    assert_eq!((neighbours.with_six, neighbours.with_six_nominal), (9 * 3 + 9 * 2, 45));
 }
 
 #[test]
@@ -138,10 +138,10 @@ proptest! {
         let (worst, rounding) = (verdict.worst.unwrap(), verdict.rounding.unwrap());
         prop_assert!(worst <= rounding + 1e-6, "Φ{worst} where rounding explains Φ{rounding}\n{text}");
         let neighbours = verdict.neighbours.unwrap();
-        prop_assert_eq!(neighbours.with_six, neighbours.with_six_wanted);
+        prop_assert_eq!(neighbours.with_six, neighbours.with_six_nominal);
         // Both ends of a distance may be rounded; the chord of a step of the rotary is shorter on the pitch's diameter.
         for extreme in [neighbours.min, neighbours.max].into_iter().flatten() {
-            prop_assert!((extreme.distance - neighbours.wanted).abs() <= rounding + 1e-6, "{extreme:?}\n{text}");
+            prop_assert!((extreme.distance - neighbours.nominal).abs() <= rounding + 1e-6, "{extreme:?}\n{text}");
         }
     }
 }

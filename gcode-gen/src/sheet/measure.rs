@@ -104,7 +104,8 @@ fn of_all(verdict: &Verdict) -> Vec<Characteristic> {
 }
 
 fn of_neighbours(neighbours: &Neighbours) -> Vec<Characteristic> {
-    let Neighbours { metric, wanted, with_six, with_six_wanted, min, max } = neighbours;
+    let Neighbours { metric, nominal: wanted, with_six, with_six_nominal: with_six_wanted, min, max } =
+        neighbours;
     let place = |distance: &Option<Distance>| match distance {
         Some(Distance { distance, between: [one, other] }) => {
             format!("{} between {one} and {other}", near(*distance, 4))
@@ -122,7 +123,7 @@ fn of_neighbours(neighbours: &Neighbours) -> Vec<Characteristic> {
 fn of_flutes(verdict: &FluteVerdict) -> Vec<Characteristic> {
     let number = |value: Option<f64>, places: usize| value.map_or("-".to_owned(), |v| near(v, places));
     let mut all = vec![
-        characteristic("flutes", "number", verdict.wanted_flutes.to_string(), verdict.flutes.to_string()),
+        characteristic("flutes", "number", verdict.nominal_flutes.to_string(), verdict.flutes.to_string()),
         characteristic(
             "tooth bottom",
             "off the profile",
@@ -146,7 +147,7 @@ fn of_flutes(verdict: &FluteVerdict) -> Vec<Characteristic> {
     all.extend(verdict.laws.iter().map(|law| {
         let wanted = if verdict.law == "published" { law.published } else { law.constant_helix };
         let requirement = format!("{}° ±{}°", near(wanted, 2), verdict.helix_tolerance);
-        let place = format!("{}° from the tip", law.theta);
+        let place = format!("{}° from the tip", law.polar);
         let found = law.measured.map_or("not measured".to_owned(), |angle| format!("{}°", near(angle, 2)));
         characteristic(&place, "helix angle", requirement, found)
     }));

@@ -6,7 +6,7 @@ use clap::Args;
 use super::format::ListFormat;
 use super::{ExitStatus, UsageError, holes, input, output};
 use crate::report::flute_table;
-use gcode_inspect::verify::flutes::WantedFlutes;
+use gcode_inspect::verify::flutes::NominalFlutes;
 use gcode_part::NominalPart;
 use gcode_part::job::Job;
 
@@ -28,7 +28,7 @@ pub(super) fn run(arguments: &ReferenceArguments) -> Result<ExitStatus, UsageErr
     match NominalPart::of_job(&job).map_err(|e| named(&e))? {
         NominalPart::Holes(reference) => holes::print(&reference.list(), arguments.format)?,
         NominalPart::Flutes(wanted) => {
-            let burr = WantedFlutes::of(&wanted);
+            let burr = NominalFlutes::of(&wanted);
             match arguments.format {
                 ListFormat::Json => output::json(&burr)?,
                 ListFormat::Text => output::print(&flute_table::wanted(&burr))?,

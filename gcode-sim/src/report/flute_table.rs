@@ -2,7 +2,7 @@
 use std::fmt::Write;
 
 use gcode_inspect::verify::Answer;
-use gcode_inspect::verify::flutes::{FluteVerdict, Law, WantedFlutes};
+use gcode_inspect::verify::flutes::{FluteVerdict, LawAngles, NominalFlutes};
 
 /// Lengths in mm, angles in degrees; judged unrounded, shown rounded.
 pub fn table(verdict: &FluteVerdict) -> String {
@@ -20,7 +20,7 @@ pub fn table(verdict: &FluteVerdict) -> String {
     };
     let [found, wanted, tolerance] = ["found", "wanted", "tolerance"].map(str::to_owned);
     row("", found, wanted, tolerance);
-    row("flutes", verdict.flutes.to_string(), verdict.wanted_flutes.to_string(), String::new());
+    row("flutes", verdict.flutes.to_string(), verdict.nominal_flutes.to_string(), String::new());
     row(
         "contact off the tooth bottom, mm",
         number(verdict.surface_deviation, 4),
@@ -54,7 +54,7 @@ pub fn table(verdict: &FluteVerdict) -> String {
     row(
         "neighbours' least distance, mm",
         number(verdict.nearest, 3),
-        format!("at least {}", verdict.nearest_allowed),
+        format!("at least {}", verdict.min_nearest),
         String::new(),
     );
     row(
@@ -64,10 +64,11 @@ pub fn table(verdict: &FluteVerdict) -> String {
         String::new(),
     );
     laws(&mut text, &verdict.laws);
-    if !verdict.along.is_empty() {
-        let _ = writeln!(text, "measured: on pass {}, the farthest from the law", verdict.along_pass);
+    if !verdict.helix_course.is_empty() {
+        let _ = writeln!(text, "measured: on pass {}, the farthest from the law", verdict.course_pass);
         if verdict.laws.iter().any(|law| law.measured.is_none()) {
-            let least = verdict.along.iter().map(|angles| angles.polar.0).fold(f64::INFINITY, f64::min);
+            let least =
+                verdict.helix_course.iter().map(|angles| angles.polar.0).fold(f64::INFINITY, f64::min);
             let _ = writeln!(
                 text,
                 "-: not measured within 2.5 degrees of that theta; the last {} mm of the flute are one measurement, at theta {least:.1}",
@@ -88,7 +89,7 @@ pub fn table(verdict: &FluteVerdict) -> String {
 }
 
 /// What is wanted, in words.
-pub fn wanted(burr: &WantedFlutes) -> String {
+pub fn wanted(burr: &NominalFlutes) -> String {
     let mut text = format!(
         "{} flutes, law {}, from {:.3} mm behind the end of the cylinder to polar angle {}, the pole {:.3} mm before it\n",
         burr.flutes, burr.law, burr.start, burr.tip_angle, -burr.pole
@@ -98,7 +99,7 @@ pub fn wanted(burr: &WantedFlutes) -> String {
 }
 
 /// The helix angle by polar angle θ from the tip: in degrees, as measured, and what each law has there.
-fn laws(text: &mut String, laws: &[Law]) {
+fn laws(text: &mut String, laws: &[LawAngles]) {
     let _ = writeln!(
         text,
         "\n{:>8} {:>10} {:>15} {:>10}   helix angle, degrees",
@@ -109,7 +110,7 @@ fn laws(text: &mut String, laws: &[Law]) {
         let _ = writeln!(
             text,
             "{:>8} {measured:>10} {:>15.2} {:>10.2}",
-            law.theta, law.constant_helix, law.published
+            law.polar, law.constant_helix, law.published
         );
     }
     text.push('\n');

@@ -5,7 +5,7 @@ use super::helix_courses;
 use gcode_draw::{Fault, FlutePoint, FluteView, HoleStatus};
 use gcode_inspect::flutes::GrindingPass;
 use gcode_inspect::verify::Answer;
-use gcode_inspect::verify::flutes::{FluteVerdict, in_words};
+use gcode_inspect::verify::flutes::{FluteVerdict, describe_code};
 use gcode_lang::units::Deg;
 use gcode_part::Profile;
 use gcode_session::GrindingRun;
@@ -16,7 +16,7 @@ pub fn of(name: &str, grinding: &GrindingRun, verdict: &FluteVerdict) -> FluteVi
     let profile = &wanted.profile;
     let spot =
         |at: Point3<f64>| FlutePoint { at: at.coords.into(), out: profile.normal(&at).into_inner().into() };
-    let spots = |pass: &GrindingPass| pass.trace.samples.iter().map(|sample| spot(sample.at)).collect();
+    let spots = |pass: &GrindingPass| pass.trace.samples.iter().map(|sample| spot(sample.point)).collect();
     // Every degree of the nose from its widest to the pole.
     let nose = (0..=90).map(|degree| profile.at_polar(Deg(90.0 - f64::from(degree))));
     let nose: Vec<[f64; 2]> = nose.map(|at| [at.x, -at.y]).collect();
@@ -40,7 +40,7 @@ pub fn of(name: &str, grinding: &GrindingRun, verdict: &FluteVerdict) -> FluteVi
                 "Helix angle {}° to {}°, farthest from the law on pass {}",
                 number(verdict.helix_min, 2),
                 number(verdict.helix_max, 2),
-                verdict.along_pass
+                verdict.course_pass
             ),
             format!("Contact off the surface: {} mm at most", number(verdict.surface_deviation, 4)),
         ],
@@ -61,7 +61,7 @@ fn faults(profile: &Profile, verdict: &FluteVerdict) -> Vec<Fault> {
     let mut faults: Vec<Fault> = Vec::new();
     for finding in &verdict.findings {
         for (index, site) in finding.sites.iter().enumerate() {
-            let what = if index == 0 { in_words(&finding.code) } else { None };
+            let what = if index == 0 { describe_code(&finding.code) } else { None };
             let (spot, pass) = (spot(profile, site.at.into()), site.pass.map(|pass| pass - 1));
             let is_here = |fault: &&mut Fault| fault.pass == pass && fault.spot.at == spot.at;
             if let Some(fault) = faults.iter_mut().find(is_here) {

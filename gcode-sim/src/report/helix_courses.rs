@@ -30,7 +30,7 @@ pub(super) fn of(grinding: &GrindingRun, verdict: &FluteVerdict) -> HelixCourses
     let shank = (0.0 < wanted.start).then(|| at(0.0, Deg(90.0)));
     HelixCourses {
         passes: grinding.ground.passes.iter().map(|pass| course(wanted, pass)).collect(),
-        worst: verdict.along_pass - 1,
+        worst: verdict.course_pass - 1,
         tolerance: wanted.helix_tolerance.0,
         laws: [wanted.law.name(), other.name()],
         wanted: shank.into_iter().chain(outline.iter().map(|(polar, way)| at(*way, *polar))).collect(),
@@ -63,8 +63,8 @@ fn course(wanted: &Flutes, pass: &GrindingPass) -> Vec<HelixAt> {
         .map(|window| HelixAt {
             way: begins + window.middle.along,
             found: window.helix.0,
-            wanted: window.wanted.0,
-            other: window.other.0,
+            wanted: window.nominal_helix.0,
+            other: window.other_law_helix.0,
         })
         .collect();
     course.sort_by(|one, other| one.way.total_cmp(&other.way));
@@ -73,6 +73,6 @@ fn course(wanted: &Flutes, pass: &GrindingPass) -> Vec<HelixAt> {
 
 /// How far behind the shank's end the pass begins, along the outline: its sample nearest to there tells.
 fn from_shank(wanted: &Flutes, trace: &Trace) -> f64 {
-    let first = trace.samples.iter().max_by(|one, other| one.at.x.total_cmp(&other.at.x));
-    first.map_or(0.0, |first| wanted.start - first.at.x - first.along)
+    let first = trace.samples.iter().max_by(|one, other| one.point.x.total_cmp(&other.point.x));
+    first.map_or(0.0, |first| wanted.start - first.point.x - first.along)
 }

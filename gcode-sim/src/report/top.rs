@@ -57,10 +57,10 @@ pub fn of_verdict(
     let judged = verdict.holes.iter().map(|hole| DrawnHole {
         id: hole.id.clone(),
         nominal: wanted(&hole.id).cloned(),
-        found: Some(found[hole.found].hole(nowhere)),
+        found: Some(found[hole.drilled_index].hole(nowhere)),
         standing: if hole.ok { HoleStatus::Good } else { HoleStatus::Bad },
         phi: Some(hole.position_deviation),
-        turn: rotary.turn(&found[hole.found]),
+        turn: rotary.turn(&found[hole.drilled_index]),
         remarks: hole
             .objections
             .first()
@@ -199,7 +199,7 @@ impl Rotary {
     }
 
     pub(super) fn turn(&self, found: &DrilledHole) -> Option<f64> {
-        self.0.map(|(axis, ..)| found.at[axis])
+        self.0.map(|(axis, ..)| found.axis_position[axis])
     }
 }
 

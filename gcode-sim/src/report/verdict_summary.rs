@@ -70,7 +70,8 @@ pub(super) fn summary(text: &mut String, verdict: &Verdict) {
 
 /// How far neighbours are from one another, and where the extremes are.
 fn say_neighbours(text: &mut String, neighbours: &Neighbours) {
-    let Neighbours { metric, wanted, with_six, with_six_wanted, min, max } = neighbours;
+    let Neighbours { metric, nominal: wanted, with_six, with_six_nominal: with_six_wanted, min, max } =
+        neighbours;
     put(
         text,
         &format!(

@@ -159,7 +159,7 @@ mod tests {
             at_entry: phi / 2.0,
             at_bottom: phi / 2.0,
             depth_error: -0.00002,
-            found: 0,
+            drilled_index: 0,
             ok: objections.is_empty(),
             tilt: 0.0,
             out_of_tolerance: (phi - 0.1).max(0.0),

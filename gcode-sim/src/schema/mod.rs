@@ -17,7 +17,7 @@ use crate::report::settings::SettingsReport;
 use crate::report::test_report::TestReport;
 use gcode_inspect::machine::{ErrorFile, MachineFile};
 use gcode_inspect::verify::Verdict;
-use gcode_inspect::verify::flutes::{FluteVerdict, WantedFlutes};
+use gcode_inspect::verify::flutes::{FluteVerdict, NominalFlutes};
 use gcode_part::HoleList;
 use gcode_part::job::control_file::ControlFile;
 use gcode_part::job::{FileRates, JobFile};
@@ -54,7 +54,7 @@ pub const FORMATS: &[Format] = &[
     },
     result::<RunReport>("run", "what run answers"),
     result::<HoleList>("holes", "what holes answers, and reference of a part with holes"),
-    result::<WantedFlutes>("wanted-flutes", "what reference answers of a burr"),
+    result::<NominalFlutes>("wanted-flutes", "what reference answers of a burr"),
     result::<Verdict>("verify", "what verify answers of a part with holes"),
     result::<FluteVerdict>("verify-flutes", "what verify answers of a burr"),
     result::<ReadingsReport>("readings", "what readings answers"),

@@ -6,14 +6,14 @@ use std::ops::Range;
 
 use nalgebra::Point3;
 
-use crate::point_tree::{FEW, Node, PointTree};
+use crate::point_tree::{LEAF_SIZE, Node, PointTree};
 
 /// The clusters of the points of a tree.
 #[derive(Debug)]
 pub struct Clusters<'t> {
     nodes: &'t [Node],
     /// For each point a point of its cluster with a lower index, or itself.
-    first: Vec<u32>,
+    parents: Vec<u32>,
     /// For each node, in the tree's order: all points of its subtree are one cluster.
     is_uniform: Vec<bool>,
 }
@@ -23,7 +23,7 @@ impl<'t> Clusters<'t> {
     pub fn new(tree: &'t PointTree) -> Self {
         let nodes = tree.nodes();
         let points = nodes.len();
-        Self { nodes, first: (0..points as u32).collect(), is_uniform: vec![false; points] }
+        Self { nodes, parents: (0..points as u32).collect(), is_uniform: vec![false; points] }
     }
 
     /// Joins a point with those in the box from `low` to `high` that belong to it.
@@ -55,15 +55,15 @@ impl<'t> Clusters<'t> {
         if self.is_uniform[middle] && self.root(node.index) == self.root(index) {
             return;
         }
-        if part.len() <= FEW {
+        if part.len() <= LEAF_SIZE {
             for at in part.clone() {
-                self.look_at(at, index, low, high, belongs);
+                self.join_node(at, index, low, high, belongs);
             }
             let root = self.root(node.index);
             self.is_uniform[middle] = part.into_iter().all(|at| self.root(self.nodes[at].index) == root);
             return;
         }
-        self.look_at(middle, index, low, high, belongs);
+        self.join_node(middle, index, low, high, belongs);
         let (axis, place) = node.halves();
         let (before, behind) = (part.start..middle, middle + 1..part.end);
         if low[axis] <= place {
@@ -73,11 +73,11 @@ impl<'t> Clusters<'t> {
             self.visit(behind.clone(), index, low, high, belongs);
         }
         self.is_uniform[middle] =
-            self.is_whole_with(&before, node.index) && self.is_whole_with(&behind, node.index);
+            self.is_uniform_with(&before, node.index) && self.is_uniform_with(&behind, node.index);
     }
 
     /// Joins the point of one node, if it lies in the box and belongs to it.
-    fn look_at(
+    fn join_node(
         &mut self,
         node: usize,
         index: u32,
@@ -88,19 +88,19 @@ impl<'t> Clusters<'t> {
         let node = self.nodes[node];
         if node.is_in(low, high) && belongs(node.index as usize) {
             let (a, b) = (self.root(index), self.root(node.index));
-            self.first[a.max(b) as usize] = a.min(b);
+            self.parents[a.max(b) as usize] = a.min(b);
         }
     }
 
-    fn is_whole_with(&mut self, part: &Range<usize>, index: u32) -> bool {
+    fn is_uniform_with(&mut self, part: &Range<usize>, index: u32) -> bool {
         middle(part).is_none_or(|m| self.is_uniform[m] && self.root(self.nodes[m].index) == self.root(index))
     }
 
     fn root(&mut self, index: u32) -> u32 {
         let mut at = index as usize;
-        while self.first[at] as usize != at {
-            self.first[at] = self.first[self.first[at] as usize];
-            at = self.first[at] as usize;
+        while self.parents[at] as usize != at {
+            self.parents[at] = self.parents[self.parents[at] as usize];
+            at = self.parents[at] as usize;
         }
         at as u32
     }

@@ -2,7 +2,7 @@
 use nalgebra::{Point3, Vector3};
 
 /// A part of so few points is looked at point by point: halving it further takes longer.
-pub(crate) const FEW: usize = 8;
+pub(crate) const LEAF_SIZE: usize = 8;
 
 /// Points in an order that halves them again and again; the middle one of each part is its node.
 #[derive(Debug, Default)]
@@ -82,7 +82,7 @@ impl PointTree {
 /// Halves points between `low` and `high` where that box is longest: holes often lie on a plane, and halving across it
 /// would tell nothing apart.
 fn halve(nodes: &mut [Node], low: Point3<f64>, high: Point3<f64>) {
-    if nodes.len() <= FEW {
+    if nodes.len() <= LEAF_SIZE {
         return;
     }
     let axis = (high - low).imax();
@@ -100,41 +100,47 @@ fn halve(nodes: &mut [Node], low: Point3<f64>, high: Point3<f64>) {
 }
 
 /// The points in a box, without the first `but` of the nodes.
-fn visit(nodes: &[Node], but: usize, low: &Point3<f64>, high: &Point3<f64>, each: &mut impl FnMut(usize)) {
+fn visit(
+    nodes: &[Node],
+    skipped: usize,
+    low: &Point3<f64>,
+    high: &Point3<f64>,
+    each: &mut impl FnMut(usize),
+) {
     let middle = nodes.len() / 2;
-    if nodes.len() <= FEW {
-        let inside = nodes.iter().skip(but).filter(|node| node.is_in(low, high));
+    if nodes.len() <= LEAF_SIZE {
+        let inside = nodes.iter().skip(skipped).filter(|node| node.is_in(low, high));
         inside.for_each(|node| each(node.index as usize));
         return;
     }
     let node = &nodes[middle];
-    if but <= middle && node.is_in(low, high) {
+    if skipped <= middle && node.is_in(low, high) {
         each(node.index as usize);
     }
     let (axis, place) = node.halves();
-    if but < middle && low[axis] <= place {
-        visit(&nodes[..middle], but, low, high, each);
+    if skipped < middle && low[axis] <= place {
+        visit(&nodes[..middle], skipped, low, high, each);
     }
-    if but < nodes.len() && place <= high[axis] {
-        visit(&nodes[middle + 1..], but.saturating_sub(middle + 1), low, high, each);
+    if skipped < nodes.len() && place <= high[axis] {
+        visit(&nodes[middle + 1..], skipped.saturating_sub(middle + 1), low, high, each);
     }
 }
 
 fn closest(
     nodes: &[Node],
     to: &Point3<f64>,
-    counts: &impl Fn(usize, f64) -> bool,
+    matches: &impl Fn(usize, f64) -> bool,
     best: &mut Option<(usize, f64)>,
 ) {
     let middle = nodes.len() / 2;
     let mut look_at = |node: &Node| {
         let distance = (node.point - to).norm();
         let index = node.index as usize;
-        if best.is_none_or(|(at, least)| (distance, index) < (least, at)) && counts(index, distance) {
+        if best.is_none_or(|(at, least)| (distance, index) < (least, at)) && matches(index, distance) {
             *best = Some((index, distance));
         }
     };
-    if nodes.len() <= FEW {
+    if nodes.len() <= LEAF_SIZE {
         nodes.iter().for_each(look_at);
         return;
     }
@@ -145,9 +151,9 @@ fn closest(
         true => (&nodes[..middle], &nodes[middle + 1..]),
         false => (&nodes[middle + 1..], &nodes[..middle]),
     };
-    closest(near, to, counts, best);
+    closest(near, to, matches, best);
     if best.is_none_or(|(_, least)| beyond.abs() <= least) {
-        closest(far, to, counts, best);
+        closest(far, to, matches, best);
     }
 }
 

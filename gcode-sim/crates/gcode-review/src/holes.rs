@@ -70,7 +70,7 @@ pub(super) fn compare(
         let limits = Tolerances { position: 2.0 * tolerance, depth: tolerance, diameter: tolerance };
         let comparison = Comparison::new(&wanted, &found, limits, None);
         for pair in &comparison.pairs {
-            partner[was[pair.wanted]] = Some(is[pair.found]);
+            partner[was[pair.nominal]] = Some(is[pair.actual]);
         }
         extra = comparison.extra.iter().map(|hole| is[*hole]).collect();
     }

@@ -224,8 +224,8 @@ fn feeds(recorder: &Recorder, holes: &[DrilledHole]) -> Vec<Vec<usize>> {
     }
     // The steps stand in reverse, so that the earliest of those that end alike is taken first.
     let of = |found: &DrilledHole| {
-        let passes = found.earlier_passes.iter().map(|cut| key(cut.place.block, &cut.at));
-        let all = passes.chain([key(found.place.block, &found.at)]);
+        let passes = found.earlier_passes.iter().map(|cut| key(cut.backtrace.block, &cut.axis_position));
+        let all = passes.chain([key(found.backtrace.block, &found.axis_position)]);
         all.filter_map(|key| steps.get_mut(&key)?.pop()).collect()
     };
     holes.iter().map(of).collect()

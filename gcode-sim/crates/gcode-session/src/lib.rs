@@ -233,7 +233,7 @@ pub fn simulate_observed<S: EventSink>(
 ) -> Result<Simulation, SessionError> {
     let mut extractor = HoleExtractor::new(&request.machine)
         .with_surface(surface.or(request.part))
-        .with_conduct(&request.conduct);
+        .with_process_limits(&request.conduct);
     let run = run_observed(request, library, &mut (&mut extractor, listener), watcher)?;
     let mut extracted = extractor.finish();
     extracted.findings.extend(run.notes());
@@ -247,8 +247,8 @@ impl Simulation {
         let places = Places::of(&self.run);
         let locate = |span| places.locate(span);
         let mut verdict = verify(&self.extracted, reference, tolerances, machine, &locate);
-        let told = verdict.stands();
-        verdict.add_slips(likely_causes::likely_causes(&self.run, machine, told), &locate);
+        let told = verdict.has_findings();
+        verdict.add_likely_causes(likely_causes::likely_causes(&self.run, machine, told), &locate);
         verdict
     }
 

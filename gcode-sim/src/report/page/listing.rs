@@ -56,7 +56,7 @@ fn executed<'a>(page: &Page<'_>, side: &Side<'a>) -> ExecutedLines<'a> {
         let line = sources.place(executed.block).line;
         blocks.entry((executed.block.source, line)).or_default().push(executed);
     }
-    let holes = side.seen.revision.simulation.extracted.holes.iter().map(|hole| &hole.place);
+    let holes = side.seen.revision.simulation.extracted.holes.iter().map(|hole| &hole.backtrace);
     let findings = &side.seen.revision.simulation.extracted.findings;
     let places = holes.chain(findings.iter().filter_map(|finding| finding.place.as_ref()));
     let spans = places

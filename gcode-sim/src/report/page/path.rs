@@ -146,7 +146,7 @@ fn holes(
     let mut all = Vec::new();
     for (number, found) in simulation.extracted.holes.iter().enumerate().take(MOST_HOLES) {
         let row = rows.get(&number);
-        let lines = known.numbers(&BlockLocation::of(&simulation.run, &found.place), side.lines);
+        let lines = known.numbers(&BlockLocation::of(&simulation.run, &found.backtrace), side.lines);
         let hole = found.hole(|_| (String::new(), 0));
         let id = row.map_or_else(|| (number + 1).to_string(), |(_, id, _)| (*id).to_owned());
         let state = row.map_or(HoleRowState::Unjudged, |(_, _, state)| *state);

@@ -81,8 +81,8 @@ pub(super) struct HoleTableRow {
 fn made_by(side: &Side<'_>, found: &DrilledHole) -> Cell {
     let run = &side.seen.revision.simulation.run;
     let mut links = Vec::new();
-    let calls = found.place.calls.as_ref().map(|call| call.from);
-    for span in std::iter::once(found.place.block).chain(calls) {
+    let calls = found.backtrace.calls.as_ref().map(|call| call.from);
+    for span in std::iter::once(found.backtrace.block).chain(calls) {
         let (program, line) = run.locate(span);
         links.push((side.lines.of_span(run, span), format!("{}:{line}", shown(&program))));
     }
@@ -209,7 +209,7 @@ pub(super) fn judged_rows(
         pairs.iter().filter(|pair| pair.changed).filter_map(|pair| Some((pair.new?, pair))).collect();
     // What is different about a hole of the new side.
     let different = |hole: &HoleVerdict| {
-        let pair = changed.get(&hole.found)?;
+        let pair = changed.get(&hole.drilled_index)?;
         let [old, new] = sides else { return None };
         let made = |side, number: usize, place: usize| (found(side, number), tools[place][number].as_slice());
         let was = pair.old.map(|hole| made(old, hole, 0));
@@ -239,7 +239,7 @@ pub(super) fn judged_rows(
             Cell::maybe(is.map(|hole| hole.tilt), 4),
         ]);
         cells.extend(judged.iter().zip(&found_by).map(|((side, _), hole)| {
-            hole.map_or_else(Cell::default, |hole| made_by(side, found(side, hole.found)))
+            hole.map_or_else(Cell::default, |hole| made_by(side, found(side, hole.drilled_index)))
         }));
         let (state, words) = match (is, is.and_then(different)) {
             (None, _) => (HoleRowState::Missing, "missing".to_owned()),
@@ -249,7 +249,7 @@ pub(super) fn judged_rows(
             (Some(hole), None) if hole.ok => (HoleRowState::Good, "in tolerance".to_owned()),
             (Some(hole), _) => (HoleRowState::Bad, hole.objections.join(", ")),
         };
-        let holes = found_by.iter().map(|hole| hole.map(|hole| hole.found)).collect();
+        let holes = found_by.iter().map(|hole| hole.map(|hole| hole.drilled_index)).collect();
         HoleTableRow { id: shown(id), state, words, cells, holes }
     });
     let mut rows: Vec<HoleTableRow> = wanted.collect();
@@ -270,10 +270,10 @@ fn extra_rows(
     let of_old = sides.len() == 2 && place == 0;
     let row = |(number, extra): (usize, &ExtraHole)| {
         let mut cells = vec![Cell::default(); columns - sides.len()];
-        let block = made_by(side, found(side, extra.found));
+        let block = made_by(side, found(side, extra.drilled_index));
         cells.extend((0..sides.len()).map(|at| if at == place { block.clone() } else { Cell::default() }));
         let mut holes = vec![None; sides.len()];
-        holes[place] = Some(extra.found);
+        holes[place] = Some(extra.drilled_index);
         let (of, words) = if of_old { ("old ", "extra in the old") } else { ("", "extra") };
         let id = format!("{of}extra {}", number + 1);
         HoleTableRow {

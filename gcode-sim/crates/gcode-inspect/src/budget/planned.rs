@@ -52,7 +52,7 @@ impl<'h> Planned<'h> {
     }
 
     pub(super) fn phi(&self, machine: &Machine) -> f64 {
-        self.deviation(machine).map_or(f64::INFINITY, |deviation| deviation.phi())
+        self.deviation(machine).map_or(f64::INFINITY, |deviation| deviation.zone_diameter())
     }
 }
 

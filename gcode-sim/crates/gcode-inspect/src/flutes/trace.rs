@@ -9,9 +9,9 @@ use gcode_part::job::FluteLaw;
 /// One point of the path; lengths in mm.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample {
-    pub at: Point3<f64>,
+    pub point: Point3<f64>,
     /// From the tooth bottom; below 0 inside.
-    pub off: f64,
+    pub deviation: f64,
     /// Polar angle of the surface's normal, from the tip.
     pub polar: Deg,
     /// The way from the pass's beginning along the meridian, towards the tip.
@@ -19,25 +19,25 @@ pub struct Sample {
     /// The way around the axis; above 0 right-handed with the way along.
     pub around: f64,
     /// The way around that the wanted law makes of the way along.
-    pub wanted: f64,
+    pub nominal_around: f64,
     /// The same by the other law.
-    pub other: f64,
+    pub other_law_around: f64,
     /// The angle it has turned about the axis since the pass's beginning, in the sense of `around`.
-    pub turned: Deg,
+    pub turned_angle: Deg,
     /// The angle about the axis where the pass begins, in the same sense.
-    pub begun: Deg,
+    pub start_azimuth: Deg,
     /// The contact's own way since the pass's beginning, and the time it took, s.
-    pub way: f64,
+    pub path_length: f64,
     pub seconds: f64,
     /// Which of [`Trace::places`] moved here.
-    place: usize,
+    move_index: usize,
 }
 
 /// The path of one pass.
 #[derive(Clone, Debug, Default)]
 pub struct Trace {
     pub samples: Vec<Sample>,
-    places: Vec<Backtrace>,
+    backtraces: Vec<Backtrace>,
     /// That all moves so far took.
     seconds: f64,
 }
@@ -49,9 +49,9 @@ pub struct Window<'t> {
     /// Its first and its last sample, counted from 0.
     pub ends: [usize; 2],
     pub helix: Deg,
-    pub wanted: Deg,
+    pub nominal_helix: Deg,
     /// What the other law would have.
-    pub other: Deg,
+    pub other_law_helix: Deg,
 }
 
 /// The angle about the axis in the sense of `around`.
@@ -63,10 +63,10 @@ impl Trace {
     /// Goes on along `path`, whose first point is where the trace has come to and whose points are equally far in time.
     /// Ways along and around are those of the surface's points below the path: how far the path is off says nothing of its
     /// direction.
-    pub(super) fn follow(&mut self, flutes: &Flutes, path: &[Point3<f64>], seconds: f64, place: Backtrace) {
+    pub(super) fn append(&mut self, flutes: &Flutes, path: &[Point3<f64>], seconds: f64, place: Backtrace) {
         let profile = &flutes.profile;
-        let index = self.places.len();
-        self.places.push(place);
+        let index = self.backtraces.len();
+        self.backtraces.push(place);
         let begun = self.seconds;
         self.seconds += seconds;
         let steps = path.len().saturating_sub(1).max(1) as f64;
@@ -75,54 +75,55 @@ impl Trace {
             FluteLaw::Published => FluteLaw::ConstantHelix,
         };
         let foot = |at: &Point3<f64>| profile.foot(at);
-        let mut before = self.samples.last().map(|last| foot(&last.at));
+        let mut previous_foot = self.samples.last().map(|last| foot(&last.point));
         for (step, at) in path.iter().enumerate() {
             let mut sample = Sample {
-                at: *at,
-                off: profile.distance(at),
+                point: *at,
+                deviation: profile.distance(at),
                 polar: profile.polar(at),
                 along: 0.0,
                 around: 0.0,
-                wanted: 0.0,
-                other: 0.0,
-                turned: Deg::ZERO,
-                begun: azimuth(at),
-                way: 0.0,
+                nominal_around: 0.0,
+                other_law_around: 0.0,
+                turned_angle: Deg::ZERO,
+                start_azimuth: azimuth(at),
+                path_length: 0.0,
                 seconds: begun + seconds * step as f64 / steps,
-                place: index,
+                move_index: index,
             };
-            let here = foot(at);
-            if let Some((last, before)) = self.samples.last().zip(before) {
-                if *at == last.at {
+            let current_foot = foot(at);
+            if let Some((last, before)) = self.samples.last().zip(previous_foot) {
+                if *at == last.point {
                     continue;
                 }
-                let by = here - before;
-                let middle = nalgebra::center(&here, &before);
+                let by = current_foot - before;
+                let middle = nalgebra::center(&current_foot, &before);
                 let (meridian, around) = profile.directions(&middle);
                 let along = by.dot(&meridian);
                 sample.along = last.along + along;
                 sample.around = last.around + by.dot(&around);
-                sample.wanted = last.wanted + flutes.slope(flutes.law, &middle) * along;
-                sample.other = last.other + flutes.slope(other, &middle) * along;
-                sample.turned = last.turned + Deg(shorter(azimuth(at).0 - azimuth(&last.at).0));
-                sample.begun = last.begun;
-                sample.way = last.way + (at - last.at).norm();
+                sample.nominal_around = last.nominal_around + flutes.slope(flutes.law, &middle) * along;
+                sample.other_law_around = last.other_law_around + flutes.slope(other, &middle) * along;
+                sample.turned_angle =
+                    last.turned_angle + Deg(wrap_angle(azimuth(at).0 - azimuth(&last.point).0));
+                sample.start_azimuth = last.start_azimuth;
+                sample.path_length = last.path_length + (at - last.point).norm();
             }
             self.samples.push(sample);
-            before = Some(here);
+            previous_foot = Some(current_foot);
         }
     }
 
     /// The programmed points: where the pass begins, and where each of its moves ends.
-    pub fn programmed(&self) -> impl Iterator<Item = &Sample> {
-        let ends = self.samples.windows(2).filter(|pair| pair[0].place != pair[1].place);
+    pub fn programmed_points(&self) -> impl Iterator<Item = &Sample> {
+        let ends = self.samples.windows(2).filter(|pair| pair[0].move_index != pair[1].move_index);
         let first = self.samples.first().filter(|_| 1 < self.samples.len());
         first.into_iter().chain(ends.map(|pair| &pair[0])).chain(self.samples.last())
     }
 
     /// The block that moved to a sample.
-    pub fn place(&self, sample: &Sample) -> &Backtrace {
-        &self.places[sample.place]
+    pub fn backtrace(&self, sample: &Sample) -> &Backtrace {
+        &self.backtraces[sample.move_index]
     }
 
     /// The direction of the path, over every stretch of the gauge's length, or over all of it if it is shorter.
@@ -146,24 +147,24 @@ impl Trace {
                 middle: &samples[(start + end) / 2],
                 ends: [start, end],
                 helix: angle(last.around - first.around),
-                wanted: angle(last.wanted - first.wanted),
-                other: angle(last.other - first.other),
+                nominal_helix: angle(last.nominal_around - first.nominal_around),
+                other_law_helix: angle(last.other_law_around - first.other_law_around),
             })
         })
     }
 
     /// The angle about the axis where the path crosses `x`; `None` where it doesn't.
     pub fn angle_at(&self, x: f64) -> Option<Deg> {
-        let crossing = |pair: &[Sample]| (pair[0].at.x - x) * (pair[1].at.x - x) <= 0.0;
+        let crossing = |pair: &[Sample]| (pair[0].point.x - x) * (pair[1].point.x - x) <= 0.0;
         let pair = self.samples.windows(2).find(|pair| crossing(pair))?;
         let (before, after) = (&pair[0], &pair[1]);
-        let way = before.at.x - after.at.x;
-        let part = if way == 0.0 { 0.0 } else { (before.at.x - x) / way };
-        Some(before.begun + before.turned + (after.turned - before.turned) * part)
+        let way = before.point.x - after.point.x;
+        let part = if way == 0.0 { 0.0 } else { (before.point.x - x) / way };
+        Some(before.start_azimuth + before.turned_angle + (after.turned_angle - before.turned_angle) * part)
     }
 }
 
 /// The same turn by the shorter way, −180° to 180°.
-pub fn shorter(angle: f64) -> f64 {
+pub fn wrap_angle(angle: f64) -> f64 {
     (angle + 180.0).rem_euclid(360.0) - 180.0
 }

@@ -2,8 +2,8 @@
 //! one ends; all else is a dive.
 use nalgebra::Point3;
 
-use super::ARITHMETIC;
-use crate::holes::ROUNDED;
+use super::ROUNDING_ERROR;
+use crate::holes::ROUNDING_ALLOWANCE;
 use crate::holes::per_block::PerBlock;
 use gcode_lang::motion::Backtrace;
 use gcode_part::Flutes;
@@ -16,26 +16,26 @@ pub enum CollisionKind {
     /// In rapid motion along a flute, as a pass would go; which of all passes it is, counted from 1.
     RapidPass(usize),
     /// A feed that doesn't turn the burr, below the tooth bottom.
-    Below,
+    BelowToothBottom,
     /// A feed that doesn't turn the burr, so far along or around it, mm.
     Sideways(f64),
     /// Straight in, where no pass begins.
-    Pit,
+    PlungeWithoutPass,
     /// A rapid that ends nearer to the blank than the job's clearance; its depth is below 0.
-    Near,
+    LowClearance,
 }
 
 /// Where the wheel came too near between two passes.
 #[derive(Clone, Debug)]
 pub struct WheelCollision {
-    pub place: Backtrace,
+    pub backtrace: Backtrace,
     pub kind: CollisionKind,
     /// Where on the burr it was deepest, mm.
-    pub at: Point3<f64>,
+    pub point: Point3<f64>,
     /// Where it was nearest: below the tooth bottom if that is what's wrong, else below the blank's surface, mm.
     pub depth: f64,
     /// How often the block did it; the depth is the greatest.
-    pub times: u64,
+    pub count: u64,
     /// Moves, of a pass in rapid motion that begins at this block more than one.
     pub moves: usize,
 }
@@ -43,11 +43,11 @@ pub struct WheelCollision {
 /// A feed straight into the blank, behind which a pass begins.
 #[derive(Clone, Debug)]
 pub struct PlungeFeed {
-    pub place: Backtrace,
+    pub backtrace: Backtrace,
     /// Of the contact, mm/min.
     pub speed: f64,
     /// Where it ends, on the burr.
-    pub at: Point3<f64>,
+    pub point: Point3<f64>,
 }
 
 /// How a motion that is no pass is made.
@@ -55,7 +55,7 @@ pub struct PlungeFeed {
 pub(super) enum MotionMode {
     /// Where it turns the burr: behind so many passes.
     Rapid {
-        turns: Option<usize>,
+        passes_before: Option<usize>,
     },
     Feed {
         seconds: f64,
@@ -65,24 +65,24 @@ pub(super) enum MotionMode {
 /// A rapid that ended in the cut, reckoned with axes at 0 that hadn't moved.
 #[derive(Debug)]
 struct EarlyRapid {
-    place: Backtrace,
-    depth: Depth,
+    backtrace: Backtrace,
+    depth: DeepestPoint,
     /// The axes that had moved by its end.
-    moved: Moved,
+    moved_axes: MovedAxes,
 }
 
 /// The axes that the contact's place depends on and that have moved since the start, as bits, axis 1 the lowest.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Moved(pub(super) u32);
+pub(super) struct MovedAxes(pub(super) u32);
 
 /// Motion is straight in or out if it goes no more than this part of its way sideways: 3°.
-const STRAIGHT: f64 = 0.05;
+const MAX_SIDEWAYS_RATIO: f64 = 0.05;
 
 /// How deep, mm, and where on the burr.
 #[derive(Clone, Copy, Debug)]
-struct Depth {
+struct DeepestPoint {
     depth: f64,
-    at: Point3<f64>,
+    point: Point3<f64>,
 }
 
 /// How the wheel stands.
@@ -90,70 +90,75 @@ struct Depth {
 enum WheelPosition {
     /// Off the blank, or nothing is known.
     #[default]
-    Off,
+    OffBlank,
     /// Fed straight in here, so far below the blank's surface, and no pass has begun yet.
-    Plunged(Depth, PlungeFeed),
+    Plunged(DeepestPoint, PlungeFeed),
     /// In the cut of a pass that began here, or of a dive that is told already.
-    Ground,
+    InCut,
 }
 
 /// Looks at every motion between two passes.
 #[derive(Debug, Default)]
 pub(super) struct CollisionTracker {
-    stand: WheelPosition,
-    found: PerBlock<u8, WheelCollision>,
+    position: WheelPosition,
+    collisions: PerBlock<u8, WheelCollision>,
     /// The wheel has been off the blank: before that, nobody knows where a rapid began.
-    outside: bool,
+    has_been_outside: bool,
     /// Rapids that weren't looked at for that reason.
-    pub(super) unseen: usize,
+    pub(super) unchecked_rapids: usize,
     /// Those of them that ended in the cut before the first pass began, if the axes stood as is reckoned.
-    early: Vec<EarlyRapid>,
+    early_rapids: Vec<EarlyRapid>,
     /// The pass in rapid motion that goes on, in `found`, and how many there were.
-    rapid: Option<usize>,
-    rapids: usize,
+    current_rapid_pass: Option<usize>,
+    rapid_passes: usize,
     pub(super) plunges: Vec<PlungeFeed>,
 }
 
 impl CollisionTracker {
     /// A pass goes on, or begins where the wheel stands. An axis that hadn't moved when a rapid ended and hasn't yet stood
     /// there as it does now, where the flute is reckoned with it.
-    pub(super) fn ground(&mut self, moved: Moved) {
-        for early in std::mem::take(&mut self.early) {
-            if early.moved == moved {
-                self.unseen -= 1;
-                self.add(early.place, CollisionKind::Rapid, early.depth);
+    pub(super) fn enter_cut(&mut self, moved: MovedAxes) {
+        for early in std::mem::take(&mut self.early_rapids) {
+            if early.moved_axes == moved {
+                self.unchecked_rapids -= 1;
+                self.add(early.backtrace, CollisionKind::Rapid, early.depth);
             }
         }
-        if let WheelPosition::Plunged(_, plunge) = std::mem::replace(&mut self.stand, WheelPosition::Ground) {
+        if let WheelPosition::Plunged(_, plunge) = std::mem::replace(&mut self.position, WheelPosition::InCut)
+        {
             self.plunges.push(plunge);
         }
     }
 
     pub(super) fn finish(mut self) -> Vec<WheelCollision> {
-        self.pit();
-        self.found.into_entries().map(|entry| WheelCollision { times: entry.times, ..entry.value }).collect()
+        self.report_plunge_without_pass();
+        self.collisions
+            .into_entries()
+            .map(|entry| WheelCollision { count: entry.count, ..entry.value })
+            .collect()
     }
 
     /// The wheel stood in the blank and no pass began.
-    fn pit(&mut self) {
-        if let WheelPosition::Plunged(depth, plunge) = std::mem::take(&mut self.stand) {
-            self.add(plunge.place, CollisionKind::Pit, depth);
+    fn report_plunge_without_pass(&mut self) {
+        if let WheelPosition::Plunged(depth, plunge) = std::mem::take(&mut self.position) {
+            self.add(plunge.backtrace, CollisionKind::PlungeWithoutPass, depth);
         }
     }
 
     /// The deepest of each block: a loop makes all of its dives alike.
-    fn add(&mut self, place: Backtrace, kind: CollisionKind, deepest: Depth) -> usize {
+    fn add(&mut self, place: Backtrace, kind: CollisionKind, deepest: DeepestPoint) -> usize {
         let which = match kind {
             CollisionKind::Rapid => 0,
-            CollisionKind::Below => 1,
+            CollisionKind::BelowToothBottom => 1,
             CollisionKind::Sideways(_) => 2,
-            CollisionKind::Pit => 3,
+            CollisionKind::PlungeWithoutPass => 3,
             CollisionKind::RapidPass(_) => 4,
-            CollisionKind::Near => 5,
+            CollisionKind::LowClearance => 5,
         };
-        let Depth { depth, at } = deepest;
-        let first = || WheelCollision { place: place.clone(), kind, at, depth, times: 0, moves: 0 };
-        let (index, entry) = self.found.count(place.block, which, first);
+        let DeepestPoint { depth, point: at } = deepest;
+        let first =
+            || WheelCollision { backtrace: place.clone(), kind, point: at, depth, count: 0, moves: 0 };
+        let (index, entry) = self.collisions.count(place.block, which, first);
         let dive = &mut entry.value;
         dive.moves += 1;
         if dive.depth < depth && !matches!(kind, CollisionKind::RapidPass(_)) {
@@ -164,15 +169,16 @@ impl CollisionTracker {
     }
 
     /// A rapid that goes along a flute in the blank: a pass begins with it, or goes on. `passes`: those in feed so far.
-    fn rapid_pass(&mut self, place: Backtrace, depth: Depth, passes: usize) {
-        self.stand = WheelPosition::Ground;
-        if let Some(entry) = self.rapid.and_then(|index| self.found.get_mut(index)) {
+    fn rapid_pass(&mut self, place: Backtrace, depth: DeepestPoint, passes: usize) {
+        self.position = WheelPosition::InCut;
+        if let Some(entry) = self.current_rapid_pass.and_then(|index| self.collisions.get_mut(index)) {
             entry.value.moves += 1;
             entry.value.deepen(depth);
             return;
         }
-        self.rapids += 1;
-        self.rapid = Some(self.add(place, CollisionKind::RapidPass(passes + self.rapids), depth));
+        self.rapid_passes += 1;
+        self.current_rapid_pass =
+            Some(self.add(place, CollisionKind::RapidPass(passes + self.rapid_passes), depth));
     }
 
     /// Looks at a motion that is no pass.
@@ -180,65 +186,76 @@ impl CollisionTracker {
         &mut self,
         flutes: &Flutes,
         place: Backtrace,
-        by: MotionMode,
-        moved: Moved,
+        mode: MotionMode,
+        moved: MovedAxes,
         path: &[Point3<f64>],
     ) {
-        let way = MotionProfile::of(flutes, path);
-        let known = self.outside;
-        self.outside |= flutes.tooth_depth < way.last;
-        if !way.starts {
-            self.stand = WheelPosition::Off;
+        let motion = MotionProfile::of(flutes, path);
+        let was_outside = self.has_been_outside;
+        self.has_been_outside |= flutes.tooth_depth < motion.end_distance;
+        if !motion.starts_in_cut {
+            self.position = WheelPosition::OffBlank;
         }
-        let depth = Depth { depth: (flutes.tooth_depth - way.nearest).max(0.0), at: way.deepest };
-        if let (true, MotionMode::Rapid { turns: Some(passes) }, true) =
-            (known, by, way.slants && way.starts && way.ends)
+        let depth = DeepestPoint {
+            depth: (flutes.tooth_depth - motion.min_distance).max(0.0),
+            point: motion.deepest_point,
+        };
+        if let (true, MotionMode::Rapid { passes_before: Some(passes) }, true) =
+            (was_outside, mode, motion.is_slanted && motion.starts_in_cut && motion.ends_in_cut)
         {
             return self.rapid_pass(place, depth, passes);
         }
-        self.rapid = None;
-        let MotionMode::Feed { seconds } = by else {
-            self.pit();
-            self.stand = if way.ends { WheelPosition::Ground } else { WheelPosition::Off };
+        self.current_rapid_pass = None;
+        let MotionMode::Feed { seconds } = mode else {
+            self.report_plunge_without_pass();
+            self.position = if motion.ends_in_cut { WheelPosition::InCut } else { WheelPosition::OffBlank };
             // A rapid that goes straight out of the cut begins on the tooth bottom.
-            let leaves = way.leaves && way.straight && -flutes.surface_tolerance - ARITHMETIC < way.first;
-            if !known {
-                self.unseen += 1;
-                if let Some(at) = path.last().copied().filter(|_| way.ends) {
-                    let depth = Depth { depth: flutes.tooth_depth - way.last, at };
-                    self.early.push(EarlyRapid { place, depth, moved });
+            let leaves = motion.is_receding
+                && motion.is_straight
+                && -flutes.surface_tolerance - ROUNDING_ERROR < motion.start_distance;
+            if !was_outside {
+                self.unchecked_rapids += 1;
+                if let Some(at) = path.last().copied().filter(|_| motion.ends_in_cut) {
+                    let depth = DeepestPoint { depth: flutes.tooth_depth - motion.end_distance, point: at };
+                    self.early_rapids.push(EarlyRapid { backtrace: place, depth, moved_axes: moved });
                 }
-            } else if !leaves && way.nearest < flutes.tooth_depth + ARITHMETIC {
+            } else if !leaves && motion.min_distance < flutes.tooth_depth + ROUNDING_ERROR {
                 self.add(place, CollisionKind::Rapid, depth);
             } else if let (Some(clearance), Some(at)) = (flutes.clearance, path.last().copied()) {
-                let above = way.last - flutes.tooth_depth;
-                if above < clearance - ROUNDED {
-                    self.add(place, CollisionKind::Near, Depth { depth: -above, at });
+                let above = motion.end_distance - flutes.tooth_depth;
+                if above < clearance - ROUNDING_ALLOWANCE {
+                    self.add(place, CollisionKind::LowClearance, DeepestPoint { depth: -above, point: at });
                 }
             }
             return;
         };
-        if way.nearest < -flutes.surface_tolerance - ARITHMETIC {
-            self.add(place.clone(), CollisionKind::Below, Depth { depth: -way.nearest, at: way.deepest });
+        if motion.min_distance < -flutes.surface_tolerance - ROUNDING_ERROR {
+            self.add(
+                place.clone(),
+                CollisionKind::BelowToothBottom,
+                DeepestPoint { depth: -motion.min_distance, point: motion.deepest_point },
+            );
         }
-        if !way.straight {
-            self.add(place, CollisionKind::Sideways(way.sideways), depth);
-            self.stand = if way.ends { WheelPosition::Ground } else { WheelPosition::Off };
-        } else if !way.ends {
-            self.pit();
-        } else if way.starts && matches!(self.stand, WheelPosition::Off) {
+        if !motion.is_straight {
+            self.add(place, CollisionKind::Sideways(motion.sideways_length), depth);
+            self.position = if motion.ends_in_cut { WheelPosition::InCut } else { WheelPosition::OffBlank };
+        } else if !motion.ends_in_cut {
+            self.report_plunge_without_pass();
+        } else if motion.starts_in_cut && matches!(self.position, WheelPosition::OffBlank) {
             // Where the program begins in the cut, nobody knows how it came there.
-            self.stand = WheelPosition::Ground;
-        } else if way.last < way.first && !matches!(self.stand, WheelPosition::Ground) {
+            self.position = WheelPosition::InCut;
+        } else if motion.end_distance < motion.start_distance
+            && !matches!(self.position, WheelPosition::InCut)
+        {
             let length: f64 = path.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum();
-            let at = path.last().copied().unwrap_or(way.deepest);
-            let here = PlungeFeed { place, speed: 60.0 * length / seconds, at };
+            let at = path.last().copied().unwrap_or(motion.deepest_point);
+            let here = PlungeFeed { backtrace: place, speed: 60.0 * length / seconds, point: at };
             // Of more feeds than one the fastest.
-            let plunge = match std::mem::take(&mut self.stand) {
+            let plunge = match std::mem::take(&mut self.position) {
                 WheelPosition::Plunged(_, before) if here.speed <= before.speed => before,
-                WheelPosition::Off | WheelPosition::Plunged(..) | WheelPosition::Ground => here,
+                WheelPosition::OffBlank | WheelPosition::Plunged(..) | WheelPosition::InCut => here,
             };
-            self.stand = WheelPosition::Plunged(depth, plunge);
+            self.position = WheelPosition::Plunged(depth, plunge);
         }
     }
 }
@@ -246,27 +263,27 @@ impl CollisionTracker {
 /// A motion as the blank sees it.
 struct MotionProfile {
     /// Distances from the tooth bottom, mm.
-    first: f64,
-    last: f64,
-    nearest: f64,
-    deepest: Point3<f64>,
+    start_distance: f64,
+    end_distance: f64,
+    min_distance: f64,
+    deepest_point: Point3<f64>,
     /// Whether it starts and ends in the cut.
-    starts: bool,
-    ends: bool,
+    starts_in_cut: bool,
+    ends_in_cut: bool,
     /// It goes away from the burr all the time.
-    leaves: bool,
+    is_receding: bool,
     /// In the cut it goes straight in or out.
-    straight: bool,
+    is_straight: bool,
     /// How far it goes along and around the burr in the cut, mm.
-    sideways: f64,
+    sideways_length: f64,
     /// In the cut it goes along the burr, not just around it.
-    slants: bool,
+    is_slanted: bool,
 }
 
 impl WheelCollision {
-    fn deepen(&mut self, Depth { depth, at }: Depth) {
+    fn deepen(&mut self, DeepestPoint { depth, point: at }: DeepestPoint) {
         if self.depth < depth {
-            (self.depth, self.at) = (depth, at);
+            (self.depth, self.point) = (depth, at);
         }
     }
 }
@@ -276,7 +293,7 @@ impl MotionProfile {
         let profile = &flutes.profile;
         let distances: Vec<f64> = path.iter().map(|p| profile.distance(p)).collect();
         // What is as near to the tooth bottom as a pass may be is in the cut even if no blank stands above it.
-        let cut = flutes.tooth_depth.max(flutes.surface_tolerance) - ARITHMETIC;
+        let cut = flutes.tooth_depth.max(flutes.surface_tolerance) - ROUNDING_ERROR;
         let (first, last) = (distances.first().copied(), distances.last().copied());
         let (mut sideways, mut length, mut along) = (0.0, 0.0, 0.0);
         for (points, off) in path.windows(2).zip(distances.windows(2)) {
@@ -295,16 +312,16 @@ impl MotionProfile {
         };
         let (nearest, deepest) = distances.iter().zip(path).fold((far, Point3::origin()), nearer);
         Self {
-            first: first.unwrap_or(far),
-            last: last.unwrap_or(far),
-            nearest,
-            deepest,
-            starts: first.is_some_and(|first| first < cut),
-            ends: last.is_some_and(|last| last < cut),
-            leaves: distances.windows(2).all(|pair| pair[0] < pair[1]),
-            straight: sideways <= flutes.surface_tolerance + STRAIGHT * length,
-            sideways,
-            slants: STRAIGHT * length < along,
+            start_distance: first.unwrap_or(far),
+            end_distance: last.unwrap_or(far),
+            min_distance: nearest,
+            deepest_point: deepest,
+            starts_in_cut: first.is_some_and(|first| first < cut),
+            ends_in_cut: last.is_some_and(|last| last < cut),
+            is_receding: distances.windows(2).all(|pair| pair[0] < pair[1]),
+            is_straight: sideways <= flutes.surface_tolerance + MAX_SIDEWAYS_RATIO * length,
+            sideways_length: sideways,
+            is_slanted: MAX_SIDEWAYS_RATIO * length < along,
         }
     }
 }

@@ -8,24 +8,24 @@ use gcode_lang::units::Rpm;
 /// The first move of a pass of which something is so, and where it begins on the burr.
 #[derive(Clone, Debug)]
 pub struct FirstOccurrence {
-    pub place: Backtrace,
-    pub at: Point3<f64>,
+    pub backtrace: Backtrace,
+    pub point: Point3<f64>,
 }
 
 /// Grinding while no M03 or M04 with a speed is in force.
 #[derive(Clone, Debug)]
 pub struct StoppedWheel {
-    pub begun: FirstOccurrence,
+    pub first: FirstOccurrence,
     /// The last M code since M03, M04 or M05 that went to the machine builder's logic, which may have started the wheel.
-    pub builder: Option<u32>,
+    pub builder_code: Option<u32>,
 }
 
 /// What the program has said of the wheel so far.
 #[derive(Debug, Default)]
 pub(super) struct WheelState {
-    wheel: SpindleDirection,
+    direction: SpindleDirection,
     speed: Rpm,
-    builder: Option<u32>,
+    builder_code: Option<u32>,
 }
 
 impl WheelState {
@@ -33,27 +33,29 @@ impl WheelState {
         match kind {
             // At S0 it stands.
             EventKind::Spindle { speed, turning } => {
-                self.wheel = if *speed == Rpm(0.0) { SpindleDirection::Off } else { *turning };
+                self.direction = if *speed == Rpm(0.0) { SpindleDirection::Off } else { *turning };
                 self.speed = *speed;
-                self.builder = None;
+                self.builder_code = None;
             }
-            EventKind::Auxiliary { code } => self.builder = Some(*code),
+            EventKind::Auxiliary { code } => self.builder_code = Some(*code),
             _ => {}
         }
     }
 
     /// Notes on a pass how the wheel turns during one of its moves.
-    pub(super) fn note(&self, pass: &mut GrindingPass, begun: impl Fn() -> FirstOccurrence) {
-        if self.wheel != SpindleDirection::Off
+    pub(super) fn record(&self, pass: &mut GrindingPass, begun: impl Fn() -> FirstOccurrence) {
+        if self.direction != SpindleDirection::Off
             && pass.speeds.last().is_none_or(|(last, _)| *last != self.speed)
         {
             pass.speeds.push((self.speed, begun()));
         }
-        match self.wheel {
-            SpindleDirection::Off if pass.idle.is_none() => {
-                pass.idle = Some(StoppedWheel { begun: begun(), builder: self.builder });
+        match self.direction {
+            SpindleDirection::Off if pass.stopped_wheel.is_none() => {
+                pass.stopped_wheel = Some(StoppedWheel { first: begun(), builder_code: self.builder_code });
             }
-            SpindleDirection::Counterclockwise if pass.reversed.is_none() => pass.reversed = Some(begun()),
+            SpindleDirection::Counterclockwise if pass.reversed_wheel.is_none() => {
+                pass.reversed_wheel = Some(begun())
+            }
             SpindleDirection::Off | SpindleDirection::Clockwise | SpindleDirection::Counterclockwise => {}
         }
     }

@@ -17,22 +17,22 @@ pub(super) enum ClampState {
 impl HoleExtractor<'_> {
     /// A code of the clamp, if it is one.
     pub(super) fn apply_clamp_code(&mut self, code: u32) -> bool {
-        let Some(clamp) = self.conduct.clamp else { return false };
+        let Some(clamp) = self.process_limits.clamp else { return false };
         match code {
-            code if code == clamp.on => self.hold = ClampState::Clamped,
-            code if code == clamp.off => self.hold = ClampState::Released,
+            code if code == clamp.on => self.clamp_state = ClampState::Clamped,
+            code if code == clamp.off => self.clamp_state = ClampState::Released,
             _ => return false,
         }
         true
     }
 
     /// Whether the rotary may turn.
-    pub(super) fn check_turn(&mut self, event: &Event<'_>, from: &Position, to: &Position) {
-        let Some(clamp) = self.conduct.clamp else { return };
-        let Some(axis) = self.clamped().filter(|axis| from[*axis] != to[*axis]) else { return };
+    pub(super) fn check_clamp_released(&mut self, event: &Event<'_>, from: &Position, to: &Position) {
+        let Some(clamp) = self.process_limits.clamp else { return };
+        let Some(axis) = self.clamped_axis().filter(|axis| from[*axis] != to[*axis]) else { return };
         let letter = self.machine.axes.letter(axis);
         let Clamp { on, off } = clamp;
-        match self.hold {
+        match self.clamp_state {
             ClampState::Released => {}
             ClampState::Clamped => self.findings.add("turns-clamped", &event.place(), 0, || {
                 Diagnostic::error("turns-clamped", format!("{letter} turns while M{on:02} holds it"))
@@ -49,17 +49,17 @@ impl HoleExtractor<'_> {
                     .help(format!("M{off:02} before {letter} turns"))
                 });
                 // It turned: so it was free, and nothing holds it now.
-                self.hold = ClampState::Released;
+                self.clamp_state = ClampState::Released;
             }
         }
     }
 
     /// Whether what is drilled was held when the feed began.
-    pub(super) fn check_held(&mut self, place: &Backtrace, hold: ClampState) {
-        let Some(Clamp { on, .. }) = self.conduct.clamp else { return };
-        let Some(axis) = self.clamped() else { return };
+    pub(super) fn check_clamped(&mut self, place: &Backtrace, clamp_state: ClampState) {
+        let Some(Clamp { on, .. }) = self.process_limits.clamp else { return };
+        let Some(axis) = self.clamped_axis() else { return };
         let letter = self.machine.axes.letter(axis);
-        match hold {
+        match clamp_state {
             ClampState::Clamped => {}
             ClampState::Released => self.findings.add("drills-unclamped", place, 0, || {
                 let message = format!("the tool feeds into the part while nothing holds {letter}");
@@ -77,8 +77,8 @@ impl HoleExtractor<'_> {
     }
 
     /// The axis that the clamp holds: the reference's rotary, where it carries the part, else the first that turns it.
-    fn clamped(&self) -> Option<AxisIndex> {
-        let named = self.conduct.rotary.and_then(|rotary| self.machine.axes.find(rotary.letter as u8));
+    fn clamped_axis(&self) -> Option<AxisIndex> {
+        let named = self.process_limits.rotary.and_then(|rotary| self.machine.axes.find(rotary.letter as u8));
         let mut turning = self.machine.table.turning();
         named
             .filter(|axis| self.machine.table.turning().any(|other| other == *axis))

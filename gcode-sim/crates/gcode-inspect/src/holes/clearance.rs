@@ -11,40 +11,40 @@ use gcode_part::Nearest;
 use gcode_part::Surface;
 
 /// So near to the part nobody sets a tool, mm: a tool length or a part is easily off by as much.
-pub const CONTACT: f64 = 0.1;
+pub const CONTACT_CLEARANCE: f64 = 0.1;
 
 /// What rounding may take off a height that the reference says, mm.
-pub const ROUNDED: f64 = 0.01;
+pub const ROUNDING_ALLOWANCE: f64 = 0.01;
 
 /// A straight way within 45° of the surface's normal leads to the part or away from it, not past it.
-const STEEP: f64 = std::f64::consts::FRAC_1_SQRT_2;
+const STEEP_COSINE: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// A curved way is first cut into parts that stray from their chords by no more than this, mm, …
-const STRAY: f64 = 5.0;
+const CHORD_TOLERANCE: f64 = 5.0;
 
 /// … and then into smaller ones until the nearest place is known to this, mm.
-const KNOWN: f64 = 1e-3;
+const DISTANCE_RESOLUTION: f64 = 1e-3;
 
 /// What a block does near the part, where it comes nearest.
 #[derive(Clone, Debug)]
 pub struct CloseMotion {
-    pub place: Backtrace,
-    pub way: CloseMotionKind,
+    pub backtrace: Backtrace,
+    pub kind: CloseMotionKind,
     /// From the tool's tip to the surface, mm; a little below 0 where it touches. Of [`CloseMotionKind::Low`] along the tool.
-    pub tip: f64,
+    pub tip_clearance: f64,
     /// From the edge of the tool, were its end flat, where its direction and diameter are known, mm.
-    pub edge: Option<f64>,
+    pub edge_clearance: Option<f64>,
     /// How often the block came so near.
-    pub times: u64,
+    pub count: u64,
 }
 
 /// How it passes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CloseMotionKind {
     /// An axis turns the part or the head, by so much in all.
-    Turning { letter: char, by: Deg },
+    RotaryTurn { letter: char, angle: Deg },
     /// An axis of the table turns while the tool has been retracted less far than the reference says.
-    Low { letter: char, by: Deg },
+    LowRetract { letter: char, angle: Deg },
     /// A rapid past the part.
     RapidPast,
     /// A rapid that ends there.
@@ -58,33 +58,42 @@ pub(super) struct CloseMotions(PerBlock<u8, CloseMotion>);
 impl CloseMotions {
     fn add(&mut self, event: &Event<'_>, way: CloseMotionKind, tip: f64, edge: Option<f64>) {
         let kind = match way {
-            CloseMotionKind::Turning { .. } => 0,
+            CloseMotionKind::RotaryTurn { .. } => 0,
             CloseMotionKind::RapidPast => 1,
             CloseMotionKind::RapidTowards => 2,
-            CloseMotionKind::Low { .. } => 3,
+            CloseMotionKind::LowRetract { .. } => 3,
         };
-        let passing = || CloseMotion { place: event.place(), way, tip, edge, times: 0 };
+        let passing = || CloseMotion {
+            backtrace: event.place(),
+            kind: way,
+            tip_clearance: tip,
+            edge_clearance: edge,
+            count: 0,
+        };
         let (_, entry) = self.0.count(event.block, kind, passing);
-        if tip < entry.value.tip {
+        if tip < entry.value.tip_clearance {
             entry.value = passing();
         }
     }
 
     pub(super) fn finish(self) -> Vec<CloseMotion> {
-        self.0.into_entries().map(|entry| CloseMotion { times: entry.times, ..entry.value }).collect()
+        self.0.into_entries().map(|entry| CloseMotion { count: entry.count, ..entry.value }).collect()
     }
 }
 
 impl HoleExtractor<'_> {
     /// A straight rapid that stays out of the part: does it go past it, or end at it, nearer than anybody sets a tool?
-    pub(super) fn note_straight(
+    pub(super) fn record_close_rapid(
         &mut self,
         event: &Event<'_>,
         surface: &Surface,
         from: &Point3<f64>,
         to: &Point3<f64>,
     ) {
-        let limit = self.conduct.approach.map_or(CONTACT, |approach| approach.max(CONTACT));
+        let limit = self
+            .process_limits
+            .approach
+            .map_or(CONTACT_CLEARANCE, |approach| approach.max(CONTACT_CLEARANCE));
         if limit <= surface.clearance(from, to) {
             return;
         }
@@ -93,22 +102,27 @@ impl HoleExtractor<'_> {
         let nearest = surface.nearest(&(from + along * part));
         let steepness = nearest.normal.dot(&along) / along.norm();
         let way = match () {
-            () if STEEP < steepness => return,
-            () if steepness < -STEEP => CloseMotionKind::RapidTowards,
+            () if STEEP_COSINE < steepness => return,
+            () if steepness < -STEEP_COSINE => CloseMotionKind::RapidTowards,
             () => CloseMotionKind::RapidPast,
         };
-        if nearest.distance < CONTACT {
-            self.passings.add(event, way, nearest.distance, None);
-        } else if let (CloseMotionKind::RapidTowards, Some(approach)) = (way, self.conduct.approach) {
-            let above = above(surface, &self.pose).unwrap_or(nearest.distance);
-            if above < approach - ROUNDED {
-                self.passings.add(event, way, above, None);
+        if nearest.distance < CONTACT_CLEARANCE {
+            self.close_motions.add(event, way, nearest.distance, None);
+        } else if let (CloseMotionKind::RapidTowards, Some(approach)) = (way, self.process_limits.approach) {
+            let above = height_above_surface(surface, &self.pose).unwrap_or(nearest.distance);
+            if above < approach - ROUNDING_ALLOWANCE {
+                self.close_motions.add(event, way, above, None);
             }
         }
     }
 
     /// A motion during which the table or the head turns, and which stays out of the part.
-    pub(super) fn note_turn(&mut self, event: &Event<'_>, surface: &Surface, travel: &AxisMotion<'_>) {
+    pub(super) fn record_close_turn(
+        &mut self,
+        event: &Event<'_>,
+        surface: &Surface,
+        travel: &AxisMotion<'_>,
+    ) {
         let turned = self.machine.axes.iter().find(|(axis, _)| {
             travel.from[*axis] != travel.to[*axis]
                 && self.machine.axes.is_rotary(*axis)
@@ -117,24 +131,28 @@ impl HoleExtractor<'_> {
         let Some((axis, letter)) = turned else { return };
         let by = Deg(travel.to[axis] - travel.from[axis]).abs();
         let reach = self.machine.diameter_of(self.setup.tool).unwrap_or(0.0) / 2.0;
-        let (clearance, retract) = (self.conduct.clearance, self.conduct.retract);
-        let asked = clearance.map_or(CONTACT, |clearance| (clearance + ROUNDED + reach).max(CONTACT));
+        let (clearance, retract) = (self.process_limits.clearance, self.process_limits.retract);
+        let required_clearance = clearance.map_or(CONTACT_CLEARANCE, |clearance| {
+            (clearance + ROUNDING_ALLOWANCE + reach).max(CONTACT_CLEARANCE)
+        });
         let retract = retract.filter(|_| self.machine.table.has(axis));
-        let limit = retract.map_or(asked, |retract| retract.max(asked));
-        let Some((tip, pose)) = self.nearest_on(surface, travel, limit) else { return };
-        let edge = self.edge(surface, &pose);
+        let limit = retract.map_or(required_clearance, |retract| retract.max(required_clearance));
+        let Some((tip, pose)) = self.closest_approach(surface, travel, limit) else { return };
+        let edge = self.edge_distance(surface, &pose);
         let near = edge.map_or(tip, |edge| edge.min(tip));
-        if tip < CONTACT || clearance.is_some_and(|clearance| near <= clearance + ROUNDED) {
-            self.passings.add(event, CloseMotionKind::Turning { letter, by }, tip, edge);
+        if tip < CONTACT_CLEARANCE
+            || clearance.is_some_and(|clearance| near <= clearance + ROUNDING_ALLOWANCE)
+        {
+            self.close_motions.add(event, CloseMotionKind::RotaryTurn { letter, angle: by }, tip, edge);
             return;
         }
         // Beside the part the tool may be as low as it likes.
-        let above = above(surface, &pose);
+        let above = height_above_surface(surface, &pose);
         if let Some((above, retract)) = above.zip(retract)
             && 0.0 <= above
-            && above < retract - ROUNDED
+            && above < retract - ROUNDING_ALLOWANCE
         {
-            self.passings.add(event, CloseMotionKind::Low { letter, by }, above, None);
+            self.close_motions.add(event, CloseMotionKind::LowRetract { letter, angle: by }, above, None);
         }
     }
 
@@ -143,40 +161,48 @@ impl HoleExtractor<'_> {
     /// Along a chord the distance from a convex body is a convex function, so nowhere below both tangents at its ends, and
     /// the way is no nearer than its chord less what it strays from it. Parts that can't be nearer than what is known are
     /// left; halving the others quarters what they stray.
-    fn nearest_on(&self, surface: &Surface, travel: &AxisMotion<'_>, limit: f64) -> Option<(f64, Pose)> {
+    fn closest_approach(
+        &self,
+        surface: &Surface,
+        travel: &AxisMotion<'_>,
+        limit: f64,
+    ) -> Option<(f64, Pose)> {
         let end = |t: f64| {
             let pose = self.machine.forward(&travel.position(t), &self.setup);
             CurvePoint { t, pose, nearest: surface.nearest(&pose.tip) }
         };
         let mut best = end(0.0);
-        if self.turns_into_itself(surface, travel) {
+        if self.is_turn_about_part_axis(surface, travel) {
             return (best.nearest.distance < limit).then_some((best.nearest.distance, best.pose));
         }
-        let steps = self.machine.steps(travel, &self.setup, STRAY);
+        let steps = self.machine.steps(travel, &self.setup, CHORD_TOLERANCE);
         let ends: Vec<CurvePoint> = (0..=steps).map(|step| end(f64::from(step) / f64::from(steps))).collect();
         for one in &ends {
-            best = best.nearer(*one);
+            best = best.nearer_of(*one);
         }
-        let mut open: Vec<(CurvePoint, CurvePoint, f64)> =
-            ends.windows(2).map(|pair| (pair[0], pair[1], STRAY)).collect();
-        while let Some((from, to, stray)) = open.pop() {
-            let least = from.least_to(&to) - stray;
+        let mut pending_chords: Vec<(CurvePoint, CurvePoint, f64)> =
+            ends.windows(2).map(|pair| (pair[0], pair[1], CHORD_TOLERANCE)).collect();
+        while let Some((from, to, stray)) = pending_chords.pop() {
+            let least = from.chord_distance_bound(&to) - stray;
             let middle = (from.t + to.t) / 2.0;
-            if limit <= least || best.nearest.distance - KNOWN <= least || middle <= from.t || to.t <= middle
+            if limit <= least
+                || best.nearest.distance - DISTANCE_RESOLUTION <= least
+                || middle <= from.t
+                || to.t <= middle
             {
                 continue;
             }
             let middle = end(middle);
-            best = best.nearer(middle);
-            open.push((middle, to, stray / 4.0));
-            open.push((from, middle, stray / 4.0));
+            best = best.nearer_of(middle);
+            pending_chords.push((middle, to, stray / 4.0));
+            pending_chords.push((from, middle, stray / 4.0));
         }
         (best.nearest.distance < limit).then_some((best.nearest.distance, best.pose))
     }
 
     /// Whether a motion turns the part about the axis of its own surface and does nothing else: the tool stays as far from
     /// it as it is.
-    fn turns_into_itself(&self, surface: &Surface, travel: &AxisMotion<'_>) -> bool {
+    fn is_turn_about_part_axis(&self, surface: &Surface, travel: &AxisMotion<'_>) -> bool {
         let [link] = self.machine.table.0.as_slice() else { return false };
         let LinkMotion::Turn { about, centre } = &link.motion else { return false };
         let moved = (0..travel.to.0.len()).filter(|axis| travel.from[*axis] != travel.to[*axis]);
@@ -187,7 +213,7 @@ impl HoleExtractor<'_> {
     }
 
     /// How far the edge of a flat end would be from the surface, on the side that leans towards it.
-    fn edge(&self, surface: &Surface, pose: &Pose) -> Option<f64> {
+    fn edge_distance(&self, surface: &Surface, pose: &Pose) -> Option<f64> {
         let axis = pose.axis?;
         let diameter = self.machine.diameter_of(self.setup.tool)?;
         let normal = surface.nearest(&pose.tip).normal;
@@ -198,7 +224,7 @@ impl HoleExtractor<'_> {
 }
 
 /// How high over the part the tip is along the tool; `None` where the tool's direction isn't known, or beside the part.
-fn above(surface: &Surface, pose: &Pose) -> Option<f64> {
+fn height_above_surface(surface: &Surface, pose: &Pose) -> Option<f64> {
     let axis = pose.axis?;
     let top = surface.exit(&pose.tip, &axis)?;
     Some((pose.tip - top).dot(&axis))
@@ -214,12 +240,12 @@ struct CurvePoint {
 }
 
 impl CurvePoint {
-    fn nearer(self, other: Self) -> Self {
+    fn nearer_of(self, other: Self) -> Self {
         if other.nearest.distance < self.nearest.distance { other } else { self }
     }
 
     /// No point of the chord to another end is nearer than this.
-    fn least_to(&self, to: &Self) -> f64 {
+    fn chord_distance_bound(&self, to: &Self) -> f64 {
         let along = to.pose.tip - self.pose.tip;
         let (low, high) = (self.nearest.distance, to.nearest.distance);
         let (falling, rising) = (self.nearest.normal.dot(&along), to.nearest.normal.dot(&along));
@@ -264,7 +290,7 @@ mod tests {
     fn nearest(machine: &Machine, surface: &Surface, from: &Position, to: &Position) -> f64 {
         let extractor = HoleExtractor::new(machine).with_surface(Some(*surface));
         let travel = AxisMotion { from, to, arc: None };
-        extractor.nearest_on(surface, &travel, f64::INFINITY).unwrap().0
+        extractor.closest_approach(surface, &travel, f64::INFINITY).unwrap().0
     }
 
     /// A tool at x 60, z 0 beside a sphere of 50 about the axis: 10 mm off however far B turns. Sent to x −60 meanwhile it
@@ -307,7 +333,7 @@ mod tests {
                 let tip = machine.forward(&travel.position(f64::from(step) / 1000.0), &crate::machine::Setup::default()).tip;
                 least = least.min(surface.nearest(&tip).distance);
             }
-            prop_assert!(found <= least + KNOWN, "{} {}", found, least);
+            prop_assert!(found <= least + DISTANCE_RESOLUTION, "{} {}", found, least);
             // Between two of so many places it may be a little nearer.
             prop_assert!(least <= found + 2.0, "{} {}", found, least);
         }

@@ -8,27 +8,27 @@ use gcode_lang::units::{MmPerMin, Rpm};
 /// How a block feeds a tool into the part.
 #[derive(Clone, Debug)]
 pub struct CutConditions {
-    pub place: Backtrace,
+    pub backtrace: Backtrace,
     pub tool: Option<u32>,
     pub compensation: LengthCompensation,
     pub spindle_direction: SpindleDirection,
     pub speed: Rpm,
     /// The slowest and the fastest of the feeds.
-    pub feeds: [MmPerMin; 2],
+    pub feed_range: [MmPerMin; 2],
     /// The most that was cut without a way back, mm.
-    pub cut: f64,
+    pub max_cut: f64,
     /// Of cuts in several strokes the least by which one went on, each taken by its longest, mm.
-    pub peck: Option<f64>,
+    pub min_peck: Option<f64>,
     /// How many cuts were made so at that block.
-    pub times: u64,
+    pub count: u64,
 }
 
 /// What the program has said so far.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct CuttingState {
     pub tool: Option<u32>,
-    pub by: LengthCompensation,
-    pub turning: SpindleDirection,
+    pub compensation: LengthCompensation,
+    pub spindle_direction: SpindleDirection,
     pub speed: Rpm,
 }
 
@@ -40,11 +40,11 @@ impl CutConditionsByBlock {
     pub(super) fn add(
         &mut self,
         place: &Backtrace,
-        force: &CuttingState,
+        state: &CuttingState,
         feeds: [MmPerMin; 2],
         pecks: PeckExtent,
     ) {
-        let CuttingState { tool, by, turning, speed } = *force;
+        let CuttingState { tool, compensation: by, spindle_direction: turning, speed } = *state;
         let length = match by {
             LengthCompensation::Off => 0,
             LengthCompensation::Plus(h) => 1 << 32 | u64::from(h),
@@ -54,24 +54,24 @@ impl CutConditionsByBlock {
         let [least, most] = feeds.map(|feed| feed.0.to_bits());
         let kind = [tool_key, length, turning as u64, speed.0.to_bits(), least, most];
         let (_, entry) = self.0.count(place.block, kind, || CutConditions {
-            place: place.clone(),
+            backtrace: place.clone(),
             tool,
             compensation: by,
             spindle_direction: turning,
             speed,
-            feeds,
-            cut: 0.0,
-            peck: None,
-            times: 0,
+            feed_range: feeds,
+            max_cut: 0.0,
+            min_peck: None,
+            count: 0,
         });
         let cutting = &mut entry.value;
-        cutting.cut = cutting.cut.max(pecks.cut);
+        cutting.max_cut = cutting.max_cut.max(pecks.max_cut);
         if 1 < pecks.strokes {
-            cutting.peck = Some(cutting.peck.map_or(pecks.fed, |least| least.min(pecks.fed)));
+            cutting.min_peck = Some(cutting.min_peck.map_or(pecks.max_fed, |least| least.min(pecks.max_fed)));
         }
     }
 
     pub(super) fn finish(self) -> Vec<CutConditions> {
-        self.0.into_entries().map(|entry| CutConditions { times: entry.times, ..entry.value }).collect()
+        self.0.into_entries().map(|entry| CutConditions { count: entry.count, ..entry.value }).collect()
     }
 }

@@ -6,7 +6,7 @@ use gcode_lang::units::{MmPerMin, Rpm, Seconds};
 /// Events in order; event n stands in line n, counted from 1.
 #[derive(Clone, Default)]
 pub(crate) struct EventScript {
-    at: Position,
+    position: Position,
     events: Vec<EventKind>,
 }
 
@@ -21,22 +21,22 @@ impl EventScript {
         self
     }
 
-    fn go(&mut self, words: &str) -> Position {
+    fn move_to(&mut self, words: &str) -> Position {
         for word in words.split_whitespace() {
             let axis = Axes::default().find(word.as_bytes()[0]).unwrap();
-            self.at[axis] = word[1..].parse().unwrap();
+            self.position[axis] = word[1..].parse().unwrap();
         }
-        self.at
+        self.position
     }
 
     /// `rapid("X10 B90")`
     pub(crate) fn rapid(mut self, words: &str) -> Self {
-        let to = self.go(words);
+        let to = self.move_to(words);
         self.with(EventKind::Rapid { to })
     }
 
     pub(crate) fn feed(mut self, words: &str) -> Self {
-        let to = self.go(words);
+        let to = self.move_to(words);
         self.with(EventKind::Feed { to, rate: MmPerMin(10.0) })
     }
 

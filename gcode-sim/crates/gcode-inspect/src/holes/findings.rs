@@ -1,5 +1,5 @@
 //! What is said about the motion: one finding per kind and block, however often the block runs.
-use super::per_block::{PerBlock, again};
+use super::per_block::{PerBlock, with_repeat_note};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::Backtrace;
 
@@ -20,6 +20,6 @@ impl Findings {
     }
 
     pub(super) fn finish(self) -> Vec<Diagnostic> {
-        self.0.into_entries().map(|entry| again(entry.value, entry.times)).collect()
+        self.0.into_entries().map(|entry| with_repeat_note(entry.value, entry.count)).collect()
     }
 }

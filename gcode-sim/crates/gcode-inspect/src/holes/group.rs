@@ -10,13 +10,13 @@ use gcode_part::Clusters;
 use gcode_part::PointTree;
 
 /// Passes belong to one hole when one's bottom lies this near the other's line, in mm, …
-const ASIDE: f64 = 0.5;
+const MAX_LINE_OFFSET: f64 = 0.5;
 
 /// … and their directions differ by no more than this: 5°.
-const COSINE: f64 = 0.996_194_698_091_745_5;
+const MIN_DIRECTION_COSINE: f64 = 0.996_194_698_091_745_5;
 
 /// A tool was there before when it reaches less than this deeper, in mm.
-const DEEPER: f64 = 0.001;
+const MIN_DEPTH_GAIN: f64 = 0.001;
 
 /// A feed into the part along one line, in the part's frame.
 #[derive(Clone, Debug)]
@@ -26,10 +26,10 @@ pub(super) struct DrillPass {
     /// The tool's direction out of the part, or the feed's where it isn't known.
     pub axis: Unit<Vector3<f64>>,
     /// The direction of the feed, out of the part.
-    pub fed: Unit<Vector3<f64>>,
+    pub feed_direction: Unit<Vector3<f64>>,
     pub tool: Option<u32>,
-    pub place: Backtrace,
-    pub at: Position,
+    pub backtrace: Backtrace,
+    pub axis_position: Position,
 }
 
 /// A hole the program makes, in the part's frame.
@@ -45,9 +45,9 @@ pub struct DrilledHole {
     pub diameter: Option<f64>,
     pub tool: Option<u32>,
     /// The block that finished it.
-    pub place: Backtrace,
+    pub backtrace: Backtrace,
     /// Where the axes stood at the bottom.
-    pub at: Position,
+    pub axis_position: Position,
     /// The angle between the finishing feed and the tool's axis.
     pub tool_axis_deviation: Deg,
     /// What was cut there besides the finishing pass.
@@ -66,38 +66,38 @@ pub struct EarlierPass {
     pub tool: Option<u32>,
     /// Of the tool, in mm, where the tool table has it.
     pub diameter: Option<f64>,
-    pub place: Backtrace,
+    pub backtrace: Backtrace,
     /// Where the axes stood at the bottom.
-    pub at: Position,
+    pub axis_position: Position,
 }
 
 /// The holes in the order in which their first passes were made.
-pub(super) fn holes(passes: &[DrillPass], machine: &Machine) -> Vec<DrilledHole> {
-    let first = same_line(passes);
+pub(super) fn group_holes(passes: &[DrillPass], machine: &Machine) -> Vec<DrilledHole> {
+    let first = first_on_same_line(passes);
     let mut order: Vec<usize> = (0..passes.len()).collect();
     // On one line they keep their order.
     order.sort_by_key(|index| first[*index]);
     let mut found = Vec::with_capacity(passes.len());
     let mut sorted = PassesOnLine::default();
     for line in order.chunk_by(|one, other| first[*one] == first[*other]) {
-        sorted.sort(line.iter().map(|index| &passes[*index]));
-        holes_of(&sorted, passes[line[0]].axis, machine, &mut found);
+        sorted.refill(line.iter().map(|index| &passes[*index]));
+        push_holes(&sorted, passes[line[0]].axis, machine, &mut found);
     }
     found
 }
 
 /// For each pass the first one on its line.
-fn same_line(passes: &[DrillPass]) -> Vec<usize> {
+fn first_on_same_line(passes: &[DrillPass]) -> Vec<usize> {
     let tree = PointTree::new(passes.iter().map(|pass| pass.bottom));
     let mut groups = Clusters::new(&tree);
     for (index, pass) in passes.iter().enumerate() {
-        let margin = Vector3::repeat(ASIDE);
+        let margin = Vector3::repeat(MAX_LINE_OFFSET);
         let low = pass.start.inf(&pass.bottom) - margin;
         let high = pass.start.sup(&pass.bottom) + margin;
         groups.join(index, &low, &high, &|other| {
             let to = passes[other].bottom - pass.bottom;
             let aside = (to - pass.axis.into_inner() * to.dot(&pass.axis)).norm();
-            aside <= ASIDE && pass.axis.dot(&passes[other].axis) >= COSINE
+            aside <= MAX_LINE_OFFSET && pass.axis.dot(&passes[other].axis) >= MIN_DIRECTION_COSINE
         });
     }
     groups.representatives()
@@ -108,25 +108,25 @@ fn same_line(passes: &[DrillPass]) -> Vec<usize> {
 #[derive(Default)]
 struct PassesOnLine<'p> {
     cutting: Vec<&'p DrillPass>,
-    again: Vec<&'p DrillPass>,
+    repeated: Vec<&'p DrillPass>,
     /// How low each tool has been.
-    reached: BTreeMap<Option<u32>, f64>,
+    lowest_by_tool: BTreeMap<Option<u32>, f64>,
 }
 
 impl<'p> PassesOnLine<'p> {
-    fn sort(&mut self, passes: impl Iterator<Item = &'p DrillPass>) {
+    fn refill(&mut self, passes: impl Iterator<Item = &'p DrillPass>) {
         self.cutting.clear();
-        self.again.clear();
-        self.reached.clear();
+        self.repeated.clear();
+        self.lowest_by_tool.clear();
         let mut out = None;
         for pass in passes {
             let bottom = pass.bottom.coords.dot(out.get_or_insert(pass.axis));
-            let before = self.reached.entry(pass.tool).or_insert(f64::INFINITY);
-            if bottom < *before - DEEPER {
+            let before = self.lowest_by_tool.entry(pass.tool).or_insert(f64::INFINITY);
+            if bottom < *before - MIN_DEPTH_GAIN {
                 *before = bottom;
                 self.cutting.push(pass);
             } else {
-                self.again.push(pass);
+                self.repeated.push(pass);
             }
         }
     }
@@ -134,25 +134,25 @@ impl<'p> PassesOnLine<'p> {
 
 /// One hole, and one more for every time a tool came back for nothing. Heights count along `out`, the first pass's
 /// axis.
-fn holes_of(
+fn push_holes(
     passes: &PassesOnLine<'_>,
     out: Unit<Vector3<f64>>,
     machine: &Machine,
-    found: &mut Vec<DrilledHole>,
+    drilled: &mut Vec<DrilledHole>,
 ) {
-    let first = found.len();
+    let first = drilled.len();
     let height = |p: &Point3<f64>| p.coords.dot(&out);
-    let PassesOnLine { cutting, again, .. } = passes;
+    let PassesOnLine { cutting, repeated: again, .. } = passes;
     let lowest = cutting.iter().map(|pass| height(&pass.bottom)).fold(f64::INFINITY, f64::min);
-    let finish = finishing(cutting, lowest, height, machine);
+    let finish = finishing_pass(cutting, lowest, height, machine);
     let diameter = |pass: &DrillPass| machine.diameter_of(pass.tool);
     let cut = |pass: &&DrillPass| EarlierPass {
         bottom: pass.bottom,
         axis: pass.axis,
         tool: pass.tool,
         diameter: diameter(pass),
-        place: pass.place.clone(),
-        at: pass.at,
+        backtrace: pass.backtrace.clone(),
+        axis_position: pass.axis_position,
     };
     let others = cutting.iter().filter(|pass| !std::ptr::eq(**pass, finish)).map(cut).collect();
     let one = |pass: &DrillPass, start: f64, bottom: f64, others: Vec<EarlierPass>| {
@@ -165,23 +165,23 @@ fn holes_of(
             depth: (along(start) - along(bottom)).norm(),
             diameter: diameter(pass),
             tool: pass.tool,
-            place: pass.place.clone(),
-            at: pass.at,
-            tool_axis_deviation: Deg::acos(pass.axis.dot(&pass.fed).clamp(-1.0, 1.0)),
+            backtrace: pass.backtrace.clone(),
+            axis_position: pass.axis_position,
+            tool_axis_deviation: Deg::acos(pass.axis.dot(&pass.feed_direction).clamp(-1.0, 1.0)),
             earlier_passes: others,
             first_on_line: first,
         }
     };
     let finishing = cutting.iter().filter(|pass| pass.tool == finish.tool);
     let start = finishing.map(|pass| height(&pass.start)).fold(f64::NEG_INFINITY, f64::max);
-    found.push(one(finish, start, lowest, others));
-    found.extend(again.iter().map(|pass| one(pass, height(&pass.start), height(&pass.bottom), Vec::new())));
+    drilled.push(one(finish, start, lowest, others));
+    drilled.extend(again.iter().map(|pass| one(pass, height(&pass.start), height(&pass.bottom), Vec::new())));
 }
 
 /// The last pass of the largest tool that goes at least half as deep as the hole; where diameters aren't known, of
 /// the last tool. A countersink is large and shallow and doesn't make the hole, nor does a spot drill, however deep:
 /// a tool behind it goes deeper.
-fn finishing<'p>(
+fn finishing_pass<'p>(
     cutting: &[&'p DrillPass],
     lowest: f64,
     height: impl Fn(&Point3<f64>) -> f64,
@@ -192,7 +192,7 @@ fn finishing<'p>(
     let deep = |p: &DrillPass| height(&p.bottom) <= lowest + longest / 2.0;
     let mut best = cutting[0];
     for pass in &cutting[1..] {
-        let goes_on = deep(pass) && height(&pass.bottom) < height(&best.bottom) - DEEPER;
+        let goes_on = deep(pass) && height(&pass.bottom) < height(&best.bottom) - MIN_DEPTH_GAIN;
         if goes_on || (deep(pass), diameter(pass)) >= (deep(best), diameter(best)) {
             best = pass;
         }

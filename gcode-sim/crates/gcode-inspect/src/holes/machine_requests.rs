@@ -7,7 +7,7 @@ use gcode_lang::units::Deg;
 
 impl HoleExtractor<'_> {
     /// An axis that the control has and the machine doesn't use was told to move.
-    pub(super) fn idle_axes(&mut self, event: &Event<'_>, from: &Position, to: &Position) {
+    pub(super) fn check_idle_axes(&mut self, event: &Event<'_>, from: &Position, to: &Position) {
         for (axis, letter) in self.machine.axes.iter() {
             if from[axis] != to[axis] && !self.machine.carries(axis) {
                 self.findings.add("axis-carries-nothing", &event.place(), axis as u32, || {
@@ -42,14 +42,14 @@ impl HoleExtractor<'_> {
     }
 
     /// The operator does what `#3006=1(SET HEAD TO #140)` says: the angle, where the message gives one.
-    pub(super) fn head_message(
+    pub(super) fn operator_head_angle(
         &mut self,
         event: &Event<'_>,
         text: &str,
         named: &[(u32, f64)],
     ) -> Option<Deg> {
-        let asked = HeadMessage::of(text, named);
-        if asked == HeadMessage::Other {
+        let message = HeadMessage::of(text, named);
+        if message == HeadMessage::Other {
             return None;
         }
         if !self.machine.head.is_set_by_hand() {
@@ -64,7 +64,7 @@ impl HoleExtractor<'_> {
             });
             return None;
         }
-        match asked {
+        match message {
             HeadMessage::Angle(angle) => Some(angle),
             HeadMessage::Other | HeadMessage::Unclear => {
                 self.findings.add("head-message-unclear", &event.place(), 0, || unclear_head(text));

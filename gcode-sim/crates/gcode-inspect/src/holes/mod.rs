@@ -20,7 +20,7 @@ pub(crate) mod work_zero;
 
 use nalgebra::Point3;
 
-pub use clearance::{CONTACT, CloseMotion, CloseMotionKind, ROUNDED};
+pub use clearance::{CONTACT_CLEARANCE, CloseMotion, CloseMotionKind, ROUNDING_ALLOWANCE};
 pub use cutting::CutConditions;
 use group::DrillPass;
 pub use group::DrilledHole;
@@ -34,7 +34,7 @@ use self::clearance::CloseMotions;
 use self::cutting::{CutConditionsByBlock, CuttingState};
 use self::findings::Findings;
 use self::length_mismatch::LengthMismatches;
-use self::rapids::{Curved, TOUCH};
+use self::rapids::{CurvedMotion, TOUCH_DEPTH};
 use self::work_zero::WorkZeroTracker;
 use crate::machine::path::AxisMotion;
 use crate::machine::{Frame, Machine, Pose, Setup};
@@ -51,7 +51,7 @@ use gcode_part::{Hole, HoleList, Origin, Unit};
 
 /// More passes than this aren't kept: no part has so many holes, but a loop that never ends drills them, and must not
 /// fill the memory.
-const PASSES: usize = 200_000;
+const MAX_PASSES: usize = 200_000;
 
 /// What a program does to the part.
 #[derive(Clone, Debug, Default)]
@@ -60,15 +60,15 @@ pub struct HoleExtraction {
     pub holes: Vec<DrilledHole>,
     pub findings: Vec<Diagnostic>,
     /// What passes near the part, where the part's surface is known.
-    pub passings: Vec<CloseMotion>,
+    pub close_motions: Vec<CloseMotion>,
     /// What was in force where the tool cut.
-    pub cuttings: Vec<CutConditions>,
+    pub cut_conditions: Vec<CutConditions>,
     /// Feeds of tools whose lengths aren't those that the control reckons with.
-    pub reaches: Vec<LengthMismatch>,
+    pub length_mismatches: Vec<LengthMismatch>,
     /// Rapids whose way over the part isn't known.
-    pub unplaced: Option<UnknownWorkZero>,
+    pub unknown_work_zero: Option<UnknownWorkZero>,
     /// What the motion was looked at for.
-    pub conduct: ProcessLimits,
+    pub process_limits: ProcessLimits,
 }
 
 /// Listens to a run and collects the holes it makes.
@@ -76,32 +76,32 @@ pub struct HoleExtraction {
 pub struct HoleExtractor<'m> {
     machine: &'m Machine,
     surface: Option<Surface>,
-    at: Position,
+    axis_position: Position,
     setup: Setup,
-    force: CuttingState,
+    cutting_state: CuttingState,
     /// The last M code since M03, M04 or M05 that went to the machine builder's logic, which may have started the spindle.
-    builder: Option<u32>,
-    conduct: ProcessLimits,
-    hold: ClampState,
+    builder_code: Option<u32>,
+    process_limits: ProcessLimits,
+    clamp_state: ClampState,
     /// The part's place while the table stands as it does in `at`.
     frame: Frame,
     /// The tool on the part.
     pose: Pose,
     /// The tool has been outside the part: what it does before that, nobody knows where it stood.
-    outside: bool,
-    line: Option<Box<CuttingLine>>,
+    has_been_outside: bool,
+    current_line: Option<Box<CuttingLine>>,
     passes: Vec<DrillPass>,
     /// As many passes are kept.
-    most: usize,
+    max_passes: usize,
     /// The first of the passes that were too many.
-    too_many: Option<Backtrace>,
-    placing: WorkZeroTracker,
+    first_excess_pass: Option<Backtrace>,
+    work_zero: WorkZeroTracker,
     findings: Findings,
-    passings: CloseMotions,
-    cuttings: CutConditionsByBlock,
-    reaches: LengthMismatches,
+    close_motions: CloseMotions,
+    cut_conditions: CutConditionsByBlock,
+    length_mismatches: LengthMismatches,
     /// How many times a probe was sent to the part.
-    touches: u64,
+    probe_count: u64,
 }
 
 /// How a motion was asked for.
@@ -122,25 +122,25 @@ impl<'m> HoleExtractor<'m> {
         Self {
             machine,
             surface: None,
-            at,
+            axis_position: at,
             setup,
-            force: CuttingState::default(),
-            builder: None,
-            conduct: ProcessLimits::default(),
-            hold: ClampState::default(),
+            cutting_state: CuttingState::default(),
+            builder_code: None,
+            process_limits: ProcessLimits::default(),
+            clamp_state: ClampState::default(),
             frame,
             pose,
-            outside: false,
-            line: None,
+            has_been_outside: false,
+            current_line: None,
             passes: Vec::new(),
-            most: PASSES,
-            too_many: None,
-            placing: WorkZeroTracker::default(),
+            max_passes: MAX_PASSES,
+            first_excess_pass: None,
+            work_zero: WorkZeroTracker::default(),
             findings: Findings::default(),
-            passings: CloseMotions::default(),
-            cuttings: CutConditionsByBlock::default(),
-            reaches: LengthMismatches::default(),
-            touches: 0,
+            close_motions: CloseMotions::default(),
+            cut_conditions: CutConditionsByBlock::default(),
+            length_mismatches: LengthMismatches::default(),
+            probe_count: 0,
         }
     }
 
@@ -153,72 +153,72 @@ impl<'m> HoleExtractor<'m> {
 
     /// With what the reference says of how the part is to be worked, the motion is held against that as well.
     #[must_use]
-    pub fn with_conduct(mut self, conduct: &ProcessLimits) -> Self {
-        self.conduct = conduct.clone();
+    pub fn with_process_limits(mut self, conduct: &ProcessLimits) -> Self {
+        self.process_limits = conduct.clone();
         self
     }
 
     pub fn finish(mut self) -> HoleExtraction {
-        if let Some(line) = self.line.take() {
-            let after = line.aside();
+        if let Some(line) = self.current_line.take() {
+            let after = line.curved_exit();
             self.report_line(line, after, false);
         }
         let mut findings = self.findings.finish();
-        findings.extend(self.too_many.map(|place| {
+        findings.extend(self.first_excess_pass.map(|place| {
             let message =
-                format!("more than {PASSES} feeds into the part: those from here on aren't looked at");
+                format!("more than {MAX_PASSES} feeds into the part: those from here on aren't looked at");
             let finding = Diagnostic::new(Severity::Alarm, "limit", message).at(place);
             finding.help("does a loop never end? else split the program")
         }));
-        let holes = group::holes(&self.passes, self.machine);
+        let holes = group::group_holes(&self.passes, self.machine);
         HoleExtraction {
             holes,
             findings,
-            passings: self.passings.finish(),
-            cuttings: self.cuttings.finish(),
-            reaches: self.reaches.finish(),
-            unplaced: self.placing.finish(self.machine),
-            conduct: self.conduct,
+            close_motions: self.close_motions.finish(),
+            cut_conditions: self.cut_conditions.finish(),
+            length_mismatches: self.length_mismatches.finish(),
+            unknown_work_zero: self.work_zero.finish(self.machine),
+            process_limits: self.process_limits,
         }
     }
 
-    fn keep(&mut self, passes: impl IntoIterator<Item = DrillPass>) {
+    fn push_passes(&mut self, passes: impl IntoIterator<Item = DrillPass>) {
         for pass in passes {
-            if self.passes.len() < self.most {
+            if self.passes.len() < self.max_passes {
                 self.passes.push(pass);
-            } else if self.too_many.is_none() {
-                self.too_many = Some(pass.place);
+            } else if self.first_excess_pass.is_none() {
+                self.first_excess_pass = Some(pass.backtrace);
             }
         }
     }
 
-    fn motion(&mut self, event: &Event<'_>, pace: MotionKind, to: &Position, arc: Option<&PlanarArc>) {
-        let from = self.at;
-        self.idle_axes(event, &from, to);
-        self.check_turn(event, &from, to);
+    fn motion(&mut self, event: &Event<'_>, kind: MotionKind, to: &Position, arc: Option<&PlanarArc>) {
+        let from = self.axis_position;
+        self.check_idle_axes(event, &from, to);
+        self.check_clamp_released(event, &from, to);
         let before = self.pose;
         if self.machine.table.differs(&from, to) {
             self.frame = self.machine.part_frame(to);
         }
-        self.at = *to;
+        self.axis_position = *to;
         self.pose = self.machine.tool(to, &self.setup).on(&self.frame);
-        let (was, is) = self.placing.advance();
-        if was | is != 0 && pace != MotionKind::Feed {
-            self.jump(event, &before.tip, (was, is));
+        let (was, is) = self.work_zero.advance();
+        if was | is != 0 && kind != MotionKind::Feed {
+            self.report_unknown_rapid(event, &before.tip, (was, is));
             return;
         }
         let travel = AxisMotion { from: &from, to, arc };
         if !self.machine.is_straight(&travel) {
-            self.leave_curved(event, pace, &travel);
+            self.end_line_on_curve(event, kind, &travel);
             return;
         }
         if (self.pose.tip - before.tip).norm() < 1e-9 {
             return;
         }
-        let free_from = self.update_line(event, pace, before.tip);
-        match (pace, free_from) {
+        let free_from = self.update_line(event, kind, before.tip);
+        match (kind, free_from) {
             (MotionKind::Rapid, Some(start)) => self.check_rapid(event, &start, &self.pose.tip.clone()),
-            (MotionKind::Feed, Some(start)) => self.begin_line(event, start),
+            (MotionKind::Feed, Some(start)) => self.start_line(event, start),
             _ => {}
         }
         self.update_outside();
@@ -226,113 +226,117 @@ impl<'m> HoleExtractor<'m> {
 
     /// Follows a straight motion from `from` on the current line. Where it has left the line, or there is none:
     /// the point from which it moved freely.
-    fn update_line(&mut self, event: &Event<'_>, pace: MotionKind, from: Point3<f64>) -> Option<Point3<f64>> {
-        let Some(mut line) = self.line.take() else { return Some(from) };
+    fn update_line(&mut self, event: &Event<'_>, kind: MotionKind, from: Point3<f64>) -> Option<Point3<f64>> {
+        let Some(mut line) = self.current_line.take() else { return Some(from) };
         let tip = self.pose.tip;
-        if pace == MotionKind::Rapid && line.is_overrun(&tip) {
-            if line.is_shifted() {
-                self.bored_from_the_back(&line);
+        if kind == MotionKind::Rapid && line.is_overrun(&tip) {
+            if line.is_bar_shifted() {
+                self.report_back_boring(&line);
             } else {
-                self.judge_overrun(event, &line, &tip);
+                self.report_overrun(event, &line, &tip);
             }
             return Some(from);
         }
-        let stands = pace == MotionKind::Rapid && self.force.turning == SpindleDirection::Off;
-        if stands && line.leads_in() && line.shift(&tip) {
-            self.line = Some(line);
+        let is_spindle_stopped =
+            kind == MotionKind::Rapid && self.cutting_state.spindle_direction == SpindleDirection::Off;
+        if is_spindle_stopped && line.is_inward() && line.try_bar_shift(&tip) {
+            self.current_line = Some(line);
             return None;
         }
-        match line.after(&from, &tip) {
-            ToolExit::On => {
-                let again = match pace {
+        match line.exit_after(&from, &tip) {
+            ToolExit::OnLine => {
+                let again = match kind {
                     MotionKind::Feed => {
                         if line.depth_of(&from) < line.depth_of(&tip) {
-                            self.note_feed(event, &mut line);
+                            self.record_line_feed(event, &mut line);
                         }
-                        line.feed(&tip, event.place(), &self.at)
+                        line.feed_to(&tip, event.place(), &self.axis_position)
                     }
                     MotionKind::Rapid | MotionKind::Probe => {
-                        let (again, uncut) = line.rapid(&tip);
+                        let (again, uncut) = line.rapid_to(&tip);
                         if uncut {
-                            self.rapid_into_uncut(event, &line);
+                            self.report_rapid_beyond_cut(event, &line);
                         }
                         again
                     }
                 };
-                self.keep(again);
-                self.line = Some(line);
+                self.push_passes(again);
+                self.current_line = Some(line);
                 None
             }
-            after @ (ToolExit::Out | ToolExit::Aside { .. }) => {
-                if stands && !line.leads_in() && after != ToolExit::Out {
-                    self.bored_from_the_back(&line);
+            after @ (ToolExit::AlongLine | ToolExit::Sideways { .. }) => {
+                if is_spindle_stopped && !line.is_inward() && after != ToolExit::AlongLine {
+                    self.report_back_boring(&line);
                 }
-                let free = if after == ToolExit::Out { line.top_between(&from, &tip) } else { from };
-                self.report_line(line, after, pace == MotionKind::Feed);
+                let free =
+                    if after == ToolExit::AlongLine { line.start_level_crossing(&from, &tip) } else { from };
+                self.report_line(line, after, kind == MotionKind::Feed);
                 Some(free)
             }
         }
     }
 
-    fn begin_line(&mut self, event: &Event<'_>, start: Point3<f64>) {
+    fn start_line(&mut self, event: &Event<'_>, start: Point3<f64>) {
         let rounding = self.machine.increment.size() / 2.0;
-        let line = CuttingLine::begin(start, self.pose.tip, event.place(), self.at, rounding);
-        self.line = line.map(|line| {
+        let line = CuttingLine::begin(start, self.pose.tip, event.place(), self.axis_position, rounding);
+        self.current_line = line.map(|line| {
             let mut line = Box::new(line);
             line.tool_axis = self.pose.axis;
-            line.force = CuttingState { tool: self.setup.tool, ..self.force };
-            line.hold = self.hold;
-            line.unplaced = self.placing.now();
+            line.cutting_state = CuttingState { tool: self.setup.tool, ..self.cutting_state };
+            line.clamp_state = self.clamp_state;
+            line.unknown_work_zero_axes = self.work_zero.unknown_axes();
             line.length_excess = self.length_excess();
-            line.top =
+            line.surface_depth =
                 self.surface.and_then(|s| s.exit(&line.bottom(), &line.out)).map(|p| line.depth_of(&p));
-            self.note_feed(event, &mut line);
+            self.record_line_feed(event, &mut line);
             line
         });
     }
 
     /// How fast a feed inwards is, where it cuts: the way to the part may be fed faster.
-    fn note_feed(&self, event: &Event<'_>, line: &mut CuttingLine) {
-        let cuts = self.surface.is_none_or(|surface| surface.is_deeper(&self.pose.tip, TOUCH));
+    fn record_line_feed(&self, event: &Event<'_>, line: &mut CuttingLine) {
+        let cuts = self.surface.is_none_or(|surface| surface.is_deeper(&self.pose.tip, TOUCH_DEPTH));
         if let EventKind::Feed { rate, .. } = event.kind
             && cuts
         {
-            line.note_feed(*rate);
+            line.record_feed(*rate);
         }
     }
 
     /// The table or the head turns, or an arc: the tool's way on the part is curved.
-    fn leave_curved(&mut self, event: &Event<'_>, pace: MotionKind, travel: &AxisMotion<'_>) {
-        if let Some(line) = self.line.take() {
-            let after = line.aside();
-            self.report_line(line, after, pace == MotionKind::Feed);
+    fn end_line_on_curve(&mut self, event: &Event<'_>, kind: MotionKind, travel: &AxisMotion<'_>) {
+        if let Some(line) = self.current_line.take() {
+            let after = line.curved_exit();
+            self.report_line(line, after, kind == MotionKind::Feed);
         }
-        match pace {
-            MotionKind::Rapid => self.check_curved(event, travel, Curved::Rapid),
-            MotionKind::Feed => self.check_curved(event, travel, Curved::Feed),
+        match kind {
+            MotionKind::Rapid => self.check_curved(event, travel, CurvedMotion::Rapid),
+            MotionKind::Feed => self.check_curved(event, travel, CurvedMotion::Feed),
             MotionKind::Probe => {}
         }
         self.update_outside();
     }
 
     fn update_outside(&mut self) {
-        if let (false, true, Some(surface)) = (self.outside, self.placing.now() == 0, &self.surface) {
-            self.outside = surface.value(&self.pose.tip) > 0.0;
+        if let (false, true, Some(surface)) =
+            (self.has_been_outside, self.work_zero.unknown_axes() == 0, &self.surface)
+        {
+            self.has_been_outside = surface.value(&self.pose.tip) > 0.0;
         }
     }
 
     /// Something other than an axis changes where the tool is, or which tool it is.
-    fn set_up(&mut self, change: impl FnOnce(&mut Setup)) {
+    fn update_setup(&mut self, change: impl FnOnce(&mut Setup)) {
         let before = self.setup;
         change(&mut self.setup);
         if self.setup == before {
             return;
         }
-        if let Some(line) = self.line.take() {
-            let after = line.aside();
+        if let Some(line) = self.current_line.take() {
+            let after = line.curved_exit();
             self.report_line(line, after, false);
         }
-        self.pose = self.machine.tool(&self.at, &self.setup).on(&self.frame);
+        self.pose = self.machine.tool(&self.axis_position, &self.setup).on(&self.frame);
     }
 }
 
@@ -349,29 +353,30 @@ impl EventSink for HoleExtractor<'_> {
             EventKind::Skip { to, .. } => self.motion(event, MotionKind::Probe, to, None),
             EventKind::ToolChange { number } => {
                 self.check_tool_known(event, *number);
-                self.set_up(|setup| setup.tool = Some(*number));
+                self.update_setup(|setup| setup.tool = Some(*number));
             }
             EventKind::ToolLength { offset, by } => {
-                self.set_up(|setup| setup.offset = *offset);
-                self.force.by = *by;
+                self.update_setup(|setup| setup.offset = *offset);
+                self.cutting_state.compensation = *by;
             }
-            EventKind::WorkZeroUnknown { axes } => self.placing.apply_event(self.machine, *axes),
+            EventKind::WorkZeroUnknown { axes } => self.work_zero.apply_event(self.machine, *axes),
             EventKind::Spindle { turning, speed } => {
                 // At S0 it stands.
-                let before = self.force.turning;
-                self.force.turning = if *speed == Rpm(0.0) { SpindleDirection::Off } else { *turning };
-                self.force.speed = *speed;
-                self.spindle_in_hole(before);
-                self.builder = None;
+                let before = self.cutting_state.spindle_direction;
+                self.cutting_state.spindle_direction =
+                    if *speed == Rpm(0.0) { SpindleDirection::Off } else { *turning };
+                self.cutting_state.speed = *speed;
+                self.update_spindle_in_hole(before);
+                self.builder_code = None;
             }
             EventKind::Stop { kind: StopKind::Message, text, named } => {
-                if let Some(angle) = self.head_message(event, text, named) {
-                    self.set_up(|setup| setup.head_angle = Some(angle));
+                if let Some(angle) = self.operator_head_angle(event, text, named) {
+                    self.update_setup(|setup| setup.head_angle = Some(angle));
                 }
             }
             EventKind::Auxiliary { code } => {
                 if !self.apply_clamp_code(*code) {
-                    self.builder = Some(*code);
+                    self.builder_code = Some(*code);
                 }
             }
             EventKind::Stop { .. } | EventKind::Dwell { .. } | EventKind::Coolant { .. } => {}
@@ -390,7 +395,7 @@ impl HoleExtraction {
 impl DrilledHole {
     /// In the schema that references have too; the program alone gives no id.
     pub fn hole(&self, locate: impl Fn(Span) -> (String, u32)) -> Hole {
-        let (program, line) = locate(self.place.block);
+        let (program, line) = locate(self.backtrace.block);
         Hole {
             id: None,
             entry: self.entry.coords.into(),

@@ -15,7 +15,7 @@ pub(crate) struct PerBlock<K, T> {
 #[derive(Clone, Debug)]
 pub(crate) struct Counted<T> {
     pub value: T,
-    pub times: u64,
+    pub count: u64,
 }
 
 impl<K, T> Default for PerBlock<K, T> {
@@ -35,10 +35,10 @@ impl<K: Ord, T> PerBlock<K, T> {
         let next = self.list.len();
         let index = *self.index.entry((block.source.0, block.start, kind)).or_insert(next);
         if index == next {
-            self.list.push(Counted { value: first(), times: 0 });
+            self.list.push(Counted { value: first(), count: 0 });
         }
         let entry = &mut self.list[index];
-        entry.times += 1;
+        entry.count += 1;
         (index, entry)
     }
 
@@ -52,7 +52,7 @@ impl<K: Ord, T> PerBlock<K, T> {
 }
 
 /// With a note of how often more it came up at its block.
-pub(crate) fn again(finding: Diagnostic, times: u64) -> Diagnostic {
+pub(crate) fn with_repeat_note(finding: Diagnostic, times: u64) -> Diagnostic {
     match times {
         0 | 1 => finding,
         2 => finding.note("and once more at the same block"),
@@ -72,7 +72,7 @@ mod tests {
         for (start, kind) in [(9, 'a'), (3, 'a'), (9, 'b'), (9, 'a')] {
             per.count(block(start), kind, || (start, kind));
         }
-        let all: Vec<_> = per.into_entries().map(|entry| (entry.value, entry.times)).collect();
+        let all: Vec<_> = per.into_entries().map(|entry| (entry.value, entry.count)).collect();
         assert_eq!(all, [((9, 'a'), 2), ((3, 'a'), 1), ((9, 'b'), 1)]);
     }
 }

@@ -6,8 +6,8 @@ impl HoleExtractor<'_> {
     /// `None` where there is no probe, or no part that it could touch.
     pub(super) fn probe(&mut self, feed: &SkipMove<'_>) -> Option<SkipSignal> {
         let (probe, surface) = (self.machine.probe.as_ref()?, self.surface.as_ref()?);
-        let signal = self.machine.probe(probe, feed, &self.setup, surface, self.touches);
-        self.touches += 1;
+        let signal = self.machine.probe(probe, feed, &self.setup, surface, self.probe_count);
+        self.probe_count += 1;
         Some(signal)
     }
 }

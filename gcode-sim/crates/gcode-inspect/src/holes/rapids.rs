@@ -9,30 +9,30 @@ use gcode_lang::motion::Event;
 use gcode_part::Surface;
 
 /// Motion less than this below the surface, in mm, isn't told.
-pub(super) const TOUCH: f64 = 0.01;
+pub(super) const TOUCH_DEPTH: f64 = 0.01;
 
 /// A straight way within some 6° of the tool's axis plunges.
-const PLUNGES: f64 = 0.995;
+const PLUNGE_COSINE: f64 = 0.995;
 
 /// What a curved motion is.
 #[derive(Clone, Copy)]
-pub(super) enum Curved {
+pub(super) enum CurvedMotion {
     Rapid,
     Feed,
 }
 
 impl HoleExtractor<'_> {
     /// After a way back, a rapid along the line ran deeper than the line was cut.
-    pub(super) fn rapid_into_uncut(&mut self, event: &Event<'_>, line: &CuttingLine) {
+    pub(super) fn report_rapid_beyond_cut(&mut self, event: &Event<'_>, line: &CuttingLine) {
         let bottom = line.bottom();
         let inside = self.surface.map(|surface| surface.depth(&bottom));
-        if inside.is_some_and(|depth| depth <= TOUCH) {
+        if inside.is_some_and(|depth| depth <= TOUCH_DEPTH) {
             return;
         }
         self.findings.add("rapid-beyond-cut", &event.place(), 0, || {
             let message = format!(
                 "rapid along the hole beyond what was cut, to {:.3} mm from where the feed began",
-                line.cut()
+                line.cut_depth()
             );
             let finding = match inside {
                 Some(_) => Diagnostic::error("rapid-beyond-cut", message),
@@ -43,7 +43,7 @@ impl HoleExtractor<'_> {
     }
 
     /// The feed ends and a rapid goes on in its direction: out of the part after a feed outwards, or deeper into it.
-    pub(super) fn judge_overrun(&mut self, event: &Event<'_>, line: &CuttingLine, to: &Point3<f64>) {
+    pub(super) fn report_overrun(&mut self, event: &Event<'_>, line: &CuttingLine, to: &Point3<f64>) {
         // A rapid into the part is told where all rapids are.
         if self.surface.is_some() {
             return;
@@ -57,8 +57,8 @@ impl HoleExtractor<'_> {
                 "rapid-beyond-cut",
                 format!(
                     "the rapid goes {:.3} mm on in the direction of a feed of {:.3} mm: not taken for a hole",
-                    line.depth_of(to) - line.cut(),
-                    line.cut()
+                    line.depth_of(to) - line.cut_depth(),
+                    line.cut_depth()
                 ),
             )
             .help("right if the feed led out of the part; else the rapid runs into it")
@@ -70,17 +70,20 @@ impl HoleExtractor<'_> {
         let Some(surface) = self.surface else { return };
         let deepest = surface.deepest_between(from, to);
         let depth = surface.depth(&deepest);
-        if !self.outside {
+        if !self.has_been_outside {
             self.check_first_rapid(event, &surface, from, to);
             return;
         }
-        if depth <= TOUCH {
-            self.note_straight(event, &surface, from, to);
+        if depth <= TOUCH_DEPTH {
+            self.record_close_rapid(event, &surface, from, to);
         } else {
             self.findings.add("rapid-into-part", &event.place(), 0, || {
                 Diagnostic::error(
                     "rapid-into-part",
-                    format!("rapid through the part, {depth:.3} mm below the surface at {}", shown(&deepest)),
+                    format!(
+                        "rapid through the part, {depth:.3} mm below the surface at {}",
+                        format_point(&deepest)
+                    ),
                 )
                 .help("go round at a safe height; only a feed may enter the part")
             });
@@ -97,14 +100,14 @@ impl HoleExtractor<'_> {
         to: &Point3<f64>,
     ) {
         let (depth, way) = (surface.depth(to), to - from);
-        let inwards = self.pose.axis.is_some_and(|axis| way.dot(&axis) <= -PLUNGES * way.norm());
-        if depth <= TOUCH || !inwards {
+        let inwards = self.pose.axis.is_some_and(|axis| way.dot(&axis) <= -PLUNGE_COSINE * way.norm());
+        if depth <= TOUCH_DEPTH || !inwards {
             return;
         }
         // Without work offsets machine zero is only taken for the work zero: nothing stands there.
         let known = !self.machine.offsets.is_empty();
         self.findings.add("rapid-into-part", &event.place(), 0, || {
-            let message = format!("the rapid ends {depth:.3} mm below the surface, at {}", shown(to));
+            let message = format!("the rapid ends {depth:.3} mm below the surface, at {}", format_point(to));
             let finding = match known {
                 true => Diagnostic::error("rapid-into-part", message),
                 false => Diagnostic::warning("rapid-into-part", message),
@@ -116,44 +119,44 @@ impl HoleExtractor<'_> {
     }
 
     /// A motion that is curved on the part: a rapid must stay outside, a feed is no hole.
-    pub(super) fn check_curved(&mut self, event: &Event<'_>, travel: &AxisMotion<'_>, kind: Curved) {
+    pub(super) fn check_curved(&mut self, event: &Event<'_>, travel: &AxisMotion<'_>, kind: CurvedMotion) {
         let deepest = match self.surface {
-            Some(surface) if self.outside => self.deepest_on(&surface, travel),
+            Some(surface) if self.has_been_outside => self.max_depth_along(&surface, travel),
             _ => f64::NEG_INFINITY,
         };
-        let in_part = deepest > 2.0 * TOUCH;
+        let in_part = deepest > 2.0 * TOUCH_DEPTH;
         match kind {
-            Curved::Rapid if in_part => self.findings.add("rapid-into-part", &event.place(), 0, || {
+            CurvedMotion::Rapid if in_part => self.findings.add("rapid-into-part", &event.place(), 0, || {
                 Diagnostic::error(
                     "rapid-into-part",
                     format!("rapid through the part while an axis turns, {deepest:.3} mm below the surface"),
                 )
                 .help("retract until the tool is outside the part before the table or the head turns")
             }),
-            Curved::Feed if in_part => self.findings.add("feed-no-hole", &event.place(), 0, || {
+            CurvedMotion::Feed if in_part => self.findings.add("feed-no-hole", &event.place(), 0, || {
                 Diagnostic::error(
                     "feed-no-hole",
                     format!("a curved feed cuts {deepest:.3} mm into the part: no hole"),
                 )
                 .help("holes are fed along a straight line while the table stands")
             }),
-            Curved::Rapid | Curved::Feed if self.outside => {
+            CurvedMotion::Rapid | CurvedMotion::Feed if self.has_been_outside => {
                 if let Some(surface) = self.surface {
-                    self.note_turn(event, &surface, travel);
+                    self.record_close_turn(event, &surface, travel);
                 }
             }
-            Curved::Feed if self.surface.is_none() => {
+            CurvedMotion::Feed if self.surface.is_none() => {
                 self.findings.add("feed-no-hole", &event.place(), 0, || {
                     Diagnostic::warning("feed-no-hole", "a curved feed on the part: not taken for a hole")
                         .help("holes are fed along a straight line while the table stands")
                 })
             }
-            Curved::Rapid | Curved::Feed => {}
+            CurvedMotion::Rapid | CurvedMotion::Feed => {}
         }
     }
 
     /// How far below the surface a curved way goes; below 0 outside. Coarse chords first: most ways stay far away.
-    fn deepest_on(&self, surface: &Surface, travel: &AxisMotion<'_>) -> f64 {
+    fn max_depth_along(&self, surface: &Surface, travel: &AxisMotion<'_>) -> f64 {
         for tolerance in [40.0, 5.0, 0.5] {
             let mut last: Option<Point3<f64>> = None;
             let mut clear = true;
@@ -167,7 +170,7 @@ impl HoleExtractor<'_> {
         }
         let mut last: Option<Point3<f64>> = None;
         let mut deepest = f64::NEG_INFINITY;
-        self.machine.follow(travel, &self.setup, TOUCH, |pose| {
+        self.machine.follow(travel, &self.setup, TOUCH_DEPTH, |pose| {
             let from = last.replace(pose.tip).unwrap_or(pose.tip);
             if surface.clearance(&from, &pose.tip) <= 0.0 {
                 deepest = deepest.max(surface.depth(&surface.deepest_between(&from, &pose.tip)));
@@ -178,7 +181,7 @@ impl HoleExtractor<'_> {
 }
 
 /// Rounded; adding 0 to what is rounded turns −0 into 0.
-pub(super) fn shown(p: &Point3<f64>) -> String {
+pub(super) fn format_point(p: &Point3<f64>) -> String {
     let [x, y, z] = [p.x, p.y, p.z].map(|v| (v * 1000.0).round() / 1000.0 + 0.0);
     format!("x {x:.3} y {y:.3} z {z:.3} on the part")
 }

@@ -7,7 +7,7 @@ use gcode_lang::motion::{Backtrace, SpindleDirection};
 
 /// The finding: nothing is cut so. It is a warning where an M code went to the machine builder's logic before, `builder`,
 /// for that may be what starts the spindle.
-pub(crate) fn stopped(message: &str, builder: Option<u32>) -> Diagnostic {
+pub(crate) fn spindle_stopped_finding(message: &str, builder: Option<u32>) -> Diagnostic {
     let severity = if builder.is_some() { Severity::Warning } else { Severity::Error };
     let finding = Diagnostic::new(severity, "spindle-stopped", message);
     builder.into_iter().fold(finding, |finding, code| {
@@ -19,32 +19,32 @@ pub(crate) fn stopped(message: &str, builder: Option<u32>) -> Diagnostic {
 
 impl HoleExtractor<'_> {
     /// The spindle is switched, having turned so `before`.
-    pub(super) fn spindle_in_hole(&mut self, before: SpindleDirection) {
-        let now = self.force.turning;
-        let Some(line) = self.line.as_mut().filter(|line| line.is_below()) else { return };
-        let begun = line.force.turning;
-        let does = match now {
-            _ if begun == SpindleDirection::Off || now == before => SpindleInHole::Turns,
-            SpindleDirection::Off => SpindleInHole::Stops,
-            now if now != begun => SpindleInHole::Reverses,
-            _ => SpindleInHole::Turns,
+    pub(super) fn update_spindle_in_hole(&mut self, before: SpindleDirection) {
+        let now = self.cutting_state.spindle_direction;
+        let Some(line) = self.current_line.as_mut().filter(|line| line.is_below_start()) else { return };
+        let begun = line.cutting_state.spindle_direction;
+        let state = match now {
+            _ if begun == SpindleDirection::Off || now == before => SpindleInHole::Unchanged,
+            SpindleDirection::Off => SpindleInHole::Stopped,
+            now if now != begun => SpindleInHole::Reversed,
+            _ => SpindleInHole::Unchanged,
         };
-        line.spindle = line.spindle.max(does);
+        line.spindle = line.spindle.max(state);
     }
 
     /// A tool that the job has to drill with: a cycle that taps or bores isn't meant for it.
     pub(super) fn check_spindle(&mut self, place: &Backtrace, line: &CuttingLine) {
-        if self.conduct.tool_process(line.force.tool).is_none() {
+        if self.process_limits.tool_process(line.cutting_state.tool).is_none() {
             return;
         }
-        let name = || line.force.tool.map_or("the tool".to_owned(), |number| format!("T{number}"));
+        let name = || line.cutting_state.tool.map_or("the tool".to_owned(), |number| format!("T{number}"));
         let finding = match line.spindle {
-            SpindleInHole::Turns => return,
-            SpindleInHole::Stops => {
+            SpindleInHole::Unchanged => return,
+            SpindleInHole::Stopped => {
                 let message = format!("the spindle stops while {} is in the hole", name());
                 Diagnostic::warning("spindle-in-hole", message).note("G76, G86 and G88 do that for a boring bar; a drill that stands in its hole rubs, or breaks when it is moved aside")
             }
-            SpindleInHole::Reverses => {
+            SpindleInHole::Reversed => {
                 let message = format!("the spindle is reversed while {} is in the hole", name());
                 Diagnostic::error("spindle-in-hole", message)
                     .note("G84 and G74 do that for a tap; the job has this hole drilled")

@@ -98,7 +98,7 @@ fn the_same_depth_twice_is_a_hole_twice() {
 fn a_loop_over_one_hole_ends_with_the_limit_of_passes() {
     let machine = Machine::default();
     let mut extractor = HoleExtractor::new(&machine);
-    extractor.most = 500;
+    extractor.max_passes = 500;
     EventScript::new().rapid("X9 Z2").rapid("X0").emit_to(&mut extractor);
     let once = EventScript::new().feed("Z-3").rapid("Z2").rapid("X9").rapid("X0");
     for _ in 0..505 {

@@ -12,7 +12,7 @@ use gcode_part::Hole;
 use gcode_part::{Pattern, azimuth};
 
 /// A drilled hole leans by less than this where only slides are wrong.
-const LEANS: Deg = Deg(0.01);
+const TILT_TOLERANCE: Deg = Deg(0.01);
 
 /// What an axis of the table that stood wrong leaves unexplained, in mm and as many hundredths of a degree.
 const UNEXPLAINED: f64 = 0.02;
@@ -20,14 +20,14 @@ const UNEXPLAINED: f64 = 0.02;
 /// One wanted hole and the drilled one that was meant for it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HoleDisplacement {
-    pub wanted: usize,
-    pub found: usize,
+    pub nominal: usize,
+    pub actual: usize,
     /// What was drilled less what is wanted, along the slides, across the hole, mm; where a rotary axis explains it, 0.
     pub offset: Vector3<f64>,
     /// The rotary axis that stood wrong, and by how much.
-    pub turned: Option<(AxisIndex, Deg)>,
+    pub rotation: Option<(AxisIndex, Deg)>,
     /// Whether the pair was matched by nearness; else by its place in its row.
-    pub near: bool,
+    pub is_matched: bool,
 }
 
 impl HoleDisplacement {
@@ -41,17 +41,30 @@ impl HoleDisplacement {
         let (hole, drilled) = (&comparison.nominal[wanted], &comparison.actual[found]);
         let deviation = Deviation::new(hole, &drilled.bottom(), &drilled.axis)?;
         let plain = deviation.entry - Point3::from(hole.entry);
-        let aside = machine.part_frame(&drilled.at).rotation * plain;
-        if deviation.tilt < LEANS {
-            return Some(Self { wanted, found, offset: aside, turned: None, near });
+        let aside = machine.part_frame(&drilled.axis_position).rotation * plain;
+        if deviation.tilt < TILT_TOLERANCE {
+            return Some(Self {
+                nominal: wanted,
+                actual: found,
+                offset: aside,
+                rotation: None,
+                is_matched: near,
+            });
         }
-        let turned = machine.table.0.iter().find_map(|link| turned(hole, drilled, machine, link.axis))?;
-        Some(Self { wanted, found, offset: Vector3::zeros(), turned: Some(turned), near })
+        let turned =
+            machine.table.0.iter().find_map(|link| rotation_error(hole, drilled, machine, link.axis))?;
+        Some(Self {
+            nominal: wanted,
+            actual: found,
+            offset: Vector3::zeros(),
+            rotation: Some(turned),
+            is_matched: near,
+        })
     }
 
     /// The same within what rounding makes of it.
-    pub(super) fn is_like(&self, other: &Self) -> bool {
-        let turned = match (self.turned, other.turned) {
+    pub(super) fn is_same_error(&self, other: &Self) -> bool {
+        let turned = match (self.rotation, other.rotation) {
             (None, None) => true,
             (Some((axis, by)), Some((other, and))) => axis == other && (by - and).abs().0 < UNEXPLAINED,
             _ => false,
@@ -61,41 +74,41 @@ impl HoleDisplacement {
 }
 
 /// How far an axis of the table stood beyond where this hole belongs, where that explains all of it.
-fn turned(
+fn rotation_error(
     hole: &Hole,
     drilled: &DrilledHole,
     machine: &Machine,
     axis: AxisIndex,
 ) -> Option<(AxisIndex, Deg)> {
-    let frame = machine.part_frame(&drilled.at);
+    let frame = machine.part_frame(&drilled.axis_position);
     let (tip, out) = (frame * drilled.bottom(), frame.rotation * drilled.axis);
     // How the wanted direction goes while the axis turns by a degree, here.
     let turned_by = |by: f64| {
-        let mut at = drilled.at;
+        let mut at = drilled.axis_position;
         at[axis] += by;
         machine.part_frame(&at)
     };
     let wanted = Vector3::from(hole.axis);
-    let here = frame.rotation * wanted;
+    let nominal_direction = frame.rotation * wanted;
     let slope = (turned_by(0.5).rotation * wanted - turned_by(-0.5).rotation * wanted)
-        .dot(&(here - out.into_inner()));
+        .dot(&(nominal_direction - out.into_inner()));
     if slope == 0.0 {
         return None;
     }
-    let angle = Deg::acos(here.dot(&out).clamp(-1.0, 1.0)).0.copysign(slope);
-    let right = turned_by(-angle);
+    let angle = Deg::acos(nominal_direction.dot(&out).clamp(-1.0, 1.0)).0.copysign(slope);
+    let corrected = turned_by(-angle);
     let deviation = Deviation::new(
         hole,
-        &right.inverse_transform_point(&tip),
-        &right.rotation.inverse_transform_unit_vector(&out),
+        &corrected.inverse_transform_point(&tip),
+        &corrected.rotation.inverse_transform_unit_vector(&out),
     )?;
-    (deviation.phi() < UNEXPLAINED && deviation.tilt < LEANS).then_some((axis, Deg(angle)))
+    (deviation.zone_diameter() < UNEXPLAINED && deviation.tilt < TILT_TOLERANCE).then_some((axis, Deg(angle)))
 }
 
 /// Every wanted hole with the drilled one meant for it, where both are known.
-pub(super) fn offs(comparison: &Comparison<'_>, machine: &Machine) -> Vec<HoleDisplacement> {
-    let near = comparison.pairs.iter().map(|pair| (pair.wanted, pair.found, true));
-    let by_rows = comparison.pattern.map(|pattern| by_rows(comparison, pattern)).unwrap_or_default();
+pub(super) fn displacements(comparison: &Comparison<'_>, machine: &Machine) -> Vec<HoleDisplacement> {
+    let near = comparison.pairs.iter().map(|pair| (pair.nominal, pair.actual, true));
+    let by_rows = comparison.pattern.map(|pattern| pairs_by_row(comparison, pattern)).unwrap_or_default();
     let far = by_rows.into_iter().map(|(wanted, found)| (wanted, found, false));
     let off = |(wanted, found, near)| HoleDisplacement::of(comparison, machine, wanted, found, near);
     near.chain(far).filter_map(off).collect()
@@ -103,7 +116,7 @@ pub(super) fn offs(comparison: &Comparison<'_>, machine: &Machine) -> Vec<HoleDi
 
 /// Rows that stand too far off for their holes to be matched: where as many holes too many stand nearest to a row as
 /// are missing in it, they are meant for it in their order.
-fn by_rows(comparison: &Comparison<'_>, pattern: &Pattern) -> Vec<(usize, usize)> {
+fn pairs_by_row(comparison: &Comparison<'_>, pattern: &Pattern) -> Vec<(usize, usize)> {
     let rows = pattern.rows as usize;
     let mut missing = vec![Vec::new(); rows];
     for wanted in &comparison.missing {
@@ -114,13 +127,13 @@ fn by_rows(comparison: &Comparison<'_>, pattern: &Pattern) -> Vec<(usize, usize)
     for found in &comparison.extra {
         let hole = &comparison.actual[*found];
         let Some(at) = pattern.crossing(&hole.bottom(), &hole.axis) else { continue };
-        if comparison.wanted_on_line_of(*found).is_none() {
+        if comparison.nominal_on_line_of(*found).is_none() {
             extra[pattern.row_of(&at)].push((at.x, *found));
         }
     }
     let mut pairs = Vec::new();
     for (mut wanted, mut found) in missing.into_iter().zip(extra) {
-        if wanted.len() != found.len() || !one_azimuth(comparison, pattern, &found) {
+        if wanted.len() != found.len() || !have_one_azimuth(comparison, pattern, &found) {
             continue;
         }
         wanted.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -131,7 +144,7 @@ fn by_rows(comparison: &Comparison<'_>, pattern: &Pattern) -> Vec<(usize, usize)
 }
 
 /// Whether these were drilled at one azimuth.
-fn one_azimuth(comparison: &Comparison<'_>, pattern: &Pattern, found: &[(f64, usize)]) -> bool {
+fn have_one_azimuth(comparison: &Comparison<'_>, pattern: &Pattern, found: &[(f64, usize)]) -> bool {
     let azimuths = found.iter().filter_map(|(_, found)| {
         let hole = &comparison.actual[*found];
         Some(azimuth(&pattern.crossing(&hole.bottom(), &hole.axis)?))

@@ -6,26 +6,26 @@ use gcode_lang::motion::{Backtrace, Call};
 #[derive(Clone, Debug)]
 pub struct HoleFinding {
     /// The wanted hole it is about, counted from 0.
-    pub wanted: Option<usize>,
+    pub nominal: Option<usize>,
     /// The drilled hole that nobody asked for, counted from 0.
     pub extra: Option<usize>,
     pub finding: Diagnostic,
     /// Another finding says it of many holes at once: people read that one, the data has both.
-    pub folded: bool,
+    pub is_folded: bool,
 }
 
 impl HoleFinding {
     /// About many holes, or about none that is known.
-    pub fn whole(finding: Diagnostic) -> Self {
-        Self { wanted: None, extra: None, finding, folded: false }
+    pub fn unlocated(finding: Diagnostic) -> Self {
+        Self { nominal: None, extra: None, finding, is_folded: false }
     }
 
-    pub fn of(wanted: usize, finding: Diagnostic) -> Self {
-        Self { wanted: Some(wanted), ..Self::whole(finding) }
+    pub fn of_nominal(wanted: usize, finding: Diagnostic) -> Self {
+        Self { nominal: Some(wanted), ..Self::unlocated(finding) }
     }
 
     pub fn of_extra(extra: usize, finding: Diagnostic) -> Self {
-        Self { extra: Some(extra), ..Self::whole(finding) }
+        Self { extra: Some(extra), ..Self::unlocated(finding) }
     }
 
     fn is_one_of(&self, codes: &[&str]) -> bool {
@@ -35,20 +35,20 @@ impl HoleFinding {
 
 /// Puts those of these codes that `about` speaks of behind another finding; the answer is how many they are.
 pub(super) fn fold(
-    objections: &mut [HoleFinding],
+    findings: &mut [HoleFinding],
     codes: &[&str],
-    about: impl Fn(&HoleFinding) -> bool,
+    is_concerned: impl Fn(&HoleFinding) -> bool,
 ) -> usize {
     let mut folded = 0;
-    for objection in objections.iter_mut().filter(|o| !o.folded && o.is_one_of(codes) && about(o)) {
-        objection.folded = true;
+    for objection in findings.iter_mut().filter(|o| !o.is_folded && o.is_one_of(codes) && is_concerned(o)) {
+        objection.is_folded = true;
         folded += 1;
     }
     folded
 }
 
 /// What is said where findings were folded; `None` where there were none.
-pub(super) fn behind(folded: usize) -> Option<String> {
+pub(super) fn folded_note(folded: usize) -> Option<String> {
     match folded {
         0 => None,
         1 => Some("the finding of the single hole is in --format json".to_owned()),
@@ -58,7 +58,7 @@ pub(super) fn behind(folded: usize) -> Option<String> {
 
 /// What concerns many holes alike is told at the call in the main program, which has the numbers; where it was drilled is
 /// a second place.
-pub(super) fn at_the_call(finding: Diagnostic, place: &Backtrace) -> Diagnostic {
+pub(super) fn locate_at_call(finding: Diagnostic, place: &Backtrace) -> Diagnostic {
     let calls = std::iter::successors(place.calls.as_deref(), |call: &&Call| call.outer.as_deref());
     match calls.last() {
         Some(call) => {

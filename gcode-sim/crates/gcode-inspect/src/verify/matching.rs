@@ -9,16 +9,16 @@ use gcode_part::Pattern;
 use gcode_part::PointTree;
 
 /// A drilled hole can be a wanted one when its axis passes the wanted entry and bottom this near, in mm.
-const REACH: f64 = 5.0;
+const MAX_LINE_DISTANCE: f64 = 5.0;
 
 /// … and its direction is within this of the wanted one: 30°.
-const COSINE: f64 = 0.866_025_403_784_438_6;
+const MIN_DIRECTION_COSINE: f64 = 0.866_025_403_784_438_6;
 
 /// A wanted hole and the drilled one taken for it, by their numbers in the lists.
 #[derive(Clone, Copy, Debug)]
 pub struct HolePair {
-    pub wanted: usize,
-    pub found: usize,
+    pub nominal: usize,
+    pub actual: usize,
     pub deviation: Deviation,
 }
 
@@ -37,7 +37,7 @@ pub struct Comparison<'a> {
     /// There and not wanted.
     pub extra: Vec<usize>,
     /// The wanted hole that a line was taken for, by the first hole found on the line.
-    on_line: Vec<Option<usize>>,
+    nominal_by_line: Vec<Option<usize>>,
 }
 
 impl<'a> Comparison<'a> {
@@ -48,7 +48,7 @@ impl<'a> Comparison<'a> {
         pattern: Option<&'a Pattern>,
     ) -> Self {
         // Beyond half the way to its neighbour a hole is another one.
-        let near = pattern.map_or(REACH, |pattern| REACH.min(pattern.pitch / 4.0));
+        let near = pattern.map_or(MAX_LINE_DISTANCE, |pattern| MAX_LINE_DISTANCE.min(pattern.pitch / 4.0));
         let reach = near.max(2.0 * tolerances.position);
         let tree = PointTree::new(wanted.iter().map(|hole| Point3::from(hole.entry)));
         let mut candidates = Vec::with_capacity(found.len());
@@ -59,38 +59,47 @@ impl<'a> Comparison<'a> {
             let high = hole.entry.sup(&bottom) + margin;
             let before = candidates.len();
             tree.in_box(&low, &high, &mut |other| {
-                if hole.axis.dot(&Vector3::from(wanted[other].axis)) < COSINE {
+                if hole.axis.dot(&Vector3::from(wanted[other].axis)) < MIN_DIRECTION_COSINE {
                     return;
                 }
                 if let Some(deviation) = Deviation::new(&wanted[other], &bottom, &hole.axis)
-                    && deviation.phi() <= 2.0 * reach
+                    && deviation.zone_diameter() <= 2.0 * reach
                 {
-                    candidates.push(HolePair { wanted: other, found: index, deviation });
+                    candidates.push(HolePair { nominal: other, actual: index, deviation });
                 }
             });
-            candidates[before..].sort_unstable_by_key(|pair| pair.wanted);
+            candidates[before..].sort_unstable_by_key(|pair| pair.nominal);
         }
-        let (taken_for, is_taken) = nearest_first(&candidates, wanted.len(), found.len());
+        let (taken_for, is_taken) = assign_nearest(&candidates, wanted.len(), found.len());
         let pairs: Vec<HolePair> = taken_for.iter().flatten().map(|index| candidates[*index]).collect();
         // Holes that are a part of a list keep the numbers that they have there.
         let lines = found.iter().map(|hole| hole.first_on_line + 1).max().unwrap_or(0);
         let mut on_line = vec![None; lines];
         for pair in &pairs {
-            on_line[found[pair.found].first_on_line] = Some(pair.wanted);
+            on_line[found[pair.actual].first_on_line] = Some(pair.nominal);
         }
         let missing = (0..wanted.len()).filter(|index| taken_for[*index].is_none()).collect();
         let extra = (0..found.len()).filter(|index| !is_taken[*index]).collect();
-        Self { nominal: wanted, actual: found, tolerances, pattern, pairs, missing, extra, on_line }
+        Self {
+            nominal: wanted,
+            actual: found,
+            tolerances,
+            pattern,
+            pairs,
+            missing,
+            extra,
+            nominal_by_line: on_line,
+        }
     }
 
     /// The wanted hole that was drilled already on the line of one that nobody asked for.
-    pub fn wanted_on_line_of(&self, extra: usize) -> Option<usize> {
-        self.on_line[self.actual[extra].first_on_line]
+    pub fn nominal_on_line_of(&self, extra: usize) -> Option<usize> {
+        self.nominal_by_line[self.actual[extra].first_on_line]
     }
 
     /// Nothing is missing, nothing too many, and every axis lies in its zone.
-    pub fn all_in_place(&self) -> bool {
-        let in_zone = |pair: &HolePair| pair.deviation.phi() <= self.tolerances.position;
+    pub fn is_all_in_place(&self) -> bool {
+        let in_zone = |pair: &HolePair| pair.deviation.zone_diameter() <= self.tolerances.position;
         self.missing.is_empty() && self.extra.is_empty() && self.pairs.iter().all(in_zone)
     }
 
@@ -102,17 +111,17 @@ impl<'a> Comparison<'a> {
 
 /// Which of the candidates each wanted hole is taken for, and which of the drilled ones are taken: the nearest first, of
 /// equally near ones the first in the list.
-fn nearest_first(candidates: &[HolePair], wanted: usize, found: usize) -> (Vec<Option<usize>>, Vec<bool>) {
+fn assign_nearest(candidates: &[HolePair], wanted: usize, found: usize) -> (Vec<Option<usize>>, Vec<bool>) {
     // The bits of numbers that aren't negative are in the order of the numbers.
-    let nearness = |(index, pair): (usize, &HolePair)| (pair.deviation.phi().to_bits(), index);
+    let nearness = |(index, pair): (usize, &HolePair)| (pair.deviation.zone_diameter().to_bits(), index);
     let mut order: Vec<(u64, usize)> = candidates.iter().enumerate().map(nearness).collect();
     order.sort_unstable();
     let (mut taken_for, mut is_taken) = (vec![None; wanted], vec![false; found]);
     for (_, index) in order {
         let pair = &candidates[index];
-        if taken_for[pair.wanted].is_none() && !is_taken[pair.found] {
-            taken_for[pair.wanted] = Some(index);
-            is_taken[pair.found] = true;
+        if taken_for[pair.nominal].is_none() && !is_taken[pair.actual] {
+            taken_for[pair.nominal] = Some(index);
+            is_taken[pair.actual] = true;
         }
     }
     (taken_for, is_taken)

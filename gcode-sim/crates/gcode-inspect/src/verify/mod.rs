@@ -39,9 +39,9 @@ pub struct Tolerances {
 
 impl Tolerances {
     /// What was asked for goes before what the reference says; without either, the paper's Φ0.1.
-    pub fn of(reference: &Reference, asked: Option<f64>) -> Self {
+    pub fn of(reference: &Reference, specified: Option<f64>) -> Self {
         Self {
-            position: asked.or(reference.position).unwrap_or(0.1),
+            position: specified.or(reference.position).unwrap_or(0.1),
             depth: reference.depth.unwrap_or(0.1),
             diameter: 0.05,
         }
@@ -70,15 +70,15 @@ pub fn verify(
     let stopped = extracted.findings.iter().any(|finding| finding.severity == Severity::Alarm);
     checks::stopped::check(&comparison, stopped, &mut objections);
     checks::common_shift::check(&comparison, machine, &mut objections);
-    let (reaches, conduct) = (&extracted.reaches, &reference.conduct);
+    let (reaches, conduct) = (&extracted.length_mismatches, &reference.conduct);
     checks::reach::check(&comparison, reaches, conduct, machine, &mut objections);
     let mut motion = extracted.findings.clone();
     motion.extend(checks::signs::finding(reference, machine));
-    motion.extend(checks::clearance::findings(&extracted.passings, &reference.conduct));
-    motion.extend(checks::cutting::findings(&extracted.cuttings, &reference.conduct, machine));
+    motion.extend(checks::clearance::findings(&extracted.close_motions, &reference.conduct));
+    motion.extend(checks::cutting::findings(&extracted.cut_conditions, &reference.conduct, machine));
     let mut verdict = verdict::verdict(&comparison, &rounding, objections, &motion, locate);
     if let Some(pattern) = pattern {
-        verdict.say_neighbours(neighbours::neighbours(&comparison, pattern));
+        verdict.set_neighbours(neighbours::neighbours(&comparison, pattern));
     }
     verdict.not_checked = not_checked::lines(&comparison, extracted, reference, machine, locate);
     verdict

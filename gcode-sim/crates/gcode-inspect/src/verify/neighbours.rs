@@ -10,7 +10,7 @@ use gcode_part::PointTree;
 use gcode_part::{Pattern, azimuth};
 
 /// A hole has so many at most.
-const SIX: usize = 6;
+const MAX_NEIGHBOURS: usize = 6;
 
 /// The neighbours of all holes, lengths in mm.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
@@ -18,10 +18,12 @@ pub struct Neighbours {
     /// How distances count: `arc` or `chord`.
     pub metric: &'static str,
     /// The distance wanted of all neighbours: the pitch with which the pattern closes.
-    pub wanted: f64,
+    #[serde(rename = "wanted")]
+    pub nominal: f64,
     /// Of the holes wanted inside the pattern, those that are drilled and have all six; how many are wanted there.
     pub with_six: usize,
-    pub with_six_wanted: usize,
+    #[serde(rename = "with_six_wanted")]
+    pub with_six_nominal: usize,
     /// The two neighbours that are nearest to one another, and those that are farthest apart.
     pub min: Option<Distance>,
     pub max: Option<Distance>,
@@ -54,15 +56,15 @@ pub(super) fn neighbours(
 ) -> (Vec<Option<HoleNeighbours>>, Neighbours) {
     let found = comparison.actual.iter().map(|hole| (hole.bottom(), hole.axis.into_inner()));
     let lines: Vec<usize> = comparison.actual.iter().map(|hole| hole.first_on_line).collect();
-    let (around, places) = around(found, &lines, pattern);
+    let (around, places) = neighbours_of(found, &lines, pattern);
     let wanted = comparison.nominal.iter().map(|hole| (Point3::from(hole.entry), Vector3::from(hole.axis)));
     let apart: Vec<usize> = (0..comparison.nominal.len()).collect();
-    let (around_wanted, _) = self::around(wanted, &apart, pattern);
+    let (around_wanted, _) = self::neighbours_of(wanted, &apart, pattern);
     let mut names = vec![None; comparison.actual.len()];
     for pair in &comparison.pairs {
-        names[pair.found] = Some(comparison.id(pair.wanted));
+        names[pair.actual] = Some(comparison.id(pair.nominal));
     }
-    let name = |index: usize| names[index].map_or_else(|| place(&places[index]), str::to_owned);
+    let name = |index: usize| names[index].map_or_else(|| format_place(&places[index]), str::to_owned);
     let known = || around.iter().enumerate().filter_map(|(index, around)| Some((index, (*around)?)));
     let distance = |index: usize, other: usize, distance: f64| Distance {
         distance,
@@ -71,13 +73,13 @@ pub(super) fn neighbours(
     let min = known().min_by(|a, b| a.1.min.total_cmp(&b.1.min));
     // Of equal ones the first, as for the smallest.
     let max = known().rev().max_by(|a, b| a.1.max.total_cmp(&b.1.max));
-    let six = |around: &Option<HoleNeighbours>| around.is_some_and(|around| around.count == SIX);
-    let inner = comparison.pairs.iter().filter(|pair| six(&around_wanted[pair.wanted]));
+    let six = |around: &Option<HoleNeighbours>| around.is_some_and(|around| around.count == MAX_NEIGHBOURS);
+    let inner = comparison.pairs.iter().filter(|pair| six(&around_wanted[pair.nominal]));
     let summary = Neighbours {
         metric: pattern.metric.name(),
-        wanted: pattern.pitch,
-        with_six: inner.filter(|pair| six(&around[pair.found])).count(),
-        with_six_wanted: around_wanted.iter().filter(|around| six(around)).count(),
+        nominal: pattern.pitch,
+        with_six: inner.filter(|pair| six(&around[pair.actual])).count(),
+        with_six_nominal: around_wanted.iter().filter(|around| six(around)).count(),
         min: min.map(|(index, around)| distance(index, around.nearest, around.min)),
         max: max.map(|(index, around)| distance(index, around.farthest, around.max)),
     };
@@ -86,16 +88,16 @@ pub(super) fn neighbours(
 
 /// What is round each of the holes, given by a point of the axis and its direction out of the part; `None` for one that
 /// stands alone or misses the cylinder. And where they cross the cylinder. `lines` says which holes are on one line.
-fn around(
+fn neighbours_of(
     holes: impl Iterator<Item = (Point3<f64>, Vector3<f64>)>,
     lines: &[usize],
     pattern: &Pattern,
 ) -> (Vec<Option<HoleNeighbours>>, Vec<Point3<f64>>) {
     let nowhere = Point3::from(Vector3::repeat(f64::INFINITY));
     let places: Vec<_> = holes.map(|(on, out)| pattern.crossing(&on, &out).unwrap_or(nowhere)).collect();
-    let here: Vec<usize> = (0..places.len()).filter(|index| places[*index] != nowhere).collect();
+    let on_cylinder: Vec<usize> = (0..places.len()).filter(|index| places[*index] != nowhere).collect();
     let mut near = vec![NearestSix::default(); places.len()];
-    let here = without_crowds(here, lines, &places, &mut near);
+    let here = thin_crowded_spots(on_cylinder, lines, &places, &mut near);
     let tree = PointTree::new(here.iter().map(|index| places[*index]));
     // Halfway to those that are no neighbours any more.
     let reach = (pattern.pitch + pattern.abreast()) / 2.0;
@@ -108,72 +110,74 @@ fn around(
             near[other].add(distance, one);
         }
     });
-    (near.iter().map(NearestSix::around).collect(), places)
+    (near.iter().map(NearestSix::summary).collect(), places)
 }
 
 /// The holes without the eighth and more on one spot: those are nobody's neighbours, and have the first six round them. So as many
 /// as there may be on a spot stay n log n.
-fn without_crowds(
+fn thin_crowded_spots(
     mut holes: Vec<usize>,
     lines: &[usize],
     places: &[Point3<f64>],
-    near: &mut [NearestSix],
+    nearest_six: &mut [NearestSix],
 ) -> Vec<usize> {
-    let mut left = Vec::with_capacity(holes.len());
+    let mut kept = Vec::with_capacity(holes.len());
     for line in holes.chunk_by_mut(|one, other| lines[*one] == lines[*other]) {
-        if line.len() <= SIX + 1 {
-            left.extend_from_slice(line);
+        if line.len() <= MAX_NEIGHBOURS + 1 {
+            kept.extend_from_slice(line);
             continue;
         }
-        line.sort_unstable_by(|one, other| by_place(&places[*one], &places[*other]).then(one.cmp(other)));
-        for spot in line.chunk_by(|one, other| by_place(&places[*one], &places[*other]).is_eq()) {
-            let (first, others) = spot.split_at(spot.len().min(SIX + 1));
-            left.extend_from_slice(first);
+        line.sort_unstable_by(|one, other| {
+            compare_points(&places[*one], &places[*other]).then(one.cmp(other))
+        });
+        for spot in line.chunk_by(|one, other| compare_points(&places[*one], &places[*other]).is_eq()) {
+            let (first, others) = spot.split_at(spot.len().min(MAX_NEIGHBOURS + 1));
+            kept.extend_from_slice(first);
             for one in others {
-                first[..SIX].iter().for_each(|other| near[*one].add(0.0, *other));
+                first[..MAX_NEIGHBOURS].iter().for_each(|other| nearest_six[*one].add(0.0, *other));
             }
         }
     }
-    left
+    kept
 }
 
 /// The neighbours of a hole with their distances: the six nearest, the nearest first, of equally near ones the first.
 #[derive(Clone, Copy, Default)]
 struct NearestSix {
     count: usize,
-    near: [(f64, usize); SIX],
+    nearest: [(f64, usize); MAX_NEIGHBOURS],
 }
 
 impl NearestSix {
     fn add(&mut self, distance: f64, other: usize) {
         let new = (distance, other);
-        if self.count < SIX {
+        if self.count < MAX_NEIGHBOURS {
             self.count += 1;
-        } else if self.near[SIX - 1] < new {
+        } else if self.nearest[MAX_NEIGHBOURS - 1] < new {
             return;
         }
         let mut place = self.count - 1;
-        while 0 < place && new < self.near[place - 1] {
-            self.near[place] = self.near[place - 1];
+        while 0 < place && new < self.nearest[place - 1] {
+            self.nearest[place] = self.nearest[place - 1];
             place -= 1;
         }
-        self.near[place] = new;
+        self.nearest[place] = new;
     }
 
-    fn around(&self) -> Option<HoleNeighbours> {
-        let near = &self.near[..self.count];
+    fn summary(&self) -> Option<HoleNeighbours> {
+        let near = &self.nearest[..self.count];
         let ((min, nearest), (max, farthest)) = (*near.first()?, *near.last()?);
         Some(HoleNeighbours { count: self.count, min, max, nearest, farthest })
     }
 }
 
 /// An order in which points on one spot stand together.
-fn by_place(one: &Point3<f64>, other: &Point3<f64>) -> Ordering {
+fn compare_points(one: &Point3<f64>, other: &Point3<f64>) -> Ordering {
     let along = |axis: usize| one[axis].total_cmp(&other[axis]);
     along(0).then_with(|| along(1)).then_with(|| along(2))
 }
 
-fn place(p: &Point3<f64>) -> String {
+fn format_place(p: &Point3<f64>) -> String {
     format!("x {:.3} at {:.3}°", p.x, azimuth(p).0)
 }
 
@@ -222,7 +226,7 @@ mod tests {
     #[test]
     fn a_spot_drilled_ten_times_is_six_neighbours() {
         let holes = std::iter::repeat_n(hole(20.0, 30.0), 10).chain([hole(25.0, 30.0), hole(80.0, 30.0)]);
-        let (around, _) = around(holes, &[[7; 10].as_slice(), &[17, 18]].concat(), &PATTERN);
+        let (around, _) = neighbours_of(holes, &[[7; 10].as_slice(), &[17, 18]].concat(), &PATTERN);
         let seen: Vec<_> = around.iter().map(|one| one.map(|one| (one.count, one.min, one.max))).collect();
         assert_eq!(seen[..10], [Some((6, 0.0, 0.0)); 10]);
         assert_eq!(seen[10..], [Some((6, 5.0, 5.0)), None]);
@@ -233,7 +237,8 @@ mod tests {
     /// Looked at pair by pair, it would be 5·10⁹ of them.
     #[test]
     fn a_hundred_thousand_holes_on_one_spot_are_looked_at_at_once() {
-        let (around, _) = around(std::iter::repeat_n(hole(20.0, 30.0), 100_000), &[0; 100_000], &PATTERN);
+        let (around, _) =
+            neighbours_of(std::iter::repeat_n(hole(20.0, 30.0), 100_000), &[0; 100_000], &PATTERN);
         assert_eq!(around.len(), 100_000);
         assert!(around.iter().all(|one| one.is_some_and(|one| (one.count, one.max) == (6, 0.0))));
     }
@@ -253,7 +258,7 @@ mod tests {
                 let ((x, row), _) = spots[*line];
                 hole(f64::from(x) * 4.0, f64::from(row) * 6.0)
             });
-            let (around, places) = around(holes, &lines, &pattern);
+            let (around, places) = neighbours_of(holes, &lines, &pattern);
             prop_assert_eq!(around, by_looking_at_all(&places, &pattern));
         }
     }

@@ -23,12 +23,12 @@ pub(super) fn lines(
     all.extend(lengths(extracted, machine));
     all.extend(conduct(extracted, reference, machine));
     let along_feed =
-        comparison.pairs.iter().all(|pair| comparison.actual[pair.found].tool_axis_deviation == Deg::ZERO);
+        comparison.pairs.iter().all(|pair| comparison.actual[pair.actual].tool_axis_deviation == Deg::ZERO);
     if machine.head.kind == HeadKind::Free && along_feed {
         all.push("head angles: the head is not known, each axis is taken along its feed".to_owned());
     }
-    let unplaced = extracted.unplaced.as_ref().filter(|_| reference.surface.is_some());
-    all.extend(unplaced.map(|unplaced| unplaced.in_words(locate(unplaced.place.block))));
+    let unplaced = extracted.unknown_work_zero.as_ref().filter(|_| reference.surface.is_some());
+    all.extend(unplaced.map(|unplaced| unplaced.describe(locate(unplaced.backtrace.block))));
     if reference.surface.is_none() {
         all.push("rapid motion through the part: the reference has no surface, as a job file has".to_owned());
     }
@@ -38,25 +38,29 @@ pub(super) fn lines(
 /// Whose diameters aren't checked: by which tools, where the tool table has others.
 fn diameters(comparison: &Comparison<'_>, machine: &Machine) -> Vec<String> {
     let unknown = |pair: &&HolePair| {
-        comparison.nominal[pair.wanted].diameter.is_some() && comparison.actual[pair.found].diameter.is_none()
+        comparison.nominal[pair.nominal].diameter.is_some()
+            && comparison.actual[pair.actual].diameter.is_none()
     };
     let mut made: BTreeMap<Option<u32>, Vec<&str>> = BTreeMap::new();
     for pair in comparison.pairs.iter().filter(unknown) {
-        let tool = comparison.actual[pair.found].tool.filter(|_| !machine.tools.is_empty());
-        made.entry(tool).or_default().push(comparison.id(pair.wanted));
+        let tool = comparison.actual[pair.actual].tool.filter(|_| !machine.tools.is_empty());
+        made.entry(tool).or_default().push(comparison.id(pair.nominal));
     }
     let words = |(tool, ids): (Option<u32>, Vec<&str>)| match (tool, ids.as_slice()) {
         (None, _) if machine.tools.is_empty() => "diameters: the machine has no tool table".to_owned(),
-        (None, ids) => format!("the diameter of {} made before any tool was put in", some(ids)),
+        (None, ids) => format!("the diameter of {} made before any tool was put in", format_ids(ids)),
         (Some(tool), ids) => {
-            format!("the diameter of {} made by T{tool}, which the machine file doesn't describe", some(ids))
+            format!(
+                "the diameter of {} made by T{tool}, which the machine file doesn't describe",
+                format_ids(ids)
+            )
         }
     };
     made.into_iter().map(words).collect()
 }
 
 /// `hole 1,` or `63 holes (r0h0 the first),`.
-fn some(ids: &[&str]) -> String {
+fn format_ids(ids: &[&str]) -> String {
     match ids {
         [one] => format!("hole {one},"),
         [first, ..] => format!("{} holes ({first} the first),", ids.len()),
@@ -66,7 +70,7 @@ fn some(ids: &[&str]) -> String {
 
 /// Tools that cut and whose lengths the machine file doesn't have: which offset stands for each.
 fn lengths(extracted: &HoleExtraction, machine: &Machine) -> Vec<String> {
-    let unknown = extracted.cuttings.iter().filter(|cutting| machine.length_of(cutting.tool).is_none());
+    let unknown = extracted.cut_conditions.iter().filter(|cutting| machine.length_of(cutting.tool).is_none());
     let tools: BTreeSet<_> = unknown.map(|cutting| (cutting.tool, cutting.compensation)).collect();
     let words = |(tool, by): (Option<u32>, LengthCompensation)| {
         let whose = tool.map_or("the tool's length".to_owned(), |number| format!("the length of T{number}"));
@@ -84,12 +88,12 @@ fn lengths(extracted: &HoleExtraction, machine: &Machine) -> Vec<String> {
 /// What the reference doesn't say of how the part is to be worked.
 fn conduct(extracted: &HoleExtraction, reference: &Reference, machine: &Machine) -> Option<String> {
     let conduct = &reference.conduct;
-    if extracted.conduct != *conduct {
+    if extracted.process_limits != *conduct {
         return Some(
             "how the part is worked: the run was followed without what the reference says of it".to_owned(),
         );
     }
-    let tools: BTreeSet<_> = extracted.cuttings.iter().map(|cutting| cutting.tool).collect();
+    let tools: BTreeSet<_> = extracted.cut_conditions.iter().map(|cutting| cutting.tool).collect();
     let unsaid = |of: &dyn Fn(&ToolProcess) -> Option<f64>| {
         tools.iter().any(|tool| conduct.tool_process(*tool).and_then(of).is_none())
     };

@@ -44,7 +44,7 @@ impl Deviation {
     }
 
     /// The diameter of the smallest zone that holds the axis: a straight axis is farthest out at one of its ends.
-    pub fn phi(&self) -> f64 {
+    pub fn zone_diameter(&self) -> f64 {
         2.0 * self.at_entry.max(self.at_bottom)
     }
 }
@@ -72,7 +72,7 @@ mod tests {
         assert!((found.entry - Point3::new(10.08, 20.04, 30.0)).norm() < 1e-12);
         assert!((found.at_bottom - 0.064_031_242_374_328_5).abs() < 1e-12, "√(0.05² + 0.04²)");
         assert!((found.at_entry - 0.089_442_719_099_991_6).abs() < 1e-12, "√(0.08² + 0.04²)");
-        assert!((found.phi() - 0.178_885_438_199_983).abs() < 1e-12, "the worse end, doubled");
+        assert!((found.zone_diameter() - 0.178_885_438_199_983).abs() < 1e-12, "the worse end, doubled");
         assert!(found.depth_error.abs() < 1e-12);
         assert!((found.tilt.0 - 0.171_886_82).abs() < 1e-6, "atan(0.003)");
     }
@@ -82,7 +82,7 @@ mod tests {
         let axis = Vector3::z_axis();
         let found = Deviation::new(&nominal(), &Point3::new(10.0, 20.0, 19.75), &axis).unwrap();
         assert!((found.depth_error - 0.25).abs() < 1e-12);
-        assert_eq!(found.phi(), 0.0);
+        assert_eq!(found.zone_diameter(), 0.0);
     }
 
     #[test]

@@ -21,19 +21,19 @@ pub(super) struct PatternRows {
     /// From each row to the next, from the last one round to the first.
     pub(super) gaps: Vec<Deg>,
     /// The mean of those that are about as large as most: single ones are rounded to the rotary's increment.
-    pub(super) usual: Deg,
+    pub(super) typical_gap: Deg,
     /// From hole to hole in the first row that has several, mm, as usual; and that row.
     pub(super) spacing: Option<(f64, PatternRow)>,
 }
 
 /// Fewer rows show no order.
-const FEWEST: usize = 4;
+const MIN_ROWS: usize = 4;
 
 impl PatternRows {
     /// `None` where there are too few to speak of, and where all holes are in their places: what is said of rows only
     /// explains what is wrong with holes.
     pub(super) fn of(comparison: &Comparison<'_>, pattern: &Pattern) -> Option<Self> {
-        if comparison.all_in_place() {
+        if comparison.is_all_in_place() {
             return None;
         }
         let mut places: Vec<(Deg, f64, usize)> = Vec::with_capacity(comparison.actual.len());
@@ -73,34 +73,34 @@ impl PatternRows {
                 (rows[0].start, rows[0].first) = (end.start, end.first);
             }
         }
-        if rows.len() < FEWEST {
+        if rows.len() < MIN_ROWS {
             return None;
         }
         let round = rows.iter().skip(1).map(|row| row.azimuth).chain([rows[0].azimuth + Deg(360.0)]);
         let gaps: Vec<Deg> = rows.iter().zip(round).map(|(row, next)| next - row.azimuth).collect();
-        let usual = Deg(usual(gaps.iter().map(|gap| gap.0))?);
+        let usual = Deg(typical_mean(gaps.iter().map(|gap| gap.0))?);
         let several = rows.iter().zip(&mut along).find(|(_, xs)| xs.len() > 2);
         let spacing = several.and_then(|(row, xs)| {
             xs.sort_by(f64::total_cmp);
             // A hole drilled twice is no neighbour of itself.
             xs.dedup_by(|x, last| *x - *last <= pattern.pitch / 100.0);
-            Some((self::usual(xs.windows(2).map(|pair| pair[1] - pair[0]))?, *row))
+            Some((self::typical_mean(xs.windows(2).map(|pair| pair[1] - pair[0]))?, *row))
         });
-        Some(Self { rows, gaps, usual, spacing })
+        Some(Self { rows, gaps, typical_gap: usual, spacing })
     }
 
     /// Whether most rows stand whole numbers of the usual gap from the first, to so many degrees: single rows that are turned
     /// change the mean and leave it to fit no other.
-    pub(super) fn fit(&self, within: Deg) -> bool {
+    pub(super) fn is_evenly_spaced(&self, within: Deg) -> bool {
         let off = |row: &&PatternRow| {
-            let gaps = (row.azimuth - self.rows[0].azimuth).0 / self.usual.0;
-            (gaps - gaps.round()).abs() * self.usual.0 <= within.0
+            let gaps = (row.azimuth - self.rows[0].azimuth).0 / self.typical_gap.0;
+            (gaps - gaps.round()).abs() * self.typical_gap.0 <= within.0
         };
         4 * self.rows.len() <= 5 * self.rows.iter().filter(off).count()
     }
 
     /// Whether every row begins where the first does, where every second one should begin half a pitch later.
-    pub(super) fn in_step(&self, pattern: &Pattern) -> bool {
+    pub(super) fn is_aligned(&self, pattern: &Pattern) -> bool {
         let off = |row: &PatternRow| {
             let pitches = (row.start - self.rows[0].start) / pattern.pitch;
             (pitches - pitches.round()).abs()
@@ -109,25 +109,25 @@ impl PatternRows {
     }
 
     /// Whether the rows are those of one group: none begins late, and they stand too far apart for both.
-    pub(super) fn one_group(&self, pattern: &Pattern) -> bool {
-        self.in_step(pattern) && self.usual.0 > 1.25 * pattern.step().0
+    pub(super) fn is_single_group(&self, pattern: &Pattern) -> bool {
+        self.is_aligned(pattern) && self.typical_gap.0 > 1.25 * pattern.step().0
     }
 
     /// From row to row as the pattern wants it, of rows that stand as these do: both groups in turn, or one alone.
-    pub(super) fn wanted(&self, pattern: &Pattern) -> Deg {
-        if self.one_group(pattern) { pattern.step() * 2.0 } else { pattern.step() }
+    pub(super) fn nominal_gap(&self, pattern: &Pattern) -> Deg {
+        if self.is_single_group(pattern) { pattern.step() * 2.0 } else { pattern.step() }
     }
 }
 
 /// The mean of the numbers that differ from the middle one by no more than rounding makes of them, 2 %; the one that
 /// differs most isn't among them where there are enough, for a small seam is no rounding.
-fn usual(numbers: impl Iterator<Item = f64>) -> Option<f64> {
+fn typical_mean(numbers: impl Iterator<Item = f64>) -> Option<f64> {
     let mut sorted: Vec<f64> = numbers.collect();
     sorted.sort_by(f64::total_cmp);
     let middle = *sorted.get(sorted.len().checked_sub(1)? / 2)?;
     let off = |number: f64| (number - middle).abs();
     sorted.sort_by(|a, b| off(*a).total_cmp(&off(*b)));
-    let most = sorted.len() - usize::from(sorted.len() >= FEWEST);
+    let most = sorted.len() - usize::from(sorted.len() >= MIN_ROWS);
     let alike = sorted[..most].iter().filter(|number| off(**number) <= 0.02 * middle.abs());
     let (sum, count) = alike.fold((0.0, 0.0), |(sum, count), number| (sum + number, count + 1.0));
     Some(sum / count)
@@ -135,15 +135,15 @@ fn usual(numbers: impl Iterator<Item = f64>) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::usual;
+    use super::typical_mean;
 
     /// 360/257/2 = 0.700389 commanded to 0.001: gaps of 0.700 and 0.701, and a seam that isn't usual.
     #[test]
     fn rounded_gaps_have_the_mean_they_were_made_from() {
         let angles: Vec<f64> = (0..514).map(|row| (f64::from(row) * 700.389_105).round() / 1000.0).collect();
         let gaps = angles.windows(2).map(|pair| pair[1] - pair[0]).chain([9.9]);
-        assert!((usual(gaps).unwrap() - 0.700_389).abs() < 1e-5);
-        assert_eq!(usual([3.0].into_iter()), Some(3.0));
-        assert_eq!(usual(std::iter::empty()), None);
+        assert!((typical_mean(gaps).unwrap() - 0.700_389).abs() < 1e-5);
+        assert_eq!(typical_mean([3.0].into_iter()), Some(3.0));
+        assert_eq!(typical_mean(std::iter::empty()), None);
     }
 }

@@ -77,7 +77,7 @@ pub struct HoleVerdict {
     pub neighbours: Option<HoleNeighbours>,
     /// Which of the holes that the program makes it is, counted from 0.
     #[serde(skip)]
-    pub found: usize,
+    pub drilled_index: usize,
 }
 
 /// A hole as an inspector writes it down; the actual one where its axis crosses the plane of the nominal entry.
@@ -97,7 +97,7 @@ pub struct ExtraHole {
     pub why: String,
     /// Which of the holes that the program makes it is, counted from 0.
     #[serde(skip)]
-    pub found: usize,
+    pub drilled_index: usize,
 }
 
 /// A finding as data.
@@ -139,38 +139,38 @@ pub(super) fn verdict(
     findings: &[Diagnostic],
     locate: &dyn Fn(Span) -> (String, u32),
 ) -> Verdict {
-    let mut against: Vec<Vec<String>> = vec![Vec::new(); comparison.nominal.len()];
+    let mut codes_by_hole: Vec<Vec<String>> = vec![Vec::new(); comparison.nominal.len()];
     let failed = |finding: &Diagnostic| Severity::Error <= finding.severity;
     for objection in objections.iter().filter(|objection| failed(&objection.finding)) {
-        if let Some(wanted) = objection.wanted {
-            against[wanted].push(objection.finding.code.clone());
+        if let Some(wanted) = objection.nominal {
+            codes_by_hole[wanted].push(objection.finding.code.clone());
         }
     }
     let holes: Vec<HoleVerdict> = comparison
         .pairs
         .iter()
-        .zip(&rounding.phis)
+        .zip(&rounding.position_deviations)
         .map(|(pair, rounding)| {
-            let objections = std::mem::take(&mut against[pair.wanted]);
+            let objections = std::mem::take(&mut codes_by_hole[pair.nominal]);
             hole_verdict(comparison, pair, *rounding, objections, locate)
         })
         .collect();
     let fails = objections.iter().any(|o| failed(&o.finding)) || findings.iter().any(failed);
     let worst = (0..holes.len())
         .max_by(|a, b| holes[*a].position_deviation.total_cmp(&holes[*b].position_deviation).then(b.cmp(a)));
-    let about_holes = objections.iter().map(|o| (o.wanted, &o.finding, false));
-    let told = about_holes.chain(findings.iter().map(|f| (None, f, true)));
+    let about_holes = objections.iter().map(|o| (o.nominal, &o.finding, false));
+    let reported = about_holes.chain(findings.iter().map(|f| (None, f, true)));
     Verdict {
         basis: "predicted by simulation, not measured",
         tolerance: comparison.tolerances.position,
         depth_tolerance: comparison.tolerances.depth,
         verdict: if fails { Answer::Fail } else { Answer::Pass },
         worst: worst.map(|index| holes[index].position_deviation),
-        worst_from: worst.map(|index| worst_from(&holes[index], &rounding.shares(index))),
-        rounding: rounding.phis.iter().copied().reduce(f64::max),
+        worst_from: worst.map(|index| worst_from(&holes[index], &rounding.axis_shares(index))),
+        rounding: rounding.position_deviations.iter().copied().reduce(f64::max),
         missing: comparison.missing.iter().map(|index| comparison.id(*index).to_owned()).collect(),
-        extra: comparison.extra.iter().map(|index| extra(comparison, *index, locate)).collect(),
-        findings: told
+        extra: comparison.extra.iter().map(|index| extra_hole(comparison, *index, locate)).collect(),
+        findings: reported
             .map(|(wanted, finding, from_motion)| {
                 finding_of(finding, wanted.map(|index| comparison.id(index)), from_motion, locate)
             })
@@ -178,8 +178,12 @@ pub(super) fn verdict(
         neighbours: None,
         not_checked: Vec::new(),
         holes,
-        diagnostics: readable(
-            objections.into_iter().filter(|o| !o.folded).map(|o| o.finding).chain(findings.iter().cloned()),
+        diagnostics: limit_per_kind(
+            objections
+                .into_iter()
+                .filter(|o| !o.is_folded)
+                .map(|o| o.finding)
+                .chain(findings.iter().cloned()),
         ),
     }
 }
@@ -207,44 +211,44 @@ pub(super) fn finding_of(
 
 impl Verdict {
     /// Whether anything but notes is told.
-    pub fn stands(&self) -> bool {
+    pub fn has_findings(&self) -> bool {
         self.diagnostics.iter().any(|finding| Severity::Warning <= finding.severity)
     }
 
     /// Adds what is told of the program's text, which leaves the answer as it is: before all that it may explain.
-    pub fn add_slips(&mut self, slips: Vec<Diagnostic>, locate: &dyn Fn(Span) -> (String, u32)) {
-        self.findings.splice(0..0, slips.iter().map(|slip| finding_of(slip, None, true, locate)));
+    pub fn add_likely_causes(&mut self, causes: Vec<Diagnostic>, locate: &dyn Fn(Span) -> (String, u32)) {
+        self.findings.splice(0..0, causes.iter().map(|slip| finding_of(slip, None, true, locate)));
         let alarms =
             self.diagnostics.iter().take_while(|finding| finding.severity == Severity::Alarm).count();
-        self.diagnostics.splice(alarms..alarms, readable(slips.into_iter()));
+        self.diagnostics.splice(alarms..alarms, limit_per_kind(causes.into_iter()));
     }
 
     /// Adds what is round each hole, and the summary.
-    pub(super) fn say_neighbours(&mut self, (around, summary): (Vec<Option<HoleNeighbours>>, Neighbours)) {
+    pub(super) fn set_neighbours(&mut self, (around, summary): (Vec<Option<HoleNeighbours>>, Neighbours)) {
         for hole in &mut self.holes {
-            hole.neighbours = around[hole.found];
+            hole.neighbours = around[hole.drilled_index];
         }
         self.neighbours = Some(summary);
     }
 }
 
 /// As many of each kind as people read; the last of them says how many more there are.
-pub(super) fn readable(findings: impl Iterator<Item = Diagnostic>) -> Vec<Diagnostic> {
-    const SHOWN: usize = 8;
+pub(super) fn limit_per_kind(findings: impl Iterator<Item = Diagnostic>) -> Vec<Diagnostic> {
+    const MAX_SHOWN: usize = 8;
     let mut kinds: BTreeMap<String, (usize, usize)> = BTreeMap::new();
     let mut shown: Vec<Diagnostic> = Vec::new();
     for finding in findings {
         let (count, last) = kinds.entry(finding.code.clone()).or_insert((0, 0));
         *count += 1;
-        if *count <= SHOWN {
+        if *count <= MAX_SHOWN {
             *last = shown.len();
             shown.push(finding);
         }
     }
-    for (count, last) in kinds.into_values().filter(|(count, _)| SHOWN < *count) {
+    for (count, last) in kinds.into_values().filter(|(count, _)| MAX_SHOWN < *count) {
         shown[last]
             .notes
-            .push(format!("and {} more of this kind; --format json has them all", count - SHOWN));
+            .push(format!("and {} more of this kind; --format json has them all", count - MAX_SHOWN));
     }
     // What stopped the run explains what else is wrong.
     shown.sort_by_key(|finding| finding.severity != Severity::Alarm);
@@ -259,11 +263,11 @@ fn hole_verdict(
     locate: &dyn Fn(Span) -> (String, u32),
 ) -> HoleVerdict {
     let (wanted, found, deviation) =
-        (&comparison.nominal[pair.wanted], &comparison.actual[pair.found], &pair.deviation);
-    let phi = deviation.phi();
-    let (program, line) = locate(found.place.block);
+        (&comparison.nominal[pair.nominal], &comparison.actual[pair.actual], &pair.deviation);
+    let phi = deviation.zone_diameter();
+    let (program, line) = locate(found.backtrace.block);
     HoleVerdict {
-        id: comparison.id(pair.wanted).to_owned(),
+        id: comparison.id(pair.nominal).to_owned(),
         position_deviation: phi,
         at_entry: deviation.at_entry,
         at_bottom: deviation.at_bottom,
@@ -285,16 +289,24 @@ fn hole_verdict(
             depth: wanted.depth + deviation.depth_error,
         },
         from: Origin { program, line, tool: found.tool },
-        calls: calls(&found.place.calls, locate),
+        calls: calls(&found.backtrace.calls, locate),
         objections,
         neighbours: None,
-        found: pair.found,
+        drilled_index: pair.actual,
     }
 }
 
-fn extra(comparison: &Comparison<'_>, index: usize, locate: &dyn Fn(Span) -> (String, u32)) -> ExtraHole {
+fn extra_hole(
+    comparison: &Comparison<'_>,
+    index: usize,
+    locate: &dyn Fn(Span) -> (String, u32),
+) -> ExtraHole {
     let found = &comparison.actual[index];
-    ExtraHole { hole: found.hole(locate), why: super::checks::extra::why(comparison, index), found: index }
+    ExtraHole {
+        hole: found.hole(locate),
+        why: super::checks::extra::explain(comparison, index),
+        drilled_index: index,
+    }
 }
 
 /// In one line: which end, how far, and how much of it rounding is to blame for.
@@ -303,7 +315,7 @@ fn worst_from(hole: &HoleVerdict, shares: &[AxisRounding]) -> String {
         true => ("bottom", hole.at_bottom),
         false => ("entry", hole.at_entry),
     };
-    let shares: Vec<_> = shares.iter().map(|s| format!("{} {:.4}", s.name(), s.moves)).collect();
+    let shares: Vec<_> = shares.iter().map(|s| format!("{} {:.4}", s.name(), s.displacement)).collect();
     let shares = if shares.is_empty() { String::new() } else { format!(" ({})", shares.join(", ")) };
     // What can be explained by rounding is compared with room for the arithmetic itself.
     let blame = match hole.position_deviation <= hole.rounding + 1e-6 {

@@ -3,7 +3,7 @@
 use nalgebra::Point3;
 
 use super::{Comparison, HoleFinding};
-use crate::verify::hole_finding::{at_the_call, behind, fold};
+use crate::verify::hole_finding::{fold, folded_note, locate_at_call};
 use gcode_lang::diag::Diagnostic;
 use gcode_part::PointTree;
 use gcode_part::Surface;
@@ -37,7 +37,7 @@ pub(in crate::verify) fn check(
     }
     let Some(first) = first else { return };
     let folded = fold(objections, &["hole-missing", "hole-extra"], |objection| {
-        objection.wanted.is_some_and(|index| wanted[index])
+        objection.nominal.is_some_and(|index| wanted[index])
             || objection.extra.is_some_and(|index| drilled[index])
     });
     let count = drilled.iter().filter(|is| **is).count();
@@ -51,6 +51,7 @@ pub(in crate::verify) fn check(
     let mut finding = Diagnostic::error("hole-in-air", message).help(
         "check the zero in the tool's direction (the work offset), the tool's length and its offset, and the depth",
     );
-    finding.notes.extend(behind(folded));
-    objections.insert(0, HoleFinding::whole(at_the_call(finding, &comparison.actual[first].place)));
+    finding.notes.extend(folded_note(folded));
+    objections
+        .insert(0, HoleFinding::unlocated(locate_at_call(finding, &comparison.actual[first].backtrace)));
 }

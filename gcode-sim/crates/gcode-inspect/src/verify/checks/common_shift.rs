@@ -1,27 +1,27 @@
 //! One wrong number makes many holes wrong alike: said once of all of them, instead of hole by hole.
 use nalgebra::{Point3, Vector3};
 
-use super::mirrored::Mirrored;
+use super::mirrored::MirrorImage;
 use super::{Comparison, HoleFinding, explained_by_rows};
 use crate::machine::Machine;
-use crate::verify::displacement::offs;
-use crate::verify::hole_finding::{at_the_call, behind, fold};
+use crate::verify::displacement::displacements;
+use crate::verify::hole_finding::{fold, folded_note, locate_at_call};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::motion::AxisIndex;
 use gcode_lang::units::Deg;
 use gcode_part::Pattern;
 
 /// Fewer holes are told one by one.
-const FEWEST: usize = 3;
+const MIN_GROUP_SIZE: usize = 3;
 
 /// Depths that differ by less are the same, in mm.
 const SAME_DEPTH: f64 = 0.02;
 
 /// What is found of a single hole in a wrong place.
-const OF_PLACES: [&str; 4] = ["hole-position", "hole-tilted", "hole-missing", "hole-extra"];
+const POSITION_CODES: [&str; 4] = ["hole-position", "hole-tilted", "hole-missing", "hole-extra"];
 
 /// More different ways to be wrong aren't one fault.
-const WAYS: usize = 64;
+const MAX_GROUPS: usize = 64;
 
 pub(in crate::verify) fn check(
     comparison: &Comparison<'_>,
@@ -31,70 +31,73 @@ pub(in crate::verify) fn check(
     // What a whole pattern of rows has wrong is explained by its own checks.
     let whole = ["row-angle", "row-pitch", "row-group", "row-seam", "rotary-sign", "mirror-image"];
     let explained = objections.iter().position(|objection| whole.contains(&objection.finding.code.as_str()));
-    let mut told = match explained {
+    let mut reported = match explained {
         Some(explained) => {
-            let folded = fold_explained(comparison, objections) + fold_leaning(comparison, objections);
-            objections[explained].finding.notes.extend(behind(folded));
+            let folded = fold_explained(comparison, objections) + fold_tilted(comparison, objections);
+            objections[explained].finding.notes.extend(folded_note(folded));
             Vec::new()
         }
         None => {
-            let told = places(comparison, machine, objections);
+            let told = report_common_shifts(comparison, machine, objections);
             if !told.is_empty() {
-                fold_leaning(comparison, objections);
+                fold_tilted(comparison, objections);
             }
             told
         }
     };
-    told.extend(depths(comparison, objections));
+    reported.extend(report_common_depths(comparison, objections));
     // Rows that stand wrong may close the circle upon one another: that is no second round.
-    let again = if explained.is_none() { twice(comparison, objections) } else { None };
-    objections.splice(0..0, told.into_iter().map(HoleFinding::whole));
-    objections.extend(again.map(HoleFinding::whole));
+    let repeated = if explained.is_none() { report_repeated_set(comparison, objections) } else { None };
+    objections.splice(0..0, reported.into_iter().map(HoleFinding::unlocated));
+    objections.extend(repeated.map(HoleFinding::unlocated));
 }
 
 /// Puts the places behind what is wrong with the whole, as far as that puts them there.
 fn fold_explained(comparison: &Comparison<'_>, objections: &mut [HoleFinding]) -> usize {
-    if let Some(mirrored) = Mirrored::of(comparison) {
-        return fold(objections, &OF_PLACES, |objection| {
-            objection.wanted.is_some_and(|wanted| mirrored.wanted[wanted])
-                || objection.extra.is_some_and(|extra| mirrored.found[extra])
+    if let Some(mirrored) = MirrorImage::of(comparison) {
+        return fold(objections, &POSITION_CODES, |objection| {
+            objection.nominal.is_some_and(|wanted| mirrored.nominal[wanted])
+                || objection.extra.is_some_and(|extra| mirrored.actual[extra])
         });
     }
     match comparison.pattern.and_then(|pattern| explained_by_rows::explains(comparison, pattern)) {
-        Some(explains) => fold(objections, &OF_PLACES, explains),
+        Some(explains) => fold(objections, &POSITION_CODES, explains),
         None => 0,
     }
 }
 
 /// A hole of a row that is turned is deeper for that alone: its bottom, on its way round the cylinder's axis, sinks below
 /// the plane it should reach.
-fn fold_leaning(comparison: &Comparison<'_>, objections: &mut [HoleFinding]) -> usize {
+fn fold_tilted(comparison: &Comparison<'_>, objections: &mut [HoleFinding]) -> usize {
     if comparison.pattern.is_none() {
         return 0;
     }
-    let mut leans = vec![false; comparison.nominal.len()];
+    let mut is_tilt_only = vec![false; comparison.nominal.len()];
     for pair in &comparison.pairs {
-        let bottom = comparison.actual[pair.found].bottom();
+        let bottom = comparison.actual[pair.actual].bottom();
         let sinks = libm::hypot(bottom.y, bottom.z) * (1.0 - pair.deviation.tilt.cos());
-        leans[pair.wanted] = (pair.deviation.depth_error - sinks).abs() <= comparison.tolerances.depth;
+        is_tilt_only[pair.nominal] =
+            (pair.deviation.depth_error - sinks).abs() <= comparison.tolerances.depth;
     }
-    fold(objections, &["hole-depth"], |objection| objection.wanted.is_some_and(|wanted| leans[wanted]))
+    fold(objections, &["hole-depth"], |objection| {
+        objection.nominal.is_some_and(|wanted| is_tilt_only[wanted])
+    })
 }
 
-fn depths(comparison: &Comparison<'_>, objections: &mut [HoleFinding]) -> Vec<Diagnostic> {
-    let mut open = vec![false; comparison.nominal.len()];
-    for objection in objections.iter().filter(|o| !o.folded && o.finding.code == "hole-depth") {
-        objection.wanted.into_iter().for_each(|wanted| open[wanted] = true);
+fn report_common_depths(comparison: &Comparison<'_>, objections: &mut [HoleFinding]) -> Vec<Diagnostic> {
+    let mut has_depth_finding = vec![false; comparison.nominal.len()];
+    for objection in objections.iter().filter(|o| !o.is_folded && o.finding.code == "hole-depth") {
+        objection.nominal.into_iter().for_each(|wanted| has_depth_finding[wanted] = true);
     }
-    let wrong: Vec<_> = comparison.pairs.iter().filter(|pair| open[pair.wanted]).collect();
+    let wrong: Vec<_> = comparison.pairs.iter().filter(|pair| has_depth_finding[pair.nominal]).collect();
     let groups =
         groups(&wrong, |a, b| (a.deviation.depth_error - b.deviation.depth_error).abs() < SAME_DEPTH);
-    let mut told = Vec::new();
+    let mut reported = Vec::new();
     for group in groups {
         let error = group[0].deviation.depth_error;
-        let members: Vec<usize> = group.iter().map(|pair| pair.wanted).collect();
-        let is_one = among(comparison.nominal.len(), &members);
-        let folded = fold(objections, &["hole-depth"], |o| o.wanted.is_some_and(|wanted| is_one[wanted]));
+        let members: Vec<usize> = group.iter().map(|pair| pair.nominal).collect();
+        let is_one = membership(comparison.nominal.len(), &members);
+        let folded = fold(objections, &["hole-depth"], |o| o.nominal.is_some_and(|wanted| is_one[wanted]));
         let by = group.iter().map(|pair| pair.deviation.depth_error.abs());
         let (least, most) =
             by.fold((f64::INFINITY, 0.0f64), |(least, most), by| (least.min(by), most.max(by)));
@@ -104,128 +107,134 @@ fn depths(comparison: &Comparison<'_>, objections: &mut [HoleFinding]) -> Vec<Di
         };
         let message = format!(
             "{} {by} mm too {} ({} allowed)",
-            which(comparison, &members),
+            describe_set(comparison, &members),
             if error > 0.0 { "deep" } else { "shallow" },
             comparison.tolerances.depth
         );
         let mut finding = Diagnostic::error("holes-alike", message).help(
             "check the programmed depth, the zero in the tool's direction, the tool's length and its offset",
         );
-        let wanted = comparison.nominal[group[0].wanted].depth;
-        finding.notes.extend(super::depth::factor(wanted, wanted + error).map(str::to_owned));
-        finding.notes.extend(behind(folded));
-        told.push(at_the_call(finding, &comparison.actual[group[0].found].place));
+        let wanted = comparison.nominal[group[0].nominal].depth;
+        finding.notes.extend(super::depth::mistaken_factor(wanted, wanted + error).map(str::to_owned));
+        finding.notes.extend(folded_note(folded));
+        reported.push(locate_at_call(finding, &comparison.actual[group[0].actual].backtrace));
     }
-    told
+    reported
 }
 
-fn places(comparison: &Comparison<'_>, machine: &Machine, objections: &mut [HoleFinding]) -> Vec<Diagnostic> {
+fn report_common_shifts(
+    comparison: &Comparison<'_>,
+    machine: &Machine,
+    objections: &mut [HoleFinding],
+) -> Vec<Diagnostic> {
     let tolerance = comparison.tolerances.position;
-    if comparison.all_in_place() {
+    if comparison.is_all_in_place() {
         return Vec::new();
     }
-    let mut wrong = offs(comparison, machine);
-    let phi: Vec<f64> = phis(comparison);
+    let mut wrong = displacements(comparison, machine);
+    let phi: Vec<f64> = position_deviations(comparison);
     // What is off along the hole alone stands over its place or below it: that is no matter of places.
     wrong.retain(|off| {
-        let aside = off.turned.is_some() || 0.0005 <= off.offset.norm();
-        aside && (!off.near || tolerance < phi[off.wanted])
+        let aside = off.rotation.is_some() || 0.0005 <= off.offset.norm();
+        aside && (!off.is_matched || tolerance < phi[off.nominal])
     });
-    let mut told = Vec::new();
-    for group in groups(&wrong.iter().collect::<Vec<_>>(), |a, b| a.is_like(b)) {
-        let members: Vec<usize> = group.iter().map(|off| off.wanted).collect();
-        let drilled: Vec<usize> = group.iter().map(|off| off.found).collect();
-        let is_wanted = among(comparison.nominal.len(), &members);
-        let is_drilled = among(comparison.actual.len(), &drilled);
-        let folded = fold(objections, &OF_PLACES, |o| {
-            o.wanted.is_some_and(|wanted| is_wanted[wanted]) || o.extra.is_some_and(|extra| is_drilled[extra])
+    let mut reported = Vec::new();
+    for group in groups(&wrong.iter().collect::<Vec<_>>(), |a, b| a.is_same_error(b)) {
+        let members: Vec<usize> = group.iter().map(|off| off.nominal).collect();
+        let drilled: Vec<usize> = group.iter().map(|off| off.actual).collect();
+        let is_wanted = membership(comparison.nominal.len(), &members);
+        let is_drilled = membership(comparison.actual.len(), &drilled);
+        let folded = fold(objections, &POSITION_CODES, |o| {
+            o.nominal.is_some_and(|wanted| is_wanted[wanted])
+                || o.extra.is_some_and(|extra| is_drilled[extra])
         });
-        let set = which(comparison, &members);
-        let mut finding = match group[0].turned {
-            Some((axis, by)) => turned(&set, machine, axis, by),
-            None => shifted(&set, &group[0].offset, comparison.pattern),
+        let set = describe_set(comparison, &members);
+        let mut finding = match group[0].rotation {
+            Some((axis, by)) => rotation_finding(&set, machine, axis, by),
+            None => shift_finding(&set, &group[0].offset, comparison.pattern),
         };
-        finding.notes.extend(behind(folded));
-        told.push(at_the_call(finding, &comparison.actual[group[0].found].place));
+        finding.notes.extend(folded_note(folded));
+        reported.push(locate_at_call(finding, &comparison.actual[group[0].actual].backtrace));
     }
-    told
+    reported
 }
 
 /// A row, or the whole part, that is drilled again.
-fn twice(comparison: &Comparison<'_>, objections: &mut [HoleFinding]) -> Option<Diagnostic> {
-    let again = |extra: &usize| Some((*extra, comparison.wanted_on_line_of(*extra)?));
-    let (extras, mut members): (Vec<usize>, Vec<usize>) = comparison.extra.iter().filter_map(again).unzip();
+fn report_repeated_set(comparison: &Comparison<'_>, objections: &mut [HoleFinding]) -> Option<Diagnostic> {
+    let repeated = |extra: &usize| Some((*extra, comparison.nominal_on_line_of(*extra)?));
+    let (extras, mut members): (Vec<usize>, Vec<usize>) =
+        comparison.extra.iter().filter_map(repeated).unzip();
     members.sort_unstable();
     members.dedup();
-    if members.len() < FEWEST {
+    if members.len() < MIN_GROUP_SIZE {
         return None;
     }
-    let is_again = among(comparison.actual.len(), &extras);
+    let is_again = membership(comparison.actual.len(), &extras);
     let folded = fold(objections, &["hole-twice"], |o| o.extra.is_some_and(|extra| is_again[extra]));
-    let set = which(comparison, &members);
+    let set = describe_set(comparison, &members);
     let mut finding = Diagnostic::error("hole-twice", format!("{set} drilled a second time")).help(
         "the same tool comes back for nothing: take the second call, or the second round of the loop, out",
     );
-    finding.notes.extend(behind(folded));
-    Some(at_the_call(finding, &comparison.actual[extras[0]].place))
+    finding.notes.extend(folded_note(folded));
+    Some(locate_at_call(finding, &comparison.actual[extras[0]].backtrace))
 }
 
-fn turned(set: &str, machine: &Machine, axis: AxisIndex, by: Deg) -> Diagnostic {
+fn rotation_finding(set: &str, machine: &Machine, axis: AxisIndex, by: Deg) -> Diagnostic {
     let letter = machine.axes.letter(axis);
     Diagnostic::error("holes-alike", format!("{set} turned by {letter}{:+.3}°", by.0))
         .help(format!("correct {letter} in the program, or its zero in the work offset"))
 }
 
-fn shifted(set: &str, aside: &Vector3<f64>, pattern: Option<&Pattern>) -> Diagnostic {
-    let axes = [('X', aside.x), ('Y', aside.y), ('Z', aside.z)];
+fn shift_finding(set: &str, offset: &Vector3<f64>, pattern: Option<&Pattern>) -> Diagnostic {
+    let axes = [('X', offset.x), ('Y', offset.y), ('Z', offset.z)];
     let by: Vec<_> = axes
         .iter()
         .filter(|(_, by)| 0.0005 <= by.abs())
         .map(|(letter, by)| format!("{letter}{by:+.3}"))
         .collect();
     // A honeycomb's cylinder lies along x: what goes across that leaves its axis.
-    let beside = match pattern {
-        Some(_) if libm::hypot(aside.y, aside.z) > 0.0005 => ", beside the cylinder's axis",
+    let off_axis_note = match pattern {
+        Some(_) if libm::hypot(offset.y, offset.z) > 0.0005 => ", beside the cylinder's axis",
         _ => "",
     };
-    Diagnostic::error("holes-alike", format!("{set} shifted by {}{beside}", by.join(" "))).help(
+    Diagnostic::error("holes-alike", format!("{set} shifted by {}{off_axis_note}", by.join(" "))).help(
         "actual less nominal, along the machine's axes: correct the programmed point or the work offset",
     )
 }
 
 /// Which of so many these are.
-fn among(count: usize, members: &[usize]) -> Vec<bool> {
+fn membership(count: usize, members: &[usize]) -> Vec<bool> {
     let mut is_one = vec![false; count];
     members.iter().for_each(|member| is_one[*member] = true);
     is_one
 }
 
 /// Of each wanted hole that was drilled.
-fn phis(comparison: &Comparison<'_>) -> Vec<f64> {
+fn position_deviations(comparison: &Comparison<'_>) -> Vec<f64> {
     let mut phi = vec![0.0; comparison.nominal.len()];
     for pair in &comparison.pairs {
-        phi[pair.wanted] = pair.deviation.phi();
+        phi[pair.nominal] = pair.deviation.zone_diameter();
     }
     phi
 }
 
 /// Those that are like one another, three at least, the largest group first.
-fn groups<'a, T>(all: &[&'a T], like: impl Fn(&T, &T) -> bool) -> Vec<Vec<&'a T>> {
+fn groups<'a, T>(all: &[&'a T], is_alike: impl Fn(&T, &T) -> bool) -> Vec<Vec<&'a T>> {
     let mut groups: Vec<Vec<&'a T>> = Vec::new();
     for one in all {
-        match groups.iter().position(|group| like(group[0], one)) {
+        match groups.iter().position(|group| is_alike(group[0], one)) {
             Some(group) => groups[group].push(one),
-            None if groups.len() < WAYS => groups.push(vec![one]),
+            None if groups.len() < MAX_GROUPS => groups.push(vec![one]),
             None => {}
         }
     }
-    groups.retain(|group| FEWEST <= group.len());
+    groups.retain(|group| MIN_GROUP_SIZE <= group.len());
     groups.sort_by_key(|group| std::cmp::Reverse(group.len()));
     groups
 }
 
 /// Which holes these are, in the words of somebody who looks at the part.
-fn which(comparison: &Comparison<'_>, members: &[usize]) -> String {
+fn describe_set(comparison: &Comparison<'_>, members: &[usize]) -> String {
     let (count, all) = (members.len(), comparison.nominal.len());
     if count == all {
         return format!("all {count} holes");

@@ -5,10 +5,10 @@ use gcode_lang::diag::Diagnostic;
 
 pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
     for pair in &comparison.pairs {
-        let (wanted, found) = (&comparison.nominal[pair.wanted], &comparison.actual[pair.found]);
+        let (wanted, found) = (&comparison.nominal[pair.nominal], &comparison.actual[pair.actual]);
         for cut in &found.earlier_passes {
             let Some(deviation) = Deviation::new(wanted, &cut.bottom, &cut.axis) else { continue };
-            let aside = deviation.phi() / 2.0;
+            let aside = deviation.zone_diameter() / 2.0;
             // A smaller tool may stand aside by what the finishing one takes off; a countersink must be in its place.
             let finished = wanted.diameter.or(found.diameter);
             let spare =
@@ -20,7 +20,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
             let tool = cut.tool.map_or(String::new(), |tool| format!(" by T{tool}"));
             let message = format!(
                 "hole {} is cut{tool} {aside:.4} mm aside before it is finished ({allowed:.4} allowed)",
-                comparison.id(pair.wanted)
+                comparison.id(pair.nominal)
             );
             // Another tool whose size isn't known may be as small as it likes.
             let unknown = cut.tool != found.tool && cut.diameter.is_none();
@@ -30,10 +30,10 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
                 false => Diagnostic::error("hole-cut-aside", message)
                     .help("correct the point of that pass: what it cuts outside the hole stays cut"),
             };
-            let finding = finding.at(cut.place.clone());
+            let finding = finding.at(cut.backtrace.clone());
             objections.push(match unknown {
-                true => HoleFinding::whole(finding),
-                false => HoleFinding::of(pair.wanted, finding),
+                true => HoleFinding::unlocated(finding),
+                false => HoleFinding::of_nominal(pair.nominal, finding),
             });
         }
     }

@@ -8,10 +8,10 @@ use gcode_lang::motion::{LengthCompensation, SpindleDirection};
 use gcode_part::ProcessLimits;
 
 /// S and F may be off by this part of what is said: of F what an inch rounds to. More is told, …
-const ROUNDED: f64 = 0.005;
+const ROUNDING_ALLOWANCE: f64 = 0.005;
 
 /// … and beyond this part it is no other choice but a slip: an error. Tables of cutting data leave so much open.
-const OPEN: f64 = 0.25;
+const ERROR_RATIO: f64 = 0.25;
 
 pub(in crate::verify) fn findings(
     cuttings: &[CutConditions],
@@ -25,10 +25,10 @@ pub(in crate::verify) fn findings(
     for (check, cutting) in found {
         let Some(finding) = check(cutting, conduct, machine) else { continue };
         match known.get(&finding.message) {
-            Some(index) => told[*index].1 += cutting.times,
+            Some(index) => told[*index].1 += cutting.count,
             None => {
                 known.insert(finding.message.clone(), told.len());
-                told.push((finding.at(cutting.place.clone()), cutting.times));
+                told.push((finding.at(cutting.backtrace.clone()), cutting.count));
             }
         }
     }
@@ -59,7 +59,7 @@ fn speed(cutting: &CutConditions, conduct: &ProcessLimits, _: &Machine) -> Optio
 fn feed(cutting: &CutConditions, conduct: &ProcessLimits, _: &Machine) -> Option<Diagnostic> {
     let wanted = conduct.tool_process(cutting.tool)?.feed?;
     let off = |found: &f64| (found / wanted).max(wanted / found);
-    let found = cutting.feeds.map(|feed| feed.0).into_iter().max_by(|a, b| off(a).total_cmp(&off(b)))?;
+    let found = cutting.feed_range.map(|feed| feed.0).into_iter().max_by(|a, b| off(a).total_cmp(&off(b)))?;
     let severity = severity(found, wanted)?;
     let message = format!(
         "{} is fed at {} mm/min where {wanted} is asked for",
@@ -75,16 +75,16 @@ fn feed(cutting: &CutConditions, conduct: &ProcessLimits, _: &Machine) -> Option
 fn peck(cutting: &CutConditions, conduct: &ProcessLimits, _: &Machine) -> Option<Diagnostic> {
     let wanted = conduct.tool_process(cutting.tool)?.peck?;
     let shown = |mm: f64| (mm * 1e3).round() / 1e3;
-    if let Some(severity) = severity(cutting.cut, wanted).filter(|_| wanted < cutting.cut) {
+    if let Some(severity) = severity(cutting.max_cut, wanted).filter(|_| wanted < cutting.max_cut) {
         let message = format!(
             "{} cuts {} mm in one go where pecks of {wanted} mm are asked for",
             name(cutting),
-            shown(cutting.cut)
+            shown(cutting.max_cut)
         );
         let finding = Diagnostic::new(severity, "drill-peck", message);
         return Some(finding.help("G83 with the job's peck for Q, or correct drill.peck in the job"));
     }
-    let peck = cutting.peck.filter(|peck| *peck < wanted && severity(*peck, wanted).is_some())?;
+    let peck = cutting.min_peck.filter(|peck| *peck < wanted && severity(*peck, wanted).is_some())?;
     let message =
         format!("{} goes in by pecks of {} mm where {wanted} mm are asked for", name(cutting), shown(peck));
     Some(
@@ -117,10 +117,10 @@ fn tool(cutting: &CutConditions, conduct: &ProcessLimits, _: &Machine) -> Option
 }
 
 /// How bad it is that S or F is another one than is said; `None` where it will do.
-pub(in crate::verify) fn severity(found: f64, wanted: f64) -> Option<Severity> {
-    match (found - wanted).abs() / wanted {
-        off if off <= ROUNDED => None,
-        off if off <= OPEN => Some(Severity::Warning),
+pub(in crate::verify) fn severity(actual: f64, nominal: f64) -> Option<Severity> {
+    match (actual - nominal).abs() / nominal {
+        off if off <= ROUNDING_ALLOWANCE => None,
+        off if off <= ERROR_RATIO => Some(Severity::Warning),
         _ => Some(Severity::Error),
     }
 }

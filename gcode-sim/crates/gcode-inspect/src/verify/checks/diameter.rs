@@ -4,19 +4,21 @@ use gcode_lang::diag::Diagnostic;
 
 pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
     for pair in &comparison.pairs {
-        let found = &comparison.actual[pair.found];
-        let (Some(wanted), Some(actual)) = (comparison.nominal[pair.wanted].diameter, found.diameter) else {
+        let found = &comparison.actual[pair.actual];
+        let (Some(wanted), Some(actual)) = (comparison.nominal[pair.nominal].diameter, found.diameter) else {
             continue;
         };
         if (actual - wanted).abs() <= comparison.tolerances.diameter {
             continue;
         }
         let tool = found.tool.map_or(String::new(), |tool| format!(" by T{tool}"));
-        let message =
-            format!("hole {} is finished{tool} with Φ{actual}, Φ{wanted} wanted", comparison.id(pair.wanted));
+        let message = format!(
+            "hole {} is finished{tool} with Φ{actual}, Φ{wanted} wanted",
+            comparison.id(pair.nominal)
+        );
         let finding = Diagnostic::error("hole-diameter", message)
             .help("finish the hole with the right tool, or correct the tool table")
-            .at(found.place.clone());
-        objections.push(HoleFinding::of(pair.wanted, finding));
+            .at(found.backtrace.clone());
+        objections.push(HoleFinding::of_nominal(pair.nominal, finding));
     }
 }

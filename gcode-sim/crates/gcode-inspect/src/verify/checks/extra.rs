@@ -6,22 +6,22 @@ use gcode_lang::diag::Diagnostic;
 
 pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
     for index in &comparison.extra {
-        let twice = comparison.wanted_on_line_of(*index).is_some();
+        let twice = comparison.nominal_on_line_of(*index).is_some();
         let (code, help) = match twice {
             true => ("hole-twice", "the same tool comes back for nothing: take the second call out"),
             false => ("hole-extra", "take it out of the program, or correct its place"),
         };
-        let finding = Diagnostic::error(code, why(comparison, *index))
+        let finding = Diagnostic::error(code, explain(comparison, *index))
             .help(help)
-            .at(comparison.actual[*index].place.clone());
+            .at(comparison.actual[*index].backtrace.clone());
         objections.push(HoleFinding::of_extra(*index, finding));
     }
 }
 
 /// In one sentence, for the finding and for the verdict.
-pub(crate) fn why(comparison: &Comparison<'_>, extra: usize) -> String {
+pub(crate) fn explain(comparison: &Comparison<'_>, extra: usize) -> String {
     let found = &comparison.actual[extra];
-    if let Some(wanted) = comparison.wanted_on_line_of(extra) {
+    if let Some(wanted) = comparison.nominal_on_line_of(extra) {
         return format!("hole {} is drilled a second time", comparison.id(wanted));
     }
     let Point3 { coords: p } = found.entry;

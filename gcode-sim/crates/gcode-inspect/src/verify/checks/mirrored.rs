@@ -9,44 +9,46 @@ use crate::verify::HolePair;
 use gcode_lang::diag::Diagnostic;
 
 /// So many of the wanted holes must agree with the mirrored ones.
-const MOST: f64 = 0.8;
+const MIN_AGREEING_SHARE: f64 = 0.8;
 
 /// What is mirrored, and what of it that explains.
-pub(super) struct Mirrored {
+pub(super) struct MirrorImage {
     /// x, y, z of the part, counted from 0.
     axis: usize,
     /// How many holes are in their places then.
-    agree: usize,
+    agreeing: usize,
     /// Of each wanted hole and of each drilled one whether it is.
-    pub wanted: Vec<bool>,
-    pub found: Vec<bool>,
+    pub nominal: Vec<bool>,
+    pub actual: Vec<bool>,
 }
 
-impl Mirrored {
+impl MirrorImage {
     pub(super) fn of(comparison: &Comparison<'_>) -> Option<Self> {
         if comparison.missing.is_empty() || comparison.extra.is_empty() {
             return None;
         }
         [2, 0, 1].into_iter().find_map(|axis| {
             let turned: Vec<_> = comparison.actual.iter().map(|found| mirror(found, axis)).collect();
-            let again =
+            let compared =
                 Comparison::new(comparison.nominal, &turned, comparison.tolerances, comparison.pattern);
             // In their zones: a pattern turned round lies near itself in many ways.
-            let agree = in_place(&again);
-            if agree <= in_place(comparison) || (agree as f64) < MOST * comparison.nominal.len() as f64 {
+            let agree = count_in_place(&compared);
+            if agree <= count_in_place(comparison)
+                || (agree as f64) < MIN_AGREEING_SHARE * comparison.nominal.len() as f64
+            {
                 return None;
             }
-            let mut explained = Self {
+            let mut image = Self {
                 axis,
-                agree,
-                wanted: vec![false; again.nominal.len()],
-                found: vec![false; turned.len()],
+                agreeing: agree,
+                nominal: vec![false; compared.nominal.len()],
+                actual: vec![false; turned.len()],
             };
-            for pair in again.pairs.iter().filter(|pair| is_in_place(&again, pair)) {
-                explained.wanted[pair.wanted] = true;
-                explained.found[pair.found] = true;
+            for pair in compared.pairs.iter().filter(|pair| is_in_place(&compared, pair)) {
+                image.nominal[pair.nominal] = true;
+                image.actual[pair.actual] = true;
             }
-            Some(explained)
+            Some(image)
         })
     }
 }
@@ -56,13 +58,13 @@ pub(in crate::verify) fn check(
     machine: &Machine,
     objections: &mut Vec<HoleFinding>,
 ) {
-    let Some(Mirrored { axis, agree, .. }) = Mirrored::of(comparison) else { return };
+    let Some(MirrorImage { axis, agreeing: agree, .. }) = MirrorImage::of(comparison) else { return };
     let name = ["x", "y", "z"][axis];
     let lie = format!(
         "the holes lie mirrored: with {name} turned round {agree} of {} would be there",
         comparison.nominal.len()
     );
-    let finding = match turns_across(comparison, machine, axis) {
+    let finding = match is_wrong_rotation_sign(comparison, machine, axis) {
         true => Diagnostic::error(
             "rotary-sign",
             format!("{lie}; the rotary table turns the other way than the program believes"),
@@ -71,26 +73,26 @@ pub(in crate::verify) fn check(
         false => Diagnostic::error("mirror-image", format!("{lie}; no turn of the table does that"))
             .help("is a mirror image (G51.1) left on, or a coordinate's sign the wrong one?"),
     };
-    let place = comparison.actual[comparison.extra[0]].place.clone();
-    objections.push(HoleFinding::whole(finding.at(place)));
+    let place = comparison.actual[comparison.extra[0]].backtrace.clone();
+    objections.push(HoleFinding::unlocated(finding.at(place)));
 }
 
 /// Whether a table that turns the other way mirrors the part so: it turned between the holes, and about another axis.
-fn turns_across(comparison: &Comparison<'_>, machine: &Machine, axis: usize) -> bool {
+fn is_wrong_rotation_sign(comparison: &Comparison<'_>, machine: &Machine, axis: usize) -> bool {
     let part = machine.part.frame();
     machine.table.0.iter().any(|link| {
         let LinkMotion::Turn { about, .. } = &link.motion else { return false };
         let own = part.rotation.inverse_transform_unit_vector(about);
-        let turned = comparison.actual.iter().any(|found| found.at[link.axis] != 0.0);
+        let turned = comparison.actual.iter().any(|found| found.axis_position[link.axis] != 0.0);
         turned && own[axis].abs() < std::f64::consts::FRAC_1_SQRT_2
     })
 }
 
 fn is_in_place(comparison: &Comparison<'_>, pair: &HolePair) -> bool {
-    pair.deviation.phi() <= comparison.tolerances.position
+    pair.deviation.zone_diameter() <= comparison.tolerances.position
 }
 
-fn in_place(comparison: &Comparison<'_>) -> usize {
+fn count_in_place(comparison: &Comparison<'_>) -> usize {
     comparison.pairs.iter().filter(|pair| is_in_place(comparison, pair)).count()
 }
 

@@ -8,7 +8,7 @@ use gcode_part::PointTree;
 pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
     // A hole drilled twice is known; it isn't the missing one in a wrong place.
     let extra = comparison.extra.iter().copied();
-    let extra = extra.filter(|index| comparison.wanted_on_line_of(*index).is_none());
+    let extra = extra.filter(|index| comparison.nominal_on_line_of(*index).is_none());
     let extra: Vec<usize> = extra.collect();
     let tree = PointTree::new(extra.iter().map(|index| comparison.actual[*index].bottom()));
     for wanted in &comparison.missing {
@@ -26,10 +26,10 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
                         off.x, off.y, off.z
                     ))
                     .help("if that is the hole meant, its place is wrong; else the program leaves the hole out")
-                    .at(found.place.clone())
+                    .at(found.backtrace.clone())
             }
             None => finding.help("the program leaves it out"),
         };
-        objections.push(HoleFinding::of(*wanted, finding));
+        objections.push(HoleFinding::of_nominal(*wanted, finding));
     }
 }

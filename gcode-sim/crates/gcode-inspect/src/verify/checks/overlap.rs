@@ -11,6 +11,6 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
         let message = overlap.sentence(comparison.nominal);
         let finding = Diagnostic::new(Severity::Note, "hole-overlap", message)
             .help("if the drawing doesn't mean that: look for a slip in the radius, azimuth or depth of one of them");
-        objections.push(HoleFinding::of(overlap.holes[0], finding));
+        objections.push(HoleFinding::of_nominal(overlap.holes[0], finding));
     }
 }

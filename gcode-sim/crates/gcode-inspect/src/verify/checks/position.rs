@@ -5,20 +5,20 @@ use gcode_lang::diag::Diagnostic;
 
 pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
     for pair in &comparison.pairs {
-        if pair.deviation.phi() > comparison.tolerances.position {
-            objections.push(HoleFinding::of(pair.wanted, finding(comparison, pair)));
+        if pair.deviation.zone_diameter() > comparison.tolerances.position {
+            objections.push(HoleFinding::of_nominal(pair.nominal, finding(comparison, pair)));
         }
     }
 }
 
 fn finding(comparison: &Comparison<'_>, pair: &HolePair) -> Diagnostic {
     let deviation = &pair.deviation;
-    let (wanted, found) = (&comparison.nominal[pair.wanted], &comparison.actual[pair.found]);
-    let id = comparison.id(pair.wanted);
+    let (wanted, found) = (&comparison.nominal[pair.nominal], &comparison.actual[pair.actual]);
+    let id = comparison.id(pair.nominal);
     let leans = deviation.tilt.tan() * wanted.depth;
     let limits = format!(
         "Φ{:.4} where Φ{} is allowed ({:.4} mm at the entry, {:.4} mm at the bottom)",
-        deviation.phi(),
+        deviation.zone_diameter(),
         comparison.tolerances.position,
         deviation.at_entry,
         deviation.at_bottom
@@ -34,5 +34,5 @@ fn finding(comparison: &Comparison<'_>, pair: &HolePair) -> Diagnostic {
         Diagnostic::error("hole-position", format!("hole {id} stands aside by {}: {limits}", d.join(" ")))
             .help("the three numbers are actual less nominal in x, y, z of the part: correct the programmed point")
     };
-    finding.at(found.place.clone())
+    finding.at(found.backtrace.clone())
 }

@@ -1,24 +1,24 @@
 //! A honeycomb has two groups of rows, one half a pitch later in x than the other: where all rows begin alike, one is
 //! missing, or stands where the other does.
 use super::{Comparison, HoleFinding};
-use crate::verify::hole_finding::at_the_call;
+use crate::verify::hole_finding::locate_at_call;
 use crate::verify::rows::PatternRows;
 use gcode_lang::diag::Diagnostic;
 use gcode_part::Pattern;
 
 /// Rows that begin nearer to one another than this, in mm, begin alike.
-const SAME: f64 = 0.02;
+const SAME_SHIFT: f64 = 0.02;
 
 pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
     let Some(pattern) = comparison.pattern.filter(|_| !comparison.missing.is_empty()) else { return };
     let late = |x: f64| (0.25..0.75).contains(&(x / pattern.pitch).fract());
     let second = comparison.nominal.iter().filter(|hole| late(hole.entry[0])).count();
     let Some(rows) = PatternRows::of(comparison, pattern) else { return };
-    if let Some(finding) = one_shifted(comparison, pattern, &rows) {
-        objections.push(HoleFinding::whole(finding));
+    if let Some(finding) = shifted_group(comparison, pattern, &rows) {
+        objections.push(HoleFinding::unlocated(finding));
         return;
     }
-    if !rows.in_step(pattern) {
+    if !rows.is_aligned(pattern) {
         return;
     }
     // On a cylinder shorter than half a pitch there is one group anyway.
@@ -26,12 +26,12 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
         return;
     }
     let (half, count, first) = (pattern.pitch / 2.0, rows.rows.len(), rows.rows[0]);
-    let alike = rows.rows.iter().all(|row| (row.start - first.start).abs() < SAME);
+    let alike = rows.rows.iter().all(|row| (row.start - first.start).abs() < SAME_SHIFT);
     let begin = match alike {
         true => format!("begin at x {:.3}", first.start),
         false => format!("begin whole pitches from x {:.3}", first.start),
     };
-    let (message, help) = match rows.one_group(pattern) {
+    let (message, help) = match rows.is_single_group(pattern) {
         true => (
             format!(
                 "one of two groups of rows is missing, half of the pattern: all {count} rows {begin}, none is \
@@ -48,15 +48,15 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
             format!("every second row begins half a pitch later in x: {half:.3} mm"),
         ),
     };
-    let finding = at_the_call(
+    let finding = locate_at_call(
         Diagnostic::error("row-group", message).help(help),
-        &comparison.actual[first.first].place,
+        &comparison.actual[first.first].backtrace,
     );
-    objections.push(HoleFinding::whole(finding));
+    objections.push(HoleFinding::unlocated(finding));
 }
 
 /// One group begins where it should and the other doesn't.
-fn one_shifted(comparison: &Comparison<'_>, pattern: &Pattern, rows: &PatternRows) -> Option<Diagnostic> {
+fn shifted_group(comparison: &Comparison<'_>, pattern: &Pattern, rows: &PatternRows) -> Option<Diagnostic> {
     if rows.rows.len() != pattern.rows as usize {
         return None;
     }
@@ -66,14 +66,14 @@ fn one_shifted(comparison: &Comparison<'_>, pattern: &Pattern, rows: &PatternRow
         let group = (row.azimuth.0 / pattern.step().0).round() as usize % 2;
         if begins[group].is_nan() {
             (begins[group], first[group]) = (row.start, *row);
-        } else if SAME < (row.start - begins[group]).abs() {
+        } else if SAME_SHIFT < (row.start - begins[group]).abs() {
             return None;
         }
     }
     let wanted = [0.0, pattern.pitch / 2.0];
     let off = [0, 1].map(|group: usize| begins[group] - wanted[group]);
-    let alike = (begins[0] - begins[1]).abs() < SAME;
-    let group = match off.map(|off| off.abs() < SAME) {
+    let alike = (begins[0] - begins[1]).abs() < SAME_SHIFT;
+    let group = match off.map(|off| off.abs() < SAME_SHIFT) {
         [true, false] if !alike => 1,
         [false, true] if !alike => 0,
         _ => return None,
@@ -87,8 +87,8 @@ fn one_shifted(comparison: &Comparison<'_>, pattern: &Pattern, rows: &PatternRow
         if off[group] < 0.0 { "early" } else { "late" }
     );
     let help = "the first group begins at x 0, the second half a pitch later; all holes of a row follow from its first";
-    Some(at_the_call(
+    Some(locate_at_call(
         Diagnostic::error("row-group", message).help(help),
-        &comparison.actual[first[group].first].place,
+        &comparison.actual[first[group].first].backtrace,
     ))
 }

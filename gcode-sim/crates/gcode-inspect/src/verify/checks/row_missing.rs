@@ -2,7 +2,7 @@
 use nalgebra::Point3;
 
 use super::{Comparison, HoleFinding};
-use crate::verify::hole_finding::{at_the_call, behind, fold};
+use crate::verify::hole_finding::{fold, folded_note, locate_at_call};
 use gcode_lang::diag::Diagnostic;
 use gcode_lang::units::Deg;
 use gcode_part::Pattern;
@@ -22,7 +22,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
     let row = |wanted: usize| pattern.row_of(&Point3::from(comparison.nominal[wanted].entry));
     let gone = |wanted: usize| rows.contains(&row(wanted));
     let count = comparison.missing.iter().filter(|wanted| gone(**wanted)).count();
-    let folded = fold(objections, &["hole-missing"], |objection| objection.wanted.is_some_and(gone));
+    let folded = fold(objections, &["hole-missing"], |objection| objection.nominal.is_some_and(gone));
     let (first, to) = (rows[0], rows[rows.len() - 1]);
     let at = |row: usize| Deg(360.0 * row as f64 / f64::from(pattern.rows));
     let message = match rows.as_slice() {
@@ -47,21 +47,21 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
         false => "the program leaves this out: is a row skipped, or drilled at another angle?".to_owned(),
     };
     let mut finding = Diagnostic::error("row-missing", message).help(help);
-    finding.notes.extend(behind(folded));
-    let place = &comparison.actual[last.found].place;
-    objections.insert(0, HoleFinding::whole(at_the_call(finding, place)));
+    finding.notes.extend(folded_note(folded));
+    let place = &comparison.actual[last.actual].backtrace;
+    objections.insert(0, HoleFinding::unlocated(locate_at_call(finding, place)));
 }
 
 /// Rows of which no hole is there, and near which nothing is drilled that nobody asked for.
 fn missing_rows(comparison: &Comparison<'_>, pattern: &Pattern) -> Vec<usize> {
     let mut there = vec![false; pattern.rows as usize];
     for pair in &comparison.pairs {
-        there[pattern.row_of(&Point3::from(comparison.nominal[pair.wanted].entry))] = true;
+        there[pattern.row_of(&Point3::from(comparison.nominal[pair.nominal].entry))] = true;
     }
     for extra in &comparison.extra {
         let hole = &comparison.actual[*extra];
         if let Some(at) = pattern.crossing(&hole.bottom(), &hole.axis)
-            && comparison.wanted_on_line_of(*extra).is_none()
+            && comparison.nominal_on_line_of(*extra).is_none()
         {
             there[pattern.row_of(&at)] = true;
         }

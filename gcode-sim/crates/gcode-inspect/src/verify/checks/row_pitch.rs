@@ -1,19 +1,19 @@
 //! In a row the holes stand at the pitch with which the pattern closes: another one is told with what it adds up to.
 use super::{Comparison, HoleFinding};
-use crate::verify::causes::causes;
-use crate::verify::hole_finding::at_the_call;
+use crate::verify::causes::describe_causes;
+use crate::verify::hole_finding::locate_at_call;
 use crate::verify::rows::PatternRows;
 use gcode_lang::diag::Diagnostic;
 
 /// Pitches nearer than this, in mm, are the same: holes are rounded to the increment.
-const FOLLOWS: f64 = 0.002;
+const PITCH_TOLERANCE: f64 = 0.002;
 
 pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
     let Some(pattern) = comparison.pattern else { return };
     let Some(rows) = PatternRows::of(comparison, pattern) else { return };
     let Some((spacing, row)) = rows.spacing else { return };
     // The pitch that follows from another number of rows is told with their angle.
-    let follows = (spacing - pattern.pitch_of(rows.rows.len() as u32)).abs() < FOLLOWS;
+    let follows = (spacing - pattern.pitch_of(rows.rows.len() as u32)).abs() < PITCH_TOLERANCE;
     if follows && objections.iter().any(|objection| objection.finding.code == "row-angle") {
         return;
     }
@@ -27,7 +27,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
         pattern.pitch
     );
     let mut finding =
-        at_the_call(Diagnostic::error("row-pitch", message), &comparison.actual[row.first].place);
+        locate_at_call(Diagnostic::error("row-pitch", message), &comparison.actual[row.first].backtrace);
     if let Some(asked) = pattern.asked
         && (spacing - asked).abs() < (spacing - pattern.pitch).abs()
     {
@@ -36,9 +36,9 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
             pattern.pitch
         ));
     }
-    if let Some(causes) = causes(pattern, spacing / pattern.pitch, false) {
+    if let Some(causes) = describe_causes(pattern, spacing / pattern.pitch, false) {
         finding = finding.note(causes);
     }
     let finding = finding.help("compute the pitch from the number of rows that close, after the angle");
-    objections.push(HoleFinding::whole(finding));
+    objections.push(HoleFinding::unlocated(finding));
 }

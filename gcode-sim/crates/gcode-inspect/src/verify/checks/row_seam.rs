@@ -1,6 +1,6 @@
 //! Round the cylinder the last row stands as far from the first as all others from their next: else there is a seam.
 use super::{Comparison, HoleFinding};
-use crate::verify::hole_finding::at_the_call;
+use crate::verify::hole_finding::locate_at_call;
 use crate::verify::rows::PatternRows;
 use gcode_lang::diag::Diagnostic;
 
@@ -10,7 +10,7 @@ const SHARE: f64 = 0.05;
 pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
     let Some(pattern) = comparison.pattern else { return };
     let Some(rows) = PatternRows::of(comparison, pattern) else { return };
-    let odd = |gap: f64| (gap - rows.usual.0).abs() > SHARE * pattern.step().0;
+    let odd = |gap: f64| (gap - rows.typical_gap.0).abs() > SHARE * pattern.step().0;
     let seams: Vec<usize> = (0..rows.gaps.len()).filter(|index| odd(rows.gaps[*index].0)).collect();
     // Many odd gaps are no seam: there rows are missing, or stand anyhow.
     let [seam] = seams.as_slice() else { return };
@@ -27,9 +27,10 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
         after.azimuth.0,
         gap.0,
         pattern.arc(gap),
-        rows.usual.0,
-        pattern.arc(rows.usual)
+        rows.typical_gap.0,
+        pattern.arc(rows.typical_gap)
     );
     let finding = Diagnostic::error("row-seam", message).help("the angle from row to row must divide 360: take a whole number of rows first, then the angle, then the pitch");
-    objections.push(HoleFinding::whole(at_the_call(finding, &comparison.actual[before.first].place)));
+    objections
+        .push(HoleFinding::unlocated(locate_at_call(finding, &comparison.actual[before.first].backtrace)));
 }

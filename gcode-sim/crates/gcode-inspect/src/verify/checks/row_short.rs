@@ -1,16 +1,16 @@
 //! Where a honeycomb ends too early, as with a length that is too small, that is told instead of what it looks
 //! like.
 use super::{Comparison, HoleFinding};
-use crate::verify::hole_finding::{at_the_call, behind, fold};
+use crate::verify::hole_finding::{fold, folded_note, locate_at_call};
 use gcode_lang::diag::Diagnostic;
 
 pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
     let (Some(_), Some(_)) = (comparison.pattern, comparison.missing.first()) else { return };
     let x = |wanted: usize| comparison.nominal[wanted].entry[0];
-    let Some(last) = comparison.pairs.iter().max_by(|a, b| x(a.wanted).total_cmp(&x(b.wanted))) else {
+    let Some(last) = comparison.pairs.iter().max_by(|a, b| x(a.nominal).total_cmp(&x(b.nominal))) else {
         return;
     };
-    let end = x(last.wanted);
+    let end = x(last.nominal);
     // All that is missing lies beyond it, and nothing else is wrong: then nothing but the length is.
     let beyond = comparison.missing.iter().all(|wanted| end < x(*wanted));
     if !beyond || !comparison.extra.is_empty() {
@@ -27,8 +27,11 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
     );
     let mut finding =
         Diagnostic::error("row-short", message).help("is the length in the call right, and with its point?");
-    finding.notes.extend(behind(folded));
+    finding.notes.extend(folded_note(folded));
     // A missing group is what that looks like.
     objections.retain(|objection| objection.finding.code != "row-group");
-    objections.insert(0, HoleFinding::whole(at_the_call(finding, &comparison.actual[last.found].place)));
+    objections.insert(
+        0,
+        HoleFinding::unlocated(locate_at_call(finding, &comparison.actual[last.actual].backtrace)),
+    );
 }

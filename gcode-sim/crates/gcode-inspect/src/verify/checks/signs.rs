@@ -7,7 +7,7 @@ use gcode_part::Reference;
 use gcode_part::Surface;
 
 /// Of an axis that stands more askew than this to the part's nobody can say which way it turns.
-const ASKEW: f64 = 0.5;
+const MIN_ALIGNMENT: f64 = 0.5;
 
 pub(in crate::verify) fn finding(reference: &Reference, machine: &Machine) -> Option<Diagnostic> {
     let rotary = reference.conduct.rotary?;
@@ -33,5 +33,5 @@ fn sign_about(machine: &Machine, letter: char, own: &Unit<Vector3<f64>>) -> Opti
     let link = machine.table.0.iter().find(|link| link.axis == axis)?;
     let LinkMotion::Turn { about, .. } = &link.motion else { return None };
     let along = machine.part.frame().rotation.inverse_transform_unit_vector(about).dot(own);
-    (ASKEW < along.abs()).then(|| link.sign * along.signum())
+    (MIN_ALIGNMENT < along.abs()).then(|| link.sign * along.signum())
 }

@@ -1,6 +1,6 @@
 //! Where the run stopped before its end, what it left out says nothing more: one sentence, and nothing of rows.
 use super::{Comparison, HoleFinding};
-use crate::verify::hole_finding::{behind, fold};
+use crate::verify::hole_finding::{fold, folded_note};
 use gcode_lang::diag::Diagnostic;
 
 pub(in crate::verify) fn check(
@@ -14,7 +14,7 @@ pub(in crate::verify) fn check(
     // Rows that were not reached look like a seam or a missing group.
     objections.retain(|objection| !objection.finding.code.starts_with("row-"));
     if let [one] = comparison.missing.as_slice() {
-        for objection in objections.iter_mut().filter(|objection| objection.wanted == Some(*one)) {
+        for objection in objections.iter_mut().filter(|objection| objection.nominal == Some(*one)) {
             objection.finding.help = Some("the run stopped before its end: see why first".to_owned());
         }
         return;
@@ -24,6 +24,6 @@ pub(in crate::verify) fn check(
     let message = format!("the run stopped before its end: {missing} of {all} holes are missing");
     let mut finding = Diagnostic::error("hole-missing", message)
         .help("what stopped it comes first: the holes behind it were never begun");
-    finding.notes.extend(behind(missing));
-    objections.insert(0, HoleFinding::whole(finding));
+    finding.notes.extend(folded_note(missing));
+    objections.insert(0, HoleFinding::unlocated(finding));
 }

@@ -3,13 +3,13 @@
 use nalgebra::{Point3, Unit, Vector3};
 
 use super::{Comparison, HoleFinding};
-use crate::verify::hole_finding::behind;
+use crate::verify::hole_finding::folded_note;
 use gcode_lang::diag::Diagnostic;
 use gcode_part::Hole;
 use gcode_part::Surface;
 
 /// Fewer holes are told one by one.
-const FEWEST: usize = 3;
+const MIN_HOLES: usize = 3;
 
 pub(in crate::verify) fn check(
     comparison: &Comparison<'_>,
@@ -34,17 +34,17 @@ pub(in crate::verify) fn check(
             "if the drawing doesn't mean that: look for a slip in the depth, the radius or the direction",
         )
     };
-    let many = FEWEST <= through.len();
+    let many = MIN_HOLES <= through.len();
     if let Some((wanted, thick)) = through.first().filter(|_| many) {
         let (count, all, id) = (through.len(), comparison.nominal.len(), comparison.id(*wanted));
         let mut finding =
             sentence(&format!("{count} of {all} holes go through; {id}, the first, goes"), *wanted, *thick);
-        finding.notes.extend(behind(count));
-        objections.push(HoleFinding::whole(finding));
+        finding.notes.extend(folded_note(count));
+        objections.push(HoleFinding::unlocated(finding));
     }
     objections.extend(through.into_iter().map(|(wanted, thick)| {
         let finding = sentence(&format!("hole {} goes", comparison.id(wanted)), wanted, thick);
-        HoleFinding { folded: many, ..HoleFinding::of(wanted, finding) }
+        HoleFinding { is_folded: many, ..HoleFinding::of_nominal(wanted, finding) }
     }));
 }
 

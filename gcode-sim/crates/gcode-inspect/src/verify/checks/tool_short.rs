@@ -10,7 +10,7 @@ use gcode_lang::motion::Backtrace;
 
 /// The deepest cut of one tool.
 struct Deepest<'a> {
-    wanted: usize,
+    nominal: usize,
     depth: f64,
     place: &'a Backtrace,
     /// In so many holes it goes deeper than it is long.
@@ -26,11 +26,14 @@ pub(in crate::verify) fn check(
     let length = |tool: u32| machine.find_tool(tool)?.length.filter(|length| 0.0 < *length);
     let mut short: BTreeMap<u32, (f64, Deepest<'_>)> = BTreeMap::new();
     for pair in &comparison.pairs {
-        let (wanted, found) = (&comparison.nominal[pair.wanted], &comparison.actual[pair.found]);
+        let (wanted, found) = (&comparison.nominal[pair.nominal], &comparison.actual[pair.actual]);
         let below = |p: &Point3<f64>| (Point3::from(wanted.entry) - p).dot(&Vector3::from(wanted.axis));
-        let last = (found.tool, below(&found.bottom()), &found.place);
-        let cuts =
-            found.earlier_passes.iter().map(|cut| (cut.tool, below(&cut.bottom), &cut.place)).chain([last]);
+        let last = (found.tool, below(&found.bottom()), &found.backtrace);
+        let cuts = found
+            .earlier_passes
+            .iter()
+            .map(|cut| (cut.tool, below(&cut.bottom), &cut.backtrace))
+            .chain([last]);
         let mut deepest: BTreeMap<u32, (f64, &Backtrace)> = BTreeMap::new();
         for (tool, depth, place) in cuts {
             let Some((tool, _)) = tool.and_then(|tool| Some((tool, length(tool)?))) else { continue };
@@ -41,17 +44,17 @@ pub(in crate::verify) fn check(
         }
         for (tool, (depth, place)) in deepest {
             let Some(length) = length(tool).filter(|length| *length < depth) else { continue };
-            let new = Deepest { wanted: pair.wanted, depth, place, holes: 0 };
+            let new = Deepest { nominal: pair.nominal, depth, place, holes: 0 };
             let (_, so_far) = short.entry(tool).or_insert((length, new));
             let holes = so_far.holes + 1;
             if so_far.depth < depth {
-                *so_far = Deepest { wanted: pair.wanted, depth, place, holes };
+                *so_far = Deepest { nominal: pair.nominal, depth, place, holes };
             }
             so_far.holes = holes;
         }
     }
     for (tool, (length, deepest)) in short {
-        let Deepest { wanted, depth, place, holes } = deepest;
+        let Deepest { nominal: wanted, depth, place, holes } = deepest;
         let more = if holes > 1 { format!(" (and in {} more holes)", holes - 1) } else { String::new() };
         let message = format!(
             "T{tool} is {length} mm long and goes {depth:.1} mm deep in hole {}{more}: the spindle would be in the part",
@@ -60,6 +63,6 @@ pub(in crate::verify) fn check(
         let finding = Diagnostic::warning("tool-short", message)
             .help("is the length in the machine file that from the spindle's gauge line to the tip? Else take a longer tool")
             .at(place.clone());
-        objections.push(HoleFinding::of(wanted, finding));
+        objections.push(HoleFinding::of_nominal(wanted, finding));
     }
 }

@@ -9,18 +9,18 @@ use crate::holes::DrilledHole;
 use gcode_lang::diag::Diagnostic;
 
 /// Fewer holes of one diameter don't show what is usual.
-const FEWEST: usize = 3;
+const MIN_HOLES: usize = 3;
 
 pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFinding>) {
     // Diameters are what somebody wrote down: equal ones are equal bits.
     let mut alike: BTreeMap<u64, Vec<usize>> = BTreeMap::new();
     for (index, pair) in comparison.pairs.iter().enumerate() {
-        if let Some(diameter) = comparison.nominal[pair.wanted].diameter {
+        if let Some(diameter) = comparison.nominal[pair.nominal].diameter {
             alike.entry(diameter.to_bits()).or_default().push(index);
         }
     }
-    for (diameter, group) in alike.into_iter().filter(|(_, group)| FEWEST <= group.len()) {
-        let found = |index: &usize| &comparison.actual[comparison.pairs[*index].found];
+    for (diameter, group) in alike.into_iter().filter(|(_, group)| MIN_HOLES <= group.len()) {
+        let found = |index: &usize| &comparison.actual[comparison.pairs[*index].actual];
         let Some(usual) = most_common(group.iter().map(|index| tools(found(index)))) else { continue };
         for index in &group {
             let cuts = |tool: &u32| tools(found(index)).any(|other| other == *tool);
@@ -32,14 +32,14 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
             let pair = &comparison.pairs[*index];
             let message = format!(
                 "hole {} is made without {}, which most holes of Φ{} get",
-                comparison.id(pair.wanted),
+                comparison.id(pair.nominal),
                 lacks.join(", "),
                 f64::from_bits(diameter)
             );
             let finding = Diagnostic::warning("hole-tools", message)
                 .help("was a call left out?")
-                .at(comparison.actual[pair.found].place.clone());
-            objections.push(HoleFinding::of(pair.wanted, finding));
+                .at(comparison.actual[pair.actual].backtrace.clone());
+            objections.push(HoleFinding::of_nominal(pair.nominal, finding));
         }
     }
 }

@@ -11,7 +11,7 @@ mod verdict;
 pub use common::CommonDeviation;
 pub use spacing::FluteSpacing;
 pub use speed::{SpeedRange, WorstSpeed};
-pub use verdict::{Angles, FluteVerdict, Law, WantedFlutes, in_words};
+pub use verdict::{FluteVerdict, HelixSample, LawAngles, NominalFlutes, describe_code};
 
 use nalgebra::Point3;
 
@@ -24,31 +24,31 @@ use gcode_part::Flutes;
 
 /// What the checks look at.
 pub struct Inspection<'g> {
-    pub wanted: &'g Flutes,
-    pub ground: &'g GrindingResult,
+    pub nominal: &'g Flutes,
+    pub actual: &'g GrindingResult,
     /// The flutes round the burr.
-    pub round: FluteSpacing,
+    pub spacing: FluteSpacing,
     pub helix: HelixRange,
     /// `None` where nothing is ground.
     pub speed: Option<SpeedRange>,
     /// How far above the tooth bottom all flutes are ground, alike all along, where that is too much, mm.
-    pub depth: Option<f64>,
+    pub common_height: Option<f64>,
     /// What all flutes have instead of the wanted helix angle, all along.
-    pub instead: Option<CommonDeviation>,
+    pub common_deviation: Option<CommonDeviation>,
 }
 
 impl Inspection<'_> {
     /// `all 6 flutes are`, `the flute is`.
-    fn all_flutes(&self) -> String {
-        match self.round.flutes.len() {
+    fn flutes_with_verb(&self) -> String {
+        match self.spacing.flutes.len() {
             1 => "the flute is".to_owned(),
             all => format!("all {all} flutes are"),
         }
     }
 
     /// A pass counted from 0, in words: by the flute it grinds where each flute has one pass.
-    fn name(&self, pass: usize) -> String {
-        let what = if self.round.again.is_empty() { "flute" } else { "pass" };
+    fn pass_name(&self, pass: usize) -> String {
+        let what = if self.spacing.repeated.is_empty() { "flute" } else { "pass" };
         format!("{what} {}", pass + 1)
     }
 }
@@ -56,11 +56,11 @@ impl Inspection<'_> {
 /// The helix angles along all flutes.
 #[derive(Clone, Debug)]
 pub struct HelixRange {
-    pub least: Deg,
-    pub most: Deg,
+    pub min: Deg,
+    pub max: Deg,
     /// Off the wanted angle, of all passes and of each.
     pub worst: Option<WorstHelix>,
-    pub of_passes: Vec<WorstHelix>,
+    pub worst_by_pass: Vec<WorstHelix>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -69,33 +69,33 @@ pub struct WorstHelix {
     pub pass: usize,
     pub polar: Deg,
     /// On the burr, mm.
-    pub at: Point3<f64>,
-    pub found: Deg,
-    pub wanted: Deg,
+    pub point: Point3<f64>,
+    pub actual: Deg,
+    pub nominal: Deg,
     /// The first and the last sample of the stretch, counted from 0.
-    ends: [usize; 2],
+    sample_range: [usize; 2],
 }
 
 impl WorstHelix {
-    pub fn off(&self) -> Deg {
-        (self.found - self.wanted).abs()
+    pub fn error(&self) -> Deg {
+        (self.actual - self.nominal).abs()
     }
 
     /// By more than the arithmetic's own rounding.
     fn is_worse(&self, than: &Self) -> bool {
-        than.off().0 + 1e-6 < self.off().0
+        than.error().0 + 1e-6 < self.error().0
     }
 
     /// The block that goes farthest off the law there, or a gauge length beside it. One point out of place makes two
     /// moves wrong, there and back: the first of them is its block.
-    pub fn place<'g>(&self, trace: &'g Trace, gauge: f64) -> Option<&'g Backtrace> {
+    pub fn backtrace<'g>(&self, trace: &'g Trace, gauge: f64) -> Option<&'g Backtrace> {
         let samples = &trace.samples;
-        let [first, last] = self.ends.map(|end| samples[end].along);
+        let [first, last] = self.sample_range.map(|end| samples[end].along);
         let (low, high) = (first.min(last) - gauge, first.max(last) + gauge);
         let mut blocks: Vec<(&Backtrace, f64)> = Vec::new();
         for pair in samples.windows(2).filter(|pair| (low..=high).contains(&pair[1].along)) {
-            let off = (pair[1].around - pair[1].wanted) - (pair[0].around - pair[0].wanted);
-            let place = trace.place(&pair[1]);
+            let off = (pair[1].around - pair[1].nominal_around) - (pair[0].around - pair[0].nominal_around);
+            let place = trace.backtrace(&pair[1]);
             match blocks.last_mut().filter(|(last, _)| std::ptr::eq(*last, place)) {
                 Some((_, sum)) => *sum += off,
                 None => blocks.push((place, off)),
@@ -107,8 +107,8 @@ impl WorstHelix {
 }
 
 impl HelixRange {
-    fn only(angle: Deg) -> Self {
-        Self { least: angle, most: angle, worst: None, of_passes: Vec::new() }
+    fn single(angle: Deg) -> Self {
+        Self { min: angle, max: angle, worst: None, worst_by_pass: Vec::new() }
     }
 
     fn of(wanted: &Flutes, ground: &GrindingResult) -> Option<Self> {
@@ -117,23 +117,23 @@ impl HelixRange {
         for (pass, ground) in ground.passes.iter().enumerate() {
             let mut worst: Option<WorstHelix> = None;
             for window in ground.trace.windows(gauge) {
-                let here = WorstHelix {
+                let candidate = WorstHelix {
                     pass,
                     polar: window.middle.polar,
-                    at: window.middle.at,
-                    found: window.helix,
-                    wanted: window.wanted,
-                    ends: window.ends,
+                    point: window.middle.point,
+                    actual: window.helix,
+                    nominal: window.nominal_helix,
+                    sample_range: window.ends,
                 };
-                let range = range.get_or_insert_with(|| Self::only(window.helix));
-                range.least = if window.helix < range.least { window.helix } else { range.least };
-                range.most = if range.most < window.helix { window.helix } else { range.most };
-                if worst.is_none_or(|worst| here.is_worse(&worst)) {
-                    worst = Some(here);
+                let range = range.get_or_insert_with(|| Self::single(window.helix));
+                range.min = if window.helix < range.min { window.helix } else { range.min };
+                range.max = if range.max < window.helix { window.helix } else { range.max };
+                if worst.is_none_or(|worst| candidate.is_worse(&worst)) {
+                    worst = Some(candidate);
                 }
             }
             if let Some((range, here)) = range.as_mut().zip(worst) {
-                range.of_passes.push(here);
+                range.worst_by_pass.push(here);
                 if range.worst.is_none_or(|worst| here.is_worse(&worst)) {
                     range.worst = Some(here);
                 }
@@ -151,13 +151,13 @@ pub fn verify_flutes(
 ) -> FluteVerdict {
     let measured = HelixRange::of(wanted, ground);
     let inspection = Inspection {
-        wanted,
-        ground,
-        round: FluteSpacing::of(wanted, &ground.passes),
-        helix: measured.clone().unwrap_or_else(|| HelixRange::only(Deg::ZERO)),
+        nominal: wanted,
+        actual: ground,
+        spacing: FluteSpacing::of(wanted, &ground.passes),
+        helix: measured.clone().unwrap_or_else(|| HelixRange::single(Deg::ZERO)),
         speed: SpeedRange::of(wanted, &ground.passes),
-        depth: common::depth(wanted, &ground.passes),
-        instead: CommonDeviation::of(wanted, &ground.passes),
+        common_height: common::common_height(wanted, &ground.passes),
+        common_deviation: CommonDeviation::of(wanted, &ground.passes),
     };
     let mut findings: Vec<Diagnostic> = ground.findings.clone();
     for check in checks::ALL {

@@ -5,11 +5,11 @@ use nalgebra::{Point3, Vector3};
 
 /// Between two paths of straight pieces, their ends counted in, and on which piece of the first: of equally near ones the
 /// first; `None` where one has none.
-pub(super) fn distance(one: &[Point3<f64>], other: &[Point3<f64>]) -> Option<(f64, usize)> {
+pub(super) fn distance(first: &[Point3<f64>], second: &[Point3<f64>]) -> Option<(f64, usize)> {
     let all = |path: &[Point3<f64>]| 0..path.len().saturating_sub(1);
-    let mut search = DistanceSearch { paths: [Path::of(one), Path::of(other)], best: None };
-    if !all(one).is_empty() && !all(other).is_empty() {
-        search.among([all(one), all(other)]);
+    let mut search = DistanceSearch { paths: [Path::of(first), Path::of(second)], best: None };
+    if !all(first).is_empty() && !all(second).is_empty() {
+        search.search([all(first), all(second)]);
     }
     search.best
 }
@@ -23,15 +23,18 @@ struct DistanceSearch<'p> {
 struct Path<'p> {
     points: &'p [Point3<f64>],
     /// The way along the path to each point.
-    ways: Vec<f64>,
+    lengths: Vec<f64>,
 }
 
 impl DistanceSearch<'_> {
     /// Of stretches of one piece and more each. Its depth is that of two halvings.
-    fn among(&mut self, stretches: [Range<usize>; 2]) {
+    fn search(&mut self, stretches: [Range<usize>; 2]) {
         let [one, other] = &stretches;
         if one.len() == 1 && other.len() == 1 {
-            let near = (pieces(self.paths[0].piece(one.start), self.paths[1].piece(other.start)), one.start);
+            let near = (
+                segment_distance(self.paths[0].segment(one.start), self.paths[1].segment(other.start)),
+                one.start,
+            );
             if self.best.is_none_or(|best| near < best) {
                 self.best = Some(near);
             }
@@ -44,19 +47,19 @@ impl DistanceSearch<'_> {
         let halves = [whole.start..middle, middle..whole.end].map(|half| {
             let mut halved = stretches.clone();
             halved[longer] = half;
-            (self.at_least(&halved), halved)
+            (self.lower_bound(&halved), halved)
         });
         let [first, second] = halves;
         let sorted = if second.0 < first.0 { [second, first] } else { [first, second] };
         for (least, halved) in sorted {
             if self.best.is_none_or(|(best, _)| least <= best) {
-                self.among(halved);
+                self.search(halved);
             }
         }
     }
 
     /// No two points of the stretches are nearer to each other.
-    fn at_least(&self, [one, other]: &[Range<usize>; 2]) -> f64 {
+    fn lower_bound(&self, [one, other]: &[Range<usize>; 2]) -> f64 {
         let [first, second] = &self.paths;
         (first.middle(one) - second.middle(other)).norm() - first.reach(one) - second.reach(other)
     }
@@ -64,10 +67,10 @@ impl DistanceSearch<'_> {
 
 impl<'p> Path<'p> {
     fn of(points: &'p [Point3<f64>]) -> Self {
-        Self { points, ways: lengths(points) }
+        Self { points, lengths: lengths(points) }
     }
 
-    fn piece(&self, index: usize) -> [Point3<f64>; 2] {
+    fn segment(&self, index: usize) -> [Point3<f64>; 2] {
         [self.points[index], self.points[index + 1]]
     }
 
@@ -77,8 +80,8 @@ impl<'p> Path<'p> {
 
     /// No point of the stretch is farther from its middle.
     fn reach(&self, stretch: &Range<usize>) -> f64 {
-        let middle = self.ways[Self::halfway(stretch)];
-        (middle - self.ways[stretch.start]).max(self.ways[stretch.end] - middle)
+        let middle = self.lengths[Self::halfway(stretch)];
+        (middle - self.lengths[stretch.start]).max(self.lengths[stretch.end] - middle)
     }
 
     fn halfway(stretch: &Range<usize>) -> usize {
@@ -97,20 +100,20 @@ fn lengths(path: &[Point3<f64>]) -> Vec<f64> {
 }
 
 /// Between two straight pieces.
-fn pieces(one: [Point3<f64>; 2], other: [Point3<f64>; 2]) -> f64 {
+fn segment_distance(one: [Point3<f64>; 2], other: [Point3<f64>; 2]) -> f64 {
     let (u, v, between) = (one[1] - one[0], other[1] - other[0], one[0] - other[0]);
     let ends = [
-        to_piece(&one[0], &other),
-        to_piece(&one[1], &other),
-        to_piece(&other[0], &one),
-        to_piece(&other[1], &one),
+        point_segment_distance(&one[0], &other),
+        point_segment_distance(&one[1], &other),
+        point_segment_distance(&other[0], &one),
+        point_segment_distance(&other[1], &one),
     ];
     let nearest_end = ends.into_iter().fold(f64::INFINITY, f64::min);
-    crossing(&u, &v, &between).map_or(nearest_end, |apart| apart.min(nearest_end))
+    line_distance(&u, &v, &between).map_or(nearest_end, |apart| apart.min(nearest_end))
 }
 
 /// Where the common perpendicular of both lines meets both pieces, its length.
-fn crossing(u: &Vector3<f64>, v: &Vector3<f64>, between: &Vector3<f64>) -> Option<f64> {
+fn line_distance(u: &Vector3<f64>, v: &Vector3<f64>, between: &Vector3<f64>) -> Option<f64> {
     let (a, b, c) = (u.dot(u), u.dot(v), v.dot(v));
     let (d, e) = (u.dot(between), v.dot(between));
     let square = a * c - b * b;
@@ -122,7 +125,7 @@ fn crossing(u: &Vector3<f64>, v: &Vector3<f64>, between: &Vector3<f64>) -> Optio
     (on(s) && on(t)).then(|| (between + u * s - v * t).norm())
 }
 
-fn to_piece(point: &Point3<f64>, piece: &[Point3<f64>; 2]) -> f64 {
+fn point_segment_distance(point: &Point3<f64>, piece: &[Point3<f64>; 2]) -> f64 {
     let (along, from) = (piece[1] - piece[0], point - piece[0]);
     let square = along.norm_squared();
     let part = if square == 0.0 { 0.0 } else { (from.dot(&along) / square).clamp(0.0, 1.0) };
@@ -176,7 +179,7 @@ mod tests {
                 path.windows(2).map(|pair| [pair[0], pair[1]]).collect::<Vec<_>>()
             };
             let pairs = each(&one).into_iter().enumerate().flat_map(|(index, piece)| {
-                each(&other).into_iter().map(move |there| (pieces(piece, there), index))
+                each(&other).into_iter().map(move |there| (segment_distance(piece, there), index))
             });
             let least = pairs.reduce(|best, near| if near < best { near } else { best });
             let (found, wanted) = (distance(&one, &other).unwrap(), least.unwrap());

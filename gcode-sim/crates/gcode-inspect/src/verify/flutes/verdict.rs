@@ -3,9 +3,9 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Inspection;
-use super::speed::ALLOWED;
+use super::speed::SPEED_TOLERANCE;
 use crate::flutes::{GrindingResult, Window};
-use crate::verify::verdict::{Answer, Finding, finding_of, readable};
+use crate::verify::verdict::{Answer, Finding, finding_of, limit_per_kind};
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::source::Span;
 use gcode_lang::units::Deg;
@@ -21,7 +21,8 @@ pub struct FluteVerdict {
     pub law: &'static str,
     /// That are ground; passes over one that is there already don't count.
     pub flutes: usize,
-    pub wanted_flutes: usize,
+    #[serde(rename = "wanted_flutes")]
+    pub nominal_flutes: usize,
     /// The largest distance of the contact from the tooth bottom, between the points too; null without a flute.
     pub surface_deviation: Option<f64>,
     /// What that may be: the job's chord error, or what was asked for.
@@ -52,18 +53,18 @@ pub struct FluteVerdict {
     pub moves: usize,
     /// A burr has none.
     pub holes: [(); 0],
-    pub laws: Vec<Law>,
+    pub laws: Vec<LawAngles>,
     pub findings: Vec<Finding>,
     /// What the verdict says nothing about, in words.
     pub not_checked: Vec<String>,
     /// For plots: the helix angle along the flute that is farthest from the law, and which pass that is, counted from 1.
     #[serde(skip)]
-    pub along: Vec<Angles>,
+    pub helix_course: Vec<HelixSample>,
     #[serde(skip)]
-    pub along_pass: usize,
+    pub course_pass: usize,
     /// What neighbours' least distance may be: twice the chord error.
     #[serde(skip)]
-    pub nearest_allowed: f64,
+    pub min_nearest: f64,
     /// The findings with their places, for people.
     #[serde(skip)]
     pub diagnostics: Vec<Diagnostic>,
@@ -71,8 +72,9 @@ pub struct FluteVerdict {
 
 /// The helix angle at one polar angle: measured, and by both laws.
 #[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
-pub struct Law {
-    pub theta: f64,
+pub struct LawAngles {
+    #[serde(rename = "theta")]
+    pub polar: f64,
     /// On the flute that is farthest from the law; null where it isn't measured.
     pub measured: Option<f64>,
     pub constant_helix: f64,
@@ -81,7 +83,7 @@ pub struct Law {
 
 /// What `reference` writes of a burr: what is wanted, without a program.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
-pub struct WantedFlutes {
+pub struct NominalFlutes {
     pub unit: &'static str,
     /// A burr has none.
     pub holes: [(); 0],
@@ -91,23 +93,23 @@ pub struct WantedFlutes {
     pub start: f64,
     pub pole: f64,
     pub tip_angle: f64,
-    pub laws: Vec<Law>,
+    pub laws: Vec<LawAngles>,
 }
 
 impl FluteVerdict {
     /// How many flutes there are, and what else is wrong, in one line.
     pub fn sentence(&self) -> String {
-        let mut text = match self.flutes <= self.wanted_flutes {
-            true => format!("{} of {} wanted flutes are there", self.flutes, self.wanted_flutes),
-            false => format!("{} flutes are there where {} are wanted", self.flutes, self.wanted_flutes),
+        let mut text = match self.flutes <= self.nominal_flutes {
+            true => format!("{} of {} wanted flutes are there", self.flutes, self.nominal_flutes),
+            false => format!("{} flutes are there where {} are wanted", self.flutes, self.nominal_flutes),
         };
-        let mut said: Vec<&str> = Vec::new();
+        let mut mentioned: Vec<&str> = Vec::new();
         for finding in self.findings.iter().filter(|f| f.severity == "error" || f.severity == "alarm") {
-            let what = in_words(&finding.code).unwrap_or(&finding.code);
+            let what = describe_code(&finding.code).unwrap_or(&finding.code);
             // The numbers say what is missing and what is too many.
             let is_counted = matches!(finding.code.as_str(), "flute-missing" | "flute-extra");
-            if !is_counted && !said.contains(&what) {
-                said.push(what);
+            if !is_counted && !mentioned.contains(&what) {
+                mentioned.push(what);
                 text.push_str(", ");
                 text.push_str(what);
             }
@@ -117,7 +119,7 @@ impl FluteVerdict {
 }
 
 /// The code of a finding on flutes in few words; `None` of others.
-pub fn in_words(code: &str) -> Option<&'static str> {
+pub fn describe_code(code: &str) -> Option<&'static str> {
     Some(match code {
         "flute-missing" => "a flute is missing",
         "flute-extra" => "a flute too many",
@@ -138,7 +140,7 @@ pub fn in_words(code: &str) -> Option<&'static str> {
     })
 }
 
-impl WantedFlutes {
+impl NominalFlutes {
     pub fn of(wanted: &Flutes) -> Self {
         Self {
             unit: "mm",
@@ -148,20 +150,20 @@ impl WantedFlutes {
             start: wanted.start,
             pole: wanted.profile.pole(),
             tip_angle: wanted.tip_angle.0,
-            laws: laws(wanted, &[]),
+            laws: law_table(wanted, &[]),
         }
     }
 }
 
 /// A measured helix angle.
 #[derive(Clone, Copy, Debug)]
-pub struct Angles {
+pub struct HelixSample {
     pub polar: Deg,
     pub helix: Deg,
 }
 
 /// The polar angles of the table; the tip angle comes last.
-const POLAR: [f64; 9] = [90.0, 75.0, 60.0, 45.0, 30.0, 20.0, 15.0, 10.0, 5.0];
+const TABLE_ANGLES: [f64; 9] = [90.0, 75.0, 60.0, 45.0, 30.0, 20.0, 15.0, 10.0, 5.0];
 
 pub(super) fn verdict(
     inspection: &Inspection<'_>,
@@ -169,46 +171,46 @@ pub(super) fn verdict(
     findings: Vec<Diagnostic>,
     locate: &dyn Fn(Span) -> (String, u32),
 ) -> FluteVerdict {
-    let (wanted, ground, helix) = (inspection.wanted, inspection.ground, &inspection.helix);
+    let (wanted, ground, helix) = (inspection.nominal, inspection.actual, &inspection.helix);
     let samples = ground.passes.iter().flat_map(|pass| &pass.trace.samples);
     let fails = findings.iter().any(|finding| Severity::Error <= finding.severity);
     let gauge = wanted.gauge;
     let worst_pass = helix.worst.map_or(0, |worst| worst.pass);
-    let along: Vec<Angles> = ground.passes.get(worst_pass).map_or(Vec::new(), |pass| {
-        let angles = |window: Window<'_>| Angles { polar: window.middle.polar, helix: window.helix };
+    let along: Vec<HelixSample> = ground.passes.get(worst_pass).map_or(Vec::new(), |pass| {
+        let angles = |window: Window<'_>| HelixSample { polar: window.middle.polar, helix: window.helix };
         pass.trace.windows(gauge).map(angles).collect()
     });
     FluteVerdict {
         basis: "predicted by simulation, not measured",
         verdict: if fails { Answer::Fail } else { Answer::Pass },
         law: wanted.law.name(),
-        flutes: inspection.round.flutes.len(),
-        wanted_flutes: wanted.count as usize,
-        surface_deviation: samples.map(|s| s.off.abs()).reduce(f64::max),
+        flutes: inspection.spacing.flutes.len(),
+        nominal_flutes: wanted.count as usize,
+        surface_deviation: samples.map(|s| s.deviation.abs()).reduce(f64::max),
         tolerance: wanted.surface_tolerance,
-        helix_min: measured.then_some(helix.least.0),
-        helix_max: measured.then_some(helix.most.0),
+        helix_min: measured.then_some(helix.min.0),
+        helix_max: measured.then_some(helix.max.0),
         helix: wanted.helix.0,
-        helix_error: helix.worst.map(|worst| worst.off().0),
+        helix_error: helix.worst.map(|worst| worst.error().0),
         helix_tolerance: wanted.helix_tolerance.0,
         gauge,
-        index_error: inspection.round.worst_gap.map(|gap| gap.off.0),
+        index_error: inspection.spacing.worst_gap.map(|gap| gap.error.0),
         index_tolerance: wanted.index_tolerance.0,
-        speed_min: inspection.speed.as_ref().map(|range| range.least),
-        speed_max: inspection.speed.as_ref().map(|range| range.most),
+        speed_min: inspection.speed.as_ref().map(|range| range.min),
+        speed_max: inspection.speed.as_ref().map(|range| range.max),
         speed: wanted.speed,
-        speed_tolerance: ALLOWED,
-        nearest: inspection.round.nearest.map(|near| near.apart),
+        speed_tolerance: SPEED_TOLERANCE,
+        nearest: inspection.spacing.nearest_approach.map(|near| near.distance),
         passes: ground.passes.len(),
         moves: ground.passes.iter().map(|pass| pass.moves).sum(),
         holes: [],
-        laws: laws(wanted, &along),
+        laws: law_table(wanted, &along),
         findings: findings.iter().map(|finding| finding_of(finding, None, false, locate)).collect(),
         not_checked: not_checked(wanted, ground, locate),
-        along,
-        along_pass: worst_pass + 1,
-        nearest_allowed: 2.0 * wanted.chord_error,
-        diagnostics: readable(findings.into_iter()),
+        helix_course: along,
+        course_pass: worst_pass + 1,
+        min_nearest: 2.0 * wanted.chord_error,
+        diagnostics: limit_per_kind(findings.into_iter()),
     }
 }
 
@@ -250,21 +252,23 @@ fn not_checked(
              known"
         ));
     }
-    all.extend(ground.unplaced.as_ref().map(|unplaced| unplaced.in_words(locate(unplaced.place.block))));
+    all.extend(
+        ground.unknown_work_zero.as_ref().map(|unplaced| unplaced.describe(locate(unplaced.backtrace.block))),
+    );
     all
 }
 
-fn laws(wanted: &Flutes, along: &[Angles]) -> Vec<Law> {
+fn law_table(wanted: &Flutes, along: &[HelixSample]) -> Vec<LawAngles> {
     let tip = wanted.tip_angle.0;
-    let all = POLAR.into_iter().filter(|polar| tip < *polar).chain([tip]);
+    let all = TABLE_ANGLES.into_iter().filter(|polar| tip < *polar).chain([tip]);
     let at = |theta: f64| {
-        let near = |one: &&Angles, other: &&Angles| {
+        let near = |one: &&HelixSample, other: &&HelixSample| {
             (one.polar.0 - theta).abs().total_cmp(&(other.polar.0 - theta).abs())
         };
         // At its end a flute is measured half a gauge before it.
         let nearest = along.iter().min_by(near).filter(|angles| (angles.polar.0 - theta).abs() < 2.5);
-        Law {
-            theta,
+        LawAngles {
+            polar: theta,
             measured: nearest.map(|angles| angles.helix.0),
             constant_helix: wanted.angle(FluteLaw::ConstantHelix, Deg(theta)).0,
             published: wanted.angle(FluteLaw::Published, Deg(theta)).0,

@@ -5,7 +5,7 @@ use crate::flutes::CollisionKind;
 use gcode_lang::diag::{Diagnostic, Site};
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
-    for dive in &inspection.ground.dives {
+    for dive in &inspection.actual.collisions {
         let depth = dive.depth;
         let message = match dive.kind {
             CollisionKind::Rapid => {
@@ -16,32 +16,35 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
                     "rapid motion along a flute while the wheel touches the blank, {depth:.3} mm below its surface"
                 )
             }
-            CollisionKind::Below => {
+            CollisionKind::BelowToothBottom => {
                 format!("a feed that doesn't turn A takes the wheel {depth:.3} mm below the tooth bottom")
             }
             CollisionKind::Sideways(by) => format!(
                 "a feed that doesn't turn A takes the wheel {by:.3} mm along the burr in the cut, {depth:.3} mm below the \
                  blank's surface"
             ),
-            CollisionKind::Near => {
+            CollisionKind::LowClearance => {
                 format!(
                     "the rapid ends with the wheel {:.3} mm off the blank, and the job wants {} mm",
                     -depth,
-                    inspection.wanted.clearance.unwrap_or_default()
+                    inspection.nominal.clearance.unwrap_or_default()
                 )
             }
-            CollisionKind::Pit => {
+            CollisionKind::PlungeWithoutPass => {
                 format!("the wheel is fed {depth:.3} mm below the blank's surface where no pass begins")
             }
         };
         let help = match dive.kind {
             CollisionKind::RapidPass(_) => "grind with G01: G00 stays in force until another motion code",
-            CollisionKind::Near => "end it at machine.clearance from the blank, or correct that in the job",
-            CollisionKind::Rapid | CollisionKind::Below | CollisionKind::Sideways(_) | CollisionKind::Pit => {
-                "move Y clear of the burr first, then turn A and C"
+            CollisionKind::LowClearance => {
+                "end it at machine.clearance from the blank, or correct that in the job"
             }
+            CollisionKind::Rapid
+            | CollisionKind::BelowToothBottom
+            | CollisionKind::Sideways(_)
+            | CollisionKind::PlungeWithoutPass => "move Y clear of the burr first, then turn A and C",
         };
-        let again = dive.times - 1;
+        let again = dive.count - 1;
         let note = match dive.kind {
             CollisionKind::RapidPass(_) => match again {
                 0 => Some(dive.moves - 1)
@@ -53,20 +56,20 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
                 )),
             },
             CollisionKind::Rapid
-            | CollisionKind::Below
+            | CollisionKind::BelowToothBottom
             | CollisionKind::Sideways(_)
-            | CollisionKind::Pit
-            | CollisionKind::Near => (0 < again).then(|| format!("and {again} more of this block")),
+            | CollisionKind::PlungeWithoutPass
+            | CollisionKind::LowClearance => (0 < again).then(|| format!("and {again} more of this block")),
         };
         let finding = match dive.kind {
-            CollisionKind::Near => Diagnostic::warning("wheel-near-burr", message),
+            CollisionKind::LowClearance => Diagnostic::warning("wheel-near-burr", message),
             CollisionKind::Rapid
             | CollisionKind::RapidPass(_)
-            | CollisionKind::Below
+            | CollisionKind::BelowToothBottom
             | CollisionKind::Sideways(_)
-            | CollisionKind::Pit => Diagnostic::error("wheel-into-burr", message),
+            | CollisionKind::PlungeWithoutPass => Diagnostic::error("wheel-into-burr", message),
         };
-        let finding = finding.help(help).at(dive.place.clone()).on([Site::new(None, dive.at)]);
+        let finding = finding.help(help).at(dive.backtrace.clone()).on([Site::new(None, dive.point)]);
         findings.push(note.into_iter().fold(finding, Diagnostic::note));
     }
 }

@@ -2,39 +2,39 @@
 use nalgebra::Point3;
 
 use super::super::Inspection;
-use super::on_passes;
+use super::report_passes;
 use crate::flutes::{FirstOccurrence, GrindingPass};
 use gcode_lang::diag::Diagnostic;
 
 /// How far an end may be off: along the axis at the shank, mm, and by the polar angle at the tip, degrees.
-const AT_SHANK: f64 = 0.05;
-const AT_TIP: f64 = 0.1;
+const SHANK_TOLERANCE: f64 = 0.05;
+const TIP_TOLERANCE: f64 = 0.1;
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
     let wrong = |pass: &GrindingPass| {
-        let (message, at) = wrong(inspection, pass)?;
-        Some((message, FirstOccurrence { place: pass.place.clone(), at }))
+        let (message, at) = end_error(inspection, pass)?;
+        Some((message, FirstOccurrence { backtrace: pass.backtrace.clone(), point: at }))
     };
-    findings.extend(on_passes(inspection, wrong, |message| {
+    findings.extend(report_passes(inspection, wrong, |message| {
         Diagnostic::error("flute-end", message)
             .help("check the length of the cylinder (X) and the last C, 90° less the tip angle")
     }));
 }
 
 /// What is wrong with a pass, and the end where it is.
-fn wrong(inspection: &Inspection<'_>, pass: &GrindingPass) -> Option<(String, Point3<f64>)> {
-    let wanted = inspection.wanted;
+fn end_error(inspection: &Inspection<'_>, pass: &GrindingPass) -> Option<(String, Point3<f64>)> {
+    let wanted = inspection.nominal;
     let samples = || pass.trace.samples.iter();
-    let start = samples().max_by(|a, b| a.at.x.total_cmp(&b.at.x))?;
+    let start = samples().max_by(|a, b| a.point.x.total_cmp(&b.point.x))?;
     let tip = samples().min_by(|a, b| a.polar.0.total_cmp(&b.polar.0))?;
-    if AT_SHANK < (start.at.x - wanted.start).abs() {
+    if SHANK_TOLERANCE < (start.point.x - wanted.start).abs() {
         let message = format!(
             "a flute begins {:.3} mm behind the end of the cylinder where {:.3} mm are wanted",
-            start.at.x, wanted.start
+            start.point.x, wanted.start
         );
-        return Some((message, start.at));
+        return Some((message, start.point));
     }
     let message =
         format!("a flute ends at polar angle {:.3}° where {:.3}° is wanted", tip.polar.0, wanted.tip_angle.0);
-    (AT_TIP < (tip.polar - wanted.tip_angle).abs().0).then_some((message, tip.at))
+    (TIP_TOLERANCE < (tip.polar - wanted.tip_angle).abs().0).then_some((message, tip.point))
 }

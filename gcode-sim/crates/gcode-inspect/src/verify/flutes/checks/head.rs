@@ -1,29 +1,29 @@
 //! B stands at the helix angle and doesn't move during a pass.
 use super::super::Inspection;
-use super::helix::follow;
-use super::on_passes;
+use super::helix::do_heads_match;
+use super::report_passes;
 use crate::flutes::{FirstOccurrence, GrindingPass};
 use gcode_lang::diag::Diagnostic;
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
     // That is told with the helix angle.
-    if follow(inspection) {
+    if do_heads_match(inspection) {
         return;
     }
     let wrong = |pass: &GrindingPass| {
-        let message = wrong(inspection, pass)?;
-        let at = pass.trace.samples.first()?.at;
-        Some((message, FirstOccurrence { place: pass.place.clone(), at }))
+        let message = head_error(inspection, pass)?;
+        let at = pass.trace.samples.first()?.point;
+        Some((message, FirstOccurrence { backtrace: pass.backtrace.clone(), point: at }))
     };
-    findings.extend(on_passes(inspection, wrong, |message| {
+    findings.extend(report_passes(inspection, wrong, |message| {
         Diagnostic::error("flute-head", message)
             .help("set B once before each pass, to the helix angle on the cylinder")
     }));
 }
 
-fn wrong(inspection: &Inspection<'_>, pass: &GrindingPass) -> Option<String> {
-    let (wanted, tolerance) = (inspection.wanted.helix, inspection.wanted.helix_tolerance);
-    let (least, most) = pass.head?;
+fn head_error(inspection: &Inspection<'_>, pass: &GrindingPass) -> Option<String> {
+    let (wanted, tolerance) = (inspection.nominal.helix, inspection.nominal.helix_tolerance);
+    let (least, most) = pass.head_range?;
     if 1e-9 < most.0 - least.0 {
         return Some(format!("the head swivels from {:.3}° to {:.3}° during a pass", least.0, most.0));
     }

@@ -1,5 +1,5 @@
 //! The helix angle along every flute is that of the law asked for.
-use super::super::common::hand;
+use super::super::common::helix_hand;
 use super::super::{CommonDeviation, Inspection};
 use crate::flutes::GrindingPass;
 use gcode_lang::diag::{Diagnostic, Site};
@@ -7,23 +7,23 @@ use gcode_lang::units::Deg;
 use gcode_part::job::FluteLaw;
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
-    let tolerance = inspection.wanted.helix_tolerance;
-    let Some(worst) = inspection.helix.worst.filter(|worst| tolerance < worst.off()) else { return };
-    let pass = &inspection.ground.passes[worst.pass];
+    let tolerance = inspection.nominal.helix_tolerance;
+    let Some(worst) = inspection.helix.worst.filter(|worst| tolerance < worst.error()) else { return };
+    let pass = &inspection.actual.passes[worst.pass];
     let here = format!(
         "{} has a helix angle of {:.2}° at polar angle {:.1}° where {:.2}° is wanted: {}° either way is allowed",
-        inspection.name(worst.pass),
-        worst.found.0,
+        inspection.pass_name(worst.pass),
+        worst.actual.0,
         worst.polar.0,
-        worst.wanted.0,
+        worst.nominal.0,
         tolerance.0
     );
-    let mut all: Vec<_> = inspection.helix.of_passes.iter().filter(|w| tolerance < w.off()).collect();
+    let mut all: Vec<_> = inspection.helix.worst_by_pass.iter().filter(|w| tolerance < w.error()).collect();
     let error = |message: String| Diagnostic::error("flute-helix", message);
-    let finding = match all_alike(inspection) {
-        Some((message, help)) => {
-            heads(inspection).into_iter().fold(error(message).note(here).help(help), Diagnostic::note)
-        }
+    let finding = match common_error(inspection) {
+        Some((message, help)) => describe_heads(inspection)
+            .into_iter()
+            .fold(error(message).note(here).help(help), Diagnostic::note),
         None => {
             let finding =
                 error(here).help("check how A is computed, in degrees, and its sign in the machine file");
@@ -34,21 +34,21 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
             }
         }
     };
-    let place = worst.place(&pass.trace, inspection.wanted.gauge).unwrap_or(&pass.place);
-    all.sort_by(|one, other| other.off().0.total_cmp(&one.off().0));
-    let sites = all.into_iter().map(|worst| Site::new(Some(worst.pass), worst.at));
+    let place = worst.backtrace(&pass.trace, inspection.nominal.gauge).unwrap_or(&pass.backtrace);
+    all.sort_by(|one, other| other.error().0.total_cmp(&one.error().0));
+    let sites = all.into_iter().map(|worst| Site::new(Some(worst.pass), worst.point));
     findings.push(finding.at(place.clone()).on(sites));
 }
 
 /// What all flutes have instead, all along, and what to look at.
-fn all_alike(inspection: &Inspection<'_>) -> Option<(String, &'static str)> {
-    let wanted = inspection.wanted;
-    let flutes = match inspection.round.flutes.len() {
+fn common_error(inspection: &Inspection<'_>) -> Option<(String, &'static str)> {
+    let wanted = inspection.nominal;
+    let flutes = match inspection.spacing.flutes.len() {
         1 => "the flute has".to_owned(),
         all => format!("all {all} flutes have"),
     };
-    Some(match inspection.instead? {
-        CommonDeviation::Law => {
+    Some(match inspection.common_deviation? {
+        CommonDeviation::OtherLaw => {
             let other = match wanted.law {
                 FluteLaw::ConstantHelix => FluteLaw::Published,
                 FluteLaw::Published => FluteLaw::ConstantHelix,
@@ -59,21 +59,21 @@ fn all_alike(inspection: &Inspection<'_>) -> Option<(String, &'static str)> {
                 "compute A by the job's law (H of the call)",
             )
         }
-        CommonDeviation::Helix(helix) if helix.0 * wanted.helix.0 < 0.0 => (
+        CommonDeviation::OtherHelix(helix) if helix.0 * wanted.helix.0 < 0.0 => (
             format!(
                 "{flutes} the other hand: {}, with a helix of {:.1}°, where {:.1}°, {}, is asked for",
-                hand(helix),
+                helix_hand(helix),
                 helix.0,
                 wanted.helix.0,
-                hand(wanted.helix)
+                helix_hand(wanted.helix)
             ),
             "A turns the wrong way round: check its sign, and that of the helix angle in the program",
         ),
-        CommonDeviation::Helix(helix) => (
+        CommonDeviation::OtherHelix(helix) => (
             format!("{flutes} a helix of {:.1}° where {:.1}° is asked for", helix.0, wanted.helix.0),
             "check the helix angle and the radius that A is computed from, and that A is in degrees",
         ),
-        CommonDeviation::Deep => (
+        CommonDeviation::GroundHigh => (
             format!("{flutes} another helix angle on the wanted diameter than {:.1}°", wanted.helix.0),
             "it comes of the diameter they are ground to, on which the angle is the wanted one: see flute-surface",
         ),
@@ -81,19 +81,19 @@ fn all_alike(inspection: &Inspection<'_>) -> Option<(String, &'static str)> {
 }
 
 /// Where all heads stand at the angle that all flutes have: that they do isn't told by itself.
-fn heads(inspection: &Inspection<'_>) -> Option<String> {
-    let Some(CommonDeviation::Helix(helix)) = inspection.instead else { return None };
-    follow(inspection).then(|| format!("so is the head B set, to {:.1}° in all passes", helix.0))
+fn describe_heads(inspection: &Inspection<'_>) -> Option<String> {
+    let Some(CommonDeviation::OtherHelix(helix)) = inspection.common_deviation else { return None };
+    do_heads_match(inspection).then(|| format!("so is the head B set, to {:.1}° in all passes", helix.0))
 }
 
 /// Whether every pass has its head at the helix angle that all flutes have instead of the wanted one.
-pub(super) fn follow(inspection: &Inspection<'_>) -> bool {
-    let Some(CommonDeviation::Helix(helix)) = inspection.instead else { return false };
-    let tolerance = inspection.wanted.helix_tolerance;
+pub(super) fn do_heads_match(inspection: &Inspection<'_>) -> bool {
+    let Some(CommonDeviation::OtherHelix(helix)) = inspection.common_deviation else { return false };
+    let tolerance = inspection.nominal.helix_tolerance;
     let there = |angle: Deg| (angle - helix).abs() <= tolerance;
     let stands = |pass: &GrindingPass| {
-        pass.head.is_some_and(|(least, most)| there(least) && there(most) && most.0 - least.0 <= 1e-9)
+        pass.head_range.is_some_and(|(least, most)| there(least) && there(most) && most.0 - least.0 <= 1e-9)
     };
-    inspection.helix.worst.is_some_and(|worst| tolerance < worst.off())
-        && inspection.ground.passes.iter().all(stands)
+    inspection.helix.worst.is_some_and(|worst| tolerance < worst.error())
+        && inspection.actual.passes.iter().all(stands)
 }

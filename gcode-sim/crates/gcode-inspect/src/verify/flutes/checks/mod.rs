@@ -39,16 +39,16 @@ pub(super) const ALL: &[Check] = &[
 
 /// One finding on all passes that are wrong, in the words of the first: a loop makes every flute wrong alike. `wrong` says
 /// what of a pass is, at which block and where on the burr.
-fn on_passes<'g, T>(
+fn report_passes<'g, T>(
     inspection: &Inspection<'g>,
-    wrong: impl Fn(&'g GrindingPass) -> Option<(T, FirstOccurrence)>,
-    told: impl FnOnce(T) -> Diagnostic,
+    fault: impl Fn(&'g GrindingPass) -> Option<(T, FirstOccurrence)>,
+    finding: impl FnOnce(T) -> Diagnostic,
 ) -> Option<Diagnostic> {
-    let passes = inspection.ground.passes.iter().enumerate();
-    let mut all = passes.filter_map(|(index, pass)| Some((index, wrong(pass)?)));
-    let (index, (what, FirstOccurrence { place, at })) = all.next()?;
-    let others: Vec<Site> = all.map(|(index, (_, begun))| Site::new(Some(index), begun.at)).collect();
-    let finding = told(what).at(place);
+    let passes = inspection.actual.passes.iter().enumerate();
+    let mut all = passes.filter_map(|(index, pass)| Some((index, fault(pass)?)));
+    let (index, (what, FirstOccurrence { backtrace: place, point: at })) = all.next()?;
+    let others: Vec<Site> = all.map(|(index, (_, begun))| Site::new(Some(index), begun.point)).collect();
+    let finding = finding(what).at(place);
     let finding = match others.len() {
         0 => finding,
         more => finding.note(format!("and so with {more} more of the passes")),

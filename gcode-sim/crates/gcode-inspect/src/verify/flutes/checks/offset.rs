@@ -3,18 +3,18 @@ use super::super::Inspection;
 use gcode_lang::diag::Diagnostic;
 
 /// Measured no finer than this, mm.
-const SAME: f64 = 1e-4;
+const OFFSET_TOLERANCE: f64 = 1e-4;
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
-    let Some([x, y]) = inspection.ground.offset else { return };
-    let [job_x, job_y] = inspection.wanted.c_offset;
-    if (x - job_x).abs() <= SAME && (y - job_y).abs() <= SAME {
+    let Some([x, y]) = inspection.actual.offset else { return };
+    let [job_x, job_y] = inspection.nominal.c_offset;
+    if (x - job_x).abs() <= OFFSET_TOLERANCE && (y - job_y).abs() <= OFFSET_TOLERANCE {
         return;
     }
     let message = format!(
         "the machine file has the end of the burr's cylinder X{} Y{} from the C axis, and the job's c_offset is X{job_x} Y{job_y}",
-        shown(x),
-        shown(y)
+        rounded_mm(x),
+        rounded_mm(y)
     );
     findings.push(
         Diagnostic::error("burr-offset", message)
@@ -24,6 +24,6 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
 }
 
 /// Without what the subtraction of the axis leaves.
-fn shown(value: f64) -> f64 {
+fn rounded_mm(value: f64) -> f64 {
     (value * 1e6).round() / 1e6
 }

@@ -3,13 +3,13 @@ use super::super::Inspection;
 use gcode_lang::diag::Diagnostic;
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
-    let Some(job) = inspection.wanted.signs else { return };
+    let Some(job) = inspection.nominal.signs else { return };
     let of_job = [('X', job.x), ('Y', job.y), ('A', job.a), ('B', job.b), ('C', job.c)];
     let other = |(letter, sign): &(char, f64)| {
         of_job.iter().any(|(of, job)| of == letter && f64::from(*job) != *sign)
     };
     let others: Vec<String> =
-        inspection.ground.signs.iter().filter(|of| other(of)).map(|(letter, _)| letter.to_string()).collect();
+        inspection.actual.signs.iter().filter(|of| other(of)).map(|(letter, _)| letter.to_string()).collect();
     if others.is_empty() {
         return;
     }

@@ -3,14 +3,14 @@ use super::super::Inspection;
 use gcode_lang::diag::{Diagnostic, Site};
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
-    let least = 2.0 * inspection.wanted.chord_error;
-    let Some(near) = inspection.round.nearest.filter(|near| near.apart < least) else { return };
+    let least = 2.0 * inspection.nominal.chord_error;
+    let Some(near) = inspection.spacing.nearest_approach.filter(|near| near.distance < least) else { return };
     findings.push(
         Diagnostic::error(
             "flutes-meet",
-            format!("neighbouring flutes come as near as {:.4} mm: {least} mm, twice the chord error, is the least", near.apart),
+            format!("neighbouring flutes come as near as {:.4} mm: {least} mm, twice the chord error, is the least", near.distance),
         )
         .help("fewer flutes, or a larger tip angle")
-        .on([Site::new(Some(near.pass), near.at)]),
+        .on([Site::new(Some(near.pass), near.point)]),
     );
 }

@@ -1,39 +1,39 @@
 //! The contact runs along the flutes at the job's speed.
 use super::super::Inspection;
-use super::super::speed::ALLOWED;
+use super::super::speed::SPEED_TOLERANCE;
 use gcode_lang::diag::{Diagnostic, Site};
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
     let Some(range) = &inspection.speed else { return };
-    let mut wrong: Vec<_> = range.of_passes.iter().filter(|worst| worst.is_wrong()).collect();
-    wrong.sort_by(|one, other| other.times().total_cmp(&one.times()));
+    let mut wrong: Vec<_> = range.worst_by_pass.iter().filter(|worst| worst.is_wrong()).collect();
+    wrong.sort_by(|one, other| other.factor().total_cmp(&one.factor()));
     let Some(worst) = wrong.first() else { return };
-    let pass = &inspection.ground.passes[worst.pass];
+    let pass = &inspection.actual.passes[worst.pass];
     let message = format!(
         "the wheel runs along {} at {} mm/min where {} is asked for: {:.0} % either way is allowed",
-        inspection.name(worst.pass),
-        shown(worst.found),
-        worst.wanted,
-        100.0 * ALLOWED
+        inspection.pass_name(worst.pass),
+        format_speed(worst.actual),
+        worst.nominal,
+        100.0 * SPEED_TOLERANCE
     );
-    let place = worst.place(&pass.trace).unwrap_or(&pass.place);
+    let place = worst.backtrace(&pass.trace).unwrap_or(&pass.backtrace);
     let all = format!(
         "from {} to {} mm/min along all flutes; beyond that in {} of {} passes",
-        shown(range.least),
-        shown(range.most),
+        format_speed(range.min),
+        format_speed(range.max),
         wrong.len(),
-        inspection.ground.passes.len()
+        inspection.actual.passes.len()
     );
     findings.push(
         Diagnostic::error("flute-speed", message)
             .note(all)
             .help("check F in this block, and that the code is in force which it is meant for: G93, F moves a minute, or G94")
             .at(place.clone())
-            .on(wrong.iter().map(|worst| Site::new(Some(worst.pass), worst.at))),
+            .on(wrong.iter().map(|worst| Site::new(Some(worst.pass), worst.point))),
     );
 }
 
 /// Whole mm/min, of slow ones with a decimal.
-fn shown(speed: f64) -> String {
+fn format_speed(speed: f64) -> String {
     if speed < 100.0 { format!("{speed:.1}") } else { format!("{speed:.0}") }
 }

@@ -1,33 +1,35 @@
 //! The contact stays on the tooth bottom, between the programmed points too.
 use super::super::Inspection;
 use super::super::cause::Cause;
-use crate::flutes::{ARITHMETIC, GrindingPass, Sample};
+use crate::flutes::{GrindingPass, ROUNDING_ERROR, Sample};
 use gcode_lang::diag::{Diagnostic, Site};
 
 pub(super) fn check<'g>(inspection: &Inspection<'g>, findings: &mut Vec<Diagnostic>) {
-    let allowed = inspection.wanted.surface_tolerance;
+    let allowed = inspection.nominal.surface_tolerance;
     // Of every pass its worst place.
     let of_pass = |(index, pass): (usize, &'g GrindingPass)| {
-        let worst = pass.trace.samples.iter().max_by(|a, b| a.off.abs().total_cmp(&b.off.abs()))?;
-        (allowed + ARITHMETIC < worst.off.abs()).then_some((index, worst))
+        let worst =
+            pass.trace.samples.iter().max_by(|a, b| a.deviation.abs().total_cmp(&b.deviation.abs()))?;
+        (allowed + ROUNDING_ERROR < worst.deviation.abs()).then_some((index, worst))
     };
     let mut all: Vec<(usize, &Sample)> =
-        inspection.ground.passes.iter().enumerate().filter_map(of_pass).collect();
-    all.sort_by(|a, b| b.1.off.abs().total_cmp(&a.1.off.abs()));
+        inspection.actual.passes.iter().enumerate().filter_map(of_pass).collect();
+    all.sort_by(|a, b| b.1.deviation.abs().total_cmp(&a.1.deviation.abs()));
     let Some((pass, worst)) = all.first().copied() else { return };
-    let finding = told(inspection, pass, worst);
-    let pass = &inspection.ground.passes[pass];
-    let sites = all.iter().map(|(pass, sample)| Site::new(Some(*pass), sample.at));
-    findings.push(finding.at(pass.trace.place(worst).clone()).on(sites));
+    let finding = surface_finding(inspection, pass, worst);
+    let pass = &inspection.actual.passes[pass];
+    let sites = all.iter().map(|(pass, sample)| Site::new(Some(*pass), sample.point));
+    findings.push(finding.at(pass.trace.backtrace(worst).clone()).on(sites));
 }
 
-fn told(inspection: &Inspection<'_>, pass: usize, worst: &Sample) -> Diagnostic {
-    let wanted = inspection.wanted;
+fn surface_finding(inspection: &Inspection<'_>, pass: usize, worst: &Sample) -> Diagnostic {
+    let wanted = inspection.nominal;
     let (allowed, radius) = (wanted.surface_tolerance, wanted.profile.radius());
     let error = |message: String| Diagnostic::error("flute-surface", message);
-    let (side, off) = if worst.off < 0.0 { ("below", -worst.off) } else { ("above", worst.off) };
-    if let Some(depth) = inspection.depth {
-        let flutes = inspection.all_flutes();
+    let (side, off) =
+        if worst.deviation < 0.0 { ("below", -worst.deviation) } else { ("above", worst.deviation) };
+    if let Some(depth) = inspection.common_height {
+        let flutes = inspection.flutes_with_verb();
         return error(format!(
             "{flutes} ground to a diameter of {:.3} mm where {:.3} mm is asked for: the contact is {:.4} mm {side} the tooth \
              bottom all along, {allowed} mm is allowed",
@@ -41,19 +43,19 @@ fn told(inspection: &Inspection<'_>, pass: usize, worst: &Sample) -> Diagnostic 
         "the contact is {off:.4} mm {side} the tooth bottom at polar angle {:.1}°: {allowed} mm is allowed",
         worst.polar.0
     ));
-    match Cause::of(wanted, &inspection.ground.passes[pass], off) {
-        Cause::Between => finding
+    match Cause::of(wanted, &inspection.actual.passes[pass], off) {
+        Cause::BetweenPoints => finding
             .note("at the programmed points it is within half of that: it strays between them")
             .help("the moves are too long, or the increment is too coarse for this chord error"),
         Cause::Depth(depth) => finding
             .note(format!(
                 "it is {:.4} mm {side} the tooth bottom all along {}, at the programmed points too",
                 depth.abs(),
-                inspection.name(pass)
+                inspection.pass_name(pass)
             ))
             .help("check Y where the wheel is fed into the blank"),
         Cause::Offset([x, y]) => {
-            let [from_x, from_y] = inspection.ground.offset.unwrap_or(wanted.c_offset);
+            let [from_x, from_y] = inspection.actual.offset.unwrap_or(wanted.c_offset);
             finding
                 .note(format!(
                     "it is off at the programmed points too, as if the end of the cylinder were X{:.3} Y{:.3} from the C axis, \

@@ -1,22 +1,23 @@
 //! The wheel turns while it grinds, the way round that emitted programs have it.
 use super::super::Inspection;
-use super::on_passes;
-use crate::holes::spindle::stopped;
+use super::report_passes;
+use crate::holes::spindle::spindle_stopped_finding;
 use gcode_lang::diag::Diagnostic;
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
-    let idle = on_passes(
+    let idle = report_passes(
         inspection,
-        |pass| pass.idle.as_ref().map(|idle| (idle.builder, idle.begun.clone())),
+        |pass| pass.stopped_wheel.as_ref().map(|idle| (idle.builder_code, idle.first.clone())),
         |builder| {
             let message =
                 "the wheel stands while it is fed along a flute: no M03 or M04 with an S is in force";
-            stopped(message, builder).help("start the wheel with M03 S… before the first pass")
+            spindle_stopped_finding(message, builder)
+                .help("start the wheel with M03 S… before the first pass")
         },
     );
-    let reversed = on_passes(
+    let reversed = report_passes(
         inspection,
-        |pass| pass.reversed.clone().map(|begun| ((), begun)),
+        |pass| pass.reversed_wheel.clone().map(|begun| ((), begun)),
         |()| {
             let message =
                 "the wheel grinds with M04, where the programs that are emitted for a burr have M03";

@@ -4,19 +4,21 @@ use super::super::spacing::RepeatedPass;
 use gcode_lang::diag::{Diagnostic, Severity, Site};
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
-    let round = &inspection.round;
+    let round = &inspection.spacing;
     // Instead of a flute that is missing: told with that one.
-    let Some(first) = round.again.first().filter(|_| inspection.wanted.count as usize <= round.flutes.len())
+    let Some(first) =
+        round.repeated.first().filter(|_| inspection.nominal.count as usize <= round.flutes.len())
     else {
         return;
     };
     let rounds = |flute: usize| {
-        let times = |pass: usize| round.again.iter().filter(|again| again.first == pass).count();
+        let times = |pass: usize| round.repeated.iter().filter(|again| again.first_pass == pass).count();
         // A flute's angle may be that of a later pass over it.
-        let begun = round.again.iter().find(|again| again.pass == flute).map_or(flute, |again| again.first);
+        let begun =
+            round.repeated.iter().find(|again| again.pass == flute).map_or(flute, |again| again.first_pass);
         1 + times(begun)
     };
-    let of_first = rounds(first.first);
+    let of_first = rounds(first.first_pass);
     let is_round = round.flutes.iter().all(|(flute, _)| rounds(*flute) == of_first);
     let (severity, help) = match is_round {
         true => (Severity::Warning, "leave it if the wheel is meant to spark out; else take that round out"),
@@ -26,19 +28,19 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
         ),
     };
     let finding = Diagnostic::new(severity, "flute-twice", sentence(*first)).help(help);
-    let finding = match (is_round, round.again.len() - 1) {
+    let finding = match (is_round, round.repeated.len() - 1) {
         (true, _) => finding.note(format!("every flute is ground {of_first} times")),
         (false, 0) => finding,
         (false, more) => finding.note(format!("and {more} more of the passes go over flutes that are there")),
     };
-    let sites = round.again.iter().filter_map(|again| {
-        let samples = &inspection.ground.passes[again.pass].trace.samples;
-        Some(Site::new(Some(again.pass), samples.get(samples.len() / 2)?.at))
+    let sites = round.repeated.iter().filter_map(|again| {
+        let samples = &inspection.actual.passes[again.pass].trace.samples;
+        Some(Site::new(Some(again.pass), samples.get(samples.len() / 2)?.point))
     });
-    findings.push(finding.at(inspection.ground.passes[first.pass].place.clone()).on(sites));
+    findings.push(finding.at(inspection.actual.passes[first.pass].backtrace.clone()).on(sites));
 }
 
 /// In words which pass goes over which flute.
 pub(super) fn sentence(again: RepeatedPass) -> String {
-    format!("pass {} goes over the flute of pass {} again", again.pass + 1, again.first + 1)
+    format!("pass {} goes over the flute of pass {} again", again.pass + 1, again.first_pass + 1)
 }

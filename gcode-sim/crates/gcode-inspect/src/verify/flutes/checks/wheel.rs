@@ -5,36 +5,36 @@ use gcode_lang::diag::{Diagnostic, Site};
 use gcode_lang::motion::Backtrace;
 
 /// Something that the program does, and where.
-struct Done<'g> {
-    found: f64,
+struct ActualValue<'g> {
+    actual: f64,
     place: &'g Backtrace,
     site: Site,
 }
 
 pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>) {
-    let (wanted, ground) = (inspection.wanted, inspection.ground);
+    let (wanted, ground) = (inspection.nominal, inspection.actual);
     if let Some(wanted) = wanted.wheel {
         let passes = ground.passes.iter().enumerate();
         let speeds = passes.flat_map(|(index, pass)| {
-            pass.speeds.iter().map(move |(speed, begun)| Done {
-                found: speed.0,
-                place: &begun.place,
-                site: Site::new(Some(index), begun.at),
+            pass.speeds.iter().map(move |(speed, begun)| ActualValue {
+                actual: speed.0,
+                place: &begun.backtrace,
+                site: Site::new(Some(index), begun.point),
             })
         });
         let message = |found| format!("the wheel grinds at S{found} where S{wanted} is asked for");
-        let told = worst("wheel-speed", wanted, speeds.collect(), message);
+        let told = report_worst("wheel-speed", wanted, speeds.collect(), message);
         findings.extend(told.map(|finding| finding.help("correct S, or program.wheel in the job")));
     }
     if let Some(wanted) = wanted.plunge {
-        let plunges = ground.plunges.iter().map(|plunge| Done {
-            found: plunge.speed,
-            place: &plunge.place,
-            site: Site::new(None, plunge.at),
+        let plunges = ground.plunges.iter().map(|plunge| ActualValue {
+            actual: plunge.speed,
+            place: &plunge.backtrace,
+            site: Site::new(None, plunge.point),
         });
         let message =
             |found| format!("the wheel is fed into the blank at {found} mm/min where {wanted} is asked for");
-        let told = worst("wheel-feed", wanted, plunges.collect(), message);
+        let told = report_worst("wheel-feed", wanted, plunges.collect(), message);
         findings.extend(told.map(|finding| {
             finding.help("correct F, or program.plunge in the job; is G94 in force here, and not G93?")
         }));
@@ -42,20 +42,20 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
 }
 
 /// One finding at the one that is most times too fast or too slow.
-fn worst(
+fn report_worst(
     code: &'static str,
-    wanted: f64,
-    all: Vec<Done<'_>>,
+    nominal: f64,
+    all: Vec<ActualValue<'_>>,
     message: impl Fn(f64) -> String,
 ) -> Option<Diagnostic> {
-    let times = |done: &Done<'_>| (done.found / wanted).max(wanted / done.found);
-    let wrong: Vec<Done<'_>> =
-        all.into_iter().filter(|done| severity(done.found, wanted).is_some()).collect();
+    let times = |done: &ActualValue<'_>| (done.actual / nominal).max(nominal / done.actual);
+    let wrong: Vec<ActualValue<'_>> =
+        all.into_iter().filter(|done| severity(done.actual, nominal).is_some()).collect();
     // Of those that only rounding tells apart, the first.
     let most = wrong.iter().map(times).fold(0.0, f64::max);
     let first = wrong.iter().find(|done| most <= times(done) * (1.0 + 1e-9))?;
-    let shown = (first.found * 1e3).round() / 1e3;
-    let finding = Diagnostic::new(severity(first.found, wanted)?, code, message(shown));
+    let shown = (first.actual * 1e3).round() / 1e3;
+    let finding = Diagnostic::new(severity(first.actual, nominal)?, code, message(shown));
     let finding = match wrong.len() - 1 {
         0 => finding,
         more => finding.note(format!("and so, or less far off, {more} more times")),
