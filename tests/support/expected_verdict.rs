@@ -5,14 +5,14 @@
 //! | line | holds when |
 //! |---|---|
 //! | `machine grinder.toml` | the machine file in `suite/verify/` that the program runs on |
-//! | `wanted burr.toml` | the reference there that it is compared with |
+//! | `reference burr.toml` | the reference there that it is compared with |
 //! | `FAIL 16 of 28, 12 missing, 16 extra, 28 folded` | the verdict; how many wanted holes are good, or how many flutes there are; the counts that aren't 0; folded are the findings on single holes for which one on several of them stands |
 //! | `error row-group at O5:6 with 4.069 9.069` | the next finding: its severity, its code, its line, the calls that led there (`from O1:7`), its hole (`of r1h0`); its message or its notes have these numbers and names |
 //! | `missing r3h0 r3h1` | these holes are missing, in the order of the reference |
 //! | `hole r1h0 phi=0.70 depth=+1.000` | deviations of that hole: `phi`, `entry`, `bottom`, `tilt`, `depth`, `dx`, `dy`, `dz`; `hole *` is every one that was found |
 //! | `neighbours six=7 inner=12 nearest=18.138` | how many of the inner holes have six neighbours; least and greatest distance (`farthest`) |
 //! | `burr index=0.300 passes=5` | of flutes: `contact`, `helix_min`, `helix_max`, `index`, `speed_min`, `speed_max`, `nearest`, `passes`, `moves` |
-//! | `made x=10.000 … depth=7.000 at O1:8` | without a reference: the next hole, by `x`, `y`, `z`, `i`, `j`, `k`, `depth` |
+//! | `made x=10.000 … depth=7.000 at O1:8 by T1` | without a reference: the next hole, by `x`, `y`, `z`, `i`, `j`, `k`, `depth` |
 //! | `not-checked with Z 29` | a line on what isn't checked has these numbers and names |
 //! | `layout` | all of it, printed for people, is `verdict.snap` |
 //!
@@ -23,7 +23,7 @@
 pub(crate) struct Outcome {
     /// Verdict and counts; none without a reference.
     pub(crate) summary: Option<String>,
-    pub(crate) findings: Vec<Reported>,
+    pub(crate) findings: Vec<FindingLine>,
     pub(crate) missing: Vec<String>,
     pub(crate) not_checked: Vec<String>,
     /// Numbers by what they are of.
@@ -35,13 +35,13 @@ pub(crate) struct Outcome {
 type Facts = Vec<(&'static str, f64)>;
 
 /// A finding: severity, code and place as a line of `expect.txt` has them, and message and notes.
-pub(crate) struct Reported {
+pub(crate) struct FindingLine {
     pub(crate) head: String,
     pub(crate) text: String,
 }
 
 /// What a case expects.
-pub(crate) struct Expected<'a> {
+pub(crate) struct Expectation<'a> {
     summary: Option<&'a str>,
     /// Each with the numbers and names that have to be said.
     findings: Vec<(&'a str, Vec<&'a str>)>,
@@ -53,7 +53,7 @@ pub(crate) struct Expected<'a> {
     pub(crate) layout: bool,
 }
 
-impl<'a> Expected<'a> {
+impl<'a> Expectation<'a> {
     pub(crate) fn parse(text: &'a str) -> Self {
         let mut expected = Self {
             summary: None,
@@ -67,7 +67,7 @@ impl<'a> Expected<'a> {
         for line in text.lines().filter(|line| !line.starts_with('#')) {
             let (word, rest) = line.split_once(' ').unwrap_or((line, ""));
             match word {
-                "machine" | "wanted" => {}
+                "machine" | "reference" => {}
                 "PASS" | "FAIL" => {
                     assert!(expected.summary.replace(line).is_none(), "a second verdict: {line}");
                 }
@@ -119,7 +119,7 @@ impl<'a> Expected<'a> {
         }
         self.compare_made(&outcome.made, &mut wrong);
         for said in &self.not_checked {
-            let holds = |line: &String| said.iter().all(|word| says(line, word));
+            let holds = |line: &String| said.iter().all(|word| mentions(line, word));
             if !outcome.not_checked.iter().any(holds) {
                 wrong.push(format!("nothing is left open with {}", said.join(" ")));
             }
@@ -127,7 +127,7 @@ impl<'a> Expected<'a> {
         wrong
     }
 
-    fn compare_findings(&self, found: &[Reported], wrong: &mut Vec<String>) {
+    fn compare_findings(&self, found: &[FindingLine], wrong: &mut Vec<String>) {
         let expected: Vec<&str> = self.findings.iter().map(|(head, _)| *head).collect();
         let heads: Vec<&str> = found.iter().map(|finding| finding.head.as_str()).collect();
         if heads != expected {
@@ -139,7 +139,7 @@ impl<'a> Expected<'a> {
             return;
         }
         for ((head, said), finding) in self.findings.iter().zip(found) {
-            for word in said.iter().filter(|word| !says(&finding.text, word)) {
+            for word in said.iter().filter(|word| !mentions(&finding.text, word)) {
                 wrong.push(format!("{head} doesn't say {word}: {}", finding.text.trim()));
             }
         }
@@ -181,7 +181,7 @@ fn agrees(value: f64, stated: &str) -> bool {
 }
 
 /// Whether a text has a number, or a name such as `T1`.
-fn says(text: &str, stated: &str) -> bool {
+fn mentions(text: &str, stated: &str) -> bool {
     if stated.parse::<f64>().is_ok() {
         return numbers(text).iter().any(|number| agrees(*number, stated));
     }

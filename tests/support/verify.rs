@@ -18,27 +18,28 @@ use gcode_sim::session::{Grinding, Request, Run, Simulation, grind, simulate};
 use gcode_sim::verify::{Answer, Finding, HoleVerdict, Tolerances, Verdict};
 
 use crate::Case;
-use crate::expected_verdict::{Expected, Outcome, Reported};
+use crate::expected_verdict::{Expectation, FindingLine, Outcome};
 
 pub(crate) fn run(case: &Case) {
     let text = case.text("expect.txt");
-    let expected = Expected::parse(&text);
+    let expected = Expectation::parse(&text);
     let machine = machine_of(&case.dir).map_or_else(Machine::default, |text| Machine::parse(&text).unwrap());
     let mut request = Request::new("case.nc", case.bytes("case.nc"), machine.clone());
     let wanted = reference_of(&case.dir).map(|text| Wanted::parse(&text).unwrap());
     let (outcome, layout) = match wanted {
-        Some(Wanted::Flutes(flutes)) => of_flutes(&grind(&request, &mut NoLibrary, &flutes).unwrap()),
+        Some(Wanted::Flutes(flutes)) => inspect_flutes(&grind(&request, &mut NoLibrary, &flutes).unwrap()),
         Some(wanted) => {
             let reference = wanted.into_holes().unwrap();
             request.conduct = reference.conduct.clone();
             let simulation = simulate(&request, &mut NoLibrary, reference.surface).unwrap();
             let verdict = simulation.verify(&reference, Tolerances::of(&reference, None), &machine);
-            of_holes(&verdict, &simulation.run)
+            inspect_holes(&verdict, &simulation.run)
         }
-        None => of_program(&simulate(&request, &mut NoLibrary, None).unwrap()),
+        None => list_holes(&simulate(&request, &mut NoLibrary, None).unwrap()),
     };
     let differences = expected.differences(&outcome);
     assert!(differences.is_empty(), "{}:\n{}\n{layout}", case.name(), differences.join("\n"));
+    assert!(expected.layout || case.optional("verdict.snap").is_none(), "{}: no line 'layout'", case.name());
     if expected.layout {
         case.snapshot("verdict", &layout);
     }
@@ -51,7 +52,7 @@ pub fn machine_of(folder: &Path) -> Option<String> {
 
 /// The reference of a program in `folder`.
 pub fn reference_of(folder: &Path) -> Option<String> {
-    file_of(folder, "wanted", &["reference.toml", "reference.csv", "reference.json"])
+    file_of(folder, "reference", &["reference.toml", "reference.csv", "reference.json"])
 }
 
 /// The file beside the folders of the cases that a line of `expect.txt` names, else the folder's own.
@@ -65,7 +66,7 @@ fn file_of(folder: &Path, word: &str, own: &[&str]) -> Option<String> {
     own.iter().find_map(|name| std::fs::read_to_string(folder.join(name)).ok())
 }
 
-fn of_holes(verdict: &Verdict, run: &Run) -> (Outcome, String) {
+fn inspect_holes(verdict: &Verdict, run: &Run) -> (Outcome, String) {
     let good = verdict.holes.iter().filter(|hole| hole.ok).count();
     let mut summary =
         format!("{} {good} of {}", answer(verdict.verdict), verdict.holes.len() + verdict.missing.len());
@@ -78,7 +79,7 @@ fn of_holes(verdict: &Verdict, run: &Run) -> (Outcome, String) {
         }
     }
     let mut facts: Vec<_> =
-        verdict.holes.iter().map(|hole| (format!("hole {}", hole.id), of_hole(hole))).collect();
+        verdict.holes.iter().map(|hole| (format!("hole {}", hole.id), deviations(hole))).collect();
     if let Some(neighbours) = &verdict.neighbours {
         let distances =
             [&neighbours.min, &neighbours.max].map(|extreme| extreme.as_ref().map(|found| found.distance));
@@ -88,11 +89,11 @@ fn of_holes(verdict: &Verdict, run: &Run) -> (Outcome, String) {
             ("nearest", distances[0]),
             ("farthest", distances[1]),
         ];
-        facts.push(("neighbours".to_owned(), known(found)));
+        facts.push(("neighbours".to_owned(), known_facts(found)));
     }
     let outcome = Outcome {
         summary: Some(summary),
-        findings: reported(&verdict.diagnostics, &verdict.findings, run),
+        findings: finding_lines(&verdict.diagnostics, &verdict.findings, run),
         missing: verdict.missing.clone(),
         not_checked: verdict.not_checked.clone(),
         facts,
@@ -102,7 +103,7 @@ fn of_holes(verdict: &Verdict, run: &Run) -> (Outcome, String) {
     (outcome, with_findings(shown, &verdict.diagnostics, run))
 }
 
-fn of_hole(hole: &HoleVerdict) -> Vec<(&'static str, f64)> {
+fn deviations(hole: &HoleVerdict) -> Vec<(&'static str, f64)> {
     let [dx, dy, dz] = [0, 1, 2].map(|i| hole.actual.entry[i] - hole.nominal.entry[i]);
     vec![
         ("phi", hole.phi),
@@ -116,7 +117,7 @@ fn of_hole(hole: &HoleVerdict) -> Vec<(&'static str, f64)> {
     ]
 }
 
-fn of_flutes(grinding: &Grinding) -> (Outcome, String) {
+fn inspect_flutes(grinding: &Grinding) -> (Outcome, String) {
     let verdict = grinding.verify();
     let found = [
         ("contact", verdict.surface_deviation),
@@ -131,10 +132,10 @@ fn of_flutes(grinding: &Grinding) -> (Outcome, String) {
     ];
     let outcome = Outcome {
         summary: Some(format!("{} {} of {}", answer(verdict.verdict), verdict.flutes, verdict.wanted_flutes)),
-        findings: reported(&verdict.diagnostics, &verdict.findings, &grinding.run),
+        findings: finding_lines(&verdict.diagnostics, &verdict.findings, &grinding.run),
         missing: Vec::new(),
         not_checked: verdict.not_checked.clone(),
-        facts: vec![("burr".to_owned(), known(found))],
+        facts: vec![("burr".to_owned(), known_facts(found))],
         made: Vec::new(),
     };
     let shown = flute_table::table(&verdict);
@@ -142,7 +143,7 @@ fn of_flutes(grinding: &Grinding) -> (Outcome, String) {
 }
 
 /// Of a program without a reference: the holes it makes.
-fn of_program(simulation: &Simulation) -> (Outcome, String) {
+fn list_holes(simulation: &Simulation) -> (Outcome, String) {
     let mut text = String::new();
     let mut made = Vec::new();
     for hole in simulation.list().holes {
@@ -154,14 +155,15 @@ fn of_program(simulation: &Simulation) -> (Outcome, String) {
             from.program, from.line
         );
         writeln!(text, "{}", line.replace("-0.000 ", "0.000 ").replace("-0.0000", "0.0000")).unwrap();
-        let at = short(&from.program, from.line);
+        let by = from.tool.map_or(String::new(), |tool| format!(" by T{tool}"));
+        let at = place_label(&from.program, from.line) + &by;
         let numbers = [("x", x), ("y", y), ("z", z), ("i", i), ("j", j), ("k", k), ("depth", depth)];
         made.push((at, numbers.to_vec()));
     }
     let findings = &simulation.extracted.findings;
     let outcome = Outcome {
         summary: None,
-        findings: reported(findings, &[], &simulation.run),
+        findings: finding_lines(findings, &[], &simulation.run),
         missing: Vec::new(),
         not_checked: Vec::new(),
         facts: Vec::new(),
@@ -177,18 +179,18 @@ fn answer(answer: Answer) -> &'static str {
     }
 }
 
-fn known<const N: usize>(facts: [(&'static str, Option<f64>); N]) -> Vec<(&'static str, f64)> {
+fn known_facts<const N: usize>(facts: [(&'static str, Option<f64>); N]) -> Vec<(&'static str, f64)> {
     facts.into_iter().filter_map(|(key, value)| Some((key, value?))).collect()
 }
 
 /// `error hole-depth at O6:13 from O5:6 of r1h0`, and what is said of it.
-fn reported(shown: &[Diagnostic], data: &[Finding], run: &Run) -> Vec<Reported> {
+fn finding_lines(shown: &[Diagnostic], data: &[Finding], run: &Run) -> Vec<FindingLine> {
     let one = |finding: &Diagnostic| {
         let mut head = format!("{} {}", finding.severity.name(), finding.code);
         if let Some(place) = &finding.place {
             let mut word = " at ";
             for (program, line, _) in places(run, place) {
-                write!(head, "{word}{}", short(&program, line)).unwrap();
+                write!(head, "{word}{}", place_label(&program, line)).unwrap();
                 word = " from ";
             }
         }
@@ -196,13 +198,13 @@ fn reported(shown: &[Diagnostic], data: &[Finding], run: &Run) -> Vec<Reported> 
         if let Some(hole) = data.iter().find(same).and_then(|one| one.hole.as_ref()) {
             write!(head, " of {hole}").unwrap();
         }
-        Reported { head, text: format!("{}\n{}", finding.message, finding.notes.join("\n")) }
+        FindingLine { head, text: format!("{}\n{}", finding.message, finding.notes.join("\n")) }
     };
     shown.iter().map(one).collect()
 }
 
 /// `O5:6` of line 6 in O0005.
-fn short(program: &str, line: u32) -> String {
+fn place_label(program: &str, line: u32) -> String {
     let number = program.strip_prefix('O').map(|digits| digits.trim_start_matches('0'));
     number.map_or_else(|| format!("{program}:{line}"), |number| format!("O{number}:{line}"))
 }
