@@ -11,6 +11,7 @@ use gcode_review::{Record, Revision, changes};
 use gcode_session::Request;
 use gcode_sim::cli::library::Folders;
 use gcode_sim::report::changes::ChangesReport;
+use gcode_tests::verify::machine_of;
 use gcode_tests::workspace;
 
 /// Blocks of a program that are looked at: the first rows of a honeycomb tell what its macro does, and the whole is held
@@ -47,7 +48,7 @@ fn home(main: &Path) -> PathBuf {
 pub(crate) fn request(main: &Path) -> Request {
     let home = home(main);
     let read = |name: &str| std::fs::read_to_string(home.join(name)).ok();
-    let machine = read("machine.toml").map_or_else(Machine::default, |text| Machine::parse(&text).unwrap());
+    let machine = machine_of(&home).map_or_else(Machine::default, |text| Machine::parse(&text).unwrap());
     let name = main.strip_prefix(workspace()).unwrap().display().to_string();
     let mut request = Request::new(name, std::fs::read(main).unwrap(), machine);
     request.limits = Limits { blocks: BLOCKS };

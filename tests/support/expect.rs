@@ -6,7 +6,7 @@
 //! |---|---|
 //! | `end=normal` | M30, M02 or the end of the program was reached without an alarm |
 //! | `end=repeats` | the run was ended because the program provably repeats for ever |
-//! | `alarm=PS0112` | the control stopped with this alarm; several with `\|`, `ANY` for some alarm |
+//! | `alarm=PS0112` | the control stopped with this alarm; with one of several, `PS0112\|PS0119`, where `why` says what is open |
 //! | `msg="TEXT"` | the alarm's text |
 //! | `stop=TEXT` | an operator stop with this text |
 //! | `note=lower-case` | the run told this note, by its name; `note=none` where it told none |
@@ -19,6 +19,7 @@
 //! | `time_min=0.5` | the time of all blocks in minutes |
 //! | `amove=-10,20` | the ways of the A axis |
 //! | `within=0.001` | the tolerance of all numbers, 1e-6 where it isn't said |
+//! | `why=TEXT` | always: the reason for the alarm, the last item. It begins with `open:` where several are right |
 //!
 //! A comment `(@KEY=VALUE)` in the program is a setting of the control, by the name it has on the command line.
 use std::fmt::Write as _;
@@ -64,9 +65,12 @@ pub fn run(program: &[u8]) -> Ran {
 impl Ran {
     /// What differs from `expected`, one line each.
     pub fn differences(&self, expected: &str) -> Vec<String> {
-        let within = items(expected).find(|(key, _)| *key == "within");
+        let (demands, why) = expected.split_once("; why=").unwrap_or((expected, ""));
+        let within = items(demands).find(|(key, _)| *key == "within");
         let tolerance = within.map_or(1e-6, |(_, value)| value.parse().unwrap());
-        items(expected)
+        let several = items(demands).any(|(key, value)| key == "alarm" && value.contains('|'));
+        assert_eq!(several, why.starts_with("open: "), "one alarm, or why several are right: {expected}");
+        items(demands)
             .filter(|(key, _)| *key != "within")
             .filter_map(|(key, value)| self.difference(key, value, tolerance))
             .collect()
@@ -84,7 +88,7 @@ impl Ran {
                     Outcome::Alarm(stopped) => stopped.alarm.code().to_string(),
                     Outcome::End | Outcome::Limit => String::new(),
                 };
-                let holds = wanted.split('|').any(|w| w == code || (w == "ANY" && !code.is_empty()));
+                let holds = wanted.split('|').any(|wanted| wanted == code);
                 return self.not(holds, &format!("alarm={wanted}"));
             }
             "msg" => {

@@ -57,7 +57,7 @@ const COMMANDS: &[(&str, &str)] = &[
     ),
     (
         "verify-flutes",
-        "gcode-sim verify tests/suite/verify/an_uneven_index_is_measured/case.nc --machine tests/suite/verify/an_uneven_index_is_measured/machine.toml --reference tests/suite/verify/an_uneven_index_is_measured/reference.toml --format json",
+        "gcode-sim verify tests/suite/verify/an_uneven_index_is_measured/case.nc --machine tests/suite/verify/grinder.toml --reference tests/suite/verify/burr.toml --format json",
     ),
     (
         "readings",
