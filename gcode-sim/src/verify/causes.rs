@@ -29,32 +29,37 @@ pub(super) fn causes(pattern: &Pattern, factor: f64, asked: bool) -> Option<Stri
         }
     }
     let words: Vec<_> = best?.into_iter().map(|cause| cause.words.as_str()).collect();
-    Some(format!("just that comes of {}", words.join(" and of ")))
+    Some(format!("the error matches {}", words.join(" and ")))
 }
 
 fn known(pattern: &Pattern, asked: bool) -> Vec<Cause> {
     let Pattern { diameter, outer, bore, .. } = *pattern;
-    let mut all =
-        vec![Cause { factor: 314.0 / (100.0 * PI), words: "3.14 for π (0.0507 % too small)".to_owned() }];
+    let mut all = vec![Cause {
+        factor: 314.0 / (100.0 * PI),
+        words: "3.14 used for π (0.0507 % too small)".to_owned(),
+    }];
     for (other, name) in [(bore, "bore"), (outer, "outer diameter")] {
         if 0.0 < other && other != diameter {
-            let words = format!("the {name}, {other}, for the pitch's diameter, {diameter}");
+            let words = format!("the {name} {other} used instead of the pitch diameter {diameter}");
             all.push(Cause { factor: other / diameter, words });
         }
     }
     if !asked {
         let (other, words) = match pattern.metric {
-            Metric::Arc => {
-                (Metric::Chord, "the straight distance (chord) for the one on the developed surface (arc)")
-            }
-            Metric::Chord => {
-                (Metric::Arc, "the distance on the developed surface (arc) for the straight one (chord)")
-            }
+            Metric::Arc => (
+                Metric::Chord,
+                "the straight distance (chord) used instead of the distance on the developed surface (arc)",
+            ),
+            Metric::Chord => (
+                Metric::Arc,
+                "the distance on the developed surface (arc) used instead of the straight distance (chord)",
+            ),
         };
         all.push(Cause { factor: pattern.pitch_in(other) / pattern.pitch, words: words.to_owned() });
     }
     if let Some(pitch) = pattern.asked.filter(|_| asked) {
-        let words = format!("the pitch asked for, {pitch}, for the one that closes, {:.4}", pattern.pitch);
+        let words =
+            format!("the specified pitch {pitch} used instead of the closing pitch {:.4}", pattern.pitch);
         all.push(Cause { factor: pattern.pitch / pitch, words });
     }
     all.retain(|cause| ALIKE < (cause.factor - 1.0).abs());

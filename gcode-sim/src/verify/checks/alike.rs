@@ -103,14 +103,13 @@ fn depths(comparison: &Comparison<'_>, objections: &mut [Objection]) -> Vec<Diag
             false => format!("{least:.3} to {most:.3}"),
         };
         let message = format!(
-            "{} {by} mm too {} ({} allowed)",
+            "{}: {by} mm too {} (tolerance ±{})",
             which(comparison, &members),
             if error > 0.0 { "deep" } else { "shallow" },
             comparison.tolerances.depth
         );
-        let mut finding = Diagnostic::error("holes-alike", message).help(
-            "check the programmed depth, the zero in the tool's direction, the tool's length and its offset",
-        );
+        let mut finding = Diagnostic::error("holes-alike", message)
+            .help("check the programmed depth, the zero along the tool axis, the tool length and its offset");
         let wanted = comparison.wanted[group[0].wanted].depth;
         finding.notes.extend(super::depth::factor(wanted, wanted + error).map(str::to_owned));
         finding.notes.extend(behind(folded));
@@ -163,8 +162,8 @@ fn twice(comparison: &Comparison<'_>, objections: &mut [Objection]) -> Option<Di
     let is_again = among(comparison.found.len(), &extras);
     let folded = fold(objections, &["hole-twice"], |o| o.extra.is_some_and(|extra| is_again[extra]));
     let set = which(comparison, &members);
-    let mut finding = Diagnostic::error("hole-twice", format!("{set} drilled a second time")).help(
-        "the same tool comes back for nothing: take the second call, or the second round of the loop, out",
+    let mut finding = Diagnostic::error("hole-twice", format!("{set}: drilled a second time")).help(
+        "remove the second call, or the second iteration of the loop: the same tool drills these holes twice",
     );
     finding.notes.extend(behind(folded));
     Some(at_the_call(finding, &comparison.found[extras[0]].place))
@@ -172,7 +171,7 @@ fn twice(comparison: &Comparison<'_>, objections: &mut [Objection]) -> Option<Di
 
 fn turned(set: &str, machine: &Machine, axis: Axis, by: Deg) -> Diagnostic {
     let letter = machine.axes.letter(axis);
-    Diagnostic::error("holes-alike", format!("{set} turned by {letter}{:+.3}°", by.0))
+    Diagnostic::error("holes-alike", format!("{set}: rotated by {letter}{:+.3}°", by.0))
         .help(format!("correct {letter} in the program, or its zero in the work offset"))
 }
 
@@ -185,11 +184,11 @@ fn shifted(set: &str, aside: &Vector3<f64>, pattern: Option<&Pattern>) -> Diagno
         .collect();
     // A honeycomb's cylinder lies along x: what goes across that leaves its axis.
     let beside = match pattern {
-        Some(_) if libm::hypot(aside.y, aside.z) > 0.0005 => ", beside the cylinder's axis",
+        Some(_) if libm::hypot(aside.y, aside.z) > 0.0005 => ", off the cylinder axis",
         _ => "",
     };
-    Diagnostic::error("holes-alike", format!("{set} shifted by {}{beside}", by.join(" "))).help(
-        "actual less nominal, along the machine's axes: correct the programmed point or the work offset",
+    Diagnostic::error("holes-alike", format!("{set}: shifted by {}{beside}", by.join(" "))).help(
+        "correct the programmed point or the work offset: the shift is actual − nominal along the machine axes",
     )
 }
 
@@ -246,5 +245,5 @@ fn which(comparison: &Comparison<'_>, members: &[usize]) -> String {
             return format!("the {} group of rows ({count} holes)", ["first", "second"][group]);
         }
     }
-    format!("{count} of {all} holes, {} the first,", comparison.id(members[0]))
+    format!("{count} of {all} holes (first: {})", comparison.id(members[0]))
 }

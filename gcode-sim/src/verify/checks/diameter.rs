@@ -11,9 +11,11 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
         if (actual - wanted).abs() <= comparison.tolerances.diameter {
             continue;
         }
-        let tool = found.tool.map_or(String::new(), |tool| format!(" by T{tool}"));
-        let message =
-            format!("hole {} is finished{tool} with Φ{actual}, Φ{wanted} wanted", comparison.id(pair.wanted));
+        let tool = found.tool.map_or(String::new(), |tool| format!(" T{tool}"));
+        let message = format!(
+            "hole {}: the finishing tool{tool} is Φ{actual}, nominal Φ{wanted}",
+            comparison.id(pair.wanted)
+        );
         let finding = Diagnostic::error("hole-diameter", message)
             .help("finish the hole with the right tool, or correct the tool table")
             .at(found.place.clone());

@@ -22,7 +22,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
         return;
     }
     let message = format!(
-        "a seam: the rows at {:.3}° and {:.3}° are {:.3}° apart, {:.2} mm, all others {:.3}°, {:.2} mm",
+        "a seam: the rows at {:.3}° and {:.3}° are {:.3}° ({:.2} mm) apart, all others {:.3}° ({:.2} mm)",
         before.azimuth.0,
         after.azimuth.0,
         gap.0,
@@ -30,6 +30,9 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
         rows.usual.0,
         pattern.arc(rows.usual)
     );
-    let finding = Diagnostic::error("row-seam", message).help("the angle from row to row must divide 360: take a whole number of rows first, then the angle, then the pitch");
+    let finding = Diagnostic::error("row-seam", message).help(
+        "make the angle from row to row divide 360: choose a whole number of rows, then compute the angle, then the \
+         pitch",
+    );
     objections.push(Objection::whole(at_the_call(finding, &comparison.found[before.first].place)));
 }

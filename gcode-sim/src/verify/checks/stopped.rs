@@ -11,7 +11,7 @@ pub(in crate::verify) fn check(comparison: &Comparison<'_>, stopped: bool, objec
     objections.retain(|objection| !objection.finding.code.starts_with("row-"));
     if let [one] = comparison.missing.as_slice() {
         for objection in objections.iter_mut().filter(|objection| objection.wanted == Some(*one)) {
-            objection.finding.help = Some("the run stopped before its end: see why first".to_owned());
+            objection.finding.help = Some("find out first why the run stopped before its end".to_owned());
         }
         return;
     }
@@ -19,7 +19,7 @@ pub(in crate::verify) fn check(comparison: &Comparison<'_>, stopped: bool, objec
     let (missing, all) = (comparison.missing.len(), comparison.wanted.len());
     let message = format!("the run stopped before its end: {missing} of {all} holes are missing");
     let mut finding = Diagnostic::error("hole-missing", message)
-        .help("what stopped it comes first: the holes behind it were never begun");
+        .help("correct the cause of the stop first: the holes after it were not begun");
     finding.notes.extend(behind(missing));
     objections.insert(0, Objection::whole(finding));
 }

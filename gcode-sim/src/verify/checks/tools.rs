@@ -31,13 +31,13 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
                 usual.iter().filter(|tool| !cuts(tool)).map(|tool| format!("T{tool}")).collect();
             let pair = &comparison.pairs[*index];
             let message = format!(
-                "hole {} is made without {}, which most holes of Φ{} get",
+                "hole {} is made without {}; most holes of Φ{} are made with it",
                 comparison.id(pair.wanted),
                 lacks.join(", "),
                 f64::from_bits(diameter)
             );
             let finding = Diagnostic::warning("hole-tools", message)
-                .help("was a call left out?")
+                .help("check for a missing call")
                 .at(comparison.found[pair.found].place.clone());
             objections.push(Objection::of(pair.wanted, finding));
         }
