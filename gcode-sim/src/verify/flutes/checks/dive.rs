@@ -9,36 +9,36 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
         let depth = dive.depth;
         let message = match dive.kind {
             Kind::Rapid => {
-                format!("rapid motion while the wheel touches the blank, {depth:.3} mm below its surface")
+                format!("rapid motion with the wheel in the blank, {depth:.3} mm below its surface")
             }
             Kind::RapidPass(_) => {
                 format!(
-                    "rapid motion along a flute while the wheel touches the blank, {depth:.3} mm below its surface"
+                    "rapid motion along a flute with the wheel in the blank, {depth:.3} mm below its surface"
                 )
             }
             Kind::Below => {
-                format!("a feed that doesn't turn A takes the wheel {depth:.3} mm below the tooth bottom")
+                format!("a feed that does not rotate A takes the wheel {depth:.3} mm below the tooth bottom")
             }
             Kind::Sideways(by) => format!(
-                "a feed that doesn't turn A takes the wheel {by:.3} mm along the burr in the cut, {depth:.3} mm below the \
-                 blank's surface"
+                "a feed that does not rotate A takes the wheel {by:.3} mm along the burr in the cut, {depth:.3} mm \
+                 below the blank surface"
             ),
             Kind::Near => {
                 format!(
-                    "the rapid ends with the wheel {:.3} mm off the blank, and the job wants {} mm",
+                    "the rapid ends with the wheel {:.3} mm off the blank; the job specifies {} mm",
                     -depth,
                     inspection.wanted.clearance.unwrap_or_default()
                 )
             }
             Kind::Pit => {
-                format!("the wheel is fed {depth:.3} mm below the blank's surface where no pass begins")
+                format!("the wheel is fed {depth:.3} mm below the blank surface where no pass begins")
             }
         };
         let help = match dive.kind {
             Kind::RapidPass(_) => "grind with G01: G00 stays in force until another motion code",
             Kind::Near => "end it at machine.clearance from the blank, or correct that in the job",
             Kind::Rapid | Kind::Below | Kind::Sideways(_) | Kind::Pit => {
-                "move Y clear of the burr first, then turn A and C"
+                "move Y clear of the burr first, then rotate A and C"
             }
         };
         let again = dive.times - 1;
