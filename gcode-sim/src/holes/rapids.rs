@@ -31,7 +31,7 @@ impl Extractor<'_> {
         }
         self.findings.add("rapid-beyond-cut", &event.place(), 0, || {
             let message = format!(
-                "rapid along the hole beyond what was cut, to {:.3} mm from where the feed began",
+                "rapid along the hole beyond the drilled depth, to {:.3} mm from the start of the feed",
                 line.cut()
             );
             let finding = match inside {
@@ -56,12 +56,12 @@ impl Extractor<'_> {
             Diagnostic::warning(
                 "rapid-beyond-cut",
                 format!(
-                    "the rapid goes {:.3} mm on in the direction of a feed of {:.3} mm: not taken for a hole",
+                    "the rapid continues {:.3} mm in the direction of a feed of {:.3} mm: not counted as a hole",
                     line.depth_of(to) - line.cut(),
                     line.cut()
                 ),
             )
-            .help("right if the feed led out of the part; else the rapid runs into it")
+            .help("check that the feed leads out of the part; otherwise the rapid enters it")
         });
     }
 
@@ -82,7 +82,7 @@ impl Extractor<'_> {
                     "rapid-into-part",
                     format!("rapid through the part, {depth:.3} mm below the surface at {}", shown(&deepest)),
                 )
-                .help("go round at a safe height; only a feed may enter the part")
+                .help("move round the part at a safe height; only a feed may enter it")
             });
         }
     }
@@ -110,8 +110,11 @@ impl Extractor<'_> {
                 false => Diagnostic::warning("rapid-into-part", message),
             };
             finding
-                .note("where it begins isn't known; axes that haven't moved yet are taken to stand at machine zero")
-                .help("end it at a safe height: is the sign of Z right, and the length offset?")
+                .note(
+                    "the start of this rapid is unknown; axes that have not moved yet are assumed to be at \
+                     machine zero",
+                )
+                .help("end it at a safe height; check the sign of Z and the length offset")
         });
     }
 
@@ -126,16 +129,18 @@ impl Extractor<'_> {
             Curved::Rapid if in_part => self.findings.add("rapid-into-part", &event.place(), 0, || {
                 Diagnostic::error(
                     "rapid-into-part",
-                    format!("rapid through the part while an axis turns, {deepest:.3} mm below the surface"),
+                    format!(
+                        "rapid through the part while an axis rotates, {deepest:.3} mm below the surface"
+                    ),
                 )
-                .help("retract until the tool is outside the part before the table or the head turns")
+                .help("retract until the tool is outside the part before the table or the head rotates")
             }),
             Curved::Feed if in_part => self.findings.add("feed-no-hole", &event.place(), 0, || {
                 Diagnostic::error(
                     "feed-no-hole",
-                    format!("a curved feed cuts {deepest:.3} mm into the part: no hole"),
+                    format!("a curved feed cuts {deepest:.3} mm into the part: not a hole"),
                 )
-                .help("holes are fed along a straight line while the table stands")
+                .help("feed holes along a straight line, with the table stationary")
             }),
             Curved::Rapid | Curved::Feed if self.outside => {
                 if let Some(surface) = self.surface {
@@ -144,8 +149,8 @@ impl Extractor<'_> {
             }
             Curved::Feed if self.surface.is_none() => {
                 self.findings.add("feed-no-hole", &event.place(), 0, || {
-                    Diagnostic::warning("feed-no-hole", "a curved feed on the part: not taken for a hole")
-                        .help("holes are fed along a straight line while the table stands")
+                    Diagnostic::warning("feed-no-hole", "a curved feed on the part: not counted as a hole")
+                        .help("feed holes along a straight line, with the table stationary")
                 })
             }
             Curved::Rapid | Curved::Feed => {}

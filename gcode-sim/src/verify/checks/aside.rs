@@ -19,7 +19,8 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
             }
             let tool = cut.tool.map_or(String::new(), |tool| format!(" by T{tool}"));
             let message = format!(
-                "hole {}: a pass before the finishing one{tool} is out of position by {aside:.4} mm, limit {allowed:.4}",
+                "hole {}: a pass before the finishing one{tool} is out of position by {aside:.4} mm, limit \
+                 {allowed:.4}",
                 comparison.id(pair.wanted)
             );
             // Another tool whose size isn't known may be as small as it likes.

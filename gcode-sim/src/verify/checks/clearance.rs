@@ -29,8 +29,8 @@ fn finding(passing: &Passing, conduct: &Conduct) -> Diagnostic {
                 message.push_str(&format!(", the edge of a flat end {far:.3} mm {side}"));
             }
             let help = format!(
-                "retract before {letter} rotates: the job starts feeds {} mm above the surface, and a rotation needs \
-                 more clearance",
+                "retract before {letter} rotates: the job starts feeds {} mm above the surface, and a \
+                 rotation needs more clearance",
                 conduct.clearance.unwrap_or_default()
             );
             Diagnostic::warning("turns-near-part", message).help(help)
@@ -38,7 +38,8 @@ fn finding(passing: &Passing, conduct: &Conduct) -> Diagnostic {
         Way::Low { letter, by } => {
             let retract = conduct.retract.unwrap_or_default();
             let message = format!(
-                "{letter} rotates by {:.3}° with the tool {above:.3} mm above the part; the job specifies {retract} mm",
+                "{letter} rotates by {:.3}° with the tool {above:.3} mm above the part; the job specifies \
+                 {retract} mm",
                 by.0
             );
             Diagnostic::warning("turns-near-part", message)

@@ -132,8 +132,8 @@ fn length(cutting: &Cutting, conduct: &Conduct, machine: &Machine) -> Option<Dia
     }
     let asked = conduct.duty(cutting.tool).and_then(|duty| duty.offset);
     let tool = name(cutting);
-    let note = "the machine file does not give the tool's length, so the simulated holes do not depend on the length \
-                offset";
+    let note = "the machine file does not give the tool's length, so the simulated holes do not depend on \
+                the length offset";
     let finding = |severity, message| Diagnostic::new(severity, "length-offset", message).note(note);
     match (cutting.by, asked) {
         (Lengthening::Minus(h), asked) => {

@@ -36,15 +36,16 @@ pub(super) fn factor(wanted: f64, found: f64) -> Option<&'static str> {
             "this is a thousandth of the nominal depth: a number without a decimal point counts thousandths here",
         ),
         () if is(1e4) => Some(
-            "this is a ten-thousandth of the nominal depth: a number without a decimal point counts ten-thousandths here",
+            "this is a ten-thousandth of the nominal depth: a number without a decimal point counts \
+             ten-thousandths here",
         ),
         () if (found / wanted / 25.4 - 1.0).abs() < 0.001 => Some(
-            "this is 25.4 times the nominal depth: millimetres read as inches; check whether G20 is in force instead \
-             of G21",
+            "this is 25.4 times the nominal depth: millimetres read as inches; check whether G20 is in \
+             force instead of G21",
         ),
         () if (found * 25.4 / wanted - 1.0).abs() < 0.001 => Some(
-            "this is the nominal depth divided by 25.4: inches read as millimetres; check whether G21 is in force \
-             instead of G20",
+            "this is the nominal depth divided by 25.4: inches read as millimetres; check whether G21 is \
+             in force instead of G20",
         ),
         () => None,
     }

@@ -22,8 +22,8 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
                 let off = found.bottom() - end;
                 finding
                     .note(format!(
-                        "the nearest extra hole ends {distance:.3} mm away; actual − nominal: x {:+.3}, y {:+.3}, z \
-                         {:+.3} mm",
+                        "the nearest extra hole ends {distance:.3} mm away; actual − nominal: x {:+.3}, y \
+                         {:+.3}, z {:+.3} mm",
                         off.x, off.y, off.z
                     ))
                     .help("if that hole is the intended one, correct its position; otherwise add the missing hole")

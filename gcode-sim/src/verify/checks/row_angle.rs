@@ -27,8 +27,8 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
     let (found, right) = (pattern.arc(usual), pattern.arc(wanted));
     let fits = pattern.diameter * wanted.0 / usual.0;
     let message = format!(
-        "the rows are {}° apart, nominal {:.4}°: neighbours round the circumference are {found:.2} mm apart, nominal \
-         {right:.2}",
+        "the rows are {}° apart, nominal {:.4}°: neighbours round the circumference are {found:.2} mm \
+         apart, nominal {right:.2}",
         plain(usual),
         wanted.0
     );
@@ -58,8 +58,8 @@ fn closes(pattern: &Pattern, rows: &Rows, usual: Deg) -> Option<String> {
     let even = (usual.0 * f64::from(count) - 360.0).abs() < ROUNDED.0;
     (even && count.is_multiple_of(2) && !rows.one_group(pattern)).then(|| {
         format!(
-            "this is the angle of {} rows in each group, for a pitch of about {:.3}: check divisions, pitch and \
-             diameter in the call",
+            "this is the angle of {} rows in each group, for a pitch of about {:.3}: check divisions, \
+             pitch and diameter in the call",
             count / 2,
             pattern.pitch_of(count)
         )

@@ -34,8 +34,8 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
     let (message, help) = match rows.one_group(pattern) {
         true => (
             format!(
-                "one of the two groups of rows is missing, half of the pattern: all {count} rows {begin}, no row is \
-                 staggered; {second} of {} holes belong to the other group",
+                "one of the two groups of rows is missing, half of the pattern: all {count} rows {begin}, \
+                 no row is staggered; {second} of {} holes belong to the other group",
                 comparison.wanted.len()
             ),
             format!(
@@ -84,8 +84,8 @@ fn one_shifted(comparison: &Comparison<'_>, pattern: &Pattern, rows: &Rows) -> O
         off[group].abs(),
         if off[group] < 0.0 { "early" } else { "late" }
     );
-    let help = "begin the first group at x 0 and the second half a pitch later; the first hole of a row positions the \
-                others";
+    let help = "begin the first group at x 0 and the second half a pitch later; the first hole of a row \
+                positions the others";
     Some(at_the_call(
         Diagnostic::error("row-group", message).help(help),
         &comparison.found[first[group].first].place,

@@ -23,7 +23,8 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
         return;
     }
     let message = format!(
-        "the holes of a row are {spacing:.4} mm apart, nominal {:.4}: over {pitches:.0} pitches the error is {sum:.2} mm",
+        "the holes of a row are {spacing:.4} mm apart, nominal {:.4}: over {pitches:.0} pitches the error \
+         is {sum:.2} mm",
         pattern.pitch
     );
     let mut finding =

@@ -31,8 +31,8 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<Objection>
         pattern.arc(rows.usual)
     );
     let finding = Diagnostic::error("row-seam", message).help(
-        "make the angle from row to row divide 360: choose a whole number of rows, then compute the angle, then the \
-         pitch",
+        "make the angle from row to row divide 360: choose a whole number of rows, then compute the angle, \
+         then the pitch",
     );
     objections.push(Objection::whole(at_the_call(finding, &comparison.found[before.first].place)));
 }

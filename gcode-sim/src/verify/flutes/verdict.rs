@@ -215,8 +215,8 @@ pub(super) fn verdict(
 /// What the verdict says nothing about.
 fn not_checked(wanted: &Flutes, ground: &Ground, locate: &dyn Fn(Span) -> (String, u32)) -> Vec<String> {
     let mut all = vec![
-        "the wheel's width, form and body: it is simulated as one point, so gouging of a neighbouring tooth next to \
-         the contact is unknown"
+        "the wheel's width, form and body: it is simulated as one point, so gouging of a neighbouring \
+         tooth next to the contact is unknown"
             .to_owned(),
         "the direction of the wheel's swivel B: only its angle is compared with the helix angle".to_owned(),
         "the wheel's direction of rotation: the job does not give it".to_owned(),
@@ -232,7 +232,9 @@ fn not_checked(wanted: &Flutes, ground: &Ground, locate: &dyn Fn(Span) -> (Strin
     }
     if wanted.clearance.is_none() {
         all.push(
-            "the distance from the blank where rapid motion ends, except for contact: the job has no machine.clearance".to_owned(),
+            "the distance from the blank where rapid motion ends, except for contact: the job has no \
+             machine.clearance"
+                .to_owned(),
         );
     }
     if ground.offset.is_none() {
@@ -242,7 +244,8 @@ fn not_checked(wanted: &Flutes, ground: &Ground, locate: &dyn Fn(Span) -> (Strin
     if 0 < unseen {
         let moves = if unseen == 1 { "1 move" } else { &format!("{unseen} moves") };
         all.push(format!(
-            "rapid motion up to where the wheel is first clear of the blank ({moves}): the axes' start position is unknown"
+            "rapid motion up to where the wheel is first clear of the blank ({moves}): the axes' start \
+             position is unknown"
         ));
     }
     all.extend(ground.unplaced.as_ref().map(|unplaced| unplaced.in_words(locate(unplaced.place.block))));

@@ -15,7 +15,8 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
         let (pass, finding) = match beside(inspection) {
             Some((pass, other, apart)) => {
                 let note = format!(
-                    "pass {} is {apart:.3}° from pass {}: within {}° it would count as a repeated pass over the same flute",
+                    "pass {} is {apart:.3}° from pass {}: within {}° it would count as a repeated pass \
+                     over the same flute",
                     pass + 1,
                     other + 1,
                     SAME * inspection.wanted.index_tolerance.0

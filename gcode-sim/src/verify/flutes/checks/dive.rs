@@ -20,8 +20,8 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
                 format!("a feed that does not rotate A takes the wheel {depth:.3} mm below the tooth bottom")
             }
             Kind::Sideways(by) => format!(
-                "a feed that does not rotate A takes the wheel {by:.3} mm along the burr in the cut, {depth:.3} mm \
-                 below the blank surface"
+                "a feed that does not rotate A takes the wheel {by:.3} mm along the burr in the cut, \
+                 {depth:.3} mm below the blank surface"
             ),
             Kind::Near => {
                 format!(

@@ -29,8 +29,8 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
         }
         None => {
             let message = format!(
-                "neighbouring flutes are {:.3}° apart, nominal {pitch:.3}°, at x = {:.3} and polar angle {:.1}° \
-                 (tolerance ±{}°)",
+                "neighbouring flutes are {:.3}° apart, nominal {pitch:.3}°, at x = {:.3} and polar angle \
+                 {:.1}° (tolerance ±{}°)",
                 gap.found.0, gap.x, gap.polar.0, wanted.index_tolerance.0
             );
             let name = inspection.name(gap.pass);

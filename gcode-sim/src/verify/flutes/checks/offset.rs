@@ -12,17 +12,21 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
         return;
     }
     let message = format!(
-        "the end of the burr's cylinder is at X{} Y{} from the C axis in the machine file, X{job_x} Y{job_y} in the \
-         job's c_offset",
+        "the end of the burr's cylinder is at X{} Y{} from the C axis in the machine file, X{job_x} \
+         Y{job_y} in the job's c_offset",
         shown(x),
         shown(y)
     );
     findings.push(
         Diagnostic::error("burr-offset", message)
-            .note("the results are for the machine file's position; with the job's position the same moves grind a \
-                   different burr")
-            .help("measure the position; then emit the programs again from the job, or correct part.origin in the \
-                   machine file"),
+            .note(
+                "the results are for the machine file's position; with the job's position the same moves \
+                 grind a different burr",
+            )
+            .help(
+                "measure the position; then emit the programs again from the job, or correct part.origin \
+                 in the machine file",
+            ),
     );
 }
 

@@ -27,7 +27,10 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
     findings.push(
         Diagnostic::error("flute-speed", message)
             .note(all)
-            .help("check F in this block, and that the code it is written for is in force: G93 (F moves a minute) or G94")
+            .help(
+                "check F in this block, and that the code it is written for is in force: G93 (F moves a \
+                 minute) or G94",
+            )
             .at(place.clone())
             .on(wrong.iter().map(|worst| Site { pass: Some(worst.pass), at: worst.at })),
     );

@@ -29,8 +29,8 @@ fn told(inspection: &Inspection<'_>, pass: usize, worst: &Sample) -> Diagnostic 
     if let Some(depth) = inspection.depth {
         let flutes = inspection.all_flutes();
         return error(format!(
-            "{flutes} ground to a diameter of {:.3} mm, nominal {:.3} mm: the contact is {:.4} mm {side} the tooth \
-             bottom all along, tolerance {allowed} mm",
+            "{flutes} ground to a diameter of {:.3} mm, nominal {:.3} mm: the contact is {:.4} mm {side} \
+             the tooth bottom all along, tolerance {allowed} mm",
             2.0 * (radius + depth),
             2.0 * radius,
             depth.abs()
@@ -56,17 +56,17 @@ fn told(inspection: &Inspection<'_>, pass: usize, worst: &Sample) -> Diagnostic 
             let [from_x, from_y] = inspection.ground.offset.unwrap_or(wanted.c_offset);
             finding
                 .note(format!(
-                    "the deviation is present at the programmed points too, as if the end of the cylinder were at \
-                     X{:.3} Y{:.3} from the C axis instead of X{from_x} Y{from_y}: X{x:+.3} Y{y:+.3}",
+                    "the deviation is present at the programmed points too, as if the end of the cylinder \
+                     were at X{:.3} Y{:.3} from the C axis instead of X{from_x} Y{from_y}: X{x:+.3} Y{y:+.3}",
                     from_x + x,
                     from_y + y
                 ))
-                .help("check the numbers from which the program computes X and Y while C rotates (I and J of the \
-                       call), and c_offset")
+                .help("check the numbers from which the program computes X and Y while C rotates (I and J \
+                       of the call), and c_offset")
         }
         Cause::Other => finding.help(
-            "check the sign of each axis, the formula for Y, and c_offset against the machine file's part.origin: X \
-             and Y do not keep the arc's centre in place while C rotates",
+            "check the sign of each axis, the formula for Y, and c_offset against the machine file's \
+             part.origin: X and Y do not keep the arc's centre in place while C rotates",
         ),
     }
 }
