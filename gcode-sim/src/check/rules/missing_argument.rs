@@ -58,7 +58,9 @@ fn lacking(subject: &Subject<'_>, called: &Unit<'_>, entry: Locals, modal: bool)
             && refusal(subject, called, &states(called, filled)).is_none()
         {
             told.insert(*local as u32);
-            let message = format!("{label} needs {letter} (#{local}): without it, it stops with {alarm}");
+            let message = format!(
+                "{label} needs {letter} (#{local}): if it is omitted, the program stops with {alarm}"
+            );
             lacks.push(Lack::Refused(message));
         }
     }
@@ -71,9 +73,8 @@ fn lacking(subject: &Subject<'_>, called: &Unit<'_>, entry: Locals, modal: bool)
         let Some(letter) = argument_letter(local as usize) else { continue };
         if usage == Use::Computed && told.insert(local) {
             let line = subject.memory.sources().place(called.op(block).span).line;
-            let message = format!(
-                "{label} reckons with {letter} (#{local}) in line {line}: without it, it counts as 0"
-            );
+            let message =
+                format!("{label} uses {letter} (#{local}) in line {line}; if it is omitted, it is 0");
             lacks.push(Lack::Reckoned(message));
         }
     }

@@ -23,7 +23,7 @@ pub(super) fn find(_: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
             let off = (pi - PI) / PI * 100.0;
             let written = format!("{pi:.7}");
             let message = format!(
-                "{} is not π but {:.4} % too {}: round a diameter of 500 mm that is {:.3} mm",
+                "{} is used for π: {:.4} % too {}, an error of {:.3} mm round a diameter of 500 mm",
                 written.trim_end_matches('0'),
                 off.abs(),
                 if off < 0.0 { "small" } else { "large" },

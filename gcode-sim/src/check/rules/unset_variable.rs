@@ -37,12 +37,12 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
     for ((block, local), (span, usage)) in unset {
         let so = match usage {
             Use::Word => "its word is ignored",
-            Use::Passed => "vacancy is passed on",
+            Use::Passed => "it is passed on vacant",
             Use::Tested | Use::Compared => "a vacant variable is compared",
             Use::Computed => "it counts as 0",
         };
-        let message = format!("#{local} is read and nothing has set it: {so}");
-        let help = format!("set #{local} before, or correct its number");
+        let message = format!("#{local} is read but never set: {so}");
+        let help = format!("set #{local} before it is read, or correct its number");
         found.push(unit.warning(NAME, block, message).on(span).help(help));
     }
     found
