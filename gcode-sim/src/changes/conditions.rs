@@ -71,15 +71,15 @@ impl<'a> Conditions<'a> {
             match (far(&before), far(&apart)) {
                 (_, true) => "",
                 (false, false) => ", both 0 here",
-                (true, false) => ", both alike here",
+                (true, false) => ", equal here",
             }
         };
         let more = match aspect {
             Aspect::Length => format!("{} ({counted})", alike()),
             Aspect::Level if is.text == "G99" => {
-                format!(": the rapids from hole to hole run at the R level ({counted})")
+                format!(": the rapids between holes run at the R level ({counted})")
             }
-            Aspect::Level => format!(": the rapids from hole to hole run at the initial level ({counted})"),
+            Aspect::Level => format!(": the rapids between holes run at the initial level ({counted})"),
             Aspect::Cycle => format!(" ({})", self.holes(&was.text, moves)),
             Aspect::System | Aspect::Cutter | Aspect::Path => format!(" ({counted})"),
         };

@@ -124,7 +124,7 @@ impl Revision {
         let mut simulation = session::simulate_beside(request, library, surface, &mut told, &mut beside)?;
         let mut recorder = recorder.into_inner();
         if recorder.too_many {
-            let message = format!("more than {MOST_STEPS} moves: those behind them aren't compared");
+            let message = format!("more than {MOST_STEPS} moves: later ones are not compared");
             simulation.extracted.findings.push(Diagnostic::new(Severity::Alarm, "limit", message));
         }
         let done = std::mem::take(&mut recorder.done);
