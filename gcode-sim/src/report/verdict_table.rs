@@ -27,7 +27,7 @@ pub fn table(verdict: &Verdict, layout: Layout) -> String {
         holes.sort_by(|a, b| b.phi.total_cmp(&a.phi));
     }
     let mut text = format!(
-        "Position of {} against Φ{}: {}\nmm and degrees; deviations are actual less nominal\n\n",
+        "Position of {} against Φ{}: {}\nmm and degrees; deviations are actual − nominal\n\n",
         count(all, "hole"),
         verdict.tolerance,
         verdict.basis
@@ -119,7 +119,7 @@ fn full(text: &mut String, hole: &HoleVerdict, tolerance: f64) {
     put(
         text,
         &format!(
-            " position   Φ{} of Φ{tolerance}, out of tolerance {} (entry {}, bottom {}, tilt {}°)",
+            " position   Φ{}, tolerance Φ{tolerance}, out of tolerance by {} (entry {}, bottom {}, tilt {}°)",
             near(hole.phi, 4),
             near(hole.out_of_tolerance, 4),
             near(hole.at_entry, 4),
