@@ -12,7 +12,9 @@ pub fn keep(result: &Path, inputs: &[&Path]) -> Result<(), Refusal> {
         None => Ok(()),
         Some(input) => {
             let (result, input) = (result.display(), input.display());
-            Err(Refusal::new(format!("{result} is read, as {input}, and would be lost: name another file")))
+            Err(Refusal::new(format!(
+                "{result} is an input, {input}, and would be overwritten: name another file"
+            )))
         }
     }
 }
@@ -20,7 +22,7 @@ pub fn keep(result: &Path, inputs: &[&Path]) -> Result<(), Refusal> {
 /// Refuses two inputs that are both standard input: the second would find nothing left.
 pub(super) fn one_pipe(inputs: &[&Path]) -> Result<(), Refusal> {
     if inputs.iter().filter(|path| **path == Path::new("-")).count() > 1 {
-        return Err(Refusal::new("only one file can be '-': standard input is there once"));
+        return Err(Refusal::new("only one file can be '-': standard input can be read once"));
     }
     Ok(())
 }

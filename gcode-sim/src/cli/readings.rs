@@ -16,11 +16,11 @@ pub(super) struct ReadingsArguments {
     #[command(flatten)]
     program: ProgramArguments,
 
-    /// How far a reading may be from 0, mm [default: nothing is judged]
+    /// Tolerance of a reading either way, mm [default: no verdict]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     tolerance: Option<f64>,
 
-    /// Also draw the readings over the way to this file
+    /// Also draw the readings along the path to this file
     #[arg(long, value_name = "OUT.png")]
     picture: Option<PathBuf>,
 
@@ -28,7 +28,7 @@ pub(super) struct ReadingsArguments {
     #[arg(long, value_name = "WxH", default_value = "1600x900")]
     size: String,
 
-    /// How the result is written
+    /// Output format
     #[arg(long, value_enum, default_value_t = ListFormat::Text)]
     format: ListFormat,
 }
@@ -42,7 +42,7 @@ pub(super) fn run(arguments: &ReadingsArguments) -> Result<Status, Refusal> {
     unused_machine::tell(&arguments.program, &request);
     let tolerance = options::tolerance("--tolerance", arguments.tolerance)?;
     let (Some(surface), Some(probe)) = (request.part, &request.machine.probe) else {
-        return Err(Refusal::new("readings are of a part: --part JOB.toml says which"));
+        return Err(Refusal::new("readings need a part: give it with --part JOB.toml"));
     };
     let following = session::follow(&request, &mut folders, surface, probe.radius)
         .map_err(|e| Refusal::new(e.to_string()))?;
@@ -65,9 +65,7 @@ pub(super) fn run(arguments: &ReadingsArguments) -> Result<Status, Refusal> {
         return Ok(found);
     }
     if report.is_empty() {
-        output::tell(
-            "error: no feed of the program goes along the part's surface, at most 5 mm away from it\n",
-        );
+        output::tell("error: no feed of the program follows the part's surface within 5 mm\n");
         return Ok(Status::Fails);
     }
     Ok(match report.verdict() {

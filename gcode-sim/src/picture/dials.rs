@@ -107,8 +107,8 @@ impl Dials {
         let known = scene.marks.iter().filter(|m| m.misfit.is_some() && scene.zone.is_some()).count();
         match known - self.has.iter().filter(|has| **has).count() {
             0 => None,
-            left if left == known => Some("Misfits not drawn: no room.".to_owned()),
-            left => Some(format!("Misfits of {left} of {known} holes not drawn: no room.")),
+            left if left == known => Some("Deviations not drawn: no room.".to_owned()),
+            left => Some(format!("Deviations of {left} of {known} holes not drawn: no room.")),
         }
     }
 }

@@ -113,7 +113,7 @@ impl Plan {
         bare.extend(caption_strokes(scene, is_circle, frame, &mut lettering.field, &mut inks, &mut labels));
         let mut notes: Vec<String> = dials.note(scene).into_iter().collect();
         if drawn.iter().any(|d| d.cut) {
-            notes.push("Misfit with an arrow: longer than drawn.".to_owned());
+            notes.push("Deviation with an arrow: longer than drawn.".to_owned());
         }
         notes.extend(lettering.notes(scene));
         if !bare.is_empty() {

@@ -242,7 +242,7 @@ missing  3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, … and 3 more
     #[test]
     fn a_zone_smaller_than_rounding_is_warned_of() {
         let told = |tolerance: f64| table(&Verdict { tolerance, ..verdict() }, Layout::default());
-        let warning = "WARNING  this control can't be trusted to hold Φ0.02: a finer increment or a wider tolerance is needed";
+        let warning = "WARNING  this control's least increment is too coarse for Φ0.02: use a finer increment or a wider tolerance";
         assert!(told(0.02).contains(warning));
         assert!(!told(0.0212).contains("WARNING"));
     }

@@ -70,7 +70,7 @@ impl Request {
 /// Why a run can't begin.
 #[derive(Debug, thiserror::Error)]
 pub enum SessionError {
-    #[error("{name} holds no program")]
+    #[error("{name} contains no program")]
     NoProgram { name: String },
     #[error(
         "{name}, line {line}: {program} is defined twice, and a control refuses the second: give it a \

@@ -22,11 +22,11 @@ pub(super) fn of(folder: &Path, programs: &[PathBuf]) -> Result<PathBuf, Refusal
     }
     let names: Vec<_> = candidates.iter().filter_map(|path| path.file_name()?.to_str()).collect();
     let which = if names.is_empty() {
-        "programs that call one another".to_owned()
+        "only programs that call one another".to_owned()
     } else {
         format!("several programs that no other calls, {}", names.join(", "))
     };
-    Err(Refusal::new(format!("{} holds {which}: name the one to run main.nc", folder.display())))
+    Err(Refusal::new(format!("{} contains {which}: name the main program main.nc", folder.display())))
 }
 
 /// The programs that none of the others calls.

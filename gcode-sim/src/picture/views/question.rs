@@ -15,30 +15,30 @@ impl Question {
     /// Beside a hole, where it isn't there or shouldn't be.
     pub(super) fn word(self, standing: Standing) -> &'static str {
         match (self, standing) {
-            (Self::Verdict, Standing::Good) => "good",
-            (Self::Verdict, Standing::Bad) => "bad",
+            (Self::Verdict, Standing::Good) => "in tolerance",
+            (Self::Verdict, Standing::Bad) => "out of tolerance",
             (Self::Verdict, Standing::Missing) => "missing",
             (Self::Verdict, Standing::Extra) => "extra",
             (Self::Change, Standing::Good) => "unchanged",
             (Self::Change, Standing::Bad) => "changed",
             (Self::Change, Standing::Missing) => "lost",
             (Self::Change, Standing::Extra) => "added",
-            (_, Standing::Unjudged) => "not judged",
+            (_, Standing::Unjudged) => "not verified",
         }
     }
 
     /// In the legend.
     pub(super) fn legend(self, standing: Standing) -> &'static str {
         match (self, standing) {
-            (Self::Verdict, Standing::Good) => "within tolerance",
+            (Self::Verdict, Standing::Good) => "in tolerance",
             (Self::Verdict, Standing::Bad) => "out of tolerance",
             (Self::Verdict, Standing::Missing) => "missing: not made",
-            (Self::Verdict, Standing::Extra) => "extra: not wanted",
-            (Self::Change, Standing::Good) => "as before",
-            (Self::Change, Standing::Bad) => "changed: sign at the old place",
-            (Self::Change, Standing::Missing) => "lost: made before",
-            (Self::Change, Standing::Extra) => "added: not made before",
-            (_, Standing::Unjudged) => "hole, not judged",
+            (Self::Verdict, Standing::Extra) => "extra: not in the reference",
+            (Self::Change, Standing::Good) => "unchanged",
+            (Self::Change, Standing::Bad) => "changed: symbol at the old position",
+            (Self::Change, Standing::Missing) => "lost: only in the old program",
+            (Self::Change, Standing::Extra) => "added: only in the new program",
+            (_, Standing::Unjudged) => "hole, not verified",
         }
     }
 
@@ -58,16 +58,16 @@ impl Question {
     /// At a line to where a hole stands in truth.
     pub(super) fn astray(self) -> &'static str {
         match self {
-            Self::Verdict => "to where the hole is instead",
-            Self::Change => "to where the hole is now",
+            Self::Verdict => "to the actual position",
+            Self::Change => "to the new position",
         }
     }
 
     /// Before the diameter of the circle that a misfit is drawn in.
     pub(super) fn misfit(self) -> &'static str {
         match self {
-            Self::Verdict => "misfit in its zone",
-            Self::Change => "way from the old place in a circle",
+            Self::Verdict => "deviation in the tolerance zone",
+            Self::Change => "displacement from the old position in a circle",
         }
     }
 
@@ -81,7 +81,7 @@ impl Question {
         }
         let is_good = all == good && extra + others == 0;
         if is_good && self == Self::Verdict {
-            return Some((Standing::Good, format!("PASS: {good} of {good} holes")));
+            return Some((Standing::Good, format!("PASS: {good} of {good} holes in tolerance")));
         }
         let mut words = match all {
             0 => Vec::new(),
