@@ -164,10 +164,9 @@ impl<'m> Extractor<'m> {
         }
         let mut findings = self.findings.finish();
         findings.extend(self.too_many.map(|place| {
-            let message =
-                format!("more than {PASSES} feeds into the part: those from here on aren't looked at");
+            let message = format!("more than {PASSES} feeds into the part: nothing after this is checked");
             let finding = Diagnostic::new(Severity::Alarm, "limit", message).at(place);
-            finding.help("does a loop never end? else split the program")
+            finding.help("check for a loop that never ends; otherwise split the program")
         }));
         let holes = group::holes(&self.passes, self.machine);
         Extracted {

@@ -17,12 +17,12 @@ pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> S
     if let Some(field) = quoted(message, "unknown field ") {
         let allowed = message.split_once("expected ").map_or("no keys", |(_, rest)| rest);
         let allowed = allowed.trim_start_matches("one of ").replace('`', "").replace(" or ", ", ");
-        return format!("key '{}' is not known; allowed: {allowed}", place.beside(field));
+        return format!("key '{}' is unknown; allowed: {allowed}", place.beside(field));
     }
     if let Some((found, wanted)) =
         message.strip_prefix("invalid length ").and_then(|rest| rest.split_once(", expected "))
     {
-        return format!("key '{}' has {found} values: {wanted} are needed", place.name());
+        return format!("key '{}' has {found} values: {wanted} are required", place.name());
     }
     let Some(mismatch) = message.strip_prefix("invalid type: ") else { return message.to_owned() };
     let Some((found, expected)) = mismatch.split_once(", expected ") else { return message.to_owned() };
@@ -34,7 +34,7 @@ pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> S
         other if other.starts_with("struct") => "a table",
         other => other,
     };
-    format!("key '{}' is {}: {expected} is needed", place.name(), found.replace('`', ""))
+    format!("key '{}' is {}: {expected} is required", place.name(), found.replace('`', ""))
 }
 
 /// The first word in backquotes behind `before`.

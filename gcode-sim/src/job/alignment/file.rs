@@ -170,7 +170,8 @@ impl FileSineTable {
         let (height, most) = (gauge::height(Mm(table.length), Deg(table.phi)).0, table.gauge_blocks.total());
         if height > most.mm() {
             let message = format!(
-                "key 'sine_table.gauge_blocks' is '{}': all its blocks together are {most} mm high, and L*sin(phi) is {height:.3} mm",
+                "key 'sine_table.gauge_blocks' is '{}': all its blocks together are {most} mm high, \
+                 L*sin(phi) is {height:.3} mm",
                 table.gauge_blocks.name
             );
             return Err(reader.error(&self.gauge_blocks, message));
@@ -178,8 +179,8 @@ impl FileSineTable {
         let setting = gauge::setting(Mm(table.length), Deg(table.phi), &table.gauge_blocks);
         if setting.stack.blocks.is_empty() && table.phi > 0.0 {
             let message = format!(
-                "key 'sine_table.phi' is {}: L*sin(phi) is {:.4} mm, and no block of '{}' comes nearer to it than none; put blocks under \
-                 both rollers and choose the phi that their difference makes, or 0",
+                "key 'sine_table.phi' is {}: L*sin(phi) is {:.4} mm, lower than any stack of '{}'; put \
+                 blocks under both rollers and choose the phi of their difference, or 0",
                 table.phi, setting.height.0, table.gauge_blocks.name
             );
             return Err(reader.error(&self.phi, message));
@@ -196,8 +197,9 @@ impl FileChord {
         let e_radius = radius("chord.e_radius", &self.e_radius)?;
         let f_radius = radius("chord.f_radius", &self.f_radius)?;
         if e_radius == f_radius {
-            let message =
-                format!("key 'chord.f_radius' is {f_radius}: as large as e_radius, and there is no chord");
+            let message = format!(
+                "key 'chord.f_radius' is {f_radius}, equal to e_radius: E and F need different values"
+            );
             return Err(reader.error(&self.f_radius, message));
         }
         let circle = length(reader, "chord.circle", &self.circle)?;
@@ -249,7 +251,8 @@ impl FileChord {
         }
         if search < 8.0 * circle {
             let message = format!(
-                "key 'chord.circle' is {circle}: at most an eighth of 'probe.search', which is {search} mm, for the surface falls within the circle"
+                "key 'chord.circle' is {circle}: at most an eighth of 'probe.search', which is {search} \
+                 mm, because the surface falls within the circle"
             );
             return Err(reader.error(&self.circle, message));
         }
@@ -261,8 +264,8 @@ impl FileChord {
             let part = up / (across * across + up * up).sqrt();
             if part < STEEP {
                 let message = format!(
-                    "key '{key}' is {x}: the surface stands at {:.1} degrees to y there, and less than {:.1} is too steep to \
-                     be touched along y; choose it nearer to the pole",
+                    "key '{key}' is {x}: the surface is at {:.1} degrees to y there, and less than {:.1} \
+                     is too steep for a touch along y; choose it nearer to the pole",
                     Deg::asin(part).0,
                     Deg::asin(STEEP).0
                 );

@@ -121,7 +121,7 @@ pub fn error_file(text: &str, machine: &Machine) -> Result<Vec<Source>, JobError
     if let Some(linear) = &file.linear {
         collector.linear(linear)?;
         if let Some(wave) = &linear.wave {
-            let message = "key 'linear.wave' goes into a machine file: a budget draws each hole anew";
+            let message = "key 'linear.wave' is for a machine file: a budget draws each hole anew";
             return Err(reader.error(wave, message));
         }
     }
@@ -135,7 +135,7 @@ pub fn error_file(text: &str, machine: &Machine) -> Result<Vec<Source>, JobError
     let rotary = file.rotary.as_ref().and_then(|rotary| rotary.seed.as_ref());
     let head = file.head.as_ref().and_then(|head| head.seed.as_ref());
     if let Some(seed) = linear.or(rotary).or(head) {
-        return Err(reader.error(seed, "key 'seed' goes into a machine file: a budget has --seed"));
+        return Err(reader.error(seed, "key 'seed' is for a machine file: a budget has --seed"));
     }
     Ok(collector.found)
 }

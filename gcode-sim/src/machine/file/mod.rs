@@ -103,7 +103,7 @@ impl Machine {
         for tool in file.tool.iter().flatten() {
             let checked = tool.check(&reader, &head)?;
             if tools.iter().any(|other| other.number == checked.number) {
-                let message = format!("key 'tool.number': {} is there twice", checked.number);
+                let message = format!("key 'tool.number': {} is used twice", checked.number);
                 return Err(reader.error(&tool.number, message));
             }
             tools.push(checked);
