@@ -46,7 +46,7 @@ pub fn needed(job: &Job, package: &Package, begins: &[Begin]) -> Result<Vec<Need
             let Some((value, turned)) = turned(row, &usual) else { continue };
             let other = trace(turned)?;
             if other != wanted && found.iter().all(|known| known.key != row.key) {
-                let otherwise = other.alarm.unwrap_or_else(|| "the machine moves otherwise".to_owned());
+                let otherwise = other.alarm.unwrap_or_else(|| "the machine moves differently".to_owned());
                 found.push(Needed { key: row.key, meaning: row.meaning, value, otherwise });
             }
         }

@@ -37,7 +37,7 @@ pub(super) fn too_short(bench: &Bench<'_>, what: &str, farthest: f64) -> Option<
     let enough = ((farthest + MARGIN) * 10.0).ceil() / 10.0;
     (enough > bench.job.probe_search && enough <= 1000.0).then(|| {
         format!(
-            "{}: {what} up to {} mm from where they should be, and key 'probe.search' is {}: {} would do\n",
+            "{}: {what} up to {} mm from their nominal position, key 'probe.search' is {}: use {}\n",
             bench.name(),
             short((farthest * 100.0).ceil() / 100.0),
             short(bench.job.probe_search),
