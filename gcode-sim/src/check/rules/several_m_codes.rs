@@ -26,7 +26,8 @@ pub(super) fn find(subject: &Subject<'_>, unit: &Unit<'_>) -> Vec<Finding> {
                     let alarm = Alarm::PluralM { first, second: code }.at(word.span);
                     found.push(finding(subject, unit, NAME, block, &alarm));
                 } else {
-                    let message = format!("M{first} is lost: only the last M code of a block counts");
+                    let message =
+                        format!("M{first} is lost: of several M codes in a block only the last counts");
                     let help = "write each in a block of its own; M3B=1 is for a control that accepts three";
                     found.push(unit.warning(NAME, block, message).on(word.span).help(help));
                 }
