@@ -254,7 +254,7 @@ mod tests {
         );
         assert!(told(no_number('X'), "G00 X\u{2013}10.", "X").contains("type the minus"));
         assert!(told(not_a_word(), "G00\u{a0}X1.", "\u{a0}X").contains("type a space"));
-        assert!(told(not_a_word(), "G00 \u{ff38}10.", "\u{ff38}").contains("type 'X' of half its width"));
+        assert!(told(not_a_word(), "G00 \u{ff38}10.", "\u{ff38}").contains("type 'X' in half width"));
         assert!(told(not_a_word(), "G00 é", "é").contains("'é' (U+00E9)"));
         // In a comment anything may stand.
         assert!(!told(no_number('X'), "G00 X (é)", "X").contains("character"));
@@ -262,7 +262,7 @@ mod tests {
 
     #[test]
     fn commas_for_points_and_between_words() {
-        assert_eq!(told(not_a_word(), "G00 X10,5", ",5"), "a decimal point is a point: write 10.5");
+        assert_eq!(told(not_a_word(), "G00 X10,5", ",5"), "write 10.5: the decimal separator is a point");
         assert!(told(Alarm::CornerWords, "G00 X10., Y5.", ", Y").contains("without commas"));
         assert!(!told(Alarm::CornerWords, "G01 X10.,R1.,C1.", ",R1").contains("without commas"));
     }
@@ -271,12 +271,12 @@ mod tests {
     fn what_other_languages_have() {
         assert_eq!(
             told(Alarm::MixedStatements, "#1=1E3", "#1"),
-            "numbers have no exponent: write 1000 for 1E3"
+            "write 1000 for 1E3: numbers have no exponent"
         );
         let alarm = Alarm::ImproperAddress { letter: 'E' };
-        assert_eq!(told(alarm, "G00 X2.5E-2", "E"), "numbers have no exponent: write 0.025 for 2.5E-2");
+        assert_eq!(told(alarm, "G00 X2.5E-2", "E"), "write 0.025 for 2.5E-2: numbers have no exponent");
         assert!(told(no_number('E'), "IF[#1EQ1]THEN #2=1 ELSE #2=2", "ELSE").contains("no ELSE"));
-        assert_eq!(told(Alarm::MissingEquals, "#1=5#2", "#2"), "is + - * or / missing before #2?");
+        assert_eq!(told(Alarm::MissingEquals, "#1=5#2", "#2"), "check for a missing + - * or / before #2");
         assert_eq!(told(no_value(), "GOTO N10", "N10"), "write GOTO 10, without N");
     }
 
@@ -284,15 +284,18 @@ mod tests {
     fn numbers_that_can_not_be_meant() {
         assert_eq!(
             told(Alarm::IllegalMinus { letter: 'Z' }, "G00 Z--5", "-5"),
-            "one sign is enough: write Z-5, or Z-[-5]"
+            "write one sign: Z-5, or Z-[-5]"
         );
-        assert_eq!(told(Alarm::DivideByZero, "#1=10/0", "10/0"), "the divisor is 0 as it is written");
+        assert_eq!(told(Alarm::DivideByZero, "#1=10/0", "10/0"), "correct the divisor: it is written as 0");
         assert!(told(Alarm::DivideByZero, "#1=10/#2", "10/#2").contains("vacant"));
         let small = |radius: f64| Alarm::RadiusTooSmall { radius, half: 5.0 };
-        assert_eq!(told(small(0.004), "G02 X10. R4", "R4"), "R4 without a point is 0.004 mm here: write R4.");
+        assert_eq!(
+            told(small(0.004), "G02 X10. R4", "R4"),
+            "write R4.: R4 without a decimal point is 0.004 mm here"
+        );
         // Where numbers are calculator's, the point is not what is wrong.
         assert!(!told(small(4.0), "G02 X10. R4", "R4").contains("without"));
-        let alarm = Alarm::NotSimulated { what: "X in such a block".into() };
+        let alarm = Alarm::NotSimulated { what: "X in this block".into() };
         assert!(told(alarm, "G04 X1.5 P500", "X1.5").contains("one time"));
     }
 }

@@ -191,8 +191,8 @@ mod tests {
                 "line 3: hole 2 (id '1'): the axis has the length 2.0000000: divide i, j, k by it",
             ),
             (row("1,0,0,0,0,1,0,-5,6"), "line 3: hole 2 (id '1'): the depth is -5: a number above 0"),
-            (row("0,0,0,0,0,1,0,5,6"), "id '0' is there twice, in hole 1 and hole 2: give each its own"),
-            (row("1,0,0"), "line 3: 3 columns where the header has 9"),
+            (row("0,0,0,0,0,1,0,5,6"), "id '0' is used twice, in hole 1 and hole 2: give each its own"),
+            (row("1,0,0"), "line 3: 3 columns, the header has 9"),
             (
                 "id,x,y,z,i,j,depth,diameter\n".to_owned(),
                 "line 1: column 'k' is missing: the header is id,x,y,z,i,j,k,depth,diameter",

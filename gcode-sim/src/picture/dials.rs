@@ -167,6 +167,6 @@ mod tests {
         assert_eq!((dials.of(0), dials.of(8)), (None, None));
         assert!(dials.of(4).is_some());
         assert!(dials.is_crowded(0, 10.0) && !dials.is_crowded(4, 10.0));
-        assert_eq!(dials.note(&scene).unwrap(), "Misfits of 2 of 9 holes not drawn: no room.");
+        assert_eq!(dials.note(&scene).unwrap(), "Deviations of 2 of 9 holes not drawn: no room.");
     }
 }

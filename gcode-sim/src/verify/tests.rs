@@ -143,7 +143,7 @@ fn five_right_holes_pass_and_rounding_explains_what_is_left() {
     let b = 1158.8 * Deg(30.0).cos() * Deg(0.0005).to_rad();
     let rounding = verdict.rounding.unwrap();
     assert!(rounding > 2.0 * b && rounding < 2.0 * (b + 0.001), "{rounding}");
-    assert!(verdict.worst_from.unwrap().contains("within what rounding explains"));
+    assert!(verdict.worst_from.unwrap().contains("within the effect of rounding"));
 }
 
 /// One hole at azimuth 0, so that B has nothing to round: X and Y alone, and the head where its angle isn't whole. Half of

@@ -218,7 +218,7 @@ mod tests {
         let found = messages(NAME, "O1\n#1=0\nWHILE[#1 LT #2]DO1\nG65 P2 X#1\nEND1\nM30\nO2\n#1=5\nM99\n");
         assert_eq!(
             found,
-            ["once begun, this loop never ends: nothing in it changes #1 or #2"],
+            ["this loop never ends: no block in it changes #1 or #2"],
             "a macro has its own #1"
         );
     }

@@ -108,6 +108,6 @@ mod tests {
     fn overlapping_loops_are_one_fault() {
         let text = "O1\n#1=0\nWHILE[#1 LT 3]DO1\nWHILE[#1 LT 2]DO2\n#1=#1+1\nEND1\nEND2\nM30\n";
         let found = messages(NAME, text);
-        assert_eq!(found, ["PS0124: END1 while DO2 is still open: the loops overlap"]);
+        assert_eq!(found, ["PS0124: END1 while DO2 is open: the loops overlap"]);
     }
 }

@@ -79,7 +79,7 @@ mod tests {
     fn what_it_costs_is_told() {
         assert_eq!(
             messages(NAME, "O1\n#2=3.14*500.\nM30\n"),
-            ["3.14 is not π but 0.0507 % too small: round a diameter of 500 mm that is 0.796 mm"]
+            ["3.14 is used for π: 0.0507 % too small, an error of 0.796 mm round a diameter of 500 mm"]
         );
     }
 }

@@ -75,6 +75,6 @@ mod tests {
     #[test]
     fn a_run_of_blocks_is_one_finding() {
         let found = messages(NAME, "O1\nGOTO 5\nG0 X1.\nG0 X2.\nN5 M30\n");
-        assert_eq!(found, ["nothing reaches this block and what follows, up to line 4"]);
+        assert_eq!(found, ["this block and the following ones, up to line 4, are never reached"]);
     }
 }

@@ -59,7 +59,7 @@ mod tests {
         assert_eq!(lines(NAME, "O1\nIF[#9 EQ #0]THEN #10=#9*2\nM30\n"), [2]);
         assert_eq!(lines(NAME, "O1\nIF[#8 NE #0]THEN #10=#500\nIF[#9 LT 2]THEN #11=1\nM30\n"), [3]);
         let found = messages(NAME, "O1\nG0 Y#2\nM30\n");
-        assert_eq!(found, ["#2 is read and nothing has set it: its word is ignored"]);
+        assert_eq!(found, ["#2 is read but never set: its word is ignored"]);
     }
 
     #[test]
