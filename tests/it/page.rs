@@ -440,7 +440,8 @@ fn a_program_alone_has_a_page_too() {
     let judged = page(place.path(), &format!("verify {program} --reference {example}/job.toml"));
     let text = std::fs::read_to_string(&judged).unwrap();
     assert!(
-        text.contains("PASS, 5 of 5 holes good") && text.contains("Predicted by simulation, not measured")
+        text.contains("PASS, 5 of 5 holes in tolerance")
+            && text.contains("Predicted by simulation, not measured")
     );
     assert!(!text.contains("id=\"changes\"") && !text.contains("canvas-old"));
     // `sha256sum job.toml`, as the page writes it.

@@ -54,9 +54,7 @@ fn modes_commanded_elsewhere_before_the_first_move_are_the_same() {
 fn an_axis_that_is_no_longer_sent_anywhere_is_told() {
     assert_eq!(
         changed("G0 X0 Y0\n", "G0\n"),
-        [
-            "start: X and Y are no longer positioned before the first move: the start position is undefined"
-        ]
+        ["start: X and Y are no longer positioned before the first move: the start position is undefined"]
     );
     assert_eq!(
         changed("G0 X0 Y0\n", "G91 G0 X0 Y0\nG90\n")[0],

@@ -250,7 +250,7 @@ mod tests {
     fn characters_that_only_look_right() {
         assert!(
             told(no_number('X'), "G00 X\u{2212}10.", "X")
-                .contains("U+2212 is no character of a control: type the minus")
+                .contains("U+2212 is not a character of a control: type the minus")
         );
         assert!(told(no_number('X'), "G00 X\u{2013}10.", "X").contains("type the minus"));
         assert!(told(not_a_word(), "G00\u{a0}X1.", "\u{a0}X").contains("type a space"));
@@ -263,8 +263,8 @@ mod tests {
     #[test]
     fn commas_for_points_and_between_words() {
         assert_eq!(told(not_a_word(), "G00 X10,5", ",5"), "write 10.5: the decimal separator is a point");
-        assert!(told(Alarm::CornerWords, "G00 X10., Y5.", ", Y").contains("without commas"));
-        assert!(!told(Alarm::CornerWords, "G01 X10.,R1.,C1.", ",R1").contains("without commas"));
+        assert!(told(Alarm::CornerWords, "G00 X10., Y5.", ", Y").contains("not separated by commas"));
+        assert!(!told(Alarm::CornerWords, "G01 X10.,R1.,C1.", ",R1").contains("not separated by commas"));
     }
 
     #[test]

@@ -120,7 +120,7 @@ alarm[PS0112]: division by zero
   |    ^^^^
   |
   = called from O0001.nc:2: G65 P2 A1.
-  = help: a vacant variable counts as 0 here
+  = help: check the divisor: a vacant variable counts as 0
 ";
         assert_eq!(text, wanted);
     }

@@ -202,7 +202,7 @@ hole         x         y         z       dx       dy       dz   entry  bottom   
 1      420.000   674.930     0.000  +0.0001   0.0000   0.0000  0.0001  0.0001  0.0000   0.0000  0.0002  0.0000  pass
 2      420.000   674.930     0.000  +0.0617   0.0000   0.0000  0.0617  0.0617  0.0000   0.0000  0.1234  0.0234  FAIL position
 
-FAIL     1 of 17 holes good, 15 missing
+FAIL     1 of 17 holes in tolerance, 15 missing
 worst    Φ0.1234, tolerance Φ0.1: hole 2, …
          made by O8101 line 31, T2, called from O8100 line 20
 rounding to the control's least increment alone can cause Φ0.0211: 21.1 % of the tolerance zone
@@ -230,7 +230,7 @@ hole 1              x         y         z         i         j         k         
  position   Φ0.0002, tolerance Φ0.1, out of tolerance by 0.0000 (entry 0.0001, bottom 0.0001, tilt 0.0000°)
  verdict    pass; made by O8101 line 31, T2, called from O8100 line 20
 
-FAIL     1 of 17 holes good, 15 missing
+FAIL     1 of 17 holes in tolerance, 15 missing
 worst    Φ0.1234, tolerance Φ0.1: hole 2, …
          made by O8101 line 31, T2, called from O8100 line 20
 rounding to the control's least increment alone can cause Φ0.0211: 21.1 % of the tolerance zone

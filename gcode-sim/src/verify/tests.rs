@@ -181,7 +181,7 @@ fn a_hole_0_08_mm_aside_fails_by_its_position_alone() {
         assert_eq!((verdict.verdict, codes(&verdict)), (Answer::Fail, vec!["hole-position"]));
         assert!((verdict.holes[0].phi - 0.16).abs() < 0.002, "{}", verdict.holes[0].phi);
         assert_eq!(verdict.holes.iter().filter(|hole| hole.ok).count(), 4);
-        assert!(verdict.worst_from.unwrap().contains("more than rounding"));
+        assert!(verdict.worst_from.unwrap().contains("beyond the effect of rounding"));
     }
 }
 
@@ -192,7 +192,7 @@ fn a_hole_that_leans_by_0_7_degrees_fails_by_its_tilt() {
     assert_eq!((verdict.verdict, codes(&verdict)), (Answer::Fail, vec!["hole-tilted"]));
     let hole = &verdict.holes[2];
     assert!((hole.at_bottom - 0.1833).abs() < 0.01 && hole.at_entry < 0.01, "{hole:?}");
-    assert!(verdict.findings[0].message.contains("leans by 0.7"), "{}", verdict.findings[0].message);
+    assert!(verdict.findings[0].message.contains("is tilted by 0.7"), "{}", verdict.findings[0].message);
 }
 
 /// The feed is right and the head isn't: the hole leans, and the tool was dragged sideways.

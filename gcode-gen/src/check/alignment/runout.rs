@@ -199,7 +199,7 @@ mod tests {
         assert!(
             warned(("radius = 3.0", "radius = 3.0\nnoise = 0.003"))
                 .unwrap()
-                .contains("noise of 0.003 mm a touch")
+                .contains("noise of 0.003 mm per touch")
         );
         assert!(warned(("[-25.0, 25.0, 11]", "[-15.0, 15.0, 11]")).is_some());
         assert_eq!(warned(("[-25.0, 25.0, 11]", "[-40.0, 40.0, 11]")), None);
@@ -210,10 +210,10 @@ mod tests {
         for (change, wanted) in [
             (
                 ("[150.0, 420.0]", "[150.0, 151.0]"),
-                "tilt can't be told from shift at y 150 and 151 over B -25 to 25",
+                "tilt cannot be distinguished from shift at y 150 and 151 over B -25 to 25",
             ),
             (("[-25.0, 25.0, 11]", "[-1.0, 1.0, 11]"), "wider angles"),
-            (("b = 724.3", "b = 1158.8"), "a sphere has no tilt"),
+            (("b = 724.3", "b = 1158.8"), "the tilt of a sphere cannot be measured"),
         ] {
             let job = job(change);
             let told = untold(&job, passed_on(&job).unwrap_err());

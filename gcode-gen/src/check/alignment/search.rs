@@ -73,9 +73,9 @@ mod tests {
     fn a_search_that_is_too_short_is_told_with_one_that_does() {
         let told = refusals("2.0");
         let advised: Vec<f64> = told
-            .split("'probe.search' is 2: ")
+            .split("'probe.search' is 2: use ")
             .skip(1)
-            .map(|rest| rest.split(" would do").next().unwrap().parse().unwrap())
+            .map(|rest| rest.split('\n').next().unwrap().parse().unwrap())
             .collect();
         assert!(advised.len() == 2 && advised.iter().all(|value| (3.4..6.0).contains(value)), "{told}");
         let most = advised.into_iter().fold(0.0, f64::max);

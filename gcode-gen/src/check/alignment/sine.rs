@@ -105,8 +105,8 @@ mod tests {
     #[test]
     fn a_table_that_some_tilts_cannot_be_set_on_is_warned_of() {
         for (phi, edge, lowest) in [
-            ("0.5", Some("0.5 degrees one way takes it beyond 0"), true),
-            ("44.9", Some("0.1 degrees one way takes it beyond 45"), false),
+            ("0.5", Some("0.5 degrees in one direction takes it beyond 0"), true),
+            ("44.9", Some("0.1 degrees in one direction takes it beyond 45"), false),
             ("38.5", None, false),
             ("5.0", None, false),
         ] {

@@ -58,10 +58,10 @@ mod tests {
     #[test]
     fn the_sense_of_the_table_is_that_of_its_sign() {
         assert!(sense(1).contains(
-            "from X towards Y (sine_table.sign 1). A tilt #583 above 0 is taken away by lower blocks"
+            "from X towards Y (sine_table.sign 1). A tilt #583 above 0 is corrected by lower blocks"
         ));
         assert!(sense(-1).contains(
-            "from Y towards X (sine_table.sign -1). A tilt #583 above 0 is taken away by higher blocks"
+            "from Y towards X (sine_table.sign -1). A tilt #583 above 0 is corrected by higher blocks"
         ));
     }
 }

@@ -246,7 +246,7 @@ depth = 15.0
              diameter 6 as the last one"
         );
         let large = format!("{MINIMAL}{}", tool(7, 9.0));
-        assert!(Job::parse(&large).unwrap_err().to_string().contains("no tool of [[tool]] is as small"));
+        assert!(Job::parse(&large).unwrap_err().to_string().contains("every [[tool]] is larger"));
         let twice = format!("{MINIMAL}{}{}", tool(7, 6.0), tool(7, 6.0));
         assert_eq!(
             Job::parse(&twice).unwrap_err().to_string(),

@@ -115,7 +115,10 @@ mod tests {
         let good = |text: &str| Some((Standing::Good, text.to_owned()));
         let bad = |text: &str| Some((Standing::Bad, text.to_owned()));
         assert_eq!(headline(Question::Verdict, [4, 0, 0, 0]), good("PASS: 4 of 4 holes in tolerance"));
-        assert_eq!(headline(Question::Verdict, [2, 0, 1, 1]), bad("FAIL: 2 of 3 good, 1 missing, 1 extra"));
+        assert_eq!(
+            headline(Question::Verdict, [2, 0, 1, 1]),
+            bad("FAIL: 2 of 3 in tolerance, 1 missing, 1 extra")
+        );
         assert_eq!(headline(Question::Change, [4, 0, 0, 0]), good("4 of 4 unchanged"));
         assert_eq!(headline(Question::Change, [2, 1, 0, 1]), bad("2 of 3 unchanged, 1 changed, 1 added"));
         assert_eq!(headline(Question::Change, [0; 4]), None);
