@@ -13,8 +13,8 @@ const BASIS: &str = "predicted by simulation, not measured";
 
 /// The schemas of results.
 pub const FORMATS: &[Format] = &[
-    result::<EmitReport<'_>>("emit", "what emit answers"),
-    result::<SheetReport>("sheet", "what sheet answers"),
+    result::<EmitReport<'_>>("emit", "the result of emit"),
+    result::<SheetReport>("sheet", "the result of sheet"),
 ];
 
 /// The document of `emit --format json`.
@@ -147,7 +147,7 @@ impl SheetReport {
             let _ = writeln!(text, "run {run} min, {stops}, {changes}: {hours} machine hours; {basis}");
         }
         if self.costs.is_empty() {
-            text.push_str("no rate was given: the sheet shows time only\n");
+            text.push_str("no rate given: the sheet shows time only\n");
         }
         for CostReport { machine, currency, cost, change } in &self.costs {
             let price = format!("{} {currency} a part", near(*cost, 2));

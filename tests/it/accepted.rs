@@ -115,7 +115,7 @@ fn every_example_does_what_was_accepted_and_every_macro_is_in_one() {
             .ok()
             .map(|text| Record::from_json(&text).unwrap_or_else(|e| panic!("{}: {e}", file.display())));
         let change = match &known {
-            Some(known) if known.is_legacy() => Some("accepted when less was noted\n".to_owned()),
+            Some(known) if known.is_legacy() => Some("accepted by an earlier version\n".to_owned()),
             Some(known) => told(&name, known, &record),
             None => Some("nothing is accepted yet\n".to_owned()),
         };

@@ -98,7 +98,7 @@ fn what_is_called_by_number_counts_where_the_tables_hold_the_same() {
         assert_eq!(found.len(), 1, "{from} -> {to}: {found:?}");
         assert!(found[0].starts_with(what), "{from} -> {to}: {found:?}");
         let stays = matches!(to, "G55 G0 X0 Y30." | "G61 G41 D1 G1");
-        assert_eq!(found[0].ends_with(", and stays so for the next program"), stays, "{found:?}");
+        assert_eq!(found[0].ends_with(", also for the next program"), stays, "{found:?}");
     }
 }
 
@@ -110,15 +110,15 @@ fn mist_is_no_coolant() {
 #[test]
 fn a_lost_spot_drilling_is_told_at_its_hole() {
     let found = changed("Z-1. R2. F100\nX20.\n", "Z-1. R2. F100\n");
-    assert_eq!(found, ["hole-tool: hole 2: no longer made by T1, in all by T2"]);
+    assert_eq!(found, ["hole-tool: hole 2: no longer made by T1, in total by T2"]);
 }
 
 #[test]
 fn a_stop_that_comes_later_is_one_entry() {
     let old = "O1\nG0 X1.\nM00\nG0 Y5.\nM30\n";
     let new = "O1\nG0 X1.\nG0 Y5.\nM00\nM30\n";
-    assert_eq!(messages(old, new), ["stop: the stop M00 comes later than before"]);
-    assert_eq!(messages(new, old), ["stop: the stop M00 comes earlier than before"]);
+    assert_eq!(messages(old, new), ["stop: the stop M00 is executed later than before"]);
+    assert_eq!(messages(new, old), ["stop: the stop M00 is executed earlier than before"]);
 }
 
 #[test]
@@ -132,20 +132,20 @@ fn behind_an_alarm_nothing_is_compared() {
 #[test]
 fn a_block_skip_and_codes_that_move_nothing_here_are_one_entry_each() {
     for (from, to, told) in [
-        ("G0 X0 Y30. M1", "/G0 X0 Y30. M1", "block-skip: the block skip / is new"),
-        ("G0 X0 Y30. M1", "/3 G0 X0 Y30. M1", "block-skip: the block skip /3 is new"),
-        ("G0 X0 Y30. M1", "G0 X0 /2 Y30. M1", "block-skip: the block skip /2 is new"),
-        ("X50.\nG40", "G9 X50.\nG40", "path-mode: G09 is new"),
-        ("T1 M6", "G5.1 Q1\nT1 M6", "path-mode: G05.1 Q1 is new"),
-        ("T1 M6", "G8 P1\nT1 M6", "path-mode: G08 P1 is new"),
-        ("T1 M6", "G25\nT1 M6", "g-code: G25 is new"),
-        ("T1 M6", "M29 S500\nT1 M6", "m-code: M29 is new"),
+        ("G0 X0 Y30. M1", "/G0 X0 Y30. M1", "block-skip: the block skip / is added"),
+        ("G0 X0 Y30. M1", "/3 G0 X0 Y30. M1", "block-skip: the block skip /3 is added"),
+        ("G0 X0 Y30. M1", "G0 X0 /2 Y30. M1", "block-skip: the block skip /2 is added"),
+        ("X50.\nG40", "G9 X50.\nG40", "path-mode: G09 is added"),
+        ("T1 M6", "G5.1 Q1\nT1 M6", "path-mode: G05.1 Q1 is added"),
+        ("T1 M6", "G8 P1\nT1 M6", "path-mode: G08 P1 is added"),
+        ("T1 M6", "G25\nT1 M6", "g-code: G25 is added"),
+        ("T1 M6", "M29 S500\nT1 M6", "m-code: M29 is added"),
     ] {
         assert_eq!(changed(from, to), [told], "{to}");
         let gone = PART.replace(from, to);
         assert_eq!(
             self::messages(&gone, PART),
-            [told.replace(" is new", " is no longer there")],
+            [told.replace(" is added", " is removed")],
             "{to} taken away"
         );
     }
@@ -183,9 +183,9 @@ fn what_is_left_names_the_block_that_wrote_it() {
     assert_eq!(
         shown,
         [
-            "variable: #501 is left 3 instead of 2 by #501=#1, from G65 P2 A3.",
-            "work-offset: G54 X is left 3 instead of 2 by G10 L2 P1 X#1, from G65 P2 A3.",
-            "tool-offset: H5 wear is left 3 instead of 2 by #2005=#1, from G65 P2 A3.",
+            "variable: #501 ends as 3 instead of 2 by #501=#1, from G65 P2 A3.",
+            "work-offset: G54 X ends as 3 instead of 2 by G10 L2 P1 X#1, from G65 P2 A3.",
+            "tool-offset: H5 wear ends as 3 instead of 2 by #2005=#1, from G65 P2 A3.",
         ]
     );
 }
@@ -195,7 +195,7 @@ fn what_is_left_names_the_block_that_wrote_it() {
 fn a_hole_that_a_tool_makes_once_more_is_one_entry() {
     let again = "T1 M6\nG43 H1 G0 Z50.\nG98 G81 X10. Y0 Z-1. R2. F100\nG80\n";
     let found = changed("T2 M6", &format!("{again}T2 M6"));
-    assert_eq!(found, ["hole-tool: hole 1: made once more by T1, in all by T1 (2 times) and T2"]);
+    assert_eq!(found, ["hole-tool: hole 1: one more pass by T1, in total by T1 (2 times) and T2"]);
 }
 
 #[test]
@@ -224,7 +224,7 @@ fn the_return_level_alone_is_one_entry() {
     let found = changed("G98 G81 X10. Y0 Z-9.", "G99 G81 X10. Y0 Z-9.");
     assert_eq!(found.len(), 1, "{found:#?}");
     assert!(found[0].starts_with("return-level: G99 instead of G98: "), "{found:#?}");
-    let both = ", and stays so for the next program; moves end elsewhere, by Z -48.0000 (a rapid, 3 feeds)";
+    let both = ", also for the next program; moves end at a different point: Z -48.0000 (a rapid, 3 feeds)";
     assert!(found[0].ends_with(both), "{found:#?}");
 }
 
@@ -235,12 +235,12 @@ fn one_shifted_word_is_one_entry() {
     // The rapid to X0 wasn't needed before.
     assert_eq!(
         messages(old, &old.replace("G0 X0 Y0", "G0 X0.01 Y0")),
-        ["move-shifted: moves end elsewhere, by X +0.0100 (2 rapids, a feed, the first of them new)"]
+        ["move-shifted: moves end at a different point: X +0.0100 (2 rapids, a feed, the first added)"]
     );
     let of_arc = messages(old, &old.replace("X30. I5.", "X30.02 I5.01"));
     // Its radius is another too, which where it ends doesn't say.
     let shape = "an arc of radius 5.0100 sweeps -180.000° about 25.0100 0.0000 instead of one of 5.0000 -180.000° about 25.0000 0.0000";
-    let shifted = "move-shifted: moves end elsewhere, by X +0.0200 (an arc, a feed, a rapid)";
+    let shifted = "move-shifted: moves end at a different point: X +0.0200 (an arc, a feed, a rapid)";
     assert_eq!(of_arc, [format!("move-arc: {shape}"), shifted.to_owned()]);
 }
 
@@ -249,7 +249,7 @@ fn one_shifted_word_is_one_entry() {
 fn a_longer_way_in_inverse_time_has_no_other_feed() {
     let old = "O1\nG90 G93\nG1 X10. F10.\nX20. F10.\nX30. F20.\nG94\nM30\n";
     let longer = messages(old, &old.replace("X20.", "X20.01"));
-    assert_eq!(longer, ["move-shifted: a feed ends elsewhere, by X +0.0100"]);
+    assert_eq!(longer, ["move-shifted: a feed ends at a different point: X +0.0100"]);
     // F10 over 10 mm is 100 mm/min, F12 is 120.
     let faster = messages(old, &old.replace("X20. F10.", "X20. F12."));
     assert_eq!(faster, ["feed: feed F120 instead of F100"]);
@@ -268,7 +268,7 @@ fn a_tool_called_and_a_speed_that_nothing_takes_up_are_one_entry() {
     let old = "O1\nT1 M6\nT2\nS500 M3\nG0 X1.\nM6\nM5\nT3\nS800\nM41\nG0 X2.\nM30\n";
     for (from, to, entry) in [
         ("T3", "T4", "tool: T4 without M06 instead of T3 without M06"),
-        ("T3\n", "", "tool: T3 without M06 is no longer there"),
+        ("T3\n", "", "tool: T3 without M06 is removed"),
         ("S800", "S900", "spindle: S900 without M03 or M04 instead of S800 without M03 or M04"),
         // Fetched early or late, the same tool is put in.
         ("T2\n", "", "tool: tool T1 instead of tool T2"),
@@ -286,7 +286,7 @@ fn a_switch_of_the_control_is_one_entry() {
     for lost in ["#3003=0", "#3004=7"] {
         assert_eq!(
             messages(old, &old.replace(&format!("{lost}\n"), "")),
-            [format!("switch: {lost} is no longer there")]
+            [format!("switch: {lost} is removed")]
         );
     }
 }
@@ -328,8 +328,9 @@ fn a_peck_more_is_told_by_the_depth() {
 fn a_rapid_where_a_feed_made_a_hole_is_told_as_that() {
     let found = messages(PECKS, &PECKS.replace("G83 Z-10. R2. Q3.", "G81 Z-10. R-10."));
     assert!(
-        found[0]
-            .starts_with("hole-lost: hole 1: a rapid goes to the bottom where a feed did, at 10.000 10.000 "),
+        found[0].starts_with(
+            "hole-lost: hole 1: a rapid instead of a feed goes to the bottom, at 10.000 10.000 "
+        ),
         "{found:?}"
     );
 }
@@ -349,7 +350,7 @@ fn the_arc_behind_a_shifted_end_is_no_other_arc() {
     let old = "O1\nG90 G54 G0 X0 Y0\nG1 X20. F100\nG3 X30. Y20. R20.\nG1 Y30.\nM30\n";
     assert_eq!(
         messages(old, &old.replace("X20.", "X20.01")),
-        ["move-shifted: a feed ends elsewhere, by X +0.0100"]
+        ["move-shifted: a feed ends at a different point: X +0.0100"]
     );
     let other = messages(old, &old.replace("R20.", "R21."));
     assert!(other.len() == 1 && other[0].starts_with("move-arc: "), "{other:?}");

@@ -58,16 +58,20 @@ fn a_fault_put_into_an_example_is_found() {
         (
             " W21.6405",
             "",
-            "missing-argument: O8101 needs W (#23): without it, it stops with MC3010 (W MISSING)",
+            "missing-argument: O8101 needs W (#23): if it is omitted, the program stops with MC3010 (W MISSING)",
         ),
         ("D15. C2. V50. F10.", "D15. C2 V50. F10.", "missing-point: C2 is 0.002 for the macro"),
-        ("G65 P8102", "G65 P8103", "missing-program: PS0076: program O8103 is not here"),
+        ("G65 P8102", "G65 P8103", "missing-program: PS0076: program O8103 is not found"),
         (
             "Y[724.3+0.+50.]",
             "Y(724.3+0.+50.)",
             "round-brackets: PS0005: address Y has no number: round brackets are a comment",
         ),
-        ("N380 M30", "N370 M30", "doubled-n: N370 stands in line 64 already: a search finds one of the two"),
+        (
+            "N380 M30",
+            "N370 M30",
+            "doubled-n: N370 is already defined in line 64: a search finds one of the two",
+        ),
     ];
     for (right, wrong, told) in faults {
         let spoilt = text.replacen(right, wrong, 1);

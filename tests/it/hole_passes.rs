@@ -16,7 +16,7 @@ fn changed(from: &str, to: &str) -> Vec<String> {
 fn a_pilot_elsewhere_is_told_at_its_hole() {
     assert_eq!(
         changed("G81 X10. Y0", "G81 X10.01 Y0"),
-        ["hole-pass: hole 1: pass 1 of 2, by T1, ends elsewhere, by X +0.0100"]
+        ["hole-pass: hole 1: pass 1 of 2, by T1, ends at a different point: X +0.0100"]
     );
     assert_eq!(
         changed("Z-4. R2. F100", "Z-4.01 R2. F100"),
@@ -25,7 +25,7 @@ fn a_pilot_elsewhere_is_told_at_its_hole() {
     // The last pass alone: that is the hole, and it is off its pilot now.
     assert_eq!(
         changed("G83 X10. Y0", "G83 X10.01 Y0"),
-        ["hole-moved: hole 1: moved by +0.0100 +0.0000 +0.0000 mm, pass 1 of 2, by T1, stays where it was"]
+        ["hole-moved: hole 1: moved by +0.0100 +0.0000 +0.0000 mm, pass 1 of 2, by T1, is unchanged"]
     );
     // Deeper than the hole is finished: both are told, in one entry.
     assert_eq!(
@@ -42,9 +42,8 @@ fn a_pilot_that_goes_with_its_hole_is_not_told_again() {
     let apart = PART.replace("G81 X10. Y0", "G81 X10.03 Y0").replace("G83 X10. Y0", "G83 X10.01 Y0");
     assert_eq!(
         messages(PART, &apart),
-        [
-            "hole-moved: hole 1: moved by +0.0100 +0.0000 +0.0000 mm, pass 1 of 2, by T1, ends elsewhere, by X +0.0300"
-        ]
+        ["hole-moved: hole 1: moved by +0.0100 +0.0000 +0.0000 mm, pass 1 of 2, by T1, ends at a different \
+          point: X +0.0300"]
     );
 }
 
@@ -53,8 +52,8 @@ fn a_pilot_that_goes_with_its_hole_is_not_told_again() {
 fn a_rapid_back_to_where_the_other_program_stands_is_told_with_what_leads_away() {
     let old = "O1\nG90 G54 G0 X0 Y0 Z50.\nG0 Y5.\nX10.\nZ2.\nG1 Z-5. F100\nG0 Z50.\nX30.\nM30\n";
     let there_and_back = old.replace("G0 Y5.\n", "G0 Y5.\nX-40.\nX0\n");
-    assert_eq!(messages(old, &there_and_back), ["move-added: a rapid to X-40.0000 is new"]);
-    assert_eq!(messages(&there_and_back, old), ["move-lost: a rapid to X-40.0000 is no longer there"]);
+    assert_eq!(messages(old, &there_and_back), ["move-added: a rapid to X-40.0000 is added"]);
+    assert_eq!(messages(&there_and_back, old), ["move-lost: a rapid to X-40.0000 is removed"]);
 }
 
 /// Out of the hole and back to its bottom by rapid: both are told, however often the bottom was there before.
@@ -63,7 +62,10 @@ fn a_rapid_back_to_where_a_feed_has_led_is_told() {
     let old = "O1\nG90 G54 G0 X0 Y0 Z50.\nG0 X10.\nZ2.\nG1 Z-5. F100\nX15.\nG0 Z50.\nM30\n";
     let new = old.replace("Z-5. F100\n", "Z-5. F100\nG0 Z20.\nZ-5.\nG1 ");
     let found = messages(old, &new);
-    assert_eq!(found, ["move-added: a rapid to Z20.0000 is new", "move-added: a rapid to Z-5.0000 is new"]);
+    assert_eq!(
+        found,
+        ["move-added: a rapid to Z20.0000 is added", "move-added: a rapid to Z-5.0000 is added"]
+    );
 }
 
 /// Two words of one block: the low R level isn't told with the moved hole.
@@ -89,9 +91,8 @@ fn a_pass_above_the_holes_bottom_is_told_whatever_else_is_different() {
     assert_eq!(told(&[shorter]), ["hole-pass: hole 1: pass 2 of 2, by T2, 6.0000 mm less deep"]);
     assert_eq!(
         told(&[shorter, ("X10.", "X10.01")]),
-        [
-            "hole-moved: hole 1: moved by +0.0100 +0.0000 +0.0000 mm, pass 2 of 2, by T2, ends elsewhere, by X +0.0100 Z +6.0000"
-        ]
+        ["hole-moved: hole 1: moved by +0.0100 +0.0000 +0.0000 mm, pass 2 of 2, by T2, ends at a different \
+          point: X +0.0100 Z +6.0000"]
     );
     assert_eq!(
         told(&[shorter, ("Z-25.", "Z-25.5")]),
@@ -113,7 +114,8 @@ fn passes_that_stay_and_passes_that_go_elsewhere_are_told_apart() {
         messages(TAPPED, &new).concat()
     };
     let moved = |mm: &str| format!("hole-moved: hole 1: moved by +{mm} +0.0000 +0.0000 mm");
-    let goes = |pass: u32, mm: &str| format!(", pass {pass} of 2, by T{pass}, ends elsewhere, by X +{mm}");
+    let goes =
+        |pass: u32, mm: &str| format!(", pass {pass} of 2, by T{pass}, ends at a different point: X +{mm}");
     assert_eq!(told("X10.01", "X10.01"), moved("0.0100"));
     assert_eq!(told("X10.", "X10.01"), moved("0.0100") + &goes(2, "0.0100"));
     assert_eq!(
@@ -186,29 +188,25 @@ fn spindle_and_coolant_that_a_later_tool_relied_on_are_told() {
     let (lost, added) = without_spot("", "M8\n");
     assert_eq!(
         lost,
-        [
-            "spindle: M03 S1500 is no longer there: where M06 leaves the spindle turning, O0001:6 is cut with the spindle \
-            stopped instead of M03 S1500 (2 moves)"
-        ]
+        ["spindle: M03 S1500 is removed: if M06 keeps the spindle running, O0001:6 is cut with the spindle \
+          stopped instead of M03 S1500 (2 moves)"]
     );
     assert_eq!(
         added,
-        [
-            "spindle: M03 S1500 is new: where M06 leaves the spindle turning, O0001:13 is cut with M03 S1500 instead of \
-            the spindle stopped (2 moves)"
-        ]
+        ["spindle: M03 S1500 is added: if M06 keeps the spindle running, O0001:13 is cut with M03 S1500 \
+          instead of the spindle stopped (2 moves)"]
     );
-    let coolant = "coolant: M08 is no longer there: O0001:6 is cut with coolant off instead of M08 (2 moves)";
+    let coolant = "coolant: M08 is removed: O0001:6 is cut with coolant off instead of M08 (2 moves)";
     let (lost, added) = without_spot("S900 M3\n", "");
     assert_eq!(lost, [coolant]);
-    assert_eq!(added, ["coolant: M08 is new: O0001:13 is cut with M08 instead of coolant off (2 moves)"]);
+    assert_eq!(added, ["coolant: M08 is added: O0001:13 is cut with M08 instead of coolant off (2 moves)"]);
     let (both, _) = without_spot("", "");
     assert_eq!(
         both,
         [
-            "spindle: M03 S1500 is no longer there: where M06 leaves the spindle turning, O0001:5 is cut with the \
-                spindle stopped instead of M03 S1500 (2 moves)",
-            "coolant: M08 is no longer there: O0001:5 is cut with coolant off instead of M08 (2 moves)",
+            "spindle: M03 S1500 is removed: if M06 keeps the spindle running, O0001:5 is cut with the \
+             spindle stopped instead of M03 S1500 (2 moves)",
+            "coolant: M08 is removed: O0001:5 is cut with coolant off instead of M08 (2 moves)",
         ]
     );
 }
@@ -223,8 +221,8 @@ fn spindle_and_coolant_that_the_next_hole_of_the_same_tool_relied_on_are_told() 
     assert_eq!(
         state_told(&old, &program("")),
         [
-            "spindle: M03 S1500 is no longer there: O0001:5 N9 is cut with M03 S800 instead of M03 S1500",
-            "coolant: M07 is no longer there: O0001:5 N9 is cut with coolant off instead of M07",
+            "spindle: M03 S1500 is removed: O0001:5 N9 is cut with M03 S800 instead of M03 S1500",
+            "coolant: M07 is removed: O0001:5 N9 is cut with coolant off instead of M07",
         ]
     );
     // Switched back before it: nothing relied on them.
@@ -233,7 +231,7 @@ fn spindle_and_coolant_that_the_next_hole_of_the_same_tool_relied_on_are_told() 
     // A hole is new, and the spindle stands behind it.
     assert_eq!(
         state_told(&program(""), &program("X20.\nM5\n")),
-        ["spindle: spindle stop is new: O0001:7 N9 is cut with the spindle stopped instead of M03 S800"]
+        ["spindle: spindle stop is added: O0001:7 N9 is cut with the spindle stopped instead of M03 S800"]
     );
 }
 
@@ -251,10 +249,8 @@ fn a_tool_length_that_a_later_hole_relied_on_is_told() {
     let found: Vec<_> = found.iter().filter(|entry| entry.starts_with("tool-length: ")).collect();
     assert_eq!(
         found,
-        [
-            "tool-length: tool length offset Z 21.0000 is no longer there: O0001:6 is cut with tool length offset Z 20.0000 \
-            instead of tool length offset Z 21.0000"
-        ]
+        ["tool-length: tool length offset Z 21.0000 is removed: O0001:6 is cut with tool length offset Z \
+          20.0000 instead of tool length offset Z 21.0000"]
     );
 }
 
@@ -269,10 +265,8 @@ fn a_spindle_that_a_new_tool_change_stops_is_told() {
     let section = "G80\nT2 M6\nS800 M3\nG81 X20. Z-4. R2. F100\nG80\nT1 M6\n";
     assert_eq!(
         state_told(&program(""), &program(section)),
-        [
-            "spindle: tool T1 is new: where M06 stops the spindle, O0001:12 is cut with the spindle stopped instead of \
-            M03 S800"
-        ]
+        ["spindle: tool T1 is added: if M06 stops the spindle, O0001:12 is cut with the spindle stopped \
+          instead of M03 S800"]
     );
     assert_eq!(state_told(&program(""), &program(&format!("{section}M3\n"))), [""; 0]);
 }
@@ -292,6 +286,6 @@ fn a_pass_that_another_length_makes_up_for_says_so() {
     assert_eq!(told(&[("Z-4. R2.", "Z-3.99 R2.")]), [less]);
     assert_eq!(
         told(&[("Z-4. R2.", "Z-3.99 R2."), ("R80.", "R79.99")]),
-        [format!("{less} as programmed, its tip where it was by another length")]
+        [format!("{less} as programmed; its tip position is unchanged because of another length offset")]
     );
 }

@@ -106,7 +106,7 @@ fn a_coarse_increment_spoils_a_large_cylinder_and_the_refusal_says_so() {
         ("pitch = 20.0", "pitch = 17.0"),
     ]);
     let checked = check(&job(&text), &families::emit(&job(&text))).unwrap();
-    assert!(checked.refusals.concat().contains("a finer increment or a wider tolerance is needed"));
+    assert!(checked.refusals.concat().contains("use a finer increment or a wider tolerance"));
 }
 
 proptest! {

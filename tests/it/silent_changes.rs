@@ -54,13 +54,11 @@ fn modes_commanded_elsewhere_before_the_first_move_are_the_same() {
 fn an_axis_that_is_no_longer_sent_anywhere_is_told() {
     assert_eq!(
         changed("G0 X0 Y0\n", "G0\n"),
-        [
-            "start: X and Y are no longer sent to a place before the first move: the tool goes on from wherever they stand"
-        ]
+        ["start: X and Y are no longer positioned before the first move: the start position is undefined"]
     );
     assert_eq!(
         changed("G0 X0 Y0\n", "G91 G0 X0 Y0\nG90\n")[0],
-        "start: X and Y are no longer sent to a place before the first move: the tool goes on from wherever they stand"
+        "start: X and Y are no longer positioned before the first move: the start position is undefined"
     );
 }
 
@@ -68,10 +66,8 @@ fn an_axis_that_is_no_longer_sent_anywhere_is_told() {
 fn an_offset_that_is_no_longer_written_is_told_though_it_is_the_same_here() {
     assert_eq!(
         changed("G10 L2 P1 X0 Y0\n", ""),
-        [
-            "start: G10 L2 P1 X and G10 L2 P1 Y are no longer written before the first move: the program now relies on the \
-          value that was left"
-        ]
+        ["start: G10 L2 P1 X and G10 L2 P1 Y are no longer written before the first move: the program now \
+          depends on the value left by the previous program"]
     );
 }
 
@@ -81,11 +77,11 @@ fn codes_that_end_in_the_same_place_here_are_told() {
     for (old, new, wanted) in [
         ("G91 G28 Z0", "G91 G30 Z0", "g-code: G30 instead of G28"),
         ("G91 G30 P2 Z0", "G91 G30 P3 Z0", "g-code: G30 P3 instead of G30 P2"),
-        ("G60 X5.", "G0 X5.", "path-mode: G60 is no longer there"),
-        ("G0 X5.", "G60 X5.", "path-mode: G60 is new"),
+        ("G60 X5.", "G0 X5.", "path-mode: G60 is removed"),
+        ("G0 X5.", "G60 X5.", "path-mode: G60 is added"),
         ("M19 R90.", "M19 R91.", "m-code: M19 R91 instead of M19 R90"),
         ("#1100=1\nG4 P100\n#1100=0", "#1101=1\nG4 P100\n#1101=0", "signal: #1101=1 instead of #1100=1"),
-        ("#1132=1\n#1132=0", "#1132=0", "signal: #1132=1 is no longer there"),
+        ("#1132=1\n#1132=0", "#1132=0", "signal: #1132=1 is removed"),
         ("#1100=1", "#1101=1", "signal: #1101=1 instead of #1100=1"),
     ] {
         let found = messages(&with(old), &with(new));
@@ -103,7 +99,7 @@ fn codes_that_end_in_the_same_place_here_are_told() {
 fn another_o_number_is_another_program() {
     assert_eq!(
         changed("O1\n", "O2\n"),
-        ["program: O0002 instead of O0001: on the control that is another program"]
+        ["program: O0002 instead of O0001: a different program on the control"]
     );
 }
 

@@ -31,15 +31,15 @@ const TAPPED: &str = "O1\nG90 G54 G0 X0 Y0\nT1 M6\nG43 H1 Z50.\nS900 M3\nG98 G83
 #[test]
 fn a_lost_m29_is_that_and_no_lost_m03() {
     let without = TAPPED.replace("M29 S500\n", "");
-    assert_eq!(told(TAPPED, &without), ["m-code: M29 is no longer there"]);
-    assert_eq!(told(&without, TAPPED), ["m-code: M29 is new"]);
+    assert_eq!(told(TAPPED, &without), ["m-code: M29 is removed"]);
+    assert_eq!(told(&without, TAPPED), ["m-code: M29 is added"]);
     // Another speed than M03's, for both holes: each of them is tapped in with it, out and on.
     let faster = TAPPED.replace("M29 S500", "M29 S600");
     assert_eq!(
         told(&faster, &without),
         [
-            "spindle: S600 is no longer there",
-            "m-code: M29 is no longer there",
+            "spindle: S600 is removed",
+            "m-code: M29 is removed",
             "spindle: S500 instead of S600 (6 spindle commands)"
         ]
     );
@@ -56,11 +56,11 @@ fn spindle_and_coolant_that_are_commanded_again_are_told_behind_a_stop() {
         assert_eq!(told(&with("", ""), &with("", again)), [""; 0], "{again}");
     }
     let stopped = |again: &str| told(&with("M0\n", again), &with("M0\n", ""));
-    assert_eq!(stopped("S900 M3\n"), ["spindle: M03 S900 is no longer there"]);
-    assert_eq!(stopped("M8\n"), ["coolant: M08 is no longer there"]);
+    assert_eq!(stopped("S900 M3\n"), ["spindle: M03 S900 is removed"]);
+    assert_eq!(stopped("M8\n"), ["coolant: M08 is removed"]);
     let off = |again: &str| told(&with("M5\nM9\n", again), &with("M5\nM9\n", ""));
-    assert_eq!(off("S900 M3\n"), ["spindle: M03 S900 is no longer there"]);
-    assert_eq!(off("M8\n"), ["coolant: M08 is no longer there"]);
+    assert_eq!(off("S900 M3\n"), ["spindle: M03 S900 is removed"]);
+    assert_eq!(off("M8\n"), ["coolant: M08 is removed"]);
 }
 
 /// G74 turns the spindle the other way at the bottom and on the way out.
@@ -88,17 +88,17 @@ fn a_lost_spot_drilling_leaves_the_drills_diameter() {
     let one = program("X10. Y0", "");
     assert_eq!(
         texts(&found_by(&machine, &both, &one)),
-        ["hole-tool: hole 2: no longer made by T1, in all by T2"]
+        ["hole-tool: hole 2: no longer made by T1, in total by T2"]
     );
     assert_eq!(
         texts(&found_by(&machine, &one, &both)),
-        ["hole-tool: hole 2: made by T1 as well, in all by T1 and T2"]
+        ["hole-tool: hole 2: also made by T1, in total by T1 and T2"]
     );
     // A reamer stops above the drill's bottom and makes the diameter all the same.
     let reamed = program("X10. Y0", "T3 M6\nG43 H3 Z50.\nG98 G85 X10. Y0 Z-4.5 R2. F50\nG80\n");
     assert_eq!(
         texts(&found_by(&machine, &reamed, &one)),
-        ["hole-diameter: hole 1: Φ6 instead of Φ6.2, no longer made by T3, in all by T1 and T2"]
+        ["hole-diameter: hole 1: Φ6 instead of Φ6.2, no longer made by T3, in total by T1 and T2"]
     );
 }
 
@@ -142,7 +142,7 @@ fn a_shift_by_the_pitch_moves_all_holes() {
     // Left in force, the next program finds it.
     let left = told(&old, &program("G52 X20.\n", ""));
     assert_eq!(left.len(), 2, "{left:#?}");
-    assert_eq!(left[1], "work-offset: G52 X is left 20 instead of 0");
+    assert_eq!(left[1], "work-offset: G52 X ends as 20 instead of 0");
     // Positions that are written otherwise are holes lost and added: three stay where they were.
     let row =
         |positions: &str| format!("O1\nG90 G54 G0 X0 Y0 Z50.\nG81 Z-5. R2. F100 K0\n{positions}G80\nM30\n");
@@ -173,7 +173,8 @@ fn another_length_that_all_moves_make_up_for_is_told_once_with_them() {
     let found = texts(&found_by(&machine, &old, &new));
     assert_eq!(found.len(), 2, "{found:#?}");
     assert!(found[0].starts_with("tool-length: G43 H3 instead of G43 H2 ("), "{found:#?}");
-    let made_up = "move-shifted: moves end elsewhere, by Z +5.0000 as programmed, the machine where it was by another length (";
+    let made_up = "move-shifted: moves end elsewhere, by Z +5.0000 as programmed; the machine position is \
+                   unchanged because of another length offset (";
     assert!(found[1].starts_with(made_up), "{found:#?}");
     assert!(found[1].ends_with(" rapids, 12 feeds)"), "two holes of six pecks: {found:#?}");
     let back = texts(&found_by(&machine, &new, &old));
@@ -204,11 +205,11 @@ fn what_one_lost_or_new_word_or_block_does_is_one_entry() {
         [("G90\nX10.", "X10.", ["G90", ""]), ("G90 X10.", "X10.", ["G90 X10.", "X10."])]
     {
         let (old, new) = (program(with), program(without));
-        let stays = "the program leaves G91 instead of G90";
+        let stays = "the program ends in G91 instead of G90";
         let found = found(&old, &new);
-        let shifted = "a feed ends elsewhere, by X +10.0000 (2 moves)";
+        let shifted = "a feed ends at a different point: X +10.0000 (2 moves)";
         let wanted = [
-            format!("move-shifted: {shifted}; a rapid to X0.0000 Y0.0000 is no longer there"),
+            format!("move-shifted: {shifted}; a rapid to X0.0000 Y0.0000 is removed"),
             format!("mode: {stays}"),
         ];
         assert_eq!(texts(&found), wanted);

@@ -26,7 +26,7 @@ pub(crate) fn run(case: &Case) {
         finding.help.iter().for_each(|help| writeln!(shown, "  help: {help}").unwrap());
     }
     if checked.findings.is_empty() {
-        shown.push_str("nothing found\n");
+        shown.push_str("no findings\n");
     }
     case.snapshot("findings", &shown);
 }

@@ -50,8 +50,8 @@ fn refusals(job: &Job, reference: &Reference, simulation: &Simulation, verdict: 
     for hole in verdict.holes.iter().filter(|hole| hole.position_deviation > verdict.tolerance) {
         if hole.rounding > verdict.tolerance - (hole.position_deviation - hole.rounding).max(0.0) {
             refusals.push(format!(
-                "hole {}: rounding to the least increment of {} mm and degrees alone can make Φ{:.4} here, {} is allowed; \
-                 a finer increment or a wider tolerance is needed\n",
+                "hole {}: rounding to the least increment of {} mm and degrees alone can cause Φ{:.4} \
+                 here, tolerance Φ{}; use a finer increment or a wider tolerance\n",
                 hole.id,
                 increment.size(),
                 hole.rounding,

@@ -45,7 +45,8 @@ pub(super) fn held(path: &Path) -> Result<Result<VerifiedPackage, EmitFailure>, 
         Ok(checked) if checked.refusals.is_empty() => Ok(Ok(VerifiedPackage { job, package, checked })),
         Ok(checked) => {
             let (reasons, job) = (checked.refusals.concat(), path.display());
-            let why = format!("{reasons}error: nothing is written, for the programs of {job} don't hold\n");
+            let why =
+                format!("{reasons}error: nothing is written: the programs of {job} fail verification\n");
             refused(why, Some(checked))
         }
         Err(CheckError::Impossible(why)) => {
@@ -87,8 +88,8 @@ pub(super) fn run(path: &Path, out: &Path, format: TextFormat) -> Result<ExitSta
     }
     for path in left_over {
         output::tell(&format!(
-            "warning: {} is from an earlier job and isn't called by the programs just written: if no other program in the \
-             folder calls it, remove it, so that nobody loads it with them\n",
+            "warning: {} is from an earlier job and is not called by the programs just written: remove it, \
+             unless another program in the folder calls it, so that it is not loaded with them\n",
             path.display()
         ));
     }
@@ -115,10 +116,10 @@ pub(super) fn pictures(checked: &CheckedPackage) -> Result<Vec<(String, Vec<u8>)
 /// The folder, and those it stands in.
 fn make_folder(out: &Path) -> Result<(), UsageError> {
     let told = |error: &dyn std::fmt::Display| {
-        UsageError::new(format!("{} can't be written: {error}", out.display()))
+        UsageError::new(format!("{} cannot be written: {error}", out.display()))
     };
     if out.exists() && !out.is_dir() {
-        return Err(told(&"it is a file, and the programs need a folder"));
+        return Err(told(&"it is a file; the programs need a folder"));
     }
     std::fs::create_dir_all(out).map_err(|error| told(&error))
 }

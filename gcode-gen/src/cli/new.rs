@@ -13,7 +13,7 @@ pub(super) fn run(family: &str, path: Option<&Path>) -> Result<ExitStatus, Usage
         // A job that somebody has filled in is worth more than a new one.
         Some(path) if path.is_file() && !replaceable(path, known.new_job)? => {
             let name = path.display();
-            return Err(UsageError::new(format!("{name} is there already: remove it, or name another file")));
+            return Err(UsageError::new(format!("{name} already exists: remove it, or name another file")));
         }
         Some(path) => output::write(path, known.new_job.as_bytes())?,
     }

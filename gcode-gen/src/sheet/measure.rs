@@ -63,7 +63,7 @@ fn of_hole(hole: &HoleVerdict, verdict: &Verdict) -> Vec<Characteristic> {
     ];
     all.extend(hole.nominal.diameter.map(|nominal| {
         let tool =
-            hole.actual.diameter.map_or("not known".to_owned(), |d| format!("Φ{} (the tool's)", near(d, 3)));
+            hole.actual.diameter.map_or("unknown".to_owned(), |d| format!("Φ{} (the tool's)", near(d, 3)));
         characteristic(&reference, "diameter", diameter(nominal), tool)
     }));
     all
@@ -89,13 +89,13 @@ fn of_all(verdict: &Verdict) -> Vec<Characteristic> {
     let errors = || verdict.holes.iter().map(|hole| hole.depth_error);
     let (least, most) = (errors().fold(f64::INFINITY, f64::min), errors().fold(f64::NEG_INFINITY, f64::max));
     if let Some(first) = verdict.holes.first() {
-        let off = format!("{} to {} off", signed(least), signed(most));
+        let off = format!("{} to {}", signed(least), signed(most));
         all.push(characteristic(&reference, "depth", depth(first.nominal.depth, verdict), off));
         all.extend(first.nominal.diameter.map(|nominal| {
             let tool = first
                 .actual
                 .diameter
-                .map_or("not known".to_owned(), |d| format!("Φ{} (the tool's)", near(d, 3)));
+                .map_or("unknown".to_owned(), |d| format!("Φ{} (the tool's)", near(d, 3)));
             characteristic(&reference, "diameter", diameter(nominal), tool)
         }));
     }
@@ -114,9 +114,14 @@ fn of_neighbours(neighbours: &Neighbours) -> Vec<Characteristic> {
     };
     let pitch = || format!("{} ({metric})", near(*wanted, 4));
     vec![
-        characteristic("neighbours", "least distance", pitch(), place(min)),
-        characteristic("neighbours", "greatest distance", pitch(), place(max)),
-        characteristic("neighbours", "holes with all six", with_six_wanted.to_string(), with_six.to_string()),
+        characteristic("neighbours", "minimum distance", pitch(), place(min)),
+        characteristic("neighbours", "maximum distance", pitch(), place(max)),
+        characteristic(
+            "neighbours",
+            "holes with all six neighbours",
+            with_six_wanted.to_string(),
+            with_six.to_string(),
+        ),
     ]
 }
 
@@ -126,19 +131,19 @@ fn of_flutes(verdict: &FluteVerdict) -> Vec<Characteristic> {
         characteristic("flutes", "number", verdict.nominal_flutes.to_string(), verdict.flutes.to_string()),
         characteristic(
             "tooth bottom",
-            "off the profile",
+            "contact deviation",
             format!("at most {}", verdict.tolerance),
             number(verdict.surface_deviation, 4),
         ),
         characteristic(
             "flutes",
-            "helix angle off its law",
+            "helix angle deviation",
             format!("0° ±{}°", verdict.helix_tolerance),
             format!("{}°", number(verdict.helix_error, 3)),
         ),
         characteristic(
             "flutes",
-            "gap between neighbours",
+            "index between neighbours",
             format!("even ±{}°", verdict.index_tolerance),
             format!("{}° off", number(verdict.index_error, 4)),
         ),
@@ -170,13 +175,13 @@ fn of_alignment(job: &Alignment) -> Vec<Characteristic> {
             "sine table",
             "angle",
             format!("{}°", short(table.phi)),
-            format!("{}″ left by the blocks", signed_to(setting.left, 2)),
+            format!("{}″ error of the blocks", signed_to(setting.left, 2)),
         ),
         characteristic(
             "chord E F",
             "length",
             near(chord, 4),
-            "the model's; #572 shows how far the best pair is from it".to_owned(),
+            "the model's; #572 is the difference of the best pair".to_owned(),
         ),
     ];
     all.extend(job.runout.heights.map(|y| {

@@ -50,7 +50,7 @@ pub fn needed(
             let Some((value, turned)) = turned(row, &usual) else { continue };
             let other = trace(turned)?;
             if other != wanted && found.iter().all(|known| known.key != row.key) {
-                let otherwise = other.alarm.unwrap_or_else(|| "the machine moves otherwise".to_owned());
+                let otherwise = other.alarm.unwrap_or_else(|| "the machine moves differently".to_owned());
                 found.push(RequiredSetting { key: row.key, meaning: row.meaning, value, otherwise });
             }
         }
@@ -133,7 +133,7 @@ mod tests {
     /// ATAN of the third quadrant is 225, or -135 with NAT; `IF[..]` needs THEN unless PLAIN-IF; X10 is 10 µm or mm.
     #[test]
     fn a_switch_that_changes_what_happens_is_named() {
-        let moves = "the machine moves otherwise".to_owned();
+        let moves = "the machine moves differently".to_owned();
         assert_eq!(found("O1\n#1=ATAN[-1.]/[-1.]\nG0 X#1\nM30\n"), [("NAT", "0", moves.clone())]);
         assert_eq!(found("O1\nG0 X10\nM30\n"), [("DPI", "0", moves)]);
         assert_eq!(found("O1\n#1=POW[2.,3.]\nG0 X#1\nM30\n").len(), 2, "two switches know POW");

@@ -21,19 +21,19 @@ pub(super) struct BudgetArguments {
     #[arg(value_name = "JOB.toml")]
     job: PathBuf,
 
-    /// What set-up and machine are off by
+    /// The set-up and machine errors
     #[arg(long, value_name = "ERRORS.toml")]
     errors: PathBuf,
 
-    /// How many parts are drawn
+    /// Number of simulated parts
     #[arg(long, value_name = "N", default_value_t = 100_000)]
     samples: usize,
 
-    /// Another seed draws other parts
+    /// Seed of the random numbers
     #[arg(long, value_name = "S", default_value_t = 0)]
     seed: u64,
 
-    /// The machine, without errors [default: the one that goes with the job]
+    /// The machine, without errors [default: the job's machine]
     #[arg(long, value_name = "MACHINE.toml")]
     machine: Option<PathBuf>,
 
@@ -41,15 +41,15 @@ pub(super) struct BudgetArguments {
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     tolerance: Option<f64>,
 
-    /// On how many threads; the answer doesn't depend on it [default: as many as there are processors]
+    /// Number of threads; the result does not depend on it [default: the number of processors]
     #[arg(long, value_name = "N")]
     threads: Option<NonZeroUsize>,
 
-    /// Also draw each source's share to this file
+    /// Also draw each error source's share to this file
     #[arg(long, value_name = "OUT.png")]
     picture: Option<PathBuf>,
 
-    /// How the result is written
+    /// Output format
     #[arg(long, value_enum, default_value_t = TextFormat::Text)]
     format: TextFormat,
 }
@@ -70,16 +70,16 @@ pub(super) fn run(arguments: &BudgetArguments) -> Result<ExitStatus, UsageError>
     let job = Job::parse(&input::text(&arguments.job)?).map_err(|e| named(&arguments.job, &e))?;
     let reference = NominalPart::of_job(&job).map_err(|e| named(&arguments.job, &e))?.into_holes();
     let Some(reference) = reference else {
-        return Err(named(&arguments.job, &"a budget is of holes, and this family's part gets none"));
+        return Err(named(&arguments.job, &"a budget needs holes, and this family's part has none"));
     };
     let machine = match &arguments.machine {
         Some(path) => options::machine(path)?,
         None => Machine::of_job(&job)
-            .ok_or_else(|| named(&arguments.job, &"no machine goes with it: give one with --machine"))?,
+            .ok_or_else(|| named(&arguments.job, &"this job has no machine: give one with --machine"))?,
     };
     if !machine.is_exact() {
         let message =
-            "--machine: it has errors or a misplaced part; a budget takes those from --errors alone";
+            "--machine: the file has errors or a misplaced part; a budget takes those from --errors alone";
         return Err(UsageError::new(message));
     }
     let sources = error_file(&input::text(&arguments.errors)?, &machine)

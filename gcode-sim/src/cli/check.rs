@@ -27,7 +27,7 @@ pub(super) struct CheckArguments {
     #[arg(long, value_name = "KEY=VALUE")]
     control: Vec<String>,
 
-    /// A file of such settings (TOML): NAT = 1, 5115 = 0.5, ROA = "A"; flags go before it
+    /// A file of such settings (TOML): NAT = 1, 5115 = 0.5, ROA = "A"; flags override it
     #[arg(long, value_name = "CONTROL.toml")]
     control_file: Option<PathBuf>,
 
@@ -39,7 +39,7 @@ pub(super) struct CheckArguments {
     #[arg(long, value_name = "CODE=PROGRAM")]
     code: Vec<String>,
 
-    /// How the result is written
+    /// Output format
     #[arg(long, value_enum, default_value_t = FindingFormat::Text)]
     format: FindingFormat,
 }
@@ -59,7 +59,7 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<ExitStatus, UsageError> 
     unused_machine::tell_of_control(&program, &request);
     let checked = gcode_lint::check(request.name.clone(), request.bytes, &request.settings, &mut folders);
     if checked.programs == 0 {
-        return Err(UsageError::new(format!("{} holds no program", request.name)));
+        return Err(UsageError::new(format!("{} contains no program", request.name)));
     }
     match arguments.format {
         FindingFormat::Text => output::print(&text(&checked))?,

@@ -17,15 +17,15 @@ pub(super) struct CompareArguments {
     #[arg(value_name = "B.png")]
     right: PathBuf,
 
-    /// Where to write the picture that marks what differs
+    /// The picture to write, with the differences marked
     #[arg(short, long, value_name = "DIFF.png")]
     output: Option<PathBuf>,
 
-    /// How much a colour value may differ, 0 to 255
+    /// Tolerance of a colour value, 0 to 255
     #[arg(long, value_name = "STEPS", default_value_t = 1)]
     tolerance: u8,
 
-    /// How the result is written
+    /// Output format
     #[arg(long, value_enum, default_value_t = TextFormat::Text)]
     format: TextFormat,
 }

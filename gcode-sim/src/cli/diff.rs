@@ -29,11 +29,11 @@ pub(super) struct DiffArguments {
     #[command(flatten)]
     run: RunConditions,
 
-    /// A folder that holds what OLD.nc calls, in the place of --lib (repeatable): a macro of before
+    /// A folder that holds the programs OLD.nc calls, instead of --lib (repeatable)
     #[arg(long = "old-lib", value_name = "DIR")]
     old_libraries: Vec<PathBuf>,
 
-    /// What differs by no more than this is the same, mm or degrees
+    /// Tolerance for equality, mm or degrees
     #[arg(long, value_name = "MM", default_value_t = 0.0001, allow_negative_numbers = true)]
     tolerance: f64,
 
@@ -41,16 +41,16 @@ pub(super) struct DiffArguments {
     #[arg(long, value_name = "OUT.png")]
     picture: Option<PathBuf>,
 
-    /// Also write a page for the review to this file: both programs side by side, their holes, paths, blocks and
-    /// variables; needs nothing but a browser
+    /// Also write a review page to this file: both programs side by side, their holes, paths, blocks and variables;
+    /// opens in any browser
     #[arg(long, value_name = "OUT.html")]
     page: Option<PathBuf>,
 
-    /// What the part should get, for the page: a hole list (JSON or CSV) or a job file (TOML)
+    /// The reference for the page: a hole list (JSON or CSV) or a job file (TOML)
     #[arg(long, value_name = "REF", requires = "page")]
     reference: Option<PathBuf>,
 
-    /// How the result is written
+    /// Output format
     #[arg(long, value_enum, default_value_t = FindingFormat::Text)]
     format: FindingFormat,
 }
@@ -169,7 +169,7 @@ fn wanted_holes(path: &Path) -> Result<Reference, UsageError> {
     match options::wanted(path)? {
         NominalPart::Holes(reference) => Ok(reference),
         NominalPart::Flutes(_) => Err(UsageError::new(format!(
-            "--reference {}: a page has verdicts on holes, and this is a burr: leave the reference out",
+            "--reference {}: a page verifies holes, and this is a burr: omit the reference",
             path.display()
         ))),
     }

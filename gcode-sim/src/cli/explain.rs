@@ -11,11 +11,11 @@ pub(super) struct ExplainArguments {
     #[arg(value_name = "CODE", required_unless_present = "list")]
     code: Option<String>,
 
-    /// Name all codes that can be explained
+    /// List all codes
     #[arg(long, conflicts_with = "code")]
     list: bool,
 
-    /// How the result is written
+    /// Output format
     #[arg(long, value_enum, default_value_t = TextFormat::Text)]
     format: TextFormat,
 }
@@ -25,7 +25,7 @@ pub(super) fn run(arguments: &ExplainArguments) -> Result<ExitStatus, UsageError
         None => ExplainReport::list(),
         Some(code) => ExplainReport::of(code).ok_or_else(|| {
             UsageError::new(format!(
-                "{code} is none of this simulator's alarms and findings: gcode-sim explain --list names them"
+                "{code} is not a code of this simulator: gcode-sim explain --list lists all"
             ))
         })?,
     };

@@ -15,12 +15,12 @@ pub(super) struct HolesArguments {
     #[command(flatten)]
     program: ProgramArguments,
 
-    /// Also write a page to this file: the holes, the path, the blocks and what the variables were; needs nothing but a
-    /// browser
+    /// Also write a page to this file: the holes, the path, the blocks and the values of the variables; opens in
+    /// any browser
     #[arg(long, value_name = "OUT.html")]
     page: Option<PathBuf>,
 
-    /// How the result is written
+    /// Output format
     #[arg(long, value_enum, default_value_t = ListFormat::Text)]
     format: ListFormat,
 }

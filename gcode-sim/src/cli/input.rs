@@ -14,11 +14,11 @@ pub fn bytes(path: &Path) -> Result<Vec<u8>, UsageError> {
         let mut bytes = Vec::new();
         return match std::io::stdin().lock().take(LARGEST).read_to_end(&mut bytes) {
             Ok(_) => Ok(bytes),
-            Err(error) => Err(UsageError::new(format!("standard input can't be read: {error}"))),
+            Err(error) => Err(UsageError::new(format!("standard input cannot be read: {error}"))),
         };
     }
     let unreadable =
-        |error: std::io::Error| UsageError::new(format!("{} can't be read: {error}", path.display()));
+        |error: std::io::Error| UsageError::new(format!("{} cannot be read: {error}", path.display()));
     let about = std::fs::metadata(path).map_err(unreadable)?;
     if about.is_dir() {
         return Err(UsageError::new(format!("{} is a folder; name a file in it", path.display())));
@@ -47,7 +47,7 @@ pub fn program(path: &Path) -> Result<Vec<u8>, UsageError> {
     }
     if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) {
         return Err(UsageError::new(format!(
-            "{name} is a job or a machine file, not a program: --reference and --machine take those"
+            "{name} is a job or a machine file, not a program: give it with --reference or --machine"
         )));
     }
     Ok(bytes)
@@ -56,7 +56,7 @@ pub fn program(path: &Path) -> Result<Vec<u8>, UsageError> {
 /// What is in a folder, by name.
 pub fn folder(path: &Path) -> Result<Vec<PathBuf>, UsageError> {
     let unreadable =
-        |error: std::io::Error| UsageError::new(format!("{} can't be read: {error}", path.display()));
+        |error: std::io::Error| UsageError::new(format!("{} cannot be read: {error}", path.display()));
     let entries = std::fs::read_dir(path).map_err(unreadable)?;
     let mut paths =
         entries.map(|entry| Ok(entry?.path())).collect::<Result<Vec<_>, _>>().map_err(unreadable)?;
@@ -66,7 +66,8 @@ pub fn folder(path: &Path) -> Result<Vec<PathBuf>, UsageError> {
 
 /// A folder's one path, whatever links lead to it.
 pub fn canonical(path: &Path) -> Result<PathBuf, UsageError> {
-    path.canonicalize().map_err(|error| UsageError::new(format!("{} can't be read: {error}", path.display())))
+    path.canonicalize()
+        .map_err(|error| UsageError::new(format!("{} cannot be read: {error}", path.display())))
 }
 
 /// A file's text, which must be UTF-8 (jobs, machine files, references; programs are bytes).

@@ -167,6 +167,6 @@ mod tests {
         place.close().unwrap();
         assert!(folders.program(1).is_none());
         let told = folders.unread().unwrap();
-        assert!(told.contains("can't be read"), "{told}");
+        assert!(told.contains("cannot be read"), "{told}");
     }
 }

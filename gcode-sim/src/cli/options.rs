@@ -55,29 +55,26 @@ pub(super) fn request(program: &ProgramArguments) -> Result<(Request, Folders), 
 fn probed(request: &mut Request, path: &Path, file: Option<&Path>) -> Result<(), UsageError> {
     let refused = |why: &dyn std::fmt::Display| UsageError::new(format!("{}, {why}", path.display()));
     if request.settings.skip_signal.is_some() {
-        return Err(UsageError::new(
-            "--part: SKIP says already where the skip signal comes: leave one of them out",
-        ));
+        return Err(UsageError::new("--part: SKIP already sets the skip signal: omit one of them"));
     }
     let part = ProbedPart::parse(&input::text(path)?).map_err(|error| refused(&error))?;
     match (&request.machine.probe, part.radius) {
         (None, Some(radius)) => request.machine.probe = Some(Probe::new(radius)),
         (None, None) => {
-            let message =
-                "--part: how large is the stylus ball? Give [probe] with its radius in the machine file";
+            let message = "--part: the radius of the stylus ball is missing: give [probe] with its radius \
+                           in the machine file";
             return Err(UsageError::new(message));
         }
         (Some(probe), Some(radius)) if probe.radius != radius => {
             return Err(refused(&format!(
-                "key 'probe.radius' is {radius}, and the machine file says {}: make them agree",
+                "key 'probe.radius' is {radius}, and {} in the machine file: make them equal",
                 probe.radius
             )));
         }
         (Some(_), _) => {}
     }
     if let Some(rotary) = part.rotary {
-        let machine =
-            file.map_or("the machine without --machine".to_owned(), |file| file.display().to_string());
+        let machine = file.map_or("the default machine".to_owned(), |file| file.display().to_string());
         same_rotary(rotary, &request.machine, &machine).map_err(|why| refused(&why))?;
     }
     request.part = Some(part.surface);
@@ -90,16 +87,16 @@ fn same_rotary(rotary: Rotary, machine: &Machine, file: &str) -> Result<(), Stri
     let turns = machine.axes.find(letter as u8).and_then(|axis| machine.table.turns(axis));
     let Some(sign) = turns else {
         return Err(format!(
-            "key 'machine.rotary.letter' is {letter}, and {file} has no [[table]] with such a letter that turns the part: give the \
-             machine file that belongs to the job"
+            "key 'machine.rotary.letter' is {letter}, and {file} has no [[table]] with this letter that \
+             rotates the part: give the job's machine file"
         ));
     };
     if sign == f64::from(rotary.sign) {
         return Ok(());
     }
     Err(format!(
-        "key 'machine.rotary.sign' is {}, and {file} says sign = {sign} in [[table]] {letter}: turn {letter} to 10 at the machine, see \
-         which way the part goes, and correct the one that is wrong",
+        "key 'machine.rotary.sign' is {}, and {file} has sign = {sign} in [[table]] {letter}: command \
+         {letter} 10 at the machine, observe the direction of the part and correct the wrong sign",
         rotary.sign
     ))
 }

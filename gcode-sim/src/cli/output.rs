@@ -9,7 +9,7 @@ pub fn print(text: &str) -> Result<(), UsageError> {
     let mut out = anstream::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(UsageError::new(format!("standard output can't be written: {error}")))
+            Err(UsageError::new(format!("standard output cannot be written: {error}")))
         }
         _ => Ok(()),
     }
@@ -19,7 +19,7 @@ pub fn print(text: &str) -> Result<(), UsageError> {
 pub fn json(document: &impl serde::Serialize) -> Result<(), UsageError> {
     let text = serde_json::to_string_pretty(document);
     print(
-        &(text.map_err(|error| UsageError::new(format!("the result can't be written as JSON: {error}")))?
+        &(text.map_err(|error| UsageError::new(format!("the result cannot be written as JSON: {error}")))?
             + "\n"),
     )
 }
@@ -40,7 +40,7 @@ pub fn write_all(files: &[(&Path, &[u8])]) -> Result<(), UsageError> {
     let mut waiting = Vec::new();
     for (path, bytes) in files {
         let unwritable = |error: &dyn std::fmt::Display| {
-            UsageError::new(format!("{} can't be written: {error}", path.display()))
+            UsageError::new(format!("{} cannot be written: {error}", path.display()))
         };
         if path.is_dir() {
             return Err(unwritable(&"it is a folder"));
@@ -55,7 +55,7 @@ pub fn write_all(files: &[(&Path, &[u8])]) -> Result<(), UsageError> {
             _ => Path::new("."),
         };
         if !folder.is_dir() {
-            return Err(unwritable(&format!("there is no folder {}", folder.display())));
+            return Err(unwritable(&format!("folder {} does not exist", folder.display())));
         }
         let mut file = tempfile::Builder::new()
             .prefix(".writing-")
@@ -67,7 +67,7 @@ pub fn write_all(files: &[(&Path, &[u8])]) -> Result<(), UsageError> {
     }
     for (place, file) in waiting {
         file.persist(&place)
-            .map_err(|e| UsageError::new(format!("{} can't be written: {}", place.display(), e.error)))?;
+            .map_err(|e| UsageError::new(format!("{} cannot be written: {}", place.display(), e.error)))?;
     }
     Ok(())
 }

@@ -13,7 +13,7 @@ pub fn keep(result: &Path, inputs: &[&Path]) -> Result<(), UsageError> {
         Some(input) => {
             let (result, input) = (result.display(), input.display());
             Err(UsageError::new(format!(
-                "{result} is read, as {input}, and would be lost: name another file"
+                "{result} is an input, {input}, and would be overwritten: name another file"
             )))
         }
     }
@@ -22,7 +22,7 @@ pub fn keep(result: &Path, inputs: &[&Path]) -> Result<(), UsageError> {
 /// Refuses two inputs that are both standard input: the second would find nothing left.
 pub(super) fn one_pipe(inputs: &[&Path]) -> Result<(), UsageError> {
     if inputs.iter().filter(|path| **path == Path::new("-")).count() > 1 {
-        return Err(UsageError::new("only one file can be '-': standard input is there once"));
+        return Err(UsageError::new("only one file can be '-': standard input can be read once"));
     }
     Ok(())
 }

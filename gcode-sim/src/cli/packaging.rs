@@ -9,14 +9,14 @@ use super::{ExitStatus, UsageError, output};
 
 #[derive(Debug, Args)]
 pub struct ShellArguments {
-    /// The shell that is to complete
+    /// The shell
     #[arg(value_enum)]
     shell: Shell,
 }
 
 #[derive(Debug, Args)]
 pub struct ManArguments {
-    /// The folder the pages go into
+    /// The folder for the pages
     #[arg(value_name = "DIR")]
     folder: PathBuf,
 }

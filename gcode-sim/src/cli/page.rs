@@ -55,7 +55,8 @@ pub(super) fn is_html(path: &Path) -> Result<(), UsageError> {
 
 /// Writes a page to its file.
 pub(super) fn write(page: &Page<'_>, path: &Path) -> Result<(), UsageError> {
-    let html = page.html().map_err(|error| UsageError::new(format!("the page can't be written: {error}")))?;
+    let html =
+        page.html().map_err(|error| UsageError::new(format!("the page cannot be written: {error}")))?;
     output::write(path, html.as_bytes())
 }
 
@@ -72,8 +73,8 @@ pub(super) fn documents(
     let RunConditions { machine, control_file, part, .. } = conditions;
     let files = [
         ("machine file", machine.as_deref()),
-        ("settings of the control", control_file.as_deref()),
-        ("part to be probed", part.as_deref()),
+        ("control settings", control_file.as_deref()),
+        ("part for probing", part.as_deref()),
         ("reference", reference),
     ];
     let named = files.into_iter().filter_map(|(role, path)| Some((role, path?)));

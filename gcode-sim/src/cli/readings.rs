@@ -15,11 +15,11 @@ pub(super) struct ReadingsArguments {
     #[command(flatten)]
     program: ProgramArguments,
 
-    /// How far a reading may be from 0, mm [default: nothing is judged]
+    /// Tolerance of a reading either way, mm [default: no verdict]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     tolerance: Option<f64>,
 
-    /// Also draw the readings over the way to this file
+    /// Also draw the readings along the path to this file
     #[arg(long, value_name = "OUT.png")]
     picture: Option<PathBuf>,
 
@@ -27,7 +27,7 @@ pub(super) struct ReadingsArguments {
     #[arg(long, value_name = "WxH", default_value = "1600x900")]
     size: String,
 
-    /// How the result is written
+    /// Output format
     #[arg(long, value_enum, default_value_t = ListFormat::Text)]
     format: ListFormat,
 }
@@ -41,7 +41,7 @@ pub(super) fn run(arguments: &ReadingsArguments) -> Result<ExitStatus, UsageErro
     unused_machine::tell(&arguments.program, &request);
     let tolerance = options::tolerance("--tolerance", arguments.tolerance)?;
     let (Some(surface), Some(probe)) = (request.part, &request.machine.probe) else {
-        return Err(UsageError::new("readings are of a part: --part JOB.toml says which"));
+        return Err(UsageError::new("readings need a part: give it with --part JOB.toml"));
     };
     let following = gcode_session::follow(&request, &mut folders, surface, probe.radius)
         .map_err(|e| UsageError::new(e.to_string()))?;
@@ -64,9 +64,7 @@ pub(super) fn run(arguments: &ReadingsArguments) -> Result<ExitStatus, UsageErro
         return Ok(found);
     }
     if report.is_empty() {
-        output::tell(
-            "error: no feed of the program goes along the part's surface, at most 5 mm away from it\n",
-        );
+        output::tell("error: no feed of the program follows the part's surface within 5 mm\n");
         return Ok(ExitStatus::Fails);
     }
     Ok(match report.verdict() {

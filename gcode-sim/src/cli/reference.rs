@@ -16,7 +16,7 @@ pub(super) struct ReferenceArguments {
     #[arg(value_name = "JOB.toml")]
     job: PathBuf,
 
-    /// How the result is written
+    /// Output format
     #[arg(long, value_enum, default_value_t = ListFormat::Json)]
     format: ListFormat,
 }
@@ -34,7 +34,7 @@ pub(super) fn run(arguments: &ReferenceArguments) -> Result<ExitStatus, UsageErr
                 ListFormat::Text => output::print(&flute_table::wanted(&burr))?,
                 ListFormat::Csv => {
                     return Err(UsageError::new(
-                        "--format csv is a list of holes, and a burr has none: text or json",
+                        "--format csv lists holes, and a burr has none: use text or json",
                     ));
                 }
             }

@@ -24,7 +24,7 @@ pub(super) struct RenderArguments {
     #[arg(short, long, value_name = "OUT.png")]
     output: PathBuf,
 
-    /// What the part should get: draws the outline, each hole's verdict and its misfit
+    /// The reference: draws the outline, each hole's verdict and its deviation
     #[arg(long, value_name = "REF")]
     reference: Option<PathBuf>,
 
@@ -32,7 +32,7 @@ pub(super) struct RenderArguments {
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     tolerance: Option<f64>,
 
-    /// Which way to look [default: top, or side for a burr]
+    /// The view [default: top, or side for a burr]
     #[arg(long, value_enum)]
     view: Option<View>,
 
@@ -40,22 +40,22 @@ pub(super) struct RenderArguments {
     #[arg(long, value_name = "WxH", default_value = "1600x1200")]
     size: String,
 
-    /// How the result is written
+    /// Output format
     #[arg(long, value_enum, default_value_t = TextFormat::Text)]
     format: TextFormat,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum View {
-    /// Along the axis of revolution, or along a spindle that stands
+    /// Along the axis of revolution, or along a fixed spindle
     Top,
-    /// A cylinder unrolled, with its seam; needs --reference with a job of a cylinder
+    /// A cylinder unrolled, with its seam; needs --reference with a cylinder job
     Development,
     /// A burr from the side
     Side,
     /// A burr from its tip
     Tip,
-    /// A burr's helix angle along its flutes, with what is allowed
+    /// A burr's helix angle along its flutes, with its tolerance
     Helix,
 }
 
@@ -102,11 +102,11 @@ fn holes(arguments: &RenderArguments, reference: Option<Reference>) -> Result<Ex
         View::Top => gcode_draw::top_view(&drawn),
         View::Side | View::Tip | View::Helix => {
             let message =
-                "the views side, tip and helix are of a burr: --reference JOB.toml of that family is needed";
+                "the views side, tip and helix show a burr: give a burr job with --reference JOB.toml";
             return Err(UsageError::new(message));
         }
         View::Development => gcode_draw::development(&drawn).ok_or_else(|| {
-            let message = "--view development unrolls a cylinder: it needs --reference with a job of one";
+            let message = "--view development unrolls a cylinder: give its job with --reference";
             UsageError::new(message)
         })?,
     };
@@ -131,7 +131,7 @@ fn flutes(arguments: &RenderArguments, mut wanted: Flutes) -> Result<ExitStatus,
         View::Tip => gcode_draw::tip_view(&view),
         View::Helix => gcode_draw::helix_graph(&view),
         View::Top | View::Development => {
-            return Err(UsageError::new("that view is of holes; a burr has the views side, tip and helix"));
+            return Err(UsageError::new("this view shows holes; a burr has the views side, tip and helix"));
         }
     };
     write(&scene, &arguments.size, &arguments.output)?;

@@ -28,7 +28,7 @@ pub(super) struct RunArguments {
     #[arg(long, value_name = "#N")]
     show: Vec<String>,
 
-    /// How the result is written
+    /// Output format
     #[arg(long, value_enum, default_value_t = TextFormat::Text)]
     format: TextFormat,
 }
@@ -76,7 +76,7 @@ pub(super) fn run(arguments: &RunArguments) -> Result<ExitStatus, UsageError> {
     let stopped = super::stopped(&run);
     if moves.is_some_and(|moves| moves.too_many) {
         output::tell(&format!(
-            "error: --moves: more than {MOST_MOVES} moves; those behind aren't in the list\n"
+            "error: --moves: more than {MOST_MOVES} moves; later ones are not in the list\n"
         ));
         return Ok(ExitStatus::Stopped);
     }

@@ -7,7 +7,7 @@ use crate::schema::{FORMATS, Format};
 
 #[derive(Debug, Args)]
 pub(super) struct SchemaArguments {
-    /// What it is of
+    /// The document
     #[arg(value_name = "NAME", value_parser = names(FORMATS))]
     name: String,
 }

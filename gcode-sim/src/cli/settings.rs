@@ -7,7 +7,7 @@ use crate::report::settings::SettingsReport;
 
 #[derive(Debug, Args)]
 pub(super) struct SettingsArguments {
-    /// How the result is written
+    /// Output format
     #[arg(long, value_enum, default_value_t = TextFormat::Text)]
     format: TextFormat,
 }

@@ -24,16 +24,16 @@ pub(super) struct VerifyArguments {
     #[command(flatten)]
     program: ProgramArguments,
 
-    /// What the part should get: a hole list (JSON or CSV) or a job file (TOML)
+    /// The reference: a hole list (JSON or CSV) or a job file (TOML)
     #[arg(long, value_name = "REF")]
     reference: PathBuf,
 
-    /// Diameter of the tolerance zone, or how far a burr's contact may be off its surface, mm [default: the
-    /// job's, or 0.1]
+    /// Diameter of the tolerance zone, or tolerance of a burr's contact from its surface, mm [default: the job's,
+    /// or 0.1]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     tolerance: Option<f64>,
 
-    /// How far a hole's depth may be off, mm [default: the job's, or 0.1]
+    /// Tolerance of a hole's depth either way, mm [default: the job's, or 0.1]
     #[arg(long, value_name = "MM", allow_negative_numbers = true)]
     depth_tolerance: Option<f64>,
 
@@ -41,7 +41,7 @@ pub(super) struct VerifyArguments {
     #[arg(long)]
     worst_first: bool,
 
-    /// All of an inspector's columns: nominal and actual x y z i j k d l
+    /// All inspection columns: nominal and actual x y z i j k d l
     #[arg(long)]
     full: bool,
 
@@ -49,12 +49,12 @@ pub(super) struct VerifyArguments {
     #[arg(long, value_name = "OUT.png")]
     picture: Option<PathBuf>,
 
-    /// Also write a page to this file: the holes with their deviations, the path, the blocks and what the variables were;
-    /// needs nothing but a browser
+    /// Also write a page to this file: the holes with their deviations, the path, the blocks and the values of the
+    /// variables; opens in any browser
     #[arg(long, value_name = "OUT.html")]
     page: Option<PathBuf>,
 
-    /// How the result is written
+    /// Output format
     #[arg(long, value_enum, default_value_t = FindingFormat::Text)]
     format: FindingFormat,
 }
@@ -83,7 +83,7 @@ pub(super) fn run(arguments: &VerifyArguments) -> Result<ExitStatus, UsageError>
                 ("--page", arguments.page.is_some()),
             ];
             if let Some((flag, _)) = of_holes.iter().find(|(_, given)| *given) {
-                return Err(UsageError::new(format!("{flag} is about holes, and the reference is a burr")));
+                return Err(UsageError::new(format!("{flag} is for holes, and the reference is a burr")));
             }
             wanted.surface_tolerance = asked.unwrap_or(wanted.surface_tolerance);
             flutes(arguments, &mut request, folders, &wanted)

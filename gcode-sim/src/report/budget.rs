@@ -95,7 +95,7 @@ impl BudgetReport {
     /// For a terminal.
     pub fn text(&self) -> String {
         let mut text = format!(
-            "Position of {} in {} samples: {}\nmm; within: the share inside Φ{}; exact: without any error\n\n",
+            "Position of {} in {} samples: {}\nmm; within: the share inside Φ{}; exact: without errors\n\n",
             if self.holes.len() == 1 { "1 hole".to_owned() } else { format!("{} holes", self.holes.len()) },
             self.samples,
             self.basis,
@@ -123,7 +123,7 @@ impl BudgetReport {
         }
         let _ = writeln!(text, "{}\n", line("worst", &self.parts));
         let wide = self.sources.iter().map(|row| row.source.len()).max().unwrap_or(0).max(6);
-        let _ = writeln!(text, "{:<wide$} {:>9} {:>8}  as given", "source", "moves", "share");
+        let _ = writeln!(text, "{:<wide$} {:>9} {:>8}  specified", "source", "moves", "share");
         for row in &self.sources {
             let _ = writeln!(
                 text,
@@ -145,7 +145,7 @@ impl BudgetReport {
             text: format!("{:.1} %, {:.4} mm", row.share * 100.0, row.moves),
         };
         Bars {
-            title: "What moves the holes: share of the mean square".to_owned(),
+            title: "Error sources: share of the mean square".to_owned(),
             notes: vec![
                 format!(
                     "Worst hole of a part: Φ{:.3} at 95 %, Φ{:.3} at 99.7 %; {:.1} % of the parts within Φ{}",

@@ -57,12 +57,12 @@ pub fn of_changes(
     let farthest = farthest.max_by(|a, b| a.moved.total_cmp(&b.moved));
     let farthest = farthest.and_then(|pair| {
         let hole = pair.old? + 1;
-        Some(format!("moved farthest: hole\u{a0}{hole}, by {} mm", near(pair.moved, 4)))
+        Some(format!("largest movement: hole\u{a0}{hole}, {} mm", near(pair.moved, 4)))
     });
     let others: Vec<&Change> =
         compared.changes.iter().filter(|change| !is_of_one_hole(&change.code)).collect();
     let path = path([old, new], machine, compared);
-    let more = path.has_other_rapids.then(|| "rapids aren't drawn: see --page".to_owned());
+    let more = path.has_other_rapids.then(|| "rapids are not drawn: see --page".to_owned());
     let lines = farthest.into_iter().chain(told(&others)).chain(more).collect();
     TopView {
         name: name.to_owned(),
@@ -81,7 +81,7 @@ pub fn of_changes(
             match (stops(&old.record), stops(&new.record)) {
                 (_, true) => "the new program stops before its end",
                 (true, false) => "the old program stops before its end",
-                (false, false) => "they end differently",
+                (false, false) => "the programs end differently",
             }
             .to_owned()
         }),

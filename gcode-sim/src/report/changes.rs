@@ -69,14 +69,13 @@ impl ChangesReport {
         entries(&mut text, &self.changes, "");
         let _ = match self.changes.len() {
             0 => match &self.stopped {
-                None => writeln!(text, "nothing changes on the part"),
+                None => writeln!(text, "no difference on the part or in the control's final state"),
                 Some(words) if self.old.totals.moves == 0 => {
                     writeln!(text, "nothing could be compared: both stop before the first move, {words}")
                 }
-                Some(words) => writeln!(
-                    text,
-                    "nothing changes before the stop, what is behind it could not be compared: {words}"
-                ),
+                Some(words) => {
+                    writeln!(text, "no difference before the stop; the rest could not be compared: {words}")
+                }
             },
             1 => writeln!(text, "1 change"),
             n => writeln!(text, "{n} changes"),
@@ -103,11 +102,7 @@ impl ChangesReport {
         if all.is_empty() {
             return;
         }
-        let _ = writeln!(
-            text,
-            "changed blocks that neither run executed, nothing is known of what they do: {}",
-            all.len()
-        );
+        let _ = writeln!(text, "changed blocks that neither run executed (effect unknown): {}", all.len());
         for UnexecutedChange { old, new } in all.iter().take(SHOWN) {
             for (word, place) in [("old", old), ("new", new)] {
                 let Some(place) = place else { continue };
@@ -115,7 +110,7 @@ impl ChangesReport {
             }
         }
         if SHOWN < all.len() {
-            let _ = writeln!(text, "… and {} more of them: --format json has them all", all.len() - SHOWN);
+            let _ = writeln!(text, "… and {} more of them: --format json lists them all", all.len() - SHOWN);
         }
     }
 }
@@ -143,7 +138,7 @@ pub(super) fn entries(text: &mut String, changes: &[Change], indent: &str) {
         if *number == SHOWN && SHOWN < all {
             let more = all - SHOWN;
             let _ =
-                writeln!(text, "{indent}… and {more} more of {}: --format json has them all", change.code);
+                writeln!(text, "{indent}… and {more} more of {}: --format json lists them all", change.code);
         }
     }
 }

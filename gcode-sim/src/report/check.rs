@@ -97,6 +97,6 @@ fn summary(checked: &Checked) -> String {
             count => Some(counted(count, severity.name())),
         })
         .collect();
-    let found = if counts.is_empty() { "nothing found".to_owned() } else { counts.join(", ") };
+    let found = if counts.is_empty() { "no findings".to_owned() } else { counts.join(", ") };
     format!("{} checked: {found}", counted(checked.programs, "program"))
 }

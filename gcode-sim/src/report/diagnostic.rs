@@ -109,7 +109,7 @@ mod tests {
         let block = Span { source: called, start: 7, end: 18 };
         let mut diagnostic = Diagnostic::new(Severity::Alarm, "PS0112", "division by zero")
             .at(Backtrace { block, calls: Some(Arc::new(Call { from, outer: None })) })
-            .help("a vacant variable counts as 0 here");
+            .help("check the divisor: a vacant variable counts as 0");
         diagnostic.span = Some(Span { source: called, start: 10, end: 14 });
         let text = anstream::adapter::strip_str(&render(&diagnostic, &sources)).to_string();
         let wanted = "\
@@ -120,7 +120,7 @@ alarm[PS0112]: division by zero
   |    ^^^^
   |
   = called from O0001.nc:2: G65 P2 A1.
-  = help: a vacant variable counts as 0 here
+  = help: check the divisor: a vacant variable counts as 0
 ";
         assert_eq!(text, wanted);
     }

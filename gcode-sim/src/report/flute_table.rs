@@ -7,7 +7,7 @@ use gcode_inspect::verify::flutes::{FluteVerdict, LawAngles, NominalFlutes};
 /// Lengths in mm, angles in degrees; judged unrounded, shown rounded.
 pub fn table(verdict: &FluteVerdict) -> String {
     let mut text = format!(
-        "Flutes of a burr, law {}: {}\na helix angle is measured over {} mm of the flute; tolerances are either way\n\n",
+        "Flutes of a burr, law {}: {}\na helix angle is measured over {} mm of the flute; tolerances are ±\n\n",
         verdict.law, verdict.basis, verdict.gauge
     );
     let number = |value: Option<f64>, places: usize| match value {
@@ -18,41 +18,41 @@ pub fn table(verdict: &FluteVerdict) -> String {
         let line = format!("{what:<46} {found:>14} {wanted:>16} {tolerance:>10}");
         let _ = writeln!(text, "{}", line.trim_end());
     };
-    let [found, wanted, tolerance] = ["found", "wanted", "tolerance"].map(str::to_owned);
+    let [found, wanted, tolerance] = ["actual", "nominal", "tolerance"].map(str::to_owned);
     row("", found, wanted, tolerance);
     row("flutes", verdict.flutes.to_string(), verdict.nominal_flutes.to_string(), String::new());
     row(
-        "contact off the tooth bottom, mm",
+        "contact deviation from the tooth bottom, mm",
         number(verdict.surface_deviation, 4),
         "0".to_owned(),
         verdict.tolerance.to_string(),
     );
     row(
-        "helix angle, least and greatest, degrees",
+        "helix angle, minimum and maximum, degrees",
         format!("{} {}", number(verdict.helix_min, 2), number(verdict.helix_max, 2)),
         format!("{} on cylinder", verdict.helix),
         String::new(),
     );
     row(
-        "helix angle off the law, degrees",
+        "helix angle deviation from the law, degrees",
         number(verdict.helix_error, 3),
         "0".to_owned(),
         verdict.helix_tolerance.to_string(),
     );
     row(
-        "gap between neighbours off an even one, degrees",
+        "index deviation between neighbours, degrees",
         number(verdict.index_error, 4),
         "0".to_owned(),
         verdict.index_tolerance.to_string(),
     );
     row(
-        "speed along the flutes, least and greatest",
+        "speed along the flutes, minimum and maximum",
         format!("{} {}", number(verdict.speed_min, 1), number(verdict.speed_max, 1)),
         verdict.speed.map_or("-".to_owned(), |speed| format!("{speed} mm/min")),
         verdict.speed.map_or(String::new(), |_| format!("{:.0} %", 100.0 * verdict.speed_tolerance)),
     );
     row(
-        "neighbours' least distance, mm",
+        "minimum distance of neighbours, mm",
         number(verdict.nearest, 3),
         format!("at least {}", verdict.min_nearest),
         String::new(),
@@ -65,7 +65,8 @@ pub fn table(verdict: &FluteVerdict) -> String {
     );
     laws(&mut text, &verdict.laws);
     if !verdict.helix_course.is_empty() {
-        let _ = writeln!(text, "measured: on pass {}, the farthest from the law", verdict.course_pass);
+        let _ =
+            writeln!(text, "measured: on pass {}, the largest deviation from the law", verdict.course_pass);
         if verdict.laws.iter().any(|law| law.measured.is_none()) {
             let least =
                 verdict.helix_course.iter().map(|angles| angles.polar.0).fold(f64::INFINITY, f64::min);
@@ -91,7 +92,8 @@ pub fn table(verdict: &FluteVerdict) -> String {
 /// What is wanted, in words.
 pub fn wanted(burr: &NominalFlutes) -> String {
     let mut text = format!(
-        "{} flutes, law {}, from {:.3} mm behind the end of the cylinder to polar angle {}, the pole {:.3} mm before it\n",
+        "{} flutes, law {}, from {:.3} mm behind the end of the cylinder to polar angle {}, the pole {:.3} \
+         mm in front of it\n",
         burr.flutes, burr.law, burr.start, burr.tip_angle, -burr.pole
     );
     laws(&mut text, &burr.laws);

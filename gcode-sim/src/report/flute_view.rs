@@ -37,12 +37,15 @@ pub fn of(name: &str, grinding: &GrindingRun, verdict: &FluteVerdict) -> FluteVi
         lines: vec![
             format!("Law: {}, {}° on the cylinder", verdict.law, verdict.helix),
             format!(
-                "Helix angle {}° to {}°, farthest from the law on pass {}",
+                "Helix angle {}° to {}°, largest deviation from the law on pass {}",
                 number(verdict.helix_min, 2),
                 number(verdict.helix_max, 2),
                 verdict.course_pass
             ),
-            format!("Contact off the surface: {} mm at most", number(verdict.surface_deviation, 4)),
+            format!(
+                "Contact deviation from the surface: at most {} mm",
+                number(verdict.surface_deviation, 4)
+            ),
         ],
         outline,
         tip_radius: -end.y,

@@ -51,7 +51,7 @@ impl CompareReport {
     /// The same for people.
     pub fn text(&self) -> String {
         if self.same {
-            return "the pictures are alike\n".to_owned();
+            return "no difference between the pictures\n".to_owned();
         }
         let [[w, h], [other_w, other_h]] = self.sizes;
         let mut text = if (w, h) == (other_w, other_h) {

@@ -136,8 +136,8 @@ impl ReadingsReport {
     /// For a terminal: every tenth of each pass.
     pub fn text(&self) -> String {
         let mut text = format!(
-            "Readings of an edge finder, ball of radius {}: {}\n\
-             mm; above 0 a gap between ball and surface, below 0 the ball is pushed in; x y z: its centre\n",
+            "Readings of an edge finder, ball of radius {}: {}\nmm; above 0: gap between ball and surface; \
+             below 0: stylus deflected; x y z: ball centre\n",
             self.radius, self.basis
         );
         for (index, pass) in self.passes.iter().enumerate() {
@@ -160,7 +160,7 @@ impl ReadingsReport {
         }
         if self.ways != [0, 0] {
             let [to, from] = self.ways.map(|n| count(n, "feed"));
-            let _ = writeln!(text, "\nnot read: {to} to the surface, {from} from it");
+            let _ = writeln!(text, "\nno reading: {to} towards the surface, {from} away from it");
         }
         let _ = writeln!(text, "\n{}", self.sentence());
         text
@@ -169,7 +169,7 @@ impl ReadingsReport {
     /// `reading -0.0012 to 0.0500, spread 0.0512`, and what was asked about it.
     fn sentence(&self) -> String {
         let Some((least, greatest)) = self.least.zip(self.greatest) else {
-            return "no feed goes along the surface".to_owned();
+            return "no feed follows the surface".to_owned();
         };
         let range = format!(
             "reading {:.4} to {:.4}, spread {:.4}",
@@ -184,7 +184,7 @@ impl ReadingsReport {
             }
             (Some(Answer::Fail), Some(_)) if !self.gaps.is_empty() => {
                 format!(
-                    "FAIL: {} in the path without a reading; elsewhere {range}",
+                    "FAIL: {} without a reading in the path; elsewhere {range}",
                     count(self.gaps.len(), "gap")
                 )
             }
@@ -230,23 +230,24 @@ impl ReadingsReport {
         };
         let first = self.passes.first().and_then(|pass| end(pass.readings.first()));
         let last = self.passes.last().and_then(|pass| end(pass.readings.last()));
-        let ends = first.zip(last).map(|(first, last)| {
-            format!("Ball of radius {}, its centre from {first} to {last}", self.radius)
-        });
+        let ends = first
+            .zip(last)
+            .map(|(first, last)| format!("Ball radius {}, centre from {first} to {last}", self.radius));
         Plot {
             title: format!("Edge finder along the surface, {}", self.name),
             notes: [
                 Some(self.sentence()),
-                (!self.gaps.is_empty())
-                    .then(|| "Between dotted lines, a thick line at 0: fed there, but no reading".to_owned()),
+                (!self.gaps.is_empty()).then(|| {
+                    "Between dotted lines, with a thick line at 0: feed without a reading".to_owned()
+                }),
                 ends,
-                Some("Predicted by simulation, not measured; below 0 the ball is pushed in".to_owned()),
+                Some("Predicted by simulation, not measured; below 0 the stylus is deflected".to_owned()),
             ]
             .into_iter()
             .flatten()
             .collect(),
             chart: Chart {
-                across: "Way of the ball's centre, mm".to_owned(),
+                across: "Path of the ball centre, mm".to_owned(),
                 guides: Vec::new(),
                 gaps,
                 graphs: vec![Graph {

@@ -247,7 +247,7 @@ impl RunReport {
         for PassedOnReport { code, program, line } in &self.passed_on {
             let _ = writeln!(
                 text,
-                "passed on  {code}, first in {program} line {line}: the machine builder's, not simulated"
+                "passed on  {code}, first in {program} line {line}: left to the machine builder, not simulated"
             );
         }
         for (number, value) in &self.variables {

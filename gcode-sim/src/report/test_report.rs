@@ -74,7 +74,7 @@ pub enum CaseAnswer {
 
 /// What is said of [`CaseAnswer::Older`].
 pub(super) const OLDER_TEXT: &str =
-    "accepted when less was noted of a run; all that was noted is as accepted";
+    "accepted by an earlier version that recorded less; everything it recorded is unchanged";
 
 /// The first thing that a failed verdict has against a program.
 #[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
@@ -115,7 +115,7 @@ impl TestReport {
         let mut words = vec![format!("{} as accepted", count(CaseAnswer::Same))];
         let others = [
             (CaseAnswer::Changed, "changed"),
-            (CaseAnswer::Older, "accepted when less was noted"),
+            (CaseAnswer::Older, "accepted by an earlier version"),
             (CaseAnswer::New, "new"),
             (CaseAnswer::Refused, "refused"),
         ];
@@ -124,11 +124,12 @@ impl TestReport {
         }
         let failing = self.cases.iter().filter(|case| case.against.is_some()).count();
         if failing > 0 {
-            words.push(format!("{failing} against its reference"));
+            words.push(format!("{failing} failing verification"));
         }
         let _ = writeln!(text, "{}: {}", counted(self.cases.len() as u64, "case"), words.join(", "));
         if let Some(Shard { number, of, cases }) = self.shard.filter(|_| self.cases.is_empty()) {
-            let _ = writeln!(text, "shard {number}/{of} is empty: {} in all", counted(cases as u64, "case"));
+            let _ =
+                writeln!(text, "shard {number}/{of} is empty: {} in total", counted(cases as u64, "case"));
         }
         let (lacking, open): (Vec<_>, Vec<_>) = self
             .cases
@@ -139,11 +140,12 @@ impl TestReport {
             let name = &case.name;
             let _ = writeln!(
                 text,
-                "--accept doesn't take {name}: a called program isn't found; name its folder with --lib, or put it into lib/ of the case"
+                "--accept skips {name}: a called program is not found; name its folder with --lib, or put \
+                 it into lib/ of the case"
             );
         }
         if !open.is_empty() {
-            text.push_str("--accept takes what is new; --only NAME takes one\n");
+            text.push_str("use --accept to accept the current results, with --only NAME those of one case\n");
         }
         text
     }
@@ -221,7 +223,7 @@ impl CaseReport {
 
     /// What can't be held against a result of an earlier version.
     pub(super) fn left_open(&self) -> String {
-        format!("not compared, it wasn't noted when this was accepted: {}", self.not_compared.join(", "))
+        format!("not compared (not recorded in the accepted result): {}", self.not_compared.join(", "))
     }
 
     fn findings(&self) -> Vec<Finding> {

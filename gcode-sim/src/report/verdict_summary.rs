@@ -14,12 +14,12 @@ pub(super) fn summary(text: &mut String, verdict: &Verdict) {
         Answer::Pass => "PASS",
         Answer::Fail => "FAIL",
     };
-    let mut parts = vec![format!("{good} of {} good", count(wanted, "wanted hole"))];
+    let mut parts = vec![format!("{good} of {} in tolerance", count(wanted, "hole"))];
     if !verdict.missing.is_empty() {
         parts.push(format!("{} missing", verdict.missing.len()));
     }
     if !verdict.extra.is_empty() {
-        parts.push(format!("{} too many", verdict.extra.len()));
+        parts.push(format!("{} extra", verdict.extra.len()));
     }
     let motion = verdict.findings.iter().filter(|f| f.severity == "error" && f.from_motion).count();
     if motion != 0 {
@@ -30,7 +30,7 @@ pub(super) fn summary(text: &mut String, verdict: &Verdict) {
         put(
             text,
             &format!(
-                "worst    Φ{} of Φ{}: {}",
+                "worst    Φ{}, tolerance Φ{}: {}",
                 near(worst, 4),
                 verdict.tolerance,
                 from.replace("; ", "\n         ")
@@ -47,13 +47,16 @@ pub(super) fn summary(text: &mut String, verdict: &Verdict) {
     }
     if let Some(rounding) = verdict.rounding {
         let share = rounding / verdict.tolerance * 100.0;
-        let said = "rounding alone, to the control's least increment, can use up";
-        put(text, &format!("{said} Φ{rounding:.4}: {share:.1} % of the zone"));
+        let said = "rounding to the control's least increment alone can cause";
+        put(text, &format!("{said} Φ{rounding:.4}: {share:.1} % of the tolerance zone"));
         if verdict.tolerance < rounding {
-            let why = "a finer increment or a wider tolerance is needed";
+            let why = "use a finer increment or a wider tolerance";
             put(
                 text,
-                &format!("WARNING  this control can't be trusted to hold Φ{}: {why}", verdict.tolerance),
+                &format!(
+                    "WARNING  this control's least increment is too coarse for Φ{}: {why}",
+                    verdict.tolerance
+                ),
             );
         }
     }
@@ -75,7 +78,8 @@ fn say_neighbours(text: &mut String, neighbours: &Neighbours) {
     put(
         text,
         &format!(
-            "neighbours wanted {wanted:.4} mm apart ({metric}); {with_six} of {with_six_wanted} inner holes have all six"
+            "neighbour distance, nominal {wanted:.4} mm ({metric}); {with_six} of {with_six_wanted} inner \
+             holes have all six neighbours"
         ),
     );
     for (what, extreme) in [("nearest", min), ("farthest", max)] {

@@ -27,7 +27,7 @@ pub fn table(verdict: &Verdict, layout: Layout) -> String {
         holes.sort_by(|a, b| b.position_deviation.total_cmp(&a.position_deviation));
     }
     let mut text = format!(
-        "Position of {} against Φ{}: {}\nmm and degrees; deviations are actual less nominal\n\n",
+        "Position of {} against Φ{}: {}\nmm and degrees; deviations are actual − nominal\n\n",
         count(all, "hole"),
         verdict.tolerance,
         verdict.basis
@@ -119,7 +119,7 @@ fn full(text: &mut String, hole: &HoleVerdict, tolerance: f64) {
     put(
         text,
         &format!(
-            " position   Φ{} of Φ{tolerance}, out of tolerance {} (entry {}, bottom {}, tilt {}°)",
+            " position   Φ{}, tolerance Φ{tolerance}, out of tolerance by {} (entry {}, bottom {}, tilt {}°)",
             near(hole.position_deviation, 4),
             near(hole.out_of_tolerance, 4),
             near(hole.at_entry, 4),
@@ -196,16 +196,16 @@ mod tests {
     fn one_line_a_hole() {
         insta::assert_snapshot!(table(&verdict(), Layout::default()), @r"
 Position of 2 holes against Φ0.1: predicted by simulation, not measured
-mm and degrees; deviations are actual less nominal
+mm and degrees; deviations are actual − nominal
 
 hole         x         y         z       dx       dy       dz   entry  bottom    tilt    depth       Φ     out  verdict
 1      420.000   674.930     0.000  +0.0001   0.0000   0.0000  0.0001  0.0001  0.0000   0.0000  0.0002  0.0000  pass
 2      420.000   674.930     0.000  +0.0617   0.0000   0.0000  0.0617  0.0617  0.0000   0.0000  0.1234  0.0234  FAIL position
 
-FAIL     1 of 17 wanted holes good, 15 missing
-worst    Φ0.1234 of Φ0.1: hole 2, …
+FAIL     1 of 17 holes in tolerance, 15 missing
+worst    Φ0.1234, tolerance Φ0.1: hole 2, …
          made by O8101 line 31, T2, called from O8100 line 20
-rounding alone, to the control's least increment, can use up Φ0.0211: 21.1 % of the zone
+rounding to the control's least increment alone can cause Φ0.0211: 21.1 % of the tolerance zone
 missing  3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, … and 3 more
 ");
     }
@@ -214,26 +214,26 @@ missing  3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, … and 3 more
     fn every_column_worst_first() {
         insta::assert_snapshot!(table(&verdict(), Layout { worst_first: true, full: true }), @r"
 Position of 2 holes against Φ0.1: predicted by simulation, not measured
-mm and degrees; deviations are actual less nominal
+mm and degrees; deviations are actual − nominal
 
 hole 2              x         y         z         i         j         k         d         l
  nominal     420.0000  674.9300    0.0000  0.000000  1.000000  0.000000     6.000   15.0000
  actual      420.0617  674.9300    0.0000  0.000000  1.000000  0.000000     6.000   15.0000
  deviation    +0.0617    0.0000    0.0000  0.000000  0.000000  0.000000     0.000    0.0000
- position   Φ0.1234 of Φ0.1, out of tolerance 0.0234 (entry 0.0617, bottom 0.0617, tilt 0.0000°)
+ position   Φ0.1234, tolerance Φ0.1, out of tolerance by 0.0234 (entry 0.0617, bottom 0.0617, tilt 0.0000°)
  verdict    FAIL position; made by O8101 line 31, T2, called from O8100 line 20
 
 hole 1              x         y         z         i         j         k         d         l
  nominal     420.0000  674.9300    0.0000  0.000000  1.000000  0.000000     6.000   15.0000
  actual      420.0001  674.9300    0.0000  0.000000  1.000000  0.000000     6.000   15.0000
  deviation    +0.0001    0.0000    0.0000  0.000000  0.000000  0.000000     0.000    0.0000
- position   Φ0.0002 of Φ0.1, out of tolerance 0.0000 (entry 0.0001, bottom 0.0001, tilt 0.0000°)
+ position   Φ0.0002, tolerance Φ0.1, out of tolerance by 0.0000 (entry 0.0001, bottom 0.0001, tilt 0.0000°)
  verdict    pass; made by O8101 line 31, T2, called from O8100 line 20
 
-FAIL     1 of 17 wanted holes good, 15 missing
-worst    Φ0.1234 of Φ0.1: hole 2, …
+FAIL     1 of 17 holes in tolerance, 15 missing
+worst    Φ0.1234, tolerance Φ0.1: hole 2, …
          made by O8101 line 31, T2, called from O8100 line 20
-rounding alone, to the control's least increment, can use up Φ0.0211: 21.1 % of the zone
+rounding to the control's least increment alone can cause Φ0.0211: 21.1 % of the tolerance zone
 missing  3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, … and 3 more
 ");
     }
@@ -242,7 +242,7 @@ missing  3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, … and 3 more
     #[test]
     fn a_zone_smaller_than_rounding_is_warned_of() {
         let told = |tolerance: f64| table(&Verdict { tolerance, ..verdict() }, Layout::default());
-        let warning = "WARNING  this control can't be trusted to hold Φ0.02: a finer increment or a wider tolerance is needed";
+        let warning = "WARNING  this control's least increment is too coarse for Φ0.02: use a finer increment or a wider tolerance";
         assert!(told(0.02).contains(warning));
         assert!(!told(0.0212).contains("WARNING"));
     }

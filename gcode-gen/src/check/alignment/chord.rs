@@ -41,8 +41,7 @@ pub(super) fn tried(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError>
         let found = [570, 571, 572].map(|number| common(&run, number));
         let wanted = [pair[0] as f64, pair[1] as f64, difference];
         if !found.iter().zip(wanted).all(|(found, wanted)| (found - wanted).abs() < 1e-6) {
-            let message =
-                format!("#570 to #572 are {found:?}, and a search through all pairs finds {wanted:?}");
+            let message = format!("#570 to #572 are {found:?}; a search through all pairs gives {wanted:?}");
             tried.refusals.push(format!("{}: {message}\n", bench.name()));
         }
         for (end, name) in ends(job).into_iter().zip(["E", "F"]) {
@@ -50,8 +49,7 @@ pub(super) fn tried(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError>
             let far = distance(there, end);
             off = off.max(far);
             if far.is_nan() || far > allowed {
-                let message =
-                    format!("{name} stands at {there:?} after the correction, {far} mm from {end:?}");
+                let message = format!("{name} is at {there:?} after the correction, {far} mm from {end:?}");
                 tried.refusals.push(format!("{}: {message}\n", bench.name()));
             }
         }
@@ -61,7 +59,8 @@ pub(super) fn tried(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError>
     }
     touched(bench, &mut tried)?;
     tried.report = format!(
-        "{}  of {} by {} candidates the pair that a search finds; after the correction E and F are {off:.4} mm from where the model has them\n",
+        "{}  of {} by {} candidates the pair of the exhaustive search; after the correction E and F are \
+         {off:.4} mm from their model positions\n",
         bench.name(),
         job.chord.candidates,
         job.chord.candidates
@@ -92,7 +91,7 @@ fn touched(bench: &TrialProgram<'_>, tried: &mut TrialResult) -> Result<(), Chec
         let [x, y, z] = [x / a, (y - high) / b, z / a];
         let off = ((x * x + y * y + z * z).sqrt() - 1.0) * a.min(b);
         if off.is_nan() || off.abs() > 0.001 {
-            let message = format!("the point in #{first} is {off} mm off the surface that it touched");
+            let message = format!("the point in #{first} is {off} mm off the touched surface");
             tried.refusals.push(format!("{}: {message}\n", bench.name()));
         }
     }

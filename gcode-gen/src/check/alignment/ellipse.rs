@@ -21,7 +21,7 @@ pub(super) fn tried(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError>
     tried.refusals.extend(findings.map(|finding| diagnostic::render(finding, sources)));
     let passes = following.followed.passes.as_slice();
     let [pass] = passes else {
-        let message = format!("{} ways along the surface, and one is wanted", passes.len());
+        let message = format!("{} passes along the surface, 1 specified", passes.len());
         tried.refusals.push(format!("{}: {message}\n", bench.name()));
         return Ok(tried);
     };
@@ -29,7 +29,7 @@ pub(super) fn tried(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError>
     let worst = greatest.value.max(-least.value);
     if worst > job.ellipse.chord_error {
         let message = format!(
-            "the ball is up to {worst:.4} mm off its distance from the surface, and the chord error is {}",
+            "the distance of the ball from the surface is off by up to {worst:.4} mm; the chord error is {}",
             job.ellipse.chord_error
         );
         tried.refusals.push(format!("{}: {message}\n", bench.name()));
@@ -39,12 +39,13 @@ pub(super) fn tried(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError>
         let x = reading.at.x - surface.nearest(&reading.at).normal.x * (job.probe_radius + reading.value);
         // Rounding moves the centre by half an increment in x and y each, and the foot of the normal no farther than twice that.
         if (x - wanted).abs() > 2.0 * job.control.increment.size() || reading.at.z != 0.0 {
-            let message = format!("an end is at {}, and x = {wanted} on the ellipse is wanted", reading.at);
+            let message = format!("an end is at {}; x = {wanted} on the ellipse is specified", reading.at);
             tried.refusals.push(format!("{}: {message}\n", bench.name()));
         }
     }
     tried.report = format!(
-        "{}  {} moves along {:.1} mm; the ball is at most {worst:.4} mm off its distance from the surface, between programmed points too\n",
+        "{}  {} moves along {:.1} mm; the distance of the ball from the surface is off by at most \
+         {worst:.4} mm, between programmed points too\n",
         bench.name(),
         pass.places.len(),
         pass.length()

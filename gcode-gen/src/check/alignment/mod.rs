@@ -52,7 +52,7 @@ pub(super) fn check(job: &Alignment, package: &Package) -> Result<CheckedPackage
     };
     for main in &package.mains {
         let trial = TRIALS.iter().find(|(number, _)| number == main);
-        let (_, trial) = trial.ok_or_else(|| told(&file_name(*main), &"nothing says what it has to find"))?;
+        let (_, trial) = trial.ok_or_else(|| told(&file_name(*main), &"it has no trial"))?;
         let tried = trial(&TrialProgram { job, package, main: *main })?;
         checked.refusals.extend(tried.refusals);
         checked.warnings.extend(tried.warnings);

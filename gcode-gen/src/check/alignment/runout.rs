@@ -62,7 +62,7 @@ pub(super) fn tried(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError>
             let off = (common(&run, number) - real).abs();
             worst[kind] = worst[kind].max(off);
             if off.is_nan() || off > ALLOWED[kind] {
-                let message = format!("#{number} is {} where it is {real}", common(&run, number));
+                let message = format!("#{number} is {}, nominal {real}", common(&run, number));
                 tried.refusals.push(format!("{}: {message}\n", bench.name()));
             }
         }
@@ -73,7 +73,8 @@ pub(super) fn tried(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError>
     let [shift, tilt] = worst;
     tried.warnings.extend(noise.warning().map(|warning| format!("warning: {}: {warning}\n", bench.name())));
     tried.report = format!(
-        "{}  shifts of up to 0.3 mm and tilts of up to 0.3 degrees are found to {shift:.4} mm and {tilt:.4} degrees; {}\n",
+        "{}  shifts of up to 0.3 mm and tilts of up to 0.3 degrees are determined to {shift:.4} mm and \
+         {tilt:.4} degrees; {}\n",
         bench.name(),
         noise.sentence()
     );
@@ -105,18 +106,15 @@ fn untold(job: &Alignment, why: FitError) -> String {
     let [low, high] = runout.heights.map(short);
     match why {
         FitError::Missed { height } => {
-            format!(
-                "key 'runout.heights': at y {} the ball passes the part and touches nothing",
-                short(height)
-            )
+            format!("key 'runout.heights': at y {} the ball passes the part without contact", short(height))
         }
         FitError::Degenerate if job.surface.a == job.surface.b => {
-            "keys 'surface.a' and 'surface.b' are alike: a sphere has no tilt that touches could find"
-                .to_owned()
+            "keys 'surface.a' and 'surface.b' are equal: the tilt of a sphere cannot be measured".to_owned()
         }
         FitError::Degenerate => format!(
-            "tilt can't be told from shift at y {low} and {high} over {} {} to {} (keys 'runout.heights', 'runout.angles'): noise of a \
-             touch would come out more than 300 times as large; take heights farther apart, or wider angles",
+            "tilt cannot be distinguished from shift at y {low} and {high} over {} {} to {} (keys \
+             'runout.heights', 'runout.angles'): the noise of a touch would be amplified more than 300 \
+             times; use heights farther apart, or wider angles",
             job.machine.rotary.letter,
             short(runout.from),
             short(runout.to)
@@ -146,7 +144,7 @@ impl Noise {
     fn sentence(&self) -> String {
         let [shift, tilt] = self.deviations();
         format!(
-            "noise of {} mm a touch leaves standard deviations of {shift:.4} mm and {tilt:.4} degrees",
+            "noise of {} mm per touch gives standard deviations of {shift:.4} mm and {tilt:.4} degrees",
             short(self.touch)
         )
     }
@@ -156,9 +154,10 @@ impl Noise {
         let twice = self.deviations().map(|deviation| 2.0 * deviation);
         (twice[0] > ALLOWED[0] || twice[1] > ALLOWED[1]).then(|| {
             format!(
-                "noise of {} mm a touch ('probe.noise') doesn't allow {} mm and {} degrees: one pass in twenty is off by more than \
-                 {:.4} mm or {:.4} degrees (two standard deviations, {:.2} mm and {:.3} degrees for 1 mm of noise); take wider \
-                 'runout.angles', heights farther apart, more readings, or a better probe",
+                "noise of {} mm per touch ('probe.noise') does not allow {} mm and {} degrees: one pass in \
+                 twenty is off by more than {:.4} mm or {:.4} degrees (two standard deviations, {:.2} mm \
+                 and {:.3} degrees for 1 mm of noise); use wider 'runout.angles', heights farther apart, \
+                 more readings, or a better probe",
                 short(self.touch),
                 ALLOWED[0],
                 ALLOWED[1],
@@ -200,7 +199,7 @@ mod tests {
         assert!(
             warned(("radius = 3.0", "radius = 3.0\nnoise = 0.003"))
                 .unwrap()
-                .contains("noise of 0.003 mm a touch")
+                .contains("noise of 0.003 mm per touch")
         );
         assert!(warned(("[-25.0, 25.0, 11]", "[-15.0, 15.0, 11]")).is_some());
         assert_eq!(warned(("[-25.0, 25.0, 11]", "[-40.0, 40.0, 11]")), None);
@@ -211,10 +210,10 @@ mod tests {
         for (change, wanted) in [
             (
                 ("[150.0, 420.0]", "[150.0, 151.0]"),
-                "tilt can't be told from shift at y 150 and 151 over B -25 to 25",
+                "tilt cannot be distinguished from shift at y 150 and 151 over B -25 to 25",
             ),
             (("[-25.0, 25.0, 11]", "[-1.0, 1.0, 11]"), "wider angles"),
-            (("b = 724.3", "b = 1158.8"), "a sphere has no tilt"),
+            (("b = 724.3", "b = 1158.8"), "the tilt of a sphere cannot be measured"),
         ] {
             let job = job(change);
             let told = untold(&job, passed_on(&job).unwrap_err());

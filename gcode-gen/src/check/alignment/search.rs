@@ -37,7 +37,7 @@ pub(super) fn too_short(bench: &TrialProgram<'_>, what: &str, farthest: f64) -> 
     let enough = ((farthest + MARGIN) * 10.0).ceil() / 10.0;
     (enough > bench.job.probe_search && enough <= 1000.0).then(|| {
         format!(
-            "{}: {what} up to {} mm from where they should be, and key 'probe.search' is {}: {} would do\n",
+            "{}: {what} up to {} mm from their nominal position, key 'probe.search' is {}: use {}\n",
             bench.name(),
             short((farthest * 100.0).ceil() / 100.0),
             short(bench.job.probe_search),
@@ -73,9 +73,9 @@ mod tests {
     fn a_search_that_is_too_short_is_told_with_one_that_does() {
         let told = refusals("2.0");
         let advised: Vec<f64> = told
-            .split("'probe.search' is 2: ")
+            .split("'probe.search' is 2: use ")
             .skip(1)
-            .map(|rest| rest.split(" would do").next().unwrap().parse().unwrap())
+            .map(|rest| rest.split('\n').next().unwrap().parse().unwrap())
             .collect();
         assert!(advised.len() == 2 && advised.iter().all(|value| (3.4..6.0).contains(value)), "{told}");
         let most = advised.into_iter().fold(0.0, f64::max);

@@ -44,14 +44,15 @@ pub(super) fn tried(bench: &TrialProgram<'_>) -> Result<TrialResult, CheckError>
             && common(&run, 583).is_nan();
         if !holds {
             let message = format!(
-                "for a tilt of {tilt} degrees on a table at {stands} it tells PHI {angle}, H {height}, {change} more, {left} seconds left; PHI {wanted} is wanted"
+                "for a tilt of {tilt} degrees on a table at {stands} the program gives PHI {angle}, H \
+                 {height}, {change} more, {left} seconds left; nominal PHI {wanted}"
             );
             tried.refusals.push(format!("{}: {message}\n", bench.name()));
         }
     }
     tried.warnings.extend(warnings(table).map(|told| format!("warning: {}: {told}\n", bench.name())));
     tried.report = format!(
-        "{}  the sine table's height for each tilt to within {worst:.4} mm, half a step of {} being {}\n",
+        "{}  the sine table's height for each tilt within {worst:.4} mm; half a step of {} is {}\n",
         bench.name(),
         table.gauge_blocks.name,
         step / 2.0
@@ -66,15 +67,16 @@ fn warnings(table: &SineTable) -> impl Iterator<Item = String> {
     let side = if table.phi < LARGEST_TILT { "0" } else { "45" };
     let edge = (room < LARGEST_TILT).then(|| {
         format!(
-            "key 'sine_table.phi' is {phi}: a tilt of more than {} degrees one way takes it beyond {side}, which O8230 refuses (PHI BEYOND \
-             0. TO 45.); a part that is tilted so is set by hand",
+            "key 'sine_table.phi' is {phi}: a tilt of more than {} degrees in one direction takes it \
+             beyond {side}, which O8230 refuses (PHI BEYOND 0. TO 45.); set a part with such a tilt by hand",
             short(room)
         )
     });
     let stack = gap(table).map(|Thickness(half_microns)| {
         format!(
-            "key 'sine_table.phi' is {phi}: within {} degree of it the set '{}' has gaps, the lowest at {:.4} mm; where O8230 tells a height without a \
-             stack, put blocks under both rollers that differ by it",
+            "key 'sine_table.phi' is {phi}: within {} degree of it the set '{}' has gaps, the lowest at \
+             {:.4} mm; where O8230 gives a height without a stack, put blocks with this difference under \
+             both rollers",
             short(LARGEST_TILT),
             table.gauge_blocks.name,
             f64::from(half_microns) / 2000.0
@@ -103,8 +105,8 @@ mod tests {
     #[test]
     fn a_table_that_some_tilts_cannot_be_set_on_is_warned_of() {
         for (phi, edge, lowest) in [
-            ("0.5", Some("0.5 degrees one way takes it beyond 0"), true),
-            ("44.9", Some("0.1 degrees one way takes it beyond 45"), false),
+            ("0.5", Some("0.5 degrees in one direction takes it beyond 0"), true),
+            ("44.9", Some("0.1 degrees in one direction takes it beyond 45"), false),
             ("38.5", None, false),
             ("5.0", None, false),
         ] {

@@ -75,12 +75,12 @@ pub(super) fn refusal(job: &Burr) -> Option<String> {
         grown(job.chord_error, 0.05)
             .map(|error| (error * 1e4).ceil() / 1e4)
             .find(|error| holds(&|job| job.chord_error = *error))
-            .map(|error| format!("chord_error = {error:?}, for the angle is measured over 250 of them")),
+            .map(|error| format!("chord_error = {error:?}, because the angle is measured over 250 of them")),
     );
     would.push(format!("[tolerance] helix = {:?}", (lean.off.0 / USED * 100.0).ceil() / 100.0));
     Some(format!(
-        "the helix angle can't be kept within {}°: measured over {} mm of a flute, the shortest moves and rounding to {} mm \
-         make {:.2}° of it at polar angle {:.1}°; what would do: {}",
+        "the helix angle cannot be kept within {}°: measured over {} mm of a flute, the shortest moves and \
+         rounding to {} mm cause {:.2}° of error at polar angle {:.1}°; alternatives: {}",
         job.tolerance.helix,
         job.gauge(),
         job.control.increment.size(),

@@ -13,11 +13,11 @@ use crate::sheet::{BASIS, Sheet};
 pub(super) fn form(sheet: &Sheet<'_>) -> Markup {
     let all = characteristics(sheet.job, &sheet.checked.judgement);
     html! {
-        h2 { "What to measure" }
+        h2 { "Inspection" }
         p {
-            "In the manner of AS9102, form 3. The columns for results are the inspector's and stay empty here: "
+            "In the manner of AS9102, form 3. The columns for results are for the inspector and are empty here: "
             "a simulation is not a measurement. "
-            @if let PackageVerdict::Holes(_) = sheet.checked.judgement { "Nominal places stand in the tables of holes below." }
+            @if let PackageVerdict::Holes(_) = sheet.checked.judgement { "Nominal positions are in the tables of holes below." }
         }
         div.wide { table {
             thead { tr {
@@ -76,8 +76,8 @@ pub(super) fn holes(sheet: &Sheet<'_>) -> Markup {
             (table(&["hole", "#x", "#y", "#z", "#i", "#j", "#k", "#depth", "#diameter"], nominal))
         }
         div.together {
-            h3 { (BASIS) ": deviations (actual less nominal) where the axis enters, tilt, depth, position as ISO 1101 has it" }
-            (table(&["hole", "#dx", "#dy", "#dz", "#tilt", "#depth", "#position", "#tolerance", "#out of it"], predicted))
+            h3 { (BASIS) ": deviations (actual − nominal) where the axis enters, tilt, depth, position as in ISO 1101" }
+            (table(&["hole", "#dx", "#dy", "#dz", "#tilt", "#depth", "#position", "#tolerance", "#out"], predicted))
         }
     }
 }
@@ -97,7 +97,7 @@ pub(super) fn pictures(sheet: &Sheet<'_>) -> Markup {
         return html! {};
     }
     html! {
-        h2 { "The part as the simulated program makes it" }
+        h2 { "The part as made by the simulated program" }
         @for (name, png) in &sheet.pictures {
             figure {
                 img src={ "data:image/png;base64," (base64(png)) } alt=(name);

@@ -50,18 +50,18 @@ pub(super) fn tools(sheet: &Sheet<'_>) -> Markup {
                 vec![cell(tool), cell(name), cell(&ball), cell("measured"), speed, cell(feed), blank()]
             };
             let touch = format!(
-                "{} a touch, within {} of the surface",
+                "{} per touch, within {} of the surface",
                 short(job.probe_feed),
                 short(job.probe_search)
             );
             let along = format!(
-                "{} from {} before the surface on and along it",
+                "{} from {} in front of the surface on and along it",
                 short(job.ellipse.feed),
                 short(job.machine.clearance)
             );
             vec![
                 row("O8210, O8200", "TOUCH PROBE, stylus ball", html! { "stands" }, touch),
-                row("O8220", "3D EDGE FINDER, ball", html! { "stands (M05)" }, along),
+                row("O8220", "3D EDGE FINDER, ball", html! { "stopped (M05)" }, along),
             ]
         }
         Job::Burr(job) => {
@@ -82,18 +82,18 @@ pub(super) fn tools(sheet: &Sheet<'_>) -> Markup {
     html! {
         div.together {
             h2 { "Tools" }
-            (table(&["tool", "name", "#diameter", "#length", "#r/min", "feed", "holder, remark"], rows))
+            (table(&["tool", "name", "#diameter", "#length", "#r/min", "feed", "holder, note"], rows))
             @if let Job::Alignment(job) = sheet.job {
                 p.note {
-                    "Both balls have the job's diameter, " (short(2.0 * job.probe_radius)) " mm: a smaller or larger one is found as a shift and a tilt that aren't there. "
-                    "What counts is the ball's centre: the probe is calibrated so that #5061 to #5063 are its centre when it touches. No length offset: G49."
+                    "Both balls have the job's diameter, " (short(2.0 * job.probe_radius)) " mm: a smaller or larger one appears as a shift and a tilt that do not exist. "
+                    "The ball's centre is the reference: calibrate the probe so that #5061 to #5063 are its centre at the touch. No length offset: G49."
                 }
             }
             @if let Job::PinHoles(job) = sheet.job {
                 @if tip_is_programmed(job) {
-                    p.note { "No tool lengths in this job: X and Y are the tip, whose place is set again after each turn of the head." }
+                    p.note { "No tool lengths in this job: X and Y are the tip, whose position is set again after each rotation of the head." }
                 } @else {
-                    p.note { "Lengths are from the spindle's gauge line to the tip; the head's pivot is " (short(job.machine.head.pivot)) " mm from the gauge line. The program counts with them itself: no G43." }
+                    p.note { "Lengths are from the spindle's gauge line to the tip; the head's pivot is " (short(job.machine.head.pivot)) " mm from the gauge line. The program includes them: no G43." }
                 }
             }
         }
@@ -120,7 +120,7 @@ pub(super) fn head_angles(sheet: &Sheet<'_>) -> Markup {
     });
     html! {
         div.together {
-            h2 { "Head angles in their order" }
+            h2 { "Head angles in order" }
             p { "The head's angle counts from X towards Y; 90 is parallel to Y. It is " (by) "." }
             (table(&["#setting", "tool", "#head angle, °", "#radius of the holes", "holes, in their order"], rows))
         }
@@ -163,14 +163,14 @@ pub(super) fn settings(sheet: &Sheet<'_>) -> Markup {
     let codes: Vec<String> = sheet.record.passed_on.iter().map(|code| format!("M{code:02}")).collect();
     html! {
         div.together {
-            h2 { "What the control must be like" }
+            h2 { "Control requirements" }
             ul {
-                li { "The family of controls and the least increment stand at the head of this sheet." }
-                li { "Rapid rates (1420) are taken as " (short(slide)) " mm/min and " (short(turn)) " degrees/min; only the run time depends on them." }
+                li { "The control family and the least increment are at the head of this sheet." }
+                li { "Rapid rates (1420) are assumed as " (short(slide)) " mm/min and " (short(turn)) " degrees/min; only the run time depends on them." }
                 (needed(sheet))
                 @if let Job::Alignment(job) = sheet.job { (overwritten_variables(job)) }
                 @if !codes.is_empty() {
-                    li { (codes.join(", ")) ": M codes of the machine builder. What they do here isn't simulated; try them by MDI before the run." }
+                    li { (codes.join(", ")) ": M codes of the machine builder. Their effect here is not simulated; try them by MDI before the run." }
                 }
             }
         }
@@ -188,11 +188,11 @@ fn needed(sheet: &Sheet<'_>) -> Markup {
         }
         @if sheet.package.mains.len() > waiting.len() {
           li {
-            "All switches in which controls differ (" code { "gcode-sim settings" } " lists them) were turned one by one: "
+            "All settings in which controls differ (" code { "gcode-sim settings" } " lists them) were changed one by one: "
             @if needed.is_empty() { "none" } @else { "no other" }
             " changes what the first " (BLOCKS) " blocks of a run do."
             @if !waiting.is_empty() {
-                " Not tried with " (waiting.join(", ")) ", which ends in an alarm on a part that stands right."
+                " Not tried with " (waiting.join(", ")) ", which ends in an alarm on a part in its nominal position."
             }
           }
         }

@@ -15,7 +15,7 @@ pub(super) fn stops(sheet: &Sheet<'_>) -> Markup {
         return html! {
             h2 { "Operator stops" }
             @if waiting.len() < sheet.package.mains.len() {
-                p { "No stop for the operator between start and end." }
+                p { "No operator stop between start and end." }
             }
             (unknown(waiting))
         };
@@ -31,10 +31,10 @@ pub(super) fn stops(sheet: &Sheet<'_>) -> Markup {
         ]
     });
     html! {
-        h2 { "Operator stops, and what to do" }
+        h2 { "Operator stops and actions" }
         @if let Job::Alignment(_) = sheet.job { (order_of_the_work()) }
-        p { (count(stops.len(), "stop")) ", in this order. The minutes are those the machine has run before the stop." }
-        (table(&["#stop", "the control shows", "tool", "what to do", "#min", "done"], rows))
+        p { (count(stops.len(), "stop")) ", in this order. The minutes are the running time before the stop." }
+        (table(&["#stop", "the control shows", "tool", "action", "#min", "done"], rows))
         (unknown(waiting))
     }
 }
@@ -43,14 +43,14 @@ pub(super) fn stops(sheet: &Sheet<'_>) -> Markup {
 fn order_of_the_work() -> Markup {
     html! {
         p {
-            "The order of the work: O8210 run-out, O8230 sine table, O8210 again; O8200 chord; O8220 ellipse; then the part's own "
-            "programs, which have a sheet of their own. Stops and minutes are the least there are: every further O8230 with its O8210 adds "
+            "Sequence: O8210 run-out, O8230 sine table, O8210 again; O8200 chord; O8220 ellipse; then the part's own "
+            "programs, which have a sheet of their own. Stops and minutes are the minimum: every further O8230 with its O8210 adds "
             "its own."
         }
         p {
-            b { "Marks on the part " } "are measured by hand behind the last O8210, with the rotary at 0, in work coordinates of the surface: before O8200 is "
+            b { "Marks on the part " } "are measured by hand after the last O8210, with the rotary at 0, in work coordinates of the surface: before O8200 is "
             "started make #578 vacant, then write x, y and z of each candidate, E's from #501 on, F's from #531 on. Without marks #501 to #560 and #578 are "
-            "made vacant, and O8200 touches the points itself, which tells Y alone."
+            "made vacant, and O8200 touches the points itself, which gives Y alone."
         }
     }
 }
@@ -60,7 +60,7 @@ fn unknown(waiting: &[String]) -> Markup {
     html! {
         @if !waiting.is_empty() {
             p {
-                "Not known of " (waiting.join(", ")) ", which ends in an alarm on a part that stands right: read its remarks."
+                "Unknown for " (waiting.join(", ")) ", which ends in an alarm on a part in its nominal position: read its comments."
             }
         }
     }

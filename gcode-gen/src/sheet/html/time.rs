@@ -15,11 +15,11 @@ pub(super) fn time(sheet: &Sheet<'_>) -> Markup {
             h2 { "Run time and cost" }
             @if sheet.record.waiting.len() < sheet.package.mains.len() { p {
                 "The program runs " b { (minutes(times.all())) " min" } ": feed " (minutes(times.feed)) ", rapid "
-                (minutes(times.rapid)) ", dwell " (minutes(times.dwell)) ". " (BASIS) ": paths over feeds and rapid rates, "
+                (minutes(times.rapid)) ", dwell " (minutes(times.dwell)) ". " (BASIS) ": paths divided by feeds and rapid rates, "
                 "without acceleration, which makes it longer at the machine."
             } }
             @if !sheet.record.waiting.is_empty() {
-                p { "Not in it: " (sheet.record.waiting.join(", ")) ", which ends in an alarm on a part that stands right." }
+                p { "Without " (sheet.record.waiting.join(", ")) ", which ends in an alarm on a part in its nominal position." }
             }
             @match sheet.rates {
                 Some(rates) => {
@@ -30,8 +30,8 @@ pub(super) fn time(sheet: &Sheet<'_>) -> Markup {
                 }
                 None => {
                     (time_table(&own))
-                    p { b { "No rate was given: " } "the sheet shows time only. A rate a machine hour, with its currency, goes into the job as "
-                        code { "[sheet.rates]" } " or into the file of " code { "--rates" } "." }
+                    p { b { "No rate given: " } "the sheet shows time only. Give a rate per machine hour, with its currency, in the job as "
+                        code { "[sheet.rates]" } " or in the file of " code { "--rates" } "." }
                 }
             }
             (uncounted(&own))
@@ -94,7 +94,7 @@ fn beside(own: &Cost, other: &Cost) -> Markup {
             "Against " (other.machine.as_deref().unwrap_or("")) ": "
             @match own.change(other) {
                 Some(change) => b { (signed_to(change, 1)) " %" },
-                None => "not compared, because a time is given for one of them only",
+                None => "not compared: a time is given for one of them only",
             }
             " (" (near(own.cost(), 2)) " beside " (near(other.cost(), 2)) ")."
         }
@@ -105,8 +105,8 @@ fn assumed(all: &[Cost]) -> Markup {
     html! {
         @if all.len() > 1 {
             p.note {
-                "Assumed, not simulated: on the other machines the numbers of stops and tool changes are the same, and so is every "
-                "time that wasn't given for them"
+                "Assumed, not simulated: the other machines have the same numbers of stops and tool changes, and the same "
+                "times where none are given"
                 @if all.iter().skip(1).any(|cost| !cost.run_given) { ", the run time too" }
                 ". Rates and minutes are the user's."
             }

@@ -35,7 +35,7 @@ impl Executor {
             if start == end {
                 // The start is the end: with R there is nothing to go round.
                 if goal.programmed != state.programmed {
-                    let what = "an arc by R that ends where it starts while another axis moves".into();
+                    let what = "an arc by R that ends at its start while another axis moves".into();
                     return Err(Alarm::NotSimulated { what }.at(span));
                 }
                 return Ok(());

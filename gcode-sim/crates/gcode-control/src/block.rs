@@ -119,7 +119,7 @@ impl Executor {
                 plan.notes.push(Note::WordsPassedOn { code: *code, letter });
                 Ok(())
             }
-            _ => Err(Alarm::NotSimulated { what: format!("{letter} in such a block") }.at(span)),
+            _ => Err(Alarm::NotSimulated { what: format!("{letter} in this block") }.at(span)),
         }
     }
 

@@ -44,8 +44,7 @@ impl Executor {
             CallCode::Macro => CallKind::Macro,
             CallCode::AfterMoves => CallKind::Modal,
             CallCode::Local if !self.settings.local_calls => {
-                let what =
-                    "M97 with P (a part of its own program that some controls call: M97-CALLS=1)".into();
+                let what = "M97 with P (a call of the program itself, for M97-CALLS=1)".into();
                 return Err(Alarm::NotSimulated { what }.at(call.span));
             }
             CallCode::File if m_codes::find(198, self.settings.codes).is_none() => {

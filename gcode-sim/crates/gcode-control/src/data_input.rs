@@ -18,7 +18,7 @@ impl Executor {
         let l = given.count(b'L')?.ok_or_else(|| format("L is missing"))?;
         match l {
             3 | 14 | 50 | 52 | 85 if !self.settings.parameter_input => {
-                Err(format(&format!("L{l} is not known")))
+                Err(format(&format!("L{l} is not available")))
             }
             2 | 20 => self.write_work(l, p.ok_or_else(|| format("P is missing"))?, given, plan, span),
             1 | 10..=13 => self.write_tool(l, p.ok_or_else(|| format("P is missing"))?, given, plan, span),
@@ -32,7 +32,7 @@ impl Executor {
             }
             3 => Err(Alarm::NotSimulated { what: "G10 L3 (tool life management)".into() }.at(span)),
             14 => Err(Alarm::NotSimulated { what: "G10 L14 (tool geometry)".into() }.at(span)),
-            _ => Err(format(&format!("L{l} is not known"))),
+            _ => Err(format(&format!("L{l} is not available"))),
         }
     }
 
@@ -107,7 +107,7 @@ impl Executor {
             value if value.is_finite() => Value::Number(value),
             // All bits set are a vacant variable.
             _ if bits == u64::MAX => Value::Vacant,
-            _ => return Err(format("the digits are no number").at(span)),
+            _ => return Err(format("the digits are not a number").at(span)),
         };
         plan.writes.push(TableWrite::Variable { number, value });
         Ok(())

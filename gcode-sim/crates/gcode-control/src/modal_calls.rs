@@ -51,11 +51,11 @@ impl Executor {
         let what = match flow {
             _ if self.waiting_call().is_none() => return Ok(()),
             BlockFlow::Next | BlockFlow::Return { .. } => return Ok(()),
-            BlockFlow::Call(_) => "a modal macro call after a block that moves and calls as well",
+            BlockFlow::Call(_) => "a modal macro call after a block that both moves and calls",
             BlockFlow::CancelModal => "a modal macro call after a block that moves and has G67",
             BlockFlow::End => "a modal macro call after a block that moves and ends the program",
         };
-        let what = format!("{what} (give the move a block of its own)");
+        let what = format!("{what} (write the move in a block of its own)");
         Err(Alarm::NotSimulated { what }.at(block))
     }
 

@@ -78,7 +78,7 @@ impl Executor {
         if !(arcs || vector || overruled)
             && let Some(letter) = given.first_of(letters(b"IJKR"))
         {
-            let what = format!("{} beside a straight move", char::from(letter));
+            let what = format!("{} in a block with a straight move", char::from(letter));
             return Err(Alarm::NotSimulated { what }.at(given.span(letter)));
         }
         let goal = self.goal(given, &mut plan.state)?;

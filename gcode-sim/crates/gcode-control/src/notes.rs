@@ -68,139 +68,153 @@ impl Note {
     pub fn describe(self) -> (&'static str, String, &'static str) {
         match self {
             Self::MachineMoveIgnored => {
-                let message = "G53 in G91 is ignored: the axes of the block don't move".to_owned();
+                let message = "G53 in G91 is ignored: the axes of the block do not move".to_owned();
                 ("g53-ignored", message, "command G90 with G53")
             }
             Self::MCodeLost { code } => {
                 let message = format!("M{code} is lost: of several M codes in a block only the last counts");
-                ("m-code-lost", message, "give each M code a block, or set M3B=1 if the control takes three")
+                (
+                    "m-code-lost",
+                    message,
+                    "write each M code in a block of its own, or set M3B=1 if the control accepts three",
+                )
             }
             Self::CycleDataLost => {
                 let message = "P or Q is not stored: the block drills nothing".to_owned();
                 ("cycle-data-lost", message, "write P and Q in the block of a hole")
             }
             Self::InterruptNeverComes => {
-                let message =
-                    "the macro of M96 is never called: the signal UINT doesn't come in a run".to_owned();
-                ("no-interrupt", message, "call the macro with G65 to see what it does")
+                let message = "the macro of M96 is never called: a run has no UINT signal".to_owned();
+                ("no-interrupt", message, "call the macro with G65 to simulate it")
             }
             Self::NoSignal => {
-                let message = "no skip signal is simulated: G31 goes to its end".to_owned();
+                let message = "no skip signal is simulated: G31 moves to its end point".to_owned();
                 (
                     "no-signal",
                     message,
-                    "give the part with --part, or SKIP, the part of the way where it comes",
+                    "give the part with --part, or SKIP, the fraction of the path where the signal comes",
                 )
             }
             Self::WordsPassedOn { code, letter } => {
-                let message = format!("{letter} goes with M{code:02} to the machine builder's logic");
-                ("words-passed-on", message, "the machine's manual says what the M code takes")
+                let message = format!("{letter} is passed to the machine builder's logic with M{code:02}");
+                ("words-passed-on", message, "see the machine's manual for the words of this M code")
             }
             Self::CornerIgnored => {
-                let message = ",R and ,C are ignored: the block is no cutting move".to_owned();
+                let message = ",R and ,C are ignored: the block is not a cutting move".to_owned();
                 ("corner-ignored", message, "write them in a block of G01, G02 or G03")
             }
             Self::CycleRepeatsZero => {
-                let message = "K0 stores the cycle without going to the block's X and Y".to_owned();
-                ("no-repeats", message, "K0-MOVES=1 is for a control that goes there")
+                let message = "K0 stores the cycle without a move to the block's X and Y".to_owned();
+                ("no-repeats", message, "use K0-MOVES=1 for a control that moves there")
             }
             Self::CallRepeatsZero => {
-                ("no-pass", "L0: the program is not called".to_owned(), "leave L out for one pass")
+                ("no-pass", "L0: the program is not called".to_owned(), "omit L to call it once")
             }
             Self::NoAxis { code } => {
-                let message = format!("G{} names no axis: nothing moves or is set", spelled(code));
-                ("no-axis", message, "name the axes it is for")
+                let message = format!("G{} without an axis: nothing moves or is set", spelled(code));
+                ("no-axis", message, "name the axes")
             }
             Self::CentreDefaulted { code } => {
                 let message =
-                    format!("G{} names no axis: its centre is where the program stands", spelled(code));
-                ("centre-here", message, "name the centre's axes")
+                    format!("G{} without an axis: the programmed position is its centre", spelled(code));
+                ("centre-here", message, "name the axes of the centre")
             }
             Self::NoAngle => {
-                let message =
-                    "G68 without R turns by nothing; a control may have an angle in 5410".to_owned();
+                let message = "G68 without R rotates by 0; a control may have an angle in 5410".to_owned();
                 ("no-angle", message, "write R")
             }
             Self::DoubledNumber { number } => {
-                let message =
-                    format!("N{number} is there more than once: which one a jump takes is the control's");
+                let message = format!(
+                    "N{number} is defined more than once: the control decides which one a jump takes"
+                );
                 ("doubled-number", message, "give each block a number of its own")
             }
             Self::JumpIntoLoop { number } => {
-                let message = format!("a jump into the loop DO{number}: its END alarms, PS1124");
+                let message = format!("a jump into the loop DO{number}: its END raises PS1124");
                 ("into-loop", message, "jump to the block of its DO or WHILE")
             }
             Self::TangentOf90 => {
                 let message =
-                    "TAN of 90 degrees is no number: some controls alarm, here it is a large one".to_owned();
+                    "TAN of 90 degrees is undefined: some controls raise an alarm, here the result is a \
+                     large number"
+                        .to_owned();
                 (
                     "tangent-of-90",
                     message,
-                    "test the angle before; TAN-90-ALARM=1 is for a control that alarms",
+                    "test the angle first; TAN-90-ALARM=1 is for a control that raises the alarm",
                 )
             }
             Self::AtanOf0 => {
-                let message = "ATAN of 0 and 0 is no angle: some controls alarm, here it is 0".to_owned();
-                ("atan-of-0", message, "test the two before; ATAN-0-ALARM=1 is for a control that alarms")
+                let message =
+                    "ATAN of 0 and 0 is undefined: some controls raise an alarm, here the result is 0"
+                        .to_owned();
+                (
+                    "atan-of-0",
+                    message,
+                    "test both values first; ATAN-0-ALARM=1 is for a control that raises the alarm",
+                )
             }
             Self::ParameterWithoutEffect { number } => {
-                let message = format!("parameter {number} is kept for PRM and has no effect here");
-                ("parameter-without-effect", message, "docs/control.md says what is not simulated")
+                let message = format!("parameter {number} is stored for PRM and has no other effect here");
+                ("parameter-without-effect", message, "see docs/control.md for what is not simulated")
             }
             Self::LowerCase => {
                 let message = "lower case is read as capitals; some controls refuse it".to_owned();
                 ("lower-case", message, "write capitals, or set LOWER-CASE=0 if the control refuses it")
             }
             Self::LongMCode { code } => {
-                let message = format!("M{code} calls nothing: it is one M code, left to the machine builder");
-                ("long-m-code", message, "write P before the program's number: M98 P1000")
+                let message =
+                    format!("M{code} calls no program: it is one M code, left to the machine builder");
+                ("long-m-code", message, "write P before the program number: M98 P1000")
             }
             Self::EndPointBeforeTransform => {
                 let message =
-                    "#5001 and on show the end of the last move as it was programmed, before the switch of \
-                     G51.1, G51 or G68"
+                    "#5001 and following are the end point of the last move as programmed, before the \
+                     change of G51.1, G51 or G68"
                         .to_owned();
-                ("end-before-switch", message, "read them behind the next move, or before the switch")
+                ("end-before-switch", message, "read them after the next move, or before the change")
             }
             Self::AxisLeftOut => {
                 let message =
-                    "an axis left out here stays where the tool stands; after a switch of G51.1, G51 or \
-                               G68 a control may take it elsewhere"
+                    "an omitted axis keeps its position here; after a change of G51.1, G51 or G68 a \
+                     control may move it"
                         .to_owned();
-                ("axis-left-out", message, "name every axis in the first move after the switch")
+                ("axis-left-out", message, "name every axis in the first move after the change")
             }
             Self::DigitsLost => {
-                let message = "DPRNT prints the lower digits only: the format has too few places".to_owned();
+                let message = "DPRNT prints only the lower digits: the format has too few places".to_owned();
                 (
                     "digits-lost",
                     message,
-                    "give the format more places; PRINT-EXPANDS=1 is for a control that makes room",
+                    "give the format more places; PRINT-EXPANDS=1 is for a control that expands it",
                 )
             }
             Self::CycleLevelMissing { letter } => {
-                let message = format!("the cycle drills with {letter} at 0: none was commanded");
+                let message = format!("the cycle drills with {letter} at 0: no value was commanded");
                 ("level-missing", message, "write R and the depth in the block that begins the cycle")
             }
             Self::LengthOffsetZero { code } => {
-                let message = format!("G{} with H0: no tool length is in force", spelled(code));
-                ("length-of-nothing", message, "write H with the tool's number")
+                let message = format!("G{} with H0 applies no tool length compensation", spelled(code));
+                ("length-of-nothing", message, "write H with the number of the tool's offset")
             }
             Self::BlockSkip { switch, is_on } => {
-                let (is, does) = if is_on { ("on", "left out") } else { ("off", "carried out") };
+                let (is, does) = if is_on { ("on", "skipped") } else { ("off", "executed") };
                 let message = format!(
-                    "what is behind / is {does}: block skip {switch} is {is}, and all that is told holds for that"
+                    "the rest of the block after / is {does}: block skip {switch} is {is}; all results \
+                     assume this setting"
                 );
-                ("block-skip", message, "--control BDT=1 switches block skip 1 on")
+                ("block-skip", message, "use --control BDT=1 to switch block skip 1 on")
             }
             Self::DrillsAlongZ { code } => {
                 let message = format!(
-                    "the cycle drills along Z while G{} is in force: a control may drill along that plane's normal",
+                    "the cycle drills along Z while G{} is in force: a control may drill along the normal \
+                     of that plane",
                     spelled(code)
                 );
                 ("drill-plane", message, "write G17, or set FXY=1 if the control drills along the normal")
             }
             Self::LargeAlarm { number, most } => {
-                let message = format!("#3000={number}: a control's manual names numbers up to {most}");
+                let message = format!("#3000={number}: the manuals give numbers up to {most}");
                 ("large-alarm-number", message, "use a smaller number")
             }
         }

@@ -60,7 +60,7 @@ impl Executor {
                 plan.state.parameter_input = false;
                 return match given.unread() {
                     None if words.call().is_none() => Ok(()),
-                    _ => Err(wrong("words beside G11")),
+                    _ => Err(wrong("words in a block with G11")),
                 };
             }
             _ => return Err(wrong("another G code before G11")),
@@ -73,7 +73,7 @@ impl Executor {
         let (raw, _) = given.get(b'R').ok_or_else(|| wrong("R is missing"))?;
         let axis = match given.count(b'P')? {
             None => None,
-            Some(axis) => Some(self.axis_of(f64::from(axis)).map_err(|_| wrong("P is no axis"))?),
+            Some(axis) => Some(self.axis_of(f64::from(axis)).map_err(|_| wrong("P is not an axis"))?),
         };
         let bit = match given.count(b'Q')? {
             None => None,
@@ -88,7 +88,7 @@ impl Executor {
             && literal.digits != 0
             && Settings::is_length_parameter(place)
         {
-            let what = format!("R without a point for parameter {number}, a length");
+            let what = format!("R without a decimal point for parameter {number}, a length");
             return Err(Alarm::NotSimulated { what }.at(given.span(b'R')));
         }
         let value = match raw {
@@ -103,7 +103,7 @@ impl Executor {
             Err(ParameterError::AxisWanted) => return Err(wrong("P, the axis, is missing")),
             Err(ParameterError::NoAxis) => return Err(wrong("the parameter has no axis P")),
             Err(ParameterError::NoBit) => return Err(wrong("the parameter has no bit Q")),
-            Err(ParameterError::Value) => return Err(wrong("the parameter can't have this value")),
+            Err(ParameterError::Value) => return Err(wrong("the value is not allowed for this parameter")),
             Err(ParameterError::BitWanted) => {
                 let what = format!("parameter {number} without Q, as a whole byte");
                 return Err(Alarm::NotSimulated { what }.at(span));

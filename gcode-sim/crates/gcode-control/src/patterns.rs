@@ -37,7 +37,7 @@ impl Executor {
             return Err(Alarm::NoCycle { code }.at(span));
         };
         if plan.state.modal.plane != Plane::Xy {
-            return Err(Alarm::NotSimulated { what: format!("{code} in another plane than G17") }.at(span));
+            return Err(Alarm::NotSimulated { what: format!("{code} outside plane G17") }.at(span));
         }
         let missing = |letter| Alarm::MissingWord { code, letter }.at(span);
         let radius = self.dimension(given, b'I', &plan.state)?.ok_or_else(|| missing('I'))?;

@@ -37,7 +37,7 @@ impl Executor {
         let radii = self.radii(code, given, plan, span)?;
         let passes = given.count(b'L')?.unwrap_or(1);
         if f64::from(passes) * radii.len() as f64 > CIRCLES {
-            return Err(Alarm::NotSimulated { what: format!("{code} with so many circles") }.at(span));
+            return Err(Alarm::NotSimulated { what: format!("{code} with this number of circles") }.at(span));
         }
         for _ in 0..passes {
             let goal = self.goal(given, &mut plan.state)?;

@@ -23,11 +23,14 @@ impl Executor {
         if let Some((WordNumber::Literal(lead), _)) = given.get(b'F')
             && lead.places.is_none()
         {
-            return refused("F without a point in G33, whose unit controls differ in,", given.span(b'F'));
+            return refused(
+                "F without a decimal point (its unit differs between controls) in G33",
+                given.span(b'F'),
+            );
         }
         let turning = plan.state.spindle != SpindleDirection::Off && plan.state.codes.s > 0.0;
         if !turning {
-            return refused("G33 while the spindle stands: a control waits for it, and so it", span);
+            return refused("G33 with the spindle stopped (a control waits for it)", span);
         }
         let inch = plan.state.modal.unit == Unit::Inch;
         let lead = plan.state.codes.f * if inch { 25.4 } else { 1.0 };

@@ -147,6 +147,6 @@ mod tests {
     #[test]
     fn what_is_no_picture_is_named() {
         let error = compare(&png(4, 4, &[]), b"G0 X0", 1).unwrap_err().to_string();
-        assert!(error.starts_with("the second file can't be read as a picture"), "{error}");
+        assert!(error.starts_with("the second file cannot be read as a picture"), "{error}");
     }
 }

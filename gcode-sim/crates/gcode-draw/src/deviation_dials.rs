@@ -107,8 +107,8 @@ impl DeviationDials {
         let known = scene.marks.iter().filter(|m| m.misfit.is_some() && scene.zone.is_some()).count();
         match known - self.has.iter().filter(|has| **has).count() {
             0 => None,
-            left if left == known => Some("Misfits not drawn: no room.".to_owned()),
-            left => Some(format!("Misfits of {left} of {known} holes not drawn: no room.")),
+            left if left == known => Some("Deviations not drawn: no room.".to_owned()),
+            left => Some(format!("Deviations of {left} of {known} holes not drawn: no room.")),
         }
     }
 }
@@ -168,6 +168,6 @@ mod tests {
         assert_eq!((dials.of(0), dials.of(8)), (None, None));
         assert!(dials.of(4).is_some());
         assert!(dials.is_crowded(0, 10.0) && !dials.is_crowded(4, 10.0));
-        assert_eq!(dials.note(&scene).unwrap(), "Misfits of 2 of 9 holes not drawn: no room.");
+        assert_eq!(dials.note(&scene).unwrap(), "Deviations of 2 of 9 holes not drawn: no room.");
     }
 }

@@ -49,17 +49,17 @@ pub use views::top::{Cylinder, DrawnHole, PathKind, PathPiece, TopView, top_view
 /// Why a picture can't be made or compared.
 #[derive(Debug, thiserror::Error)]
 pub enum PictureError {
-    #[error("a picture of {width}x{height} pixels is too small to be read: ask for at least {least}")]
+    #[error("a picture of {width}x{height} pixels is too small to read: the minimum is {least}")]
     TooSmall { width: u32, height: u32, least: &'static str },
     #[error("a picture of {width}x{height} pixels is too large: at most {most} pixels a side")]
     TooLarge { width: u32, height: u32, most: u32 },
-    #[error("`{0}` is no size of a picture: write width x height in pixels, such as 1600x1200")]
+    #[error("`{0}` is not a picture size: write width x height in pixels, such as 1600x1200")]
     NoSize(String),
-    #[error("{what} has a coordinate that is no number or lies beyond {limit} mm")]
+    #[error("{what} has a coordinate that is not a number or lies beyond {limit} mm")]
     OffTheSheet { what: String, limit: f64 },
-    #[error("the picture can't be written as PNG: {0}")]
+    #[error("the picture cannot be written as PNG: {0}")]
     Encode(String),
-    #[error("{which} can't be read as a picture: {reason}")]
+    #[error("{which} cannot be read as a picture: {reason}")]
     Decode { which: String, reason: String },
 }
 

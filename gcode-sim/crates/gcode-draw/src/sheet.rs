@@ -113,7 +113,7 @@ impl Plan {
         bare.extend(caption_strokes(scene, is_circle, frame, &mut lettering.field, &mut inks, &mut labels));
         let mut notes: Vec<String> = dials.note(scene).into_iter().collect();
         if drawn.iter().any(|d| d.cut) {
-            notes.push("Misfit with an arrow: longer than drawn.".to_owned());
+            notes.push("Deviation with an arrow: longer than drawn.".to_owned());
         }
         notes.extend(lettering.notes(scene));
         if !bare.is_empty() {
@@ -337,7 +337,7 @@ mod tests {
     fn a_coordinate_that_is_no_number_is_refused() {
         for at in [[f64::NAN, 0.0], [0.0, f64::INFINITY], [2e6, 0.0]] {
             let error = lay_out(&scene(vec![mark(6, at)]), Size::default()).unwrap_err().to_string();
-            assert!(error.starts_with("hole 7 has a coordinate that is no number"), "{error}");
+            assert!(error.starts_with("hole 7 has a coordinate that is not a number"), "{error}");
         }
     }
 

@@ -166,15 +166,15 @@ fn pattern(job: &Honeycomb) -> Result<Pattern, ReferenceError> {
             Some(count) => (2 * count, Some(pitch)),
             None => {
                 return told(format!(
-                    "key 'pattern.pitch': with {pitch} round diameter {diameter} there are more than {MOST_HOLES} rows: \
-                     a larger pitch"
+                    "key 'pattern.pitch': {pitch} round diameter {diameter} gives more than {MOST_HOLES} \
+                     rows: use a larger pitch"
                 ));
             }
         },
     };
     if rows < 4 {
         return told(format!(
-            "key 'pattern.pitch': fewer than two rows of one group fit round diameter {diameter}: a smaller pitch"
+            "key 'pattern.pitch': fewer than two rows of one group fit round diameter {diameter}: use a smaller pitch"
         ));
     }
     let Cylinder { length, outer, bore, .. } = job.cylinder;
@@ -245,8 +245,9 @@ fn possible(job: &Honeycomb, pattern: &Pattern) -> Result<(), ReferenceError> {
         let distance = apart(x, rows, deepest);
         if distance <= job.drill.diameter {
             return told(format!(
-                "the holes overlap: with {} rows the pitch is {p:.3} mm, and holes {what} are {distance:.3} mm apart at \
-                 radius {deepest:.3}, where they end, with a drill of {} mm: a larger pitch, a smaller drill or depth",
+                "the holes overlap: with {} rows the pitch is {p:.3} mm, and holes {what} are \
+                 {distance:.3} mm apart at radius {deepest:.3}, where they end, with a drill of {} mm: use \
+                 a larger pitch, a smaller drill or depth",
                 pattern.rows, job.drill.diameter
             ));
         }
@@ -254,7 +255,7 @@ fn possible(job: &Honeycomb, pattern: &Pattern) -> Result<(), ReferenceError> {
     let holes = f64::from(pattern.rows) * (job.cylinder.length / p + 1.0);
     if holes > MOST_HOLES {
         return told(format!(
-            "the pattern has {holes:.0} holes, {MOST_HOLES} at most: a larger pitch, or a part of it"
+            "the pattern has {holes:.0} holes, at most {MOST_HOLES}: use a larger pitch, or a part of the pattern"
         ));
     }
     Ok(())

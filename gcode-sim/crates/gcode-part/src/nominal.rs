@@ -19,7 +19,7 @@ impl NominalPart {
     pub fn parse(text: &str) -> Result<Self, ReferenceError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         if text.trim().is_empty() {
-            let message = "the file is empty: a hole list (JSON or CSV) or a job file is wanted".to_owned();
+            let message = "the file is empty: give a hole list (JSON or CSV) or a job file".to_owned();
             return Err(ReferenceError { line: None, message });
         }
         if text.trim_start().starts_with('{') {
@@ -29,8 +29,7 @@ impl NominalPart {
             return Reference::of_list(read::csv(text)?).map(Self::Holes);
         }
         if read::has_semicolons(text) {
-            let message =
-                "the columns are separated by ';': write ',' between them, and points in the numbers";
+            let message = "the columns are separated by ';': use ',' between them, and points in the numbers";
             return Err(ReferenceError { line: Some(1), message: message.to_owned() });
         }
         if !text.contains("family") {
@@ -48,8 +47,9 @@ impl NominalPart {
             Job::Honeycomb(job) => super::honeycomb::reference(job).map(Self::Holes),
             Job::Burr(job) => Ok(Self::Flutes(Flutes::of_job(job))),
             Job::Alignment(_) => {
-                let message = "the family 'alignment' measures how a part stands and makes nothing, so that there is \
-                               nothing to hold a program against: run its programs with gcode-sim run --part JOB.toml"
+                let message = "the family 'alignment' measures the position of a part and makes nothing, \
+                               so there is no reference to verify against: run its programs with gcode-sim \
+                               run --part JOB.toml"
                     .to_owned();
                 Err(ReferenceError { line: None, message })
             }

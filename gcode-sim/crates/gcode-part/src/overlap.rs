@@ -18,7 +18,7 @@ impl Overlap {
     pub fn sentence(&self, holes: &[Hole]) -> String {
         let [one, other] = self.holes.map(|index| holes[index].id.as_deref().unwrap_or("?"));
         format!(
-            "holes {one} and {other} cut into each other: their axes come within {:.3} mm, and their radii add up to {:.3} mm",
+            "holes {one} and {other} overlap: their axes come within {:.3} mm, their radii add up to {:.3} mm",
             self.distance, self.radii
         )
     }

@@ -24,7 +24,7 @@ impl ProbedPart {
             return Ok(Self { surface, radius: Some(job.probe_radius), rotary: Some(job.machine.rotary) });
         }
         let surface = NominalPart::of_job(&job)?.into_holes().and_then(|reference| reference.surface);
-        let message = "this family's part has no surface that could be probed".to_owned();
+        let message = "this family's part has no surface to probe".to_owned();
         let surface = surface.ok_or(ReferenceError { line: None, message })?;
         Ok(Self { surface, radius: None, rotary: None })
     }

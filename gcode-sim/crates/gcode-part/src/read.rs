@@ -53,7 +53,7 @@ pub(super) fn csv(text: &str) -> Result<HoleList, ReferenceError> {
     if let Some(other) = header.iter().find(|h| !COLUMNS.contains(h)) {
         return Err(error(
             Some(1),
-            format!("column '{other}' is not known: the header is {}", COLUMNS.join(",")),
+            format!("column '{other}' is unknown: the header is {}", COLUMNS.join(",")),
         ));
     }
     let mut holes = Vec::new();
@@ -77,7 +77,7 @@ pub(super) fn csv(text: &str) -> Result<HoleList, ReferenceError> {
         check(&holes[last], last).map_err(|message| error(line, message))?;
     }
     if holes.is_empty() {
-        return Err(error(None, "behind the header there is no hole: a line for each"));
+        return Err(error(None, "no hole after the header: one line for each"));
     }
     Ok(HoleList { unit: Unit::Mm, holes })
 }
@@ -86,7 +86,7 @@ fn csv_error(e: &csv::Error) -> ReferenceError {
     let line = e.position().map(|p| p.line() as usize);
     match e.kind() {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-            error(line, format!("{len} columns where the header has {expected_len}"))
+            error(line, format!("{len} columns, the header has {expected_len}"))
         }
         _ => error(line, e.to_string()),
     }
@@ -101,7 +101,7 @@ pub(super) fn checked(mut holes: Vec<Hole>) -> Result<Vec<Hole>, ReferenceError>
         let id = hole.id.get_or_insert_with(|| format!("#{}", index + 1));
         if let Some(first) = ids.insert(id.clone(), index) {
             let message = format!(
-                "id '{id}' is there twice, in hole {} and hole {}: give each its own",
+                "id '{id}' is used twice, in hole {} and hole {}: give each its own",
                 first + 1,
                 index + 1
             );
@@ -191,8 +191,8 @@ mod tests {
                 "line 3: hole 2 (id '1'): the axis has the length 2.0000000: divide i, j, k by it",
             ),
             (row("1,0,0,0,0,1,0,-5,6"), "line 3: hole 2 (id '1'): the depth is -5: a number above 0"),
-            (row("0,0,0,0,0,1,0,5,6"), "id '0' is there twice, in hole 1 and hole 2: give each its own"),
-            (row("1,0,0"), "line 3: 3 columns where the header has 9"),
+            (row("0,0,0,0,0,1,0,5,6"), "id '0' is used twice, in hole 1 and hole 2: give each its own"),
+            (row("1,0,0"), "line 3: 3 columns, the header has 9"),
             (
                 "id,x,y,z,i,j,depth,diameter\n".to_owned(),
                 "line 1: column 'k' is missing: the header is id,x,y,z,i,j,k,depth,diameter",

@@ -71,16 +71,16 @@ impl<'a> Conditions<'a> {
             match (far(&before), far(&apart)) {
                 (_, true) => "",
                 (false, false) => ", both 0 here",
-                (true, false) => ", both alike here",
+                (true, false) => ", equal here",
             }
         };
         let more = match aspect {
             ModalAspect::Length => format!("{} ({counted})", alike()),
             ModalAspect::Level if is.text == "G99" => {
-                format!(": the rapids from hole to hole run at the R level ({counted})")
+                format!(": the rapids between holes run at the R level ({counted})")
             }
             ModalAspect::Level => {
-                format!(": the rapids from hole to hole run at the initial level ({counted})")
+                format!(": the rapids between holes run at the initial level ({counted})")
             }
             ModalAspect::Cycle => format!(" ({})", self.holes(&was.text, moves)),
             ModalAspect::System | ModalAspect::Cutter | ModalAspect::Path => format!(" ({counted})"),

@@ -57,7 +57,7 @@ pub(super) fn point(step: &Step, axes: &Axes) -> String {
         .filter(|(axis, _)| way[*axis] != 0.0)
         .map(|(axis, letter)| format!("{letter}{:.4}", step.at[axis]))
         .collect();
-    if moving.is_empty() { "where it begins".to_owned() } else { moving.join(" ") }
+    if moving.is_empty() { "its start point".to_owned() } else { moving.join(" ") }
 }
 
 /// The axes whose values are beyond `least`.

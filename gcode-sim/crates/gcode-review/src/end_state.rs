@@ -26,7 +26,7 @@ pub(super) fn outcome(old: &Record, new: &Record) -> Option<Change> {
 /// Whether the main programs have one name.
 pub(super) fn program(old: &Record, new: &Record) -> Option<Change> {
     let (was, is) = (old.program.as_ref()?, new.program.as_ref()?);
-    let message = || format!("{is} instead of {was}: on the control that is another program");
+    let message = || format!("{is} instead of {was}: a different program on the control");
     (was != is).then(|| Change::new("program", message()))
 }
 
@@ -77,13 +77,13 @@ fn value(
         (a, b) => a == b,
     };
     let (old, new) = places;
-    let nothing = if code == "parameter" { "as it was" } else { "vacant" };
+    let nothing = if code == "parameter" { "unchanged" } else { "vacant" };
     let shown = |value: Option<f64>| value.map_or_else(|| nothing.to_owned(), |v| plain(v).to_string());
     let message = || match (code, was, is) {
         ("mode", Some(was), Some(is)) => {
-            format!("the program leaves {} instead of {}", g_code(is), g_code(was))
+            format!("the program ends in {} instead of {}", g_code(is), g_code(was))
         }
-        _ => format!("{name} is left {} instead of {}", shown(is), shown(was)),
+        _ => format!("{name} ends as {} instead of {}", shown(is), shown(was)),
     };
     (!same).then(|| Change::new(known(code), message()).with_old(old).with_new(new))
 }

@@ -7,7 +7,7 @@ use super::steps::{Step, near};
 use gcode_lang::motion::{MAX_AXES, Position};
 
 /// Of a mode that is another one at the end as well.
-pub(super) const STAYS: &str = ", and stays so for the next program";
+pub(super) const STAYS: &str = ", also for the next program";
 
 /// Differences of one kind that say the same.
 struct Group {
@@ -255,24 +255,27 @@ impl Group {
 
     /// Moves that end elsewhere, by `text`.
     fn shifted(&self, text: &str) -> String {
-        let made_up =
-            if self.is_made_up { " as programmed, the machine where it was by another length" } else { "" };
+        let made_up = if self.is_made_up {
+            " as programmed; the machine position is unchanged because of another length offset"
+        } else {
+            ""
+        };
         let text = format!("{text}{made_up}");
         let first = match (self.old, self.new) {
-            (None, Some(_)) => ", the first of them new",
-            (Some(_), None) => ", the first of them gone",
+            (None, Some(_)) => ", the first added",
+            (Some(_), None) => ", the first removed",
             _ => "",
         };
         match self.counts[..] {
-            [(what, 1)] => format!("{} ends elsewhere, by {text}", one(what)),
-            [(what, n)] => format!("{} ends elsewhere, by {text} ({n} moves{first})", one(what)),
+            [(what, 1)] => format!("{} ends at a different point: {text}", one(what)),
+            [(what, n)] => format!("{} ends at a different point: {text} ({n} moves{first})", one(what)),
             _ => {
                 let each = |(what, n): &(&str, usize)| match n {
                     1 => one(what),
                     _ => format!("{n} {what}s"),
                 };
                 let each: Vec<String> = self.counts.iter().map(each).collect();
-                format!("moves end elsewhere, by {text} ({}{first})", each.join(", "))
+                format!("moves end at a different point: {text} ({}{first})", each.join(", "))
             }
         }
     }

@@ -135,14 +135,16 @@ fn message(group: &[ReorderedPasses], all: &[SharedPass]) -> String {
     let last = before.clone().rev().find(|other| other.tool == pass.tool && other.hole != pass.hole);
     let after = match (last, pass.tool) {
         (Some(other), _) => format!("after hole {}", other.hole + 1),
-        (None, Some(tool)) if before.next().is_some() => format!("first of T{tool}'s"),
+        (None, Some(tool)) if before.next().is_some() => format!("first of T{tool}"),
         (None, _) => "first of all".to_owned(),
     };
     let with = if first.with.is_empty() { String::new() } else { format!(", {}", first.with.join(", ")) };
     let name = first.name();
     match holes.len() {
-        1 => format!("{}: {name}made at another time, {after}{with}", named(&holes)),
-        _ => format!("{}: {name}made at other times, hole {} {after}{with}", named(&holes), holes[0] + 1),
+        1 => format!("{}: {name}made in a different order, {after}{with}", named(&holes)),
+        _ => {
+            format!("{}: {name}made in a different order, hole {} {after}{with}", named(&holes), holes[0] + 1)
+        }
     }
 }
 

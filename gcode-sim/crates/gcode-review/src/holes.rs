@@ -271,7 +271,7 @@ impl HoleComparer<'_> {
         for run in runs(&gone, &firsts, |hole| Some(last_step(self.old, hole)?.place)) {
             let first = if run.len() == 1 { "" } else { "the first " };
             let rapid = self.rapid_to_bottom(run[0]);
-            let lost = if rapid.is_some() { "a rapid goes to the bottom where a feed did" } else { "lost" };
+            let lost = if rapid.is_some() { "a rapid instead of a feed goes to the bottom" } else { "lost" };
             let message = format!("{}: {lost}, {first}{}", named(&run), described(&self.old.holes[run[0]]));
             let change = Change::new("hole-lost", message).with_old(place(self.old, run[0]));
             changes.push(change.with_new(rapid.and_then(|step| self.new.places.get(step.place))));

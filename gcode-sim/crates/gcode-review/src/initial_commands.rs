@@ -137,7 +137,7 @@ impl MissingCommands<'_> {
             [before @ .., last] if !before.is_empty() => format!("{} and {last}", before.join(", ")),
             _ => names.concat(),
         };
-        let (is, stand) = if one { ("is", "it stands") } else { ("are", "they stand") };
+        let is = if one { "is" } else { "are" };
         let first = match (self.first.before.0, self.moves) {
             (0, _) => "the first move".to_owned(),
             (_, 1) => "1 move".to_owned(),
@@ -145,16 +145,16 @@ impl MissingCommands<'_> {
         };
         let message = match self.all[0].what {
             CommandKind::Mode => format!(
-                "{names} {is} no longer commanded before {first}: the program now relies on what the control was left in"
+                "{names} {is} no longer commanded before {first}: the program now depends on the previous \
+                 program's modes"
             ),
             CommandKind::Axis => {
-                format!(
-                    "{names} {is} no longer sent to a place before {first}: the tool goes on from wherever {stand}"
-                )
+                format!("{names} {is} no longer positioned before {first}: the start position is undefined")
             }
             CommandKind::Offset => {
                 format!(
-                    "{names} {is} no longer written before {first}: the program now relies on the value that was left"
+                    "{names} {is} no longer written before {first}: the program now depends on the value \
+                     left by the previous program"
                 )
             }
         };

@@ -30,7 +30,7 @@ impl Record {
         if !self.is_legacy() {
             return Vec::new();
         }
-        let mut all = vec!["what the program relies on at its start"];
+        let mut all = vec!["the state required at the program's start"];
         all.extend(self.program.is_none().then_some("its O number"));
         let conditions =
             ModalAspect::ALL.into_iter().filter(|what| self.lacks_condition(*what)).map(|what| match what {
@@ -39,13 +39,13 @@ impl Record {
                 ModalAspect::Cutter => "the cutter's side and D",
                 ModalAspect::Path => "G61 to G64",
                 ModalAspect::Level => "G98 and G99",
-                ModalAspect::Cycle => "which drilling cycle",
+                ModalAspect::Cycle => "the drilling cycle",
             });
         all.extend(conditions);
         all.extend(QUIET.iter().filter(|(what, _)| self.lacks_quiet(*what)).map(|(_, words)| *words));
         let is_unclear = self.steps.iter().any(|step| matches!(step.kind, StepKind::Coolant(true, None)));
         all.extend(is_unclear.then_some("mist or coolant"));
-        all.extend(self.lacks_again().then_some("which holes are made again"));
+        all.extend(self.lacks_again().then_some("repeated holes"));
         all
     }
 

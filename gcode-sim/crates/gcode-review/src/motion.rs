@@ -83,7 +83,7 @@ pub(super) fn compare(
 }
 
 /// What is said of G01 where G00 was, and of G00 where G01 was.
-const KINDS: [&str; 2] = ["a feed where a rapid was", "a rapid where a feed was"];
+const KINDS: [&str; 2] = ["a feed instead of a rapid", "a rapid instead of a feed"];
 
 /// Moves next to one another that are all different, each with its place among the links; other steps between them
 /// don't part them.
@@ -238,13 +238,12 @@ impl<'a> Motion<'a> {
                 }
                 StepPair::Lost(i) if !(is_part && gone) => {
                     let step = &self.old[i];
-                    let text =
-                        format!("{} to {} is no longer there", step.kind.one(), point(step, self.axes));
+                    let text = format!("{} to {} is removed", step.kind.one(), point(step, self.axes));
                     self.alone(&shifts, "move-lost", text, (Some(step), None), false);
                 }
                 StepPair::Added(j) if !(is_part && gone) => {
                     let step = &self.new[j];
-                    let text = format!("{} to {} is new", step.kind.one(), point(step, self.axes));
+                    let text = format!("{} to {} is added", step.kind.one(), point(step, self.axes));
                     let stand = moves_before(links, placed[k].0, self.old).map(|i| &self.old[i]);
                     let begins = stand.is_some_and(|stand| self.near(&stand.to, &step.from));
                     self.alone(&shifts, "move-added", text, (None, Some(step)), begins);
@@ -351,7 +350,7 @@ impl<'a> Motion<'a> {
         let sides = (Some(old), Some(new));
         let (was, is) = (old.kind.one(), new.kind.one());
         if was != is {
-            self.groups.add("move-kind", "move", format!("{is} where {was} was"), sides);
+            self.groups.add("move-kind", "move", format!("{is} instead of {was}"), sides);
         }
         let way = difference(&new.to, &old.to);
         let is_moved = !self.near(&way, &Position::default());
@@ -390,7 +389,7 @@ impl<'a> Motion<'a> {
                 if is_told_of_holes((Some(&step.kind), None), explained) {
                     return;
                 }
-                let text = format!("{} is no longer there", self.called(self.old, i));
+                let text = format!("{} is removed", self.called(self.old, i));
                 self.groups.add(code(&step.kind), step.kind.name(), text, (Some(step), None));
             }
             StepPair::Added(j) if !self.new[j].is_move() => {
@@ -398,7 +397,7 @@ impl<'a> Motion<'a> {
                 if is_told_of_holes((None, Some(&step.kind)), explained) {
                     return;
                 }
-                let text = format!("{} is new", self.called(self.new, j));
+                let text = format!("{} is added", self.called(self.new, j));
                 self.groups.add(code(&step.kind), step.kind.name(), text, (None, Some(step)));
             }
             StepPair::Lost(_) | StepPair::Added(_) => {}
@@ -416,7 +415,7 @@ impl<'a> Motion<'a> {
     /// A step that comes at another time.
     fn shifted(&mut self, i: usize, j: usize, word: &str) {
         let (old, new) = (&self.old[i], &self.new[j]);
-        let text = format!("{} comes {word} than before", self.called(self.old, i));
+        let text = format!("{} is executed {word} than before", self.called(self.old, i));
         self.groups.add(code(&old.kind), old.kind.name(), text, (Some(old), Some(new)));
     }
 

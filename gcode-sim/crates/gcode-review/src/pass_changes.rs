@@ -158,17 +158,21 @@ impl PassChange {
 
     pub(super) fn text(&self, axes: &Axes, tolerance: f64) -> String {
         if self.stays(tolerance) {
-            return format!("{} stays where it was", self.name());
+            return format!("{} is unchanged", self.name());
         }
         if self.is_along {
             let tip = if self.is_compensated {
-                " as programmed, its tip where it was by another length"
+                " as programmed; its tip position is unchanged because of another length offset"
             } else {
                 ""
             };
             return format!("{} {:.4} mm {}{tip}", self.name(), self.deeper.abs(), deeper(self.deeper));
         }
-        format!("{} ends elsewhere, by {}", self.name(), coordinates(&self.shift, axes, tolerance, true))
+        format!(
+            "{} ends at a different point: {}",
+            self.name(),
+            coordinates(&self.shift, axes, tolerance, true)
+        )
     }
 
     fn stays(&self, tolerance: f64) -> bool {
@@ -189,8 +193,12 @@ impl PassChange {
             }
         }
         if near(&most, &Position::default(), tolerance) {
-            return format!("{} stays where it was", self.name());
+            return format!("{} is unchanged", self.name());
         }
-        format!("{} ends elsewhere, by up to {}", self.name(), coordinates(&most, axes, tolerance, false))
+        format!(
+            "{} ends at a different point: up to {}",
+            self.name(),
+            coordinates(&most, axes, tolerance, false)
+        )
     }
 }

@@ -68,20 +68,19 @@ pub(super) fn more_or_fewer(was: &[u32], is: &[u32]) -> Option<(String, BTreeSet
     let new = of(is, &|k| common.iter().any(|(_, j)| *j == k));
     let mut words = Vec::new();
     if !gone.is_empty() {
-        let times =
-            if gone.iter().any(|tool| is.contains(tool)) { "made fewer times" } else { "no longer made" };
+        let times = if gone.iter().any(|tool| is.contains(tool)) { "fewer passes" } else { "no longer made" };
         words.push(format!("{times} by {}", in_words(&gone)));
     }
     if !new.is_empty() {
         let again = new.iter().any(|tool| was.contains(tool));
         words.push(match (again, is) {
-            (true, [_, _]) => "made twice now".to_owned(),
-            (true, _) if new.len() == 1 => format!("made once more by {}", in_words(&new)),
-            (true, _) => format!("made {} more times, by {}", new.len(), in_words(&new)),
-            (false, _) => format!("made by {} as well", in_words(&new)),
+            (true, [_, _]) => "now made twice".to_owned(),
+            (true, _) if new.len() == 1 => format!("one more pass by {}", in_words(&new)),
+            (true, _) => format!("{} more passes, by {}", new.len(), in_words(&new)),
+            (false, _) => format!("also made by {}", in_words(&new)),
         });
     }
-    words.push(format!("in all by {}", in_words(is)));
+    words.push(format!("in total by {}", in_words(is)));
     let swapped = gone.iter().flat_map(|gone| is.iter().map(|tool| (*gone, *tool))).collect();
     Some((words.join(", "), swapped))
 }

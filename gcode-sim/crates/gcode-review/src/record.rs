@@ -126,7 +126,7 @@ impl Revision {
             gcode_session::simulate_observed(request, library, surface, &mut told, &mut beside)?;
         let mut recorder = recorder.into_inner();
         if recorder.too_many {
-            let message = format!("more than {MOST_STEPS} moves: those behind them aren't compared");
+            let message = format!("more than {MOST_STEPS} moves: later ones are not compared");
             simulation.extracted.findings.push(Diagnostic::new(Severity::Alarm, "limit", message));
         }
         let done = std::mem::take(&mut recorder.done);

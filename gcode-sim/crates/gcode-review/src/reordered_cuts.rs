@@ -236,10 +236,12 @@ impl<'a> ReorderedCuts<'a> {
         let one = format!("{} to {}", old.kind.one(), point(old, &self.old.axes));
         let moves: usize = runs.iter().map(|run| run.0.len()).sum();
         let what = match (runs.len(), moves) {
-            (1, 1) => format!("{one} is made {when} than before"),
-            (1, n) => format!("{n} moves are made {when} than before, the first {one}"),
+            (1, 1) => format!("{one} is executed {when} than before"),
+            (1, n) => format!("{n} moves are executed {when} than before, the first {one}"),
             (runs, n) => {
-                format!("{n} moves in {runs} places are made at other times, the first {one}, {when}")
+                format!(
+                    "{n} moves in {runs} places are executed in a different order, the first {one}, {when}"
+                )
             }
         };
         Change::new("move-order", what + with)

@@ -195,9 +195,13 @@ impl Record {
     pub fn from_json(text: &str) -> Result<Self, StoreError> {
         let file: AcceptedFile = serde_json::from_str(text).map_err(|error| StoreError(error.to_string()))?;
         if file.version != VERSION {
-            return Err(StoreError(format!("version {} is not known here, only {VERSION}", file.version)));
+            return Err(StoreError(format!(
+                "version {} is unknown: this program reads version {VERSION}",
+                file.version
+            )));
         }
-        let axes = Axes::new(&file.axes).ok_or_else(|| StoreError(format!("no axes '{}'", file.axes)))?;
+        let axes =
+            Axes::new(&file.axes).ok_or_else(|| StoreError(format!("axes '{}' are not valid", file.axes)))?;
         let mut reader = Steps {
             axes: &axes,
             at: Position::default(),
@@ -209,28 +213,31 @@ impl Record {
         let conditions = reader.conditions;
         let named = conditions.iter().flat_map(|condition| &condition.0).filter_map(|word| word.place);
         if let Some(place) = named.max().filter(|place| file.places.len() <= *place) {
-            return Err(StoreError(format!("a mode names block {place}, which isn't there")));
+            return Err(StoreError(format!("a mode names block {place}, which does not exist")));
         }
         if let Some(step) = steps.iter().find(|step| file.places.len() <= step.place) {
-            return Err(StoreError(format!("a step names block {}, which isn't there", step.place)));
+            return Err(StoreError(format!("a step names block {}, which does not exist", step.place)));
         }
         let mut feeds = Vec::with_capacity(file.holes.len());
         let mut holes = Vec::with_capacity(file.holes.len());
         for hole in file.holes {
             if hole.steps.iter().any(|step| steps.len() <= *step) {
-                return Err(StoreError("a hole names a step that isn't there".to_owned()));
+                return Err(StoreError("a hole names a step that does not exist".to_owned()));
             }
             if hole.again.is_some_and(|first| {
                 holes.get(first).is_none_or(|hole: &DrilledHole| hole.first_on_line != first)
             }) {
-                return Err(StoreError("a hole makes one again that doesn't stand before it".to_owned()));
+                return Err(StoreError("a hole repeats one that does not precede it".to_owned()));
             }
             holes.push(hole.found(holes.len())?);
             feeds.push(hole.steps);
         }
         let mut begun = file.begun.iter().flatten();
         if let Some(begun) = begun.find(|begun| file.places.len() <= begun.place) {
-            return Err(StoreError(format!("{} names block {}, which isn't there", begun.text, begun.place)));
+            return Err(StoreError(format!(
+                "{} names block {}, which does not exist",
+                begun.text, begun.place
+            )));
         }
         let (places, ending, totals) = (file.places, file.ending, file.totals);
         let unfinished = BTreeSet::new();
@@ -389,7 +396,7 @@ impl Steps<'_> {
 
     fn axis(&self, letter: char) -> Result<usize, StoreError> {
         let found = u8::try_from(letter).ok().and_then(|letter| self.axes.find(letter));
-        found.ok_or_else(|| StoreError(format!("a step names axis {letter}, which isn't there")))
+        found.ok_or_else(|| StoreError(format!("a step names axis {letter}, which does not exist")))
     }
 }
 
@@ -397,7 +404,7 @@ impl Hole {
     fn found(&self, number: usize) -> Result<DrilledHole, StoreError> {
         let axis = Vector3::from(self.axis);
         if (axis.norm() - 1.0).abs() > 1e-9 {
-            return Err(StoreError("a hole's axis is no unit vector".to_owned()));
+            return Err(StoreError("a hole's axis is not a unit vector".to_owned()));
         }
         Ok(DrilledHole {
             entry: Point3::from(self.entry),

@@ -93,7 +93,7 @@ impl ReliedOnStep {
         let (was, is) = link.sides();
         let (was, is) = (was.map(|i| &old.steps[i]), is.map(|j| &new.steps[j]));
         let what = was.or(is).map(|step| describe(&step.kind, &old.axes)).unwrap_or_default();
-        let gone = if is.is_some() { "is new" } else { "is no longer there" };
+        let gone = if is.is_some() { "is added" } else { "is removed" };
         let [whether, before, now] = &self.text;
         let counted = if self.moves == 1 { String::new() } else { format!(" ({} moves)", self.moves) };
         let cut = new.places.get(self.first).map(name).unwrap_or_default();
@@ -224,8 +224,8 @@ impl CutState {
         let found = differ.iter().enumerate().find_map(|(k, by)| Some((k, by.and_then(&untold)?)));
         let (k, link) = found?;
         let whether = match differ.map(|by| by.is_some()) {
-            [true, false] => "where M06 stops the spindle, ",
-            [false, true] => "where M06 leaves the spindle turning, ",
+            [true, false] => "if M06 stops the spindle, ",
+            [false, true] => "if M06 keeps the spindle running, ",
             _ => "",
         };
         let words = [whether.to_owned(), self.turning[k].text(), now.turning[k].text()];

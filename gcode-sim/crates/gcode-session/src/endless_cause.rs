@@ -24,7 +24,7 @@ pub(super) fn unchanged_counter(control: &Control, first: Span, last: Span) -> O
             Value::Number(_) => return None,
         };
         let written = sources.text(statement.span);
-        (target == counter).then(|| format!("{} adds nothing, for #{step} is {stands}", written.trim()))
+        (target == counter).then(|| format!("{} adds nothing: #{step} is {stands}", written.trim()))
     })
 }
 

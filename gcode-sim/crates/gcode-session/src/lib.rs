@@ -70,13 +70,14 @@ impl Request {
 /// Why a run can't begin.
 #[derive(Debug, thiserror::Error)]
 pub enum SessionError {
-    #[error("{name} holds no program")]
+    #[error("{name} contains no program")]
     NoProgram { name: String },
     #[error(
-        "{name}, line {line}: {program} is there twice, and a control refuses the second: give it a number of its own"
+        "{name}, line {line}: {program} is defined twice, and a control refuses the second: give it a \
+         number of its own"
     )]
     Twice { name: String, line: u32, program: String },
-    #[error("#{number} can't be set: {alarm}")]
+    #[error("#{number} cannot be set: {alarm}")]
     Variable { number: u32, alarm: Alarm },
 }
 
@@ -296,7 +297,7 @@ impl Run {
                     || match row.code {
                         // The program's own words are all there is to say.
                         AlarmCode::Mc(_) => None,
-                        code => Some(format!("gcode-sim explain {code} shows what to write instead")),
+                        code => Some(format!("run 'gcode-sim explain {code}' for the correct form")),
                     },
                 );
                 Some(finding)
@@ -309,24 +310,25 @@ impl Run {
         let Some((first, last)) = self.control.endless_loop() else {
             let (blocks, moves) = (self.control.blocks(), self.control.moves());
             if self.control.is_cancelled() {
-                let message =
-                    format!("the run was ended from outside after {blocks} blocks and {moves} moves");
+                let message = format!("the run was interrupted after {blocks} blocks and {moves} moves");
                 let finding = Diagnostic::new(Severity::Alarm, "limit", message).at(self.control.place());
-                return finding.help("what is told is of the blocks so far");
+                return finding.help("results cover the blocks executed so far");
             }
             let message = format!("the program has not ended after {blocks} blocks and {moves} moves");
             let finding = Diagnostic::new(Severity::Alarm, "limit", message).at(self.control.place());
-            return finding.help("does a loop never end? --max-blocks allows more");
+            return finding.help("check for a loop that never ends; --max-blocks raises the limit");
         };
         let ((program, from), (other, to)) = (self.locate(first), self.locate(last));
         let to = if program == other { format!("line {to}") } else { format!("line {to} of {other}") };
         let message = format!(
-            "the program never ends: from line {from} of {program} to {to} all repeats and nothing changes"
+            "the program never ends: the blocks from line {from} of {program} to {to} repeat without change"
         );
         let finding = Diagnostic::new(Severity::Alarm, "limit", message).at(self.control.place());
         if let Some(why) = endless_cause::unchanged_counter(&self.control, first, last) {
-            return finding.note(why).help("a step that is 0 makes no progress: where does it come from?");
+            return finding
+                .note(why)
+                .help("check where the step gets its value: a step of 0 makes no progress");
         }
-        finding.help("a wait for an input ends with --input '#1005=1', a main program's M99 with --cycles 1")
+        finding.help("end a wait for an input with --input '#1005=1', a main program's M99 with --cycles 1")
     }
 }

@@ -13,7 +13,7 @@ pub(super) fn likely_causes(run: &Run, machine: &Machine, explain: bool) -> Vec<
         let checked = check_loaded(loaded(run), run.control.settings(), &mut NoLibrary);
         let points = checked.findings.into_iter().filter(|finding| finding.code == rules::MISSING_POINT);
         found.extend(points.map(|mut finding| {
-            finding.message = finding.message.replacen(" is ", " without a point is ", 1);
+            finding.message = finding.message.replacen(" is ", " without a decimal point is ", 1);
             finding
         }));
     }
@@ -47,12 +47,11 @@ fn finding(system: WorkSystem, machine: &Machine, made: &str) -> Diagnostic {
     };
     let known: Vec<_> = machine.offsets.iter().map(|offset| format!("G{}", offset.code)).collect();
     let given = match known.as_slice() {
-        [] => format!("no work offset; all count as zero here, and the {made} come out as with G54"),
+        [] => format!("no work offset; all count as zero here, and the {made} are computed as with G54"),
         known => format!("{} only; this one counts as zero here", known.join(", ")),
     };
-    let message = format!(
-        "the program takes work offset {name}, of which nothing is known: the machine file gives {given}"
-    );
+    let message =
+        format!("the program uses work offset {name}, which is unknown: the machine file gives {given}");
     Diagnostic::warning("work-offset", message)
-        .help("is it the offset that was set up? What it holds on the machine is not checked")
+        .help("check that it is the offset set up on the machine; its values there are not checked")
 }

@@ -55,10 +55,10 @@ impl Case {
     fn lost(&self) -> Option<UsageError> {
         let folder = self.folder.display();
         if self.folder.is_symlink() && !self.folder.exists() {
-            return Some(UsageError::new(format!("{folder} is a link to what isn't there")));
+            return Some(UsageError::new(format!("{folder} is a broken link")));
         }
         self.programs.is_empty().then(|| {
-            let remedy = "put the program back, or delete the folder where the part is no longer made";
+            let remedy = "restore the program, or delete the folder if the part is no longer made";
             UsageError::new(format!("{folder} has {ACCEPTED} and no program (.nc): {remedy}"))
         })
     }
@@ -83,9 +83,7 @@ impl Case {
         let (mut request, mut folders) = options::request(&conditions.of(program))?;
         if let (Some(one), Some(other)) = (there("reference.json"), there("reference.csv")) {
             let both = format!("{} and {}", one.display(), other.display());
-            return Err(UsageError::new(format!(
-                "{both}: which of them says what is wanted? delete the other"
-            )));
+            return Err(UsageError::new(format!("{both}: both are references; delete one")));
         }
         let reference = ["reference.json", "reference.csv", "job.toml"].into_iter().find_map(there);
         let wanted = reference.as_deref().map(options::wanted).transpose()?;
@@ -121,7 +119,7 @@ impl Case {
             Some(path) => {
                 let unusable = |error| UsageError::new(format!("{}: {error}", path.display()));
                 let accepted = Record::from_json(&input::text(&path)?).map_err(|error| {
-                    unusable(format!("{error}; delete it, run with --accept, and look at what was accepted"))
+                    unusable(format!("{error}; delete it, run with --accept, and review what was accepted"))
                 })?;
                 not_compared = accepted.unrecorded_aspects().into_iter().map(str::to_owned).collect();
                 let found = changes(&accepted, &revision.record.reduced_to(&accepted), tolerance);
@@ -154,7 +152,7 @@ fn cut_off(revision: &Revision) -> UsageError {
     let place =
         place.map(|BlockLocation { program, line, block, .. }| format!(" at {program}:{line} {block}"));
     let place = place.unwrap_or_default();
-    UsageError::new(format!("the run was cut off by a limit{place}: what lies behind it can't be compared"))
+    UsageError::new(format!("the run was cut off by a limit{place}: the rest cannot be compared"))
 }
 
 /// The first thing that a failed verdict has against the program.
@@ -164,8 +162,8 @@ fn fails(answer: verify::Answer, findings: &[Diagnostic], run: &Run) -> Option<F
     }
     let first = findings.iter().find(|finding| Severity::Error <= finding.severity);
     let place = first.and_then(|first| Some(BlockLocation::of(run, first.place.as_ref()?)));
-    let (code, message) =
-        first.map_or(("verdict", "not what it wants"), |first| (first.code.as_str(), first.message.as_str()));
+    let (code, message) = first
+        .map_or(("verdict", "verification failed"), |first| (first.code.as_str(), first.message.as_str()));
     Some(FirstFailure { code: code.to_owned(), message: message.to_owned(), place })
 }
 

@@ -22,11 +22,11 @@ pub(super) fn of(folder: &Path, programs: &[PathBuf]) -> Result<PathBuf, UsageEr
     }
     let names: Vec<_> = candidates.iter().filter_map(|path| path.file_name()?.to_str()).collect();
     let which = if names.is_empty() {
-        "programs that call one another".to_owned()
+        "only programs that call one another".to_owned()
     } else {
         format!("several programs that no other calls, {}", names.join(", "))
     };
-    Err(UsageError::new(format!("{} holds {which}: name the one to run main.nc", folder.display())))
+    Err(UsageError::new(format!("{} contains {which}: name the main program main.nc", folder.display())))
 }
 
 /// The programs that none of the others calls.
@@ -87,12 +87,12 @@ mod tests {
         let hole = ("O9002.nc", "O9002\nM99\n");
         assert_eq!(
             chosen(&[("O1.nc", "O1\nM98 P#1\nM30\n"), hole]),
-            Err("part holds several programs that no other calls, O1.nc, O9002.nc: name the one to run main.nc"
+            Err("part contains several programs that no other calls, O1.nc, O9002.nc: name the main program main.nc"
                 .to_owned())
         );
         assert_eq!(
             chosen(&[("O1.nc", "O1\nM98 P9002\nM30\n"), ("O9002.nc", "O9002\nM98 P1\nM99\n")]),
-            Err("part holds programs that call one another: name the one to run main.nc".to_owned())
+            Err("part contains only programs that call one another: name the main program main.nc".to_owned())
         );
     }
 }

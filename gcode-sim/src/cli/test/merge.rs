@@ -14,7 +14,7 @@ pub(super) fn merged(files: &[PathBuf]) -> Result<TestReport, UsageError> {
         let report: TestReport =
             serde_json::from_str(&input::text(file)?).map_err(|error| refused(&error))?;
         if report.shard.is_some_and(|shard| !(1..=shard.of).contains(&shard.number)) {
-            return Err(refused(&"a shard counts from 1 to the number of shards"));
+            return Err(refused(&"a shard number is 1 to the number of shards"));
         }
         reports.push(report);
     }
@@ -48,7 +48,7 @@ fn complete(reports: &[TestReport]) -> Result<(), UsageError> {
     let is_alike =
         |shard: &crate::report::test_report::Shard| (shard.of, shard.cases) == (first.of, first.cases);
     if shards.len() < reports.len() || !shards.iter().all(is_alike) {
-        return Err(UsageError::new("--merge: these aren't shards of one collection of cases"));
+        return Err(UsageError::new("--merge: these are not shards of one collection of cases"));
     }
     let there: BTreeSet<usize> = shards.iter().map(|shard| shard.number).collect();
     let missing: Vec<String> =
@@ -62,7 +62,7 @@ fn complete(reports: &[TestReport]) -> Result<(), UsageError> {
     let cases: usize = reports.iter().map(|report| report.cases.len()).sum();
     if cases != first.cases {
         let message =
-            format!("--merge: {cases} cases of {}: a shard is incomplete or twice there", first.cases);
+            format!("--merge: {cases} cases of {}: a shard is incomplete or duplicated", first.cases);
         return Err(UsageError::new(message));
     }
     Ok(())

@@ -27,7 +27,7 @@ pub(super) struct TestArguments {
     #[arg(long = "lib", value_name = "DIR")]
     libraries: Vec<PathBuf>,
 
-    /// Only cases with this in their names (repeatable)
+    /// Only cases with this text in their names (repeatable)
     #[arg(long, value_name = "NAME")]
     only: Vec<String>,
 
@@ -35,23 +35,23 @@ pub(super) struct TestArguments {
     #[arg(long, value_name = "K/N")]
     shard: Option<String>,
 
-    /// Put the JSON results of all shards together instead of running or accepting anything
+    /// Merge the JSON results of all shards instead of running or accepting anything
     #[arg(long, value_name = "RESULT.json", num_args = 1.., conflicts_with_all = ["folders", "libraries", "only", "shard", "accept"])]
     merge: Vec<PathBuf>,
 
-    /// Accept what came of the cases: write their accepted.json; not of a run whose called program isn't found
+    /// Accept the current results: write accepted.json for each case, except where a called program is not found
     #[arg(long)]
     accept: bool,
 
-    /// Run again what a saved file concerns, until Ctrl-C; tells text, and accepts nothing
+    /// Re-run affected cases when a file is saved, until Ctrl-C; writes text, and accepts nothing
     #[arg(long, conflicts_with_all = ["accept", "format", "merge"])]
     watch: bool,
 
-    /// What differs by no more than this is the same, mm or degrees
+    /// Tolerance for equality, mm or degrees
     #[arg(long, value_name = "MM", default_value_t = 0.0001, allow_negative_numbers = true)]
     tolerance: f64,
 
-    /// How the result is written
+    /// Output format
     #[arg(long, value_enum, default_value_t = TestFormat::Text)]
     format: TestFormat,
 }
@@ -107,7 +107,7 @@ fn cases(arguments: &TestArguments) -> Result<(Option<Shard>, Vec<Case>), UsageE
         cases.retain(|case| arguments.only.iter().any(|part| case.name.contains(part.as_str())));
         if cases.is_empty() {
             return Err(UsageError::new(format!(
-                "no case has a name with '{}'",
+                "no case has '{}' in its name",
                 arguments.only.join("' or '")
             )));
         }
@@ -124,7 +124,7 @@ fn shard(text: &str) -> Result<(usize, usize), UsageError> {
         text.split_once('/').and_then(|(k, n)| Some((k.trim().parse().ok()?, n.trim().parse().ok()?)));
     parts
         .filter(|(number, of)| (1..=*of).contains(number))
-        .ok_or_else(|| UsageError::new(format!("--shard {text}: write K/N, the second of four parts is 2/4")))
+        .ok_or_else(|| UsageError::new(format!("--shard {text}: write K/N; the second of four parts is 2/4")))
 }
 
 /// Runs the cases on all cores; the answers are in the order of the cases.

@@ -10,12 +10,12 @@ pub(super) fn changes(difference: &Difference<'_>, sides: &[Side<'_>]) -> Markup
     let all = &difference.compared.changes;
     html! {
         @if all.is_empty() {
-            p { "Nothing changes on the part, nor in what the control is left with." }
+            p { "No difference on the part or in the control's final state." }
         }
         @if MOST_CHANGES < all.len() {
             p.note {
                 "The first " (MOST_CHANGES) " of " (all.len()) " changes are listed; "
-                code { "gcode-sim diff --format json" } " has them all."
+                code { "gcode-sim diff --format json" } " lists them all."
             }
         }
         ol.changes {
@@ -28,7 +28,7 @@ pub(super) fn changes(difference: &Difference<'_>, sides: &[Side<'_>]) -> Markup
         }
         @if !difference.unexecuted.is_empty() {
             h3 #unexecuted { "Changed blocks that neither run executed" }
-            p.note { "Nothing is known of what they do: a guard that wasn't needed, a way that wasn't gone." }
+            p.note { "Their effect is unknown: for example a guard that did not trigger or a branch not taken." }
             ol.changes {
                 @for UnexecutedChange { old, new } in listed(difference.unexecuted) {
                     li { (both(old, new, sides)) }

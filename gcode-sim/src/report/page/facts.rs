@@ -13,12 +13,12 @@ pub(super) fn answer(page: &Page<'_>, sides: &[Side<'_>]) -> Markup {
         @if let Some(difference) = difference {
             @let changes = difference.compared.changes.len();
             p.answer.yes[changes == 0].no[changes != 0] {
-                @if changes == 0 { "Nothing changes on the part" } @else { (figures::count(changes, "change")) }
+                @if changes == 0 { "No difference on the part or in the control's final state" } @else { (figures::count(changes, "change")) }
             }
         }
         @if let Some(difference) = difference && !difference.unexecuted.is_empty() {
             p.answer {
-                "Executed by neither run, so nothing is known of them: "
+                "Executed by neither run, effect unknown: "
                 a href="#unexecuted" { (figures::count(difference.unexecuted.len(), "changed block")) }
             }
         }
@@ -30,9 +30,9 @@ pub(super) fn answer(page: &Page<'_>, sides: &[Side<'_>]) -> Markup {
                 p.answer.yes[verdict.verdict == Answer::Pass].no[verdict.verdict == Answer::Fail] {
                     @if sides.len() == 2 { (heading(side, sides)) ": " }
                     @match verdict.verdict { Answer::Pass => "PASS", Answer::Fail => "FAIL" }
-                    ", " (good) " of " (figures::count(wanted, "wanted hole")) " good"
+                    ", " (good) " of " (figures::count(wanted, "hole")) " in tolerance"
                     @if !verdict.missing.is_empty() { ", " (verdict.missing.len()) " missing" }
-                    @if !verdict.extra.is_empty() { ", " (verdict.extra.len()) " too many" }
+                    @if !verdict.extra.is_empty() { ", " (verdict.extra.len()) " extra" }
                 }
             }
             @if stopped {
@@ -81,9 +81,9 @@ pub(super) fn summary(page: &Page<'_>, sides: &[Side<'_>]) -> Markup {
         }
         @if let Some((_, difference)) = page.old {
             p.note {
-                "What differs by no more than " (difference.tolerance)
-                " (mm, and degrees for axes that turn) counts as the same. Sequence numbers, spaces, comments and the way "
-                "numbers are written don't count."
+                "Differences of up to " (difference.tolerance)
+                " (mm, and degrees for rotary axes) count as equal. Sequence numbers, spaces, comments and the way "
+                "numbers are written are ignored."
             }
         }
     }
@@ -94,5 +94,5 @@ fn worst(side: &Side<'_>) -> String {
     let Some(verdict) = side.seen.verdict else { return String::new() };
     let Some(worst) = verdict.worst else { return "no hole found".to_owned() };
     let from = verdict.worst_from.as_deref().unwrap_or_default();
-    format!("Φ{} of Φ{}: {}", figures::near(worst, 4), verdict.tolerance, shown(from))
+    format!("Φ{}, tolerance Φ{}: {}", figures::near(worst, 4), verdict.tolerance, shown(from))
 }

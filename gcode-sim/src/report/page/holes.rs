@@ -55,7 +55,7 @@ impl HoleTable {
         let hidden: BTreeSet<usize> = calm.skip(SHOWN).map(|(number, _)| number).collect();
         let seen = self.rows.len() - hidden.len();
         html! {
-            @if self.rows.is_empty() { p { "No hole is made." } } @else {
+            @if self.rows.is_empty() { p { "The program makes no holes." } } @else {
                 p.note {
                     "Lengths in mm, in the part's frame. "
                     @if page.reference.is_some() {
@@ -63,14 +63,14 @@ impl HoleTable {
                     } @else {
                         "Without a reference a hole begins where the cutting feed begins, and its depth counts from there. "
                     }
-                    "A row leads to the block that made the hole; column heads sort."
+                    "Click a row to go to the block that made the hole, a column head to sort."
                 }
                 @if self.cut > 0 {
-                    p.note { (count(self.cut as u64)) " rows are left out: a page holds " (MOST_ROWS) ", those worth a look first." }
+                    p.note { (count(self.cut as u64)) " rows are omitted: a page holds " (MOST_ROWS) ", the most relevant first." }
                 }
                 @if PRINTED < seen {
                     p.note.paper {
-                        "The first " (PRINTED) " of " (count(seen as u64)) " rows are printed, as they were sorted; the others are on the screen."
+                        "The first " (PRINTED) " of " (count(seen as u64)) " rows are printed, in the order of the screen; the others are on the screen only."
                     }
                 }
                 div.scroll {
@@ -89,7 +89,7 @@ impl HoleTable {
                 }
                 @if !hidden.is_empty() {
                     p.note #hidden-rows {
-                        (count(hidden.len() as u64)) " more holes aren't shown, nor printed; those that differ or are wrong all are shown. "
+                        (count(hidden.len() as u64)) " more holes are neither shown nor printed; all holes with a difference or a fault are shown. "
                         button type="button" #show-rows { "Show all" }
                     }
                 }

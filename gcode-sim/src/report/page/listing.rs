@@ -36,11 +36,11 @@ pub(super) fn listing(page: &Page<'_>, sides: &[Side<'_>]) -> Markup {
     let mut left = MOST_ROWS;
     html! {
         p.note {
-            "Executed blocks have a bar and the number of times they were executed. "
-            code { "#1 5" } " is what a variable was before the block, " code { "#1 ← 5" } " what the block made of it, "
-            code { "→ #1 5" } " an argument of the program it calls; "
-            code { "5 … 9 (3×)" } " are the first and the last of several."
-            span.paper { " Lines that weren't executed in either program are left out of the print." }
+            "Executed blocks have a bar and the number of executions. "
+            code { "#1 5" } " is a variable's value before the block, " code { "#1 ← 5" } " its value after the block, "
+            code { "→ #1 5" } " an argument of the called program; "
+            code { "5 … 9 (3×)" } " are the first and the last of several values."
+            span.paper { " Lines that neither program executed are omitted in print." }
         }
         @for pair in pairs(sides) {
             (program(&pair, sides, &done, &mut left))
@@ -101,7 +101,7 @@ fn program(pair: &Pair<'_>, sides: &[Side<'_>], done: &[ExecutedLines<'_>], left
                 @for (side, text) in sides.iter().zip(pair) {
                     div.half {
                         @if sides.len() == 2 { (heading(side, sides)) " " }
-                        @match text { Some(text) => (text.name), None => "not there" }
+                        @match text { Some(text) => (text.name), None => "not present" }
                     }
                 }
             }
@@ -109,8 +109,8 @@ fn program(pair: &Pair<'_>, sides: &[Side<'_>], done: &[ExecutedLines<'_>], left
                 @match one {
                     ListingRow::Line(line) => (row(line, pair, sides, done)),
                     ListingRow::Gap(lines) => div.gap {
-                        (count(*lines)) " lines are left out here: a page holds " (MOST_ROWS)
-                        " and those that a hole or a finding leads to"
+                        (count(*lines)) " lines are omitted here: a page holds " (MOST_ROWS)
+                        " and those with a hole or a finding"
                     },
                 }
             }

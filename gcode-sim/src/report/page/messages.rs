@@ -56,7 +56,7 @@ fn findings(side: &Side<'_>, sides: &[Side<'_>]) -> Markup {
         |finding: &Diagnostic| known.as_ref().is_some_and(|known| !known.contains(&key(side, finding)));
     let mark = |finding: &Diagnostic| {
         let word = other.map_or("", |other| other.word);
-        html! { @if is_new(finding) { " " strong.mark { "not of the " (word) " program" } } }
+        html! { @if is_new(finding) { " " strong.mark { "not in the " (word) " program" } } }
     };
     let one = |finding: &Diagnostic| {
         html! {

@@ -107,7 +107,7 @@ impl Page<'_> {
             main {
                 (section("summary", "Summary", facts::summary(self, &sides)))
                 @if let Some(difference) = difference {
-                    (section("changes", "What changes", changed::changes(&difference, &sides)))
+                    (section("changes", "Changes", changed::changes(&difference, &sides)))
                 }
                 (section("holes", "Holes", table.markup(self)))
                 (section("path", "Path and program", html! {
@@ -115,7 +115,7 @@ impl Page<'_> {
                     (listing::listing(self, &sides))
                 }))
                 (section("told", "Stops, alarms and findings", messages::messages(self, &sides)))
-                (section("proof", "What this rests on", proof::proof(self, &sides)))
+                (section("proof", "Basis of the results", proof::proof(self, &sides)))
                 (section("signatures", "Signatures", proof::signatures()))
             }
         };

@@ -191,7 +191,7 @@ pub(super) fn viewer(sides: &[Side<'_>], data: &Data) -> Markup {
                     button type="button" data-view=(action) aria-label=[label(action)] { (name) }
                 }
                 label { input #rapids type="checkbox" checked; " Rapids" }
-                @if sides.len() == 2 { label { input #changed-only type="checkbox"; " What changes only" } }
+                @if sides.len() == 2 { label { input #changed-only type="checkbox"; " Changes only" } }
             }
             div.canvases {
                 @for side in sides {
@@ -210,16 +210,16 @@ pub(super) fn viewer(sides: &[Side<'_>], data: &Data) -> Markup {
                 li.probe { "probing move" }
                 @if sides.len() == 2 { li.changed { "different from the other program" } }
                 li.hole { "hole" }
-                li.wrong { "hole that differs, or is wrong" }
+                li.wrong { "hole that differs or has a fault" }
                 li.absent { "missing hole" }
             }
             details.note #keys {
                 summary { "Mouse, touch and keys" }
-                "Drag, or the arrow keys, turn; the wheel, two fingers, + and − zoom; Shift and drag moves. "
-                "N and P go from move to move, Enter to the block of what is picked, 0 is the first view."
+                "Drag, or use the arrow keys, to rotate; the wheel, two fingers, + and − zoom; Shift and drag moves. "
+                "N and P go from move to move, Enter to the block of the selected move, 0 resets the view."
             }
             @for (side, drawn) in sides.iter().zip(&data.sides) { (left_out(side, sides, drawn)) }
-            noscript { p { "The drawing needs scripts; all else on this page doesn't." } }
+            noscript { p { "The drawing needs scripts; everything else on this page works without them." } }
         }
     }
 }
@@ -228,9 +228,9 @@ fn label(action: &str) -> Option<&'static str> {
     match action {
         "in" => Some("Zoom in"),
         "out" => Some("Zoom out"),
-        "top" => Some("Seen from above"),
-        "front" => Some("Seen from the front"),
-        "side" => Some("Seen from the side"),
+        "top" => Some("View from above"),
+        "front" => Some("View from the front"),
+        "side" => Some("View from the side"),
         _ => None,
     }
 }

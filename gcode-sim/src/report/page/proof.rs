@@ -18,7 +18,7 @@ pub(super) fn proof(page: &Page<'_>, sides: &[Side<'_>]) -> Markup {
                 @if place > 0 { ", " }
                 code { (shown(flag)) }
             }
-            "; without " code { "--machine" } " it is the machine of the paper."
+            "; without " code { "--machine" } " the machine of the paper is used."
         }
         div.scroll {
             table.digests {
@@ -35,7 +35,7 @@ pub(super) fn proof(page: &Page<'_>, sides: &[Side<'_>]) -> Markup {
                 }
             }
         }
-        p.note { "Every number on this page is a prediction of what the programs make a control do. No part was measured." }
+        p.note { "Every number on this page is predicted by simulation. No part was measured." }
     }
 }
 

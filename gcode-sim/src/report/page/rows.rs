@@ -142,7 +142,7 @@ pub(super) fn found_rows(sides: &[Side<'_>], tools: &[Vec<Vec<u32>>]) -> (Vec<St
     let rows = holes.map(|(number, hole)| {
         let mut cells = described(Some(hole), tools.last().map_or(&[], |tools| &tools[number]));
         cells.push(made_by(side, hole));
-        let words = "not judged".to_owned();
+        let words = "not verified".to_owned();
         HoleTableRow {
             id: (number + 1).to_string(),
             state: HoleRowState::Unjudged,
@@ -219,7 +219,7 @@ pub(super) fn judged_rows(
         judged.iter().map(|(_, v)| v.holes.iter().map(|hole| (hole.id.as_str(), hole)).collect()).collect();
     let mut columns: Vec<String> = sides.iter().map(|side| titled("φ", side, sides)).collect();
     columns.extend((sides.len() == 2).then(|| "Change of φ".to_owned()));
-    columns.extend(["Off at entry", "Off at bottom", "Depth error", "Tilt °"].map(str::to_owned));
+    columns.extend(["Deviation at entry", "Deviation at bottom", "Depth error", "Tilt °"].map(str::to_owned));
     columns.extend(sides.iter().map(|side| titled("Block", side, sides)));
     let wanted = reference.holes.iter().map(|hole| {
         let id = hole.id.as_deref().unwrap_or_default();

@@ -13,8 +13,8 @@ pub(super) struct Stop<'a> {
 pub(super) fn stops<'a>(page: &Page<'_>, side: &Side<'a>) -> Vec<Stop<'a>> {
     let compared = page.old.map(|(_, difference)| difference.compared);
     let (place, [alone, changed]) = match side.word {
-        "old" => (0, ["not made here by the new program", "made otherwise by the new program"]),
-        _ => (1, ["not made here by the old program", "made otherwise by the old program"]),
+        "old" => (0, ["not executed here by the new program", "executed differently by the new program"]),
+        _ => (1, ["not executed here by the old program", "executed differently by the old program"]),
     };
     let mark = |step: usize| {
         let compared = compared?;

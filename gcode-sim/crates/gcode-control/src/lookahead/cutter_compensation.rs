@@ -92,8 +92,7 @@ impl Lookahead {
         }
         let begins = starts.last().is_some_and(|start| segment.parallel_begins_at(*start, distance));
         if !begins {
-            let what =
-                "an arc that begins beside its own parallel (a new D or G41, or blocks without a move)";
+            let what = "an arc that begins off its own parallel (a new D or G41, or blocks without a move)";
             return Err(Alarm::NotSimulated { what: what.into() }.at(block));
         }
         self.set_offset(segment.beside_end(distance) - segment.to());
@@ -122,7 +121,7 @@ impl Lookahead {
             self.tell_corner(core, piece, &rest);
         }
         if let Some(rounding) = self.rounding.take() {
-            let what = "G39 with the end of cutter compensation behind it".into();
+            let what = "G39 followed by the end of cutter compensation".into();
             return Err(Alarm::NotSimulated { what }.at(rounding.place.block));
         }
         self.on = false;

@@ -192,7 +192,7 @@ impl Unrolled {
         items.push(item(Sample::Pen(Pen::Outline), "seam: both edges are one line".to_owned()));
         let thin = match self.strips {
             1 => "ends of the pattern",
-            _ => "cuts: the next strip goes on there; ends of the pattern",
+            _ => "cuts: continued on the next strip; ends of the pattern",
         };
         items.push(item(Sample::Pen(Pen::Construction), thin.to_owned()));
         items

@@ -53,7 +53,7 @@ pub fn side_view(view: &FluteView) -> Scene {
     outline.extend(view.outline.first().copied());
     strokes.push(Stroke { shape: Shape::Line(outline), pen: Pen::Outline, caption: None });
     let axes = vec![axis("x", [1.0, 0.0]), axis("y", [0.0, 1.0])];
-    let what = "Side view, seen from +z, the tip to the left; y stands where the cylinder ends";
+    let what = "Side view, seen from +z, the tip to the left; y at the end of the cylinder";
     Scene { axes, marks: seen.faults(view), ..scene(view, what, strokes) }
 }
 
@@ -146,15 +146,15 @@ fn item(sample: Sample, text: &str) -> LegendItem {
 fn scene(view: &FluteView, what: &str, strokes: Vec<Stroke>) -> Scene {
     let is_there = |standing: HoleStatus| view.faults.iter().any(|fault| fault.standing == standing);
     let signs = [
-        (HoleStatus::Bad, "Fault, where it is worst"),
-        (HoleStatus::Missing, "Place of a missing flute"),
-        (HoleStatus::Extra, "Flute nobody asked for"),
+        (HoleStatus::Bad, "Fault, at its worst point"),
+        (HoleStatus::Missing, "Position of a missing flute"),
+        (HoleStatus::Extra, "Extra flute"),
     ];
     let signs = signs.into_iter().filter(|(standing, _)| is_there(*standing));
     let mut legend: Vec<LegendItem> =
         signs.map(|(standing, words)| item(Sample::Standing(standing), words)).collect();
     let lines = [
-        (Pen::Feed, "Path of the wheel's contact on the near side, with the number of its pass"),
+        (Pen::Feed, "Wheel contact path on the near side, with the number of its pass"),
         (Pen::Faulty, "Pass with a fault"),
         (Pen::Hidden, "Pass with a fault, on the far side"),
         (Pen::Outline, "Tooth bottom"),

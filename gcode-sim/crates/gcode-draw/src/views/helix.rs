@@ -50,7 +50,7 @@ pub fn helix_graph(view: &FluteView) -> Scene {
         graphs.push(helix.deviations());
     }
     let chart = Chart {
-        across: "Way along the outline, mm, from the shank's end; above: polar angle θ on the nose"
+        across: "Distance along the outline from the shank end, mm; above: polar angle θ on the nose"
             .to_owned(),
         guides: helix.nose.clone(),
         gaps: Vec::new(),
@@ -112,7 +112,7 @@ impl HelixCourses {
     fn deviations(&self) -> Graph {
         let allowed = |at: &HelixAt| [at.way, -self.tolerance, self.tolerance];
         Graph {
-            up: "Off the angle asked for, degrees".to_owned(),
+            up: "Deviation from the specified helix angle, degrees".to_owned(),
             curves: self.curves(HelixAt::off),
             band: self.shown().iter().map(allowed).collect(),
             zero: true,
@@ -143,15 +143,15 @@ impl HelixCourses {
         let is_ground = !self.passes.is_empty();
         let fault = self.sign(|at| at.found).map(|_| LegendItem {
             sample: Sample::Standing(HoleStatus::Bad),
-            text: "Fault: farther off than allowed".to_owned(),
+            text: "Fault: out of tolerance".to_owned(),
         });
-        let worst = format!("Pass {}, the farthest off the law", self.worst + 1);
+        let worst = format!("Pass {}, the largest deviation from the law", self.worst + 1);
         let items = [
             fault,
             pen(Pen::Measured, worst).filter(|_| is_ground),
             pen(Pen::Others, "The other passes".to_owned()).filter(|_| 1 < self.passes.len()),
-            pen(Pen::First, format!("Asked for: law {asked}")),
-            pen(Pen::Limit, format!("Allowed: {}° either way", self.tolerance)),
+            pen(Pen::First, format!("Specified: law {asked}")),
+            pen(Pen::Limit, format!("Tolerance: ±{}°", self.tolerance)),
             pen(Pen::Second, format!("Law {other}, for comparison")),
         ];
         items.into_iter().flatten().collect()

@@ -15,30 +15,30 @@ impl PicturePurpose {
     /// Beside a hole, where it isn't there or shouldn't be.
     pub(super) fn word(self, standing: HoleStatus) -> &'static str {
         match (self, standing) {
-            (Self::Verdict, HoleStatus::Good) => "good",
-            (Self::Verdict, HoleStatus::Bad) => "bad",
+            (Self::Verdict, HoleStatus::Good) => "in tolerance",
+            (Self::Verdict, HoleStatus::Bad) => "out of tolerance",
             (Self::Verdict, HoleStatus::Missing) => "missing",
             (Self::Verdict, HoleStatus::Extra) => "extra",
             (Self::Change, HoleStatus::Good) => "unchanged",
             (Self::Change, HoleStatus::Bad) => "changed",
             (Self::Change, HoleStatus::Missing) => "lost",
             (Self::Change, HoleStatus::Extra) => "added",
-            (_, HoleStatus::Unjudged) => "not judged",
+            (_, HoleStatus::Unjudged) => "not verified",
         }
     }
 
     /// In the legend.
     pub(super) fn legend(self, standing: HoleStatus) -> &'static str {
         match (self, standing) {
-            (Self::Verdict, HoleStatus::Good) => "within tolerance",
+            (Self::Verdict, HoleStatus::Good) => "in tolerance",
             (Self::Verdict, HoleStatus::Bad) => "out of tolerance",
             (Self::Verdict, HoleStatus::Missing) => "missing: not made",
-            (Self::Verdict, HoleStatus::Extra) => "extra: not wanted",
-            (Self::Change, HoleStatus::Good) => "as before",
-            (Self::Change, HoleStatus::Bad) => "changed: sign at the old place",
-            (Self::Change, HoleStatus::Missing) => "lost: made before",
-            (Self::Change, HoleStatus::Extra) => "added: not made before",
-            (_, HoleStatus::Unjudged) => "hole, not judged",
+            (Self::Verdict, HoleStatus::Extra) => "extra: not in the reference",
+            (Self::Change, HoleStatus::Good) => "unchanged",
+            (Self::Change, HoleStatus::Bad) => "changed: symbol at the old position",
+            (Self::Change, HoleStatus::Missing) => "lost: only in the old program",
+            (Self::Change, HoleStatus::Extra) => "added: only in the new program",
+            (_, HoleStatus::Unjudged) => "hole, not verified",
         }
     }
 
@@ -58,16 +58,16 @@ impl PicturePurpose {
     /// At a line to where a hole stands in truth.
     pub(super) fn astray(self) -> &'static str {
         match self {
-            Self::Verdict => "to where the hole is instead",
-            Self::Change => "to where the hole is now",
+            Self::Verdict => "to the actual position",
+            Self::Change => "to the new position",
         }
     }
 
     /// Before the diameter of the circle that a misfit is drawn in.
     pub(super) fn misfit(self) -> &'static str {
         match self {
-            Self::Verdict => "misfit in its zone",
-            Self::Change => "way from the old place in a circle",
+            Self::Verdict => "deviation in the tolerance zone",
+            Self::Change => "displacement from the old position in a circle",
         }
     }
 
@@ -81,7 +81,7 @@ impl PicturePurpose {
         }
         let is_good = all == good && extra + others == 0;
         if is_good && self == Self::Verdict {
-            return Some((HoleStatus::Good, format!("PASS: {good} of {good} holes")));
+            return Some((HoleStatus::Good, format!("PASS: {good} of {good} holes in tolerance")));
         }
         let mut words = match all {
             0 => Vec::new(),
@@ -114,10 +114,10 @@ mod tests {
         let headline = |question: PicturePurpose, counts| question.headline(counts, 0);
         let good = |text: &str| Some((HoleStatus::Good, text.to_owned()));
         let bad = |text: &str| Some((HoleStatus::Bad, text.to_owned()));
-        assert_eq!(headline(PicturePurpose::Verdict, [4, 0, 0, 0]), good("PASS: 4 of 4 holes"));
+        assert_eq!(headline(PicturePurpose::Verdict, [4, 0, 0, 0]), good("PASS: 4 of 4 holes in tolerance"));
         assert_eq!(
             headline(PicturePurpose::Verdict, [2, 0, 1, 1]),
-            bad("FAIL: 2 of 3 good, 1 missing, 1 extra")
+            bad("FAIL: 2 of 3 in tolerance, 1 missing, 1 extra")
         );
         assert_eq!(headline(PicturePurpose::Change, [4, 0, 0, 0]), good("4 of 4 unchanged"));
         assert_eq!(

@@ -102,9 +102,9 @@ impl PathKind {
         match self {
             Self::Feed => "tool path, feed",
             Self::Rapid => "tool path, rapid",
-            Self::Kept => "cut as before",
-            Self::New => "cut that is another one, now",
-            Self::Gone => "the same before",
+            Self::Kept => "unchanged cut",
+            Self::New => "changed cut, new",
+            Self::Gone => "changed cut, old",
         }
     }
 }

@@ -64,11 +64,9 @@ pub struct HoleBudget {
 /// Why there is no budget.
 #[derive(Debug, PartialEq, Eq, thiserror::Error)]
 pub enum BudgetError {
-    #[error("hole '{id}': this machine can't bring the tool there along the hole's axis")]
+    #[error("hole '{id}': the machine cannot reach it along the hole axis")]
     OutOfReach { id: String },
-    #[error(
-        "hole '{id}': with errors so large the tool runs across the hole, and there is no position to tell"
-    )]
+    #[error("hole '{id}': the errors are so large that no position can be computed")]
     Across { id: String },
 }
 

@@ -44,11 +44,11 @@ pub const ROUNDING_ERROR: f64 = 1e-6;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GrinderError {
     #[error(
-        "the machine file has no [wheel], which a burr is ground by: use the machine.toml that stands beside the program"
+        "the machine file has no [wheel], which grinds the burr: use the machine.toml next to the program"
     )]
     NoWheel,
     #[error(
-        "the machine file has no axis A that turns the burr about its own axis (a [[table]] with turns = \"x\")"
+        "the machine file has no axis A that rotates the burr about its own axis (a [[table]] with turns = \"x\")"
     )]
     NoBurrAxis,
 }
@@ -169,9 +169,10 @@ impl<'m> FluteTracker<'m> {
     fn report_limit(&mut self, event: &Event<'_>, what: String) {
         self.is_full = true;
         let finding =
-            Diagnostic::new(Severity::Alarm, "limit", format!("{what}: from here on none is looked at"));
-        let finding =
-            finding.help("does a loop never end, or turn the burr round and round? else split the program");
+            Diagnostic::new(Severity::Alarm, "limit", format!("{what}: nothing after this is checked"));
+        let finding = finding.help(
+            "check for a loop that never ends or rotates the burr continuously; otherwise split the program",
+        );
         self.result.findings.push(finding.at(event.place()));
     }
 

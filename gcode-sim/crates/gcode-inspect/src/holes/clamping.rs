@@ -35,18 +35,18 @@ impl HoleExtractor<'_> {
         match self.clamp_state {
             ClampState::Released => {}
             ClampState::Clamped => self.findings.add("turns-clamped", &event.place(), 0, || {
-                Diagnostic::error("turns-clamped", format!("{letter} turns while M{on:02} holds it"))
-                    .note("the axis stops with an alarm, or the drive works against the clamp")
-                    .help(format!("M{off:02} before {letter} turns"))
+                Diagnostic::error("turns-clamped", format!("{letter} rotates while clamped by M{on:02}"))
+                    .note("the control raises an alarm, or the drive works against the clamp")
+                    .help(format!("command M{off:02} before {letter} rotates"))
             }),
             ClampState::Unknown => {
                 self.findings.add("turns-clamped", &event.place(), 1, || {
                     Diagnostic::warning(
                         "turns-clamped",
-                        format!("{letter} turns before any M{off:02} has let it go"),
+                        format!("{letter} rotates before any M{off:02} releases it"),
                     )
-                    .note("how the clamp stands when the program begins isn't known")
-                    .help(format!("M{off:02} before {letter} turns"))
+                    .note("the state of the clamp at the start of the program is unknown")
+                    .help(format!("command M{off:02} before {letter} rotates"))
                 });
                 // It turned: so it was free, and nothing holds it now.
                 self.clamp_state = ClampState::Released;
@@ -62,16 +62,16 @@ impl HoleExtractor<'_> {
         match clamp_state {
             ClampState::Clamped => {}
             ClampState::Released => self.findings.add("drills-unclamped", place, 0, || {
-                let message = format!("the tool feeds into the part while nothing holds {letter}");
+                let message = format!("the tool feeds into the part with {letter} unclamped");
                 Diagnostic::error("drills-unclamped", message)
-                    .note("the part gives way under the drill, and the hole stands where that leaves it")
-                    .help(format!("M{on:02} after {letter} has turned"))
+                    .note("the part gives way under the drill, which moves the hole")
+                    .help(format!("command M{on:02} after {letter} has rotated"))
             }),
             ClampState::Unknown => self.findings.add("drills-unclamped", place, 1, || {
-                let message = format!("the tool feeds into the part before any M{on:02} holds {letter}");
+                let message = format!("the tool feeds into the part before any M{on:02} clamps {letter}");
                 Diagnostic::warning("drills-unclamped", message)
-                    .note("how the clamp stands when the program begins isn't known")
-                    .help(format!("M{on:02} before the feed"))
+                    .note("the state of the clamp at the start of the program is unknown")
+                    .help(format!("command M{on:02} before the feed"))
             }),
         }
     }

@@ -64,7 +64,7 @@ impl HoleExtractor<'_> {
                 Diagnostic::error(
                     "feed-without-retract",
                     format!(
-                        "the feed ends {depth:.3} mm inside the part and the tool doesn't come back along it"
+                        "the feed ends {depth:.3} mm inside the part and the tool does not retract along it"
                     ),
                 )
                 .help("retract along the hole before anything else moves")
@@ -74,10 +74,10 @@ impl HoleExtractor<'_> {
                 Diagnostic::warning(
                     "feed-without-retract",
                     format!(
-                        "the tool doesn't come back along a feed of {length:.3} mm: not taken for a hole"
+                        "the tool does not retract along a feed of {length:.3} mm: not counted as a hole"
                     ),
                 )
-                .help("if it is a hole, retract along it before anything else moves")
+                .help("retract along it before anything else moves, if it is a hole")
             }),
         }
     }
@@ -89,9 +89,9 @@ impl HoleExtractor<'_> {
         self.findings.add("back-bored", line.backtrace(), 0, || {
             Diagnostic::warning(
                 "back-bored",
-                format!("the tool bores {length:.3} mm backwards, out of the part: not taken for a hole"),
+                format!("the tool bores {length:.3} mm backwards, out of the part: not counted as a hole"),
             )
-            .help("look at the bore's depth and place in the picture or the review page: nothing checks them")
+            .help("check the bore's depth and position in the picture or on the review page: no check covers them")
         });
     }
 
@@ -108,7 +108,7 @@ impl HoleExtractor<'_> {
             let builder = self.builder_code;
             self.findings.add("spindle-stopped", place, 0, || {
                 spindle::spindle_stopped_finding(
-                    "the tool feeds into the part while the spindle stands",
+                    "the tool feeds into the part with the spindle stopped",
                     builder,
                 )
                 .help("start the spindle with M03 S… before the feed")
@@ -119,10 +119,10 @@ impl HoleExtractor<'_> {
                 self.findings.add("head-not-set", place, 0, || {
                     Diagnostic::error(
                         "head-not-set",
-                        "the tool feeds before the head has been set: its angle isn't known",
+                        "the tool feeds before the head is set: its angle is unknown",
                     )
                     .help(
-                        "stop with #3006=1(SET HEAD TO #140) before, or give head.angle in the machine file",
+                        "stop with #3006=1(SET HEAD TO #140) before the feed, or give head.angle in the machine file",
                     )
                 });
             }
@@ -135,13 +135,14 @@ impl HoleExtractor<'_> {
                 Diagnostic::error(
                     "feed-not-along-tool",
                     format!(
-                        "the feed runs {:.3}° off the tool's axis ({:.2}° allowed): {aside:.3} mm aside over {:.3} mm",
+                        "the feed direction is {:.3}° off the tool axis, limit {:.2}°: {aside:.3} mm \
+                         sideways over {:.3} mm",
                         off.0,
                         MAX_FEED_TILT.0,
                         line.cut_depth()
                     ),
                 )
-                .help("set the head to the direction of the feed, or feed along the tool")
+                .help("set the head to the direction of the feed, or feed along the tool axis")
             });
         }
     }

@@ -13,10 +13,10 @@ impl HoleExtractor<'_> {
                 self.findings.add("axis-carries-nothing", &event.place(), axis as u32, || {
                     Diagnostic::warning(
                         "axis-carries-nothing",
-                        format!("{letter} moves to {}, but nothing is on that axis of the machine", to[axis]),
+                        format!("{letter} moves to {}; the machine has nothing on that axis", to[axis]),
                     )
                     .help(format!(
-                        "say in the machine file what {letter} carries, or leave it out of the program"
+                        "describe in the machine file what {letter} carries, or remove {letter} from the program"
                     ))
                 });
             }
@@ -27,16 +27,19 @@ impl HoleExtractor<'_> {
     pub(super) fn check_tool_known(&mut self, event: &Event<'_>, number: u32) {
         if number != 0 && !self.machine.tools.is_empty() && self.machine.find_tool(number).is_none() {
             self.findings.add("tool-unknown", &event.place(), number, || {
-                let known: Vec<_> = self.machine.tools.iter().map(|tool| format!("T{}", tool.number)).collect();
+                let known: Vec<_> =
+                    self.machine.tools.iter().map(|tool| format!("T{}", tool.number)).collect();
                 Diagnostic::warning(
                     "tool-unknown",
                     format!(
-                        "T{number} is put in, which the machine file doesn't describe (it has {}): the diameter of what it \
-                         makes isn't checked, its length is taken from the length offset",
+                        "T{number} is not in the machine file (which has {}): the diameter of its holes is \
+                         not checked, its length is taken from the length offset",
                         known.join(", ")
                     ),
                 )
-                .help(format!("is it the right tool? If so, give it a [[tool]] with number = {number} and its diameter"))
+                .help(format!(
+                    "check that it is the right tool; if so, add a [[tool]] with number = {number} and its diameter"
+                ))
             });
         }
     }
@@ -56,11 +59,9 @@ impl HoleExtractor<'_> {
             self.findings.add("head-not-manual", &event.place(), 0, || {
                 Diagnostic::warning(
                     "head-not-manual",
-                    format!(
-                        "the message ({text}) asks for a head set by hand, but the machine's head isn't one"
-                    ),
+                    format!("the message ({text}) calls for a head set by hand; the machine's head is not"),
                 )
-                .help("give kind = \"manual\" under [head] in the machine file, or leave the message out")
+                .help("give kind = \"manual\" under [head] in the machine file, or remove the message")
             });
             return None;
         }
@@ -76,8 +77,9 @@ impl HoleExtractor<'_> {
 
 /// A message about the head from which no angle can be read.
 pub fn unclear_head(text: &str) -> Diagnostic {
-    let message =
-        format!("the message ({text}) doesn't name one variable with a value: the head stays as it is");
+    let message = format!(
+        "the message ({text}) does not name exactly one variable with a value: the head angle is unchanged"
+    );
     Diagnostic::warning("head-message-unclear", message)
         .help("name the variable that holds the angle, as in #3006=1(SET HEAD TO #140)")
 }

@@ -166,9 +166,9 @@ impl<'m> HoleExtractor<'m> {
         let mut findings = self.findings.finish();
         findings.extend(self.first_excess_pass.map(|place| {
             let message =
-                format!("more than {MAX_PASSES} feeds into the part: those from here on aren't looked at");
+                format!("more than {MAX_PASSES} feeds into the part: nothing after this is checked");
             let finding = Diagnostic::new(Severity::Alarm, "limit", message).at(place);
-            finding.help("does a loop never end? else split the program")
+            finding.help("check for a loop that never ends; otherwise split the program")
         }));
         let holes = group::group_holes(&self.passes, self.machine);
         HoleExtraction {

@@ -55,8 +55,8 @@ impl<K: Ord, T> PerBlock<K, T> {
 pub(crate) fn with_repeat_note(finding: Diagnostic, times: u64) -> Diagnostic {
     match times {
         0 | 1 => finding,
-        2 => finding.note("and once more at the same block"),
-        _ => finding.note(format!("and {} more times at the same block", times - 1)),
+        2 => finding.note("once more at the same block"),
+        _ => finding.note(format!("{} more times at the same block", times - 1)),
     }
 }
 

@@ -31,7 +31,7 @@ impl HoleExtractor<'_> {
         }
         self.findings.add("rapid-beyond-cut", &event.place(), 0, || {
             let message = format!(
-                "rapid along the hole beyond what was cut, to {:.3} mm from where the feed began",
+                "rapid along the hole beyond the drilled depth, to {:.3} mm from the start of the feed",
                 line.cut_depth()
             );
             let finding = match inside {
@@ -56,12 +56,12 @@ impl HoleExtractor<'_> {
             Diagnostic::warning(
                 "rapid-beyond-cut",
                 format!(
-                    "the rapid goes {:.3} mm on in the direction of a feed of {:.3} mm: not taken for a hole",
+                    "the rapid continues {:.3} mm in the direction of a feed of {:.3} mm: not counted as a hole",
                     line.depth_of(to) - line.cut_depth(),
                     line.cut_depth()
                 ),
             )
-            .help("right if the feed led out of the part; else the rapid runs into it")
+            .help("check that the feed leads out of the part; otherwise the rapid enters it")
         });
     }
 
@@ -85,7 +85,7 @@ impl HoleExtractor<'_> {
                         format_point(&deepest)
                     ),
                 )
-                .help("go round at a safe height; only a feed may enter the part")
+                .help("move round the part at a safe height; only a feed may enter it")
             });
         }
     }
@@ -113,8 +113,11 @@ impl HoleExtractor<'_> {
                 false => Diagnostic::warning("rapid-into-part", message),
             };
             finding
-                .note("where it begins isn't known; axes that haven't moved yet are taken to stand at machine zero")
-                .help("end it at a safe height: is the sign of Z right, and the length offset?")
+                .note(
+                    "the start of this rapid is unknown; axes that have not moved yet are assumed to be at \
+                     machine zero",
+                )
+                .help("end it at a safe height; check the sign of Z and the length offset")
         });
     }
 
@@ -129,16 +132,18 @@ impl HoleExtractor<'_> {
             CurvedMotion::Rapid if in_part => self.findings.add("rapid-into-part", &event.place(), 0, || {
                 Diagnostic::error(
                     "rapid-into-part",
-                    format!("rapid through the part while an axis turns, {deepest:.3} mm below the surface"),
+                    format!(
+                        "rapid through the part while an axis rotates, {deepest:.3} mm below the surface"
+                    ),
                 )
-                .help("retract until the tool is outside the part before the table or the head turns")
+                .help("retract until the tool is outside the part before the table or the head rotates")
             }),
             CurvedMotion::Feed if in_part => self.findings.add("feed-no-hole", &event.place(), 0, || {
                 Diagnostic::error(
                     "feed-no-hole",
-                    format!("a curved feed cuts {deepest:.3} mm into the part: no hole"),
+                    format!("a curved feed cuts {deepest:.3} mm into the part: not a hole"),
                 )
-                .help("holes are fed along a straight line while the table stands")
+                .help("feed holes along a straight line, with the table stationary")
             }),
             CurvedMotion::Rapid | CurvedMotion::Feed if self.has_been_outside => {
                 if let Some(surface) = self.surface {
@@ -147,8 +152,8 @@ impl HoleExtractor<'_> {
             }
             CurvedMotion::Feed if self.surface.is_none() => {
                 self.findings.add("feed-no-hole", &event.place(), 0, || {
-                    Diagnostic::warning("feed-no-hole", "a curved feed on the part: not taken for a hole")
-                        .help("holes are fed along a straight line while the table stands")
+                    Diagnostic::warning("feed-no-hole", "a curved feed on the part: not counted as a hole")
+                        .help("feed holes along a straight line, with the table stationary")
                 })
             }
             CurvedMotion::Rapid | CurvedMotion::Feed => {}

@@ -12,7 +12,7 @@ pub(crate) fn spindle_stopped_finding(message: &str, builder: Option<u32>) -> Di
     let finding = Diagnostic::new(severity, "spindle-stopped", message);
     builder.into_iter().fold(finding, |finding, code| {
         finding.note(format!(
-            "M{code:02} goes to the machine builder's logic, which may have started it: that isn't simulated"
+            "M{code:02} is left to the machine builder's logic, which may have started it: this is not simulated"
         ))
     })
 }
@@ -42,12 +42,15 @@ impl HoleExtractor<'_> {
             SpindleInHole::Unchanged => return,
             SpindleInHole::Stopped => {
                 let message = format!("the spindle stops while {} is in the hole", name());
-                Diagnostic::warning("spindle-in-hole", message).note("G76, G86 and G88 do that for a boring bar; a drill that stands in its hole rubs, or breaks when it is moved aside")
+                Diagnostic::warning("spindle-in-hole", message).note(
+                    "G76, G86 and G88 stop the spindle for a boring bar; a stopped drill rubs in its hole, or breaks when \
+                     it is moved sideways",
+                )
             }
             SpindleInHole::Reversed => {
-                let message = format!("the spindle is reversed while {} is in the hole", name());
+                let message = format!("the spindle reverses while {} is in the hole", name());
                 Diagnostic::error("spindle-in-hole", message)
-                    .note("G84 and G74 do that for a tap; the job has this hole drilled")
+                    .note("G84 and G74 reverse the spindle for a tap; the job specifies a drilled hole")
             }
         };
         self.findings.add("spindle-in-hole", place, 0, || finding.help("drill with G81, G82, G83 or G73"));

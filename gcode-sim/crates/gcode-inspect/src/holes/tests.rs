@@ -212,7 +212,7 @@ fn a_feed_beside_the_tool_is_a_finding_and_the_hole_has_the_tools_axis() {
     // The rounded end point stands at 29.9993°, 0.7007° away; 20·sin 0.7007° = 0.2446.
     let said = &found.findings[0].message;
     assert!(
-        said.starts_with("the feed runs 0.701° off the tool's axis (0.05° allowed): 0.245 mm aside"),
+        said.starts_with("the feed direction is 0.701° off the tool axis, limit 0.05°: 0.245 mm sideways"),
         "{said}"
     );
     let axis = found.holes[0].axis;

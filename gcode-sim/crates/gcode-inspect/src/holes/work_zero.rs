@@ -75,11 +75,12 @@ impl UnknownWorkZero {
     pub fn describe(&self, (program, line): (String, u32)) -> String {
         let moves = match self.count {
             1 => format!("1 move, {program} line {line}"),
-            times => format!("{times} moves, the first {program} line {line}"),
+            times => format!("{times} moves, first {program} line {line}"),
         };
         format!(
-            "how near the part rapids pass from and to where G28, G30 or G53 sends {} ({moves}): the machine file lacks the \
-             work offset in effect ([offsets]), so where machine zero is on the part isn't known",
+            "the clearance of rapids from and to the positions where G28, G30 or G53 sends {} ({moves}): \
+             the machine file lacks the work offset in effect ([offsets]), so the position of machine zero \
+             on the part is unknown",
             self.letters
         )
     }
@@ -133,8 +134,8 @@ impl HoleExtractor<'_> {
                 super::rapids::format_point(to)
             );
             Diagnostic::error("rapid-into-part", message)
-                .note("where it begins isn't known: G28, G30 or G53 has sent the tool there")
-                .help("end it at a safe height: is the sign of Z right, and the length offset?")
+                .note("the start of this rapid is unknown: G28, G30 or G53 sent the tool there")
+                .help("end it at a safe height; check the sign of Z and the length offset")
         });
     }
 
@@ -146,12 +147,13 @@ impl HoleExtractor<'_> {
         let letters = axis_letters(self.machine, unplaced);
         self.findings.add("machine-position", place, u32::from(unplaced), || {
             let message = format!(
-                "the tool feeds into the part while {letters} stands where G28, G30 or G53 has sent it: where that is on the part \
-                 isn't known"
+                "the tool feeds into the part with {letters} where G28, G30 or G53 sent it: this position \
+                 on the part is unknown"
             );
             Diagnostic::warning("machine-position", message)
-                .note("the machine file lacks the work offset in effect; machine zero is taken for the work zero")
-                .help(format!("send {letters} to the hole by a word of its own, or give the offset under [offsets] in the machine file"))
+                .note("the machine file lacks the work offset in effect; machine zero is taken as the work zero")
+                .help(format!("command {letters} to the hole explicitly, or give the offset under \
+                               [offsets] in the machine file"))
         });
     }
 }

@@ -182,16 +182,14 @@ impl<'m> Stylus<'m> {
     /// Tells it where nothing more is read.
     fn stop_where_full(&mut self, event: &Event<'_>) {
         let message = if self.kept > KEPT {
-            format!("more than {KEPT} points along the surface: from here on none is read")
+            format!("more than {KEPT} points along the surface: no readings after this")
         } else if self.looked_at > LOOKED_AT {
-            format!(
-                "more than {LOOKED_AT} points of feeds that have no reading: from here on nothing is read"
-            )
+            format!("more than {LOOKED_AT} points of feeds without a reading: no readings after this")
         } else {
             return;
         };
         let finding = Diagnostic::new(Severity::Alarm, "limit", message).at(event.place());
-        let finding = finding.help("does a loop never end? else split the program");
+        let finding = finding.help("check for a loop that never ends; otherwise split the program");
         self.followed.findings.push(finding);
     }
 

@@ -75,10 +75,12 @@ impl<'m> Rapids<'m> {
 
     fn tell(&mut self, event: &Event<'_>, deepest: f64) {
         self.findings.count(event.block, (), || {
-            let message =
-                format!("rapid with the stylus' ball {deepest:.3} mm into the part, which no probe hears");
+            let message = format!(
+                "rapid motion with the stylus ball {deepest:.3} mm in the part, which a probe does not detect"
+            );
             Diagnostic::error("rapid-into-part", message).at(event.place()).help(
-                "the part stands farther out than the touch allows: begin farther away, look at the first touch",
+                "begin the touch farther away and check the first touch: the part is farther out than the \
+                 touch allows",
             )
         });
     }

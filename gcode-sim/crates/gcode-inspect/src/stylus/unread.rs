@@ -112,8 +112,8 @@ impl UnreadFeeds {
         let length = feeds.iter().map(|feed| feed.length).sum();
         self.gaps.push(Gap { behind, length });
         let number = match feeds.len() {
-            1 => "a feed isn't read, on".to_owned(),
-            n => format!("{n} feeds aren't read, on"),
+            1 => "1 feed gives no readings over".to_owned(),
+            n => format!("{n} feeds give no readings over"),
         };
         let least = feeds.iter().map(|feed| feed.least).fold(f64::INFINITY, f64::min);
         let greatest = feeds.iter().map(|feed| feed.greatest).fold(f64::NEG_INFINITY, f64::max);
@@ -125,12 +125,14 @@ impl UnreadFeeds {
             Diagnostic::error("ball-into-part", message)
         } else {
             let message = format!(
-                "{number} {length:.3} mm: up to {:.3} mm off the surface, and neither straight to it nor from it",
+                "{number} {length:.3} mm: up to {:.3} mm off the surface, neither straight to it nor from it",
                 greatest.max(-least)
             );
             Diagnostic::error("path-not-read", message)
         };
-        let help = format!("read is what stays within {REACH} mm of the surface at less than 30° to it");
+        let help = format!(
+            "keep the ball within {REACH} mm of the surface, at less than 30° to it, to get readings"
+        );
         self.findings.push(finding.at(first.place.clone()).help(help));
     }
 }

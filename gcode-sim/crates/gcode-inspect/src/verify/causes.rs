@@ -29,34 +29,37 @@ pub(super) fn describe_causes(pattern: &Pattern, factor: f64, is_angle: bool) ->
         }
     }
     let words: Vec<_> = best?.into_iter().map(|cause| cause.description.as_str()).collect();
-    Some(format!("just that comes of {}", words.join(" and of ")))
+    Some(format!("the error matches {}", words.join(" and ")))
 }
 
 fn known_causes(pattern: &Pattern, is_angle: bool) -> Vec<Cause> {
     let Pattern { diameter, outer, bore, .. } = *pattern;
     let mut all = vec![Cause {
         factor: 314.0 / (100.0 * PI),
-        description: "3.14 for π (0.0507 % too small)".to_owned(),
+        description: "3.14 used for π (0.0507 % too small)".to_owned(),
     }];
     for (other, name) in [(bore, "bore"), (outer, "outer diameter")] {
         if 0.0 < other && other != diameter {
-            let words = format!("the {name}, {other}, for the pitch's diameter, {diameter}");
+            let words = format!("the {name} {other} used instead of the pitch diameter {diameter}");
             all.push(Cause { factor: other / diameter, description: words });
         }
     }
     if !is_angle {
         let (other, words) = match pattern.metric {
-            Metric::Arc => {
-                (Metric::Chord, "the straight distance (chord) for the one on the developed surface (arc)")
-            }
-            Metric::Chord => {
-                (Metric::Arc, "the distance on the developed surface (arc) for the straight one (chord)")
-            }
+            Metric::Arc => (
+                Metric::Chord,
+                "the straight distance (chord) used instead of the distance on the developed surface (arc)",
+            ),
+            Metric::Chord => (
+                Metric::Arc,
+                "the distance on the developed surface (arc) used instead of the straight distance (chord)",
+            ),
         };
         all.push(Cause { factor: pattern.pitch_in(other) / pattern.pitch, description: words.to_owned() });
     }
     if let Some(pitch) = pattern.asked.filter(|_| is_angle) {
-        let words = format!("the pitch asked for, {pitch}, for the one that closes, {:.4}", pattern.pitch);
+        let words =
+            format!("the specified pitch {pitch} used instead of the closing pitch {:.4}", pattern.pitch);
         all.push(Cause { factor: pattern.pitch / pitch, description: words });
     }
     all.retain(|cause| FACTOR_TOLERANCE < (cause.factor - 1.0).abs());

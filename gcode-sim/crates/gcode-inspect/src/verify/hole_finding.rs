@@ -51,8 +51,8 @@ pub(super) fn fold(
 pub(super) fn folded_note(folded: usize) -> Option<String> {
     match folded {
         0 => None,
-        1 => Some("the finding of the single hole is in --format json".to_owned()),
-        _ => Some(format!("the {folded} findings of the single holes are in --format json")),
+        1 => Some("--format json lists the finding of the single hole".to_owned()),
+        _ => Some(format!("--format json lists the {folded} findings of the single holes")),
     }
 }
 

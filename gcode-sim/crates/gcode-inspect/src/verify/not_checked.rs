@@ -25,12 +25,14 @@ pub(super) fn lines(
     let along_feed =
         comparison.pairs.iter().all(|pair| comparison.actual[pair.actual].tool_axis_deviation == Deg::ZERO);
     if machine.head.kind == HeadKind::Free && along_feed {
-        all.push("head angles: the head is not known, each axis is taken along its feed".to_owned());
+        all.push("head angles: the head is unknown, each axis is taken along its feed".to_owned());
     }
     let unplaced = extracted.unknown_work_zero.as_ref().filter(|_| reference.surface.is_some());
     all.extend(unplaced.map(|unplaced| unplaced.describe(locate(unplaced.backtrace.block))));
     if reference.surface.is_none() {
-        all.push("rapid motion through the part: the reference has no surface, as a job file has".to_owned());
+        all.push(
+            "rapid motion through the part: the reference has no surface; a job file has one".to_owned(),
+        );
     }
     all
 }
@@ -48,12 +50,9 @@ fn diameters(comparison: &Comparison<'_>, machine: &Machine) -> Vec<String> {
     }
     let words = |(tool, ids): (Option<u32>, Vec<&str>)| match (tool, ids.as_slice()) {
         (None, _) if machine.tools.is_empty() => "diameters: the machine has no tool table".to_owned(),
-        (None, ids) => format!("the diameter of {} made before any tool was put in", format_ids(ids)),
+        (None, ids) => format!("the diameter of {} made before the first tool change", format_ids(ids)),
         (Some(tool), ids) => {
-            format!(
-                "the diameter of {} made by T{tool}, which the machine file doesn't describe",
-                format_ids(ids)
-            )
+            format!("the diameter of {} made by T{tool}, which is not in the machine file", format_ids(ids))
         }
     };
     made.into_iter().map(words).collect()
@@ -63,7 +62,7 @@ fn diameters(comparison: &Comparison<'_>, machine: &Machine) -> Vec<String> {
 fn format_ids(ids: &[&str]) -> String {
     match ids {
         [one] => format!("hole {one},"),
-        [first, ..] => format!("{} holes ({first} the first),", ids.len()),
+        [first, ..] => format!("{} holes (first: {first}),", ids.len()),
         [] => String::new(),
     }
 }
@@ -76,11 +75,11 @@ fn lengths(extracted: &HoleExtraction, machine: &Machine) -> Vec<String> {
         let whose = tool.map_or("the tool's length".to_owned(), |number| format!("the length of T{number}"));
         let taken = match by {
             LengthCompensation::Off | LengthCompensation::Plus(0) | LengthCompensation::Minus(0) => {
-                "its tip to be what is programmed".to_owned()
+                "its tip as the programmed point".to_owned()
             }
-            LengthCompensation::Plus(h) | LengthCompensation::Minus(h) => format!("H{h} to hold it"),
+            LengthCompensation::Plus(h) | LengthCompensation::Minus(h) => format!("H{h} as its length"),
         };
-        format!("{whose}: the machine file doesn't have it, and takes {taken}")
+        format!("{whose}: not in the machine file, which takes {taken}")
     };
     tools.into_iter().map(words).collect()
 }
@@ -89,9 +88,7 @@ fn lengths(extracted: &HoleExtraction, machine: &Machine) -> Vec<String> {
 fn conduct(extracted: &HoleExtraction, reference: &Reference, machine: &Machine) -> Option<String> {
     let conduct = &reference.conduct;
     if extracted.process_limits != *conduct {
-        return Some(
-            "how the part is worked: the run was followed without what the reference says of it".to_owned(),
-        );
+        return Some("cutting conditions: the run was simulated without those of the reference".to_owned());
     }
     let tools: BTreeSet<_> = extracted.cut_conditions.iter().map(|cutting| cutting.tool).collect();
     let unsaid = |of: &dyn Fn(&ToolProcess) -> Option<f64>| {
@@ -101,10 +98,10 @@ fn conduct(extracted: &HoleExtraction, reference: &Reference, machine: &Machine)
     let missing = [
         (unsaid(&|duty| duty.speed), "S"),
         (unsaid(&|duty| duty.feed), "F"),
-        (turns && conduct.clearance.is_none(), "the clearance while an axis turns"),
-        (turns && conduct.retract.is_none(), "the retract before the rotary turns"),
-        (turns && conduct.clamp.is_none(), "the rotary's clamp"),
+        (turns && conduct.clearance.is_none(), "the clearance while an axis rotates"),
+        (turns && conduct.retract.is_none(), "the retract before the rotary moves"),
+        (turns && conduct.clamp.is_none(), "the rotary clamp"),
     ];
     let names: Vec<_> = missing.iter().filter(|(missing, _)| *missing).map(|(_, name)| *name).collect();
-    (!names.is_empty()).then(|| format!("{}: the reference doesn't say", names.join(", ")))
+    (!names.is_empty()).then(|| format!("{}: not specified in the reference", names.join(", ")))
 }

@@ -149,7 +149,7 @@ fn five_right_holes_pass_and_rounding_explains_what_is_left() {
     let b = 1158.8 * Deg(30.0).cos() * Deg(0.0005).to_rad();
     let rounding = verdict.rounding.unwrap();
     assert!(rounding > 2.0 * b && rounding < 2.0 * (b + 0.001), "{rounding}");
-    assert!(verdict.worst_from.unwrap().contains("within what rounding explains"));
+    assert!(verdict.worst_from.unwrap().contains("within the effect of rounding"));
 }
 
 /// One hole at azimuth 0, so that B has nothing to round: X and Y alone, and the head where its angle isn't whole. Half of
@@ -191,7 +191,7 @@ fn a_hole_0_08_mm_aside_fails_by_its_position_alone() {
             verdict.holes[0].position_deviation
         );
         assert_eq!(verdict.holes.iter().filter(|hole| hole.ok).count(), 4);
-        assert!(verdict.worst_from.unwrap().contains("more than rounding"));
+        assert!(verdict.worst_from.unwrap().contains("beyond the effect of rounding"));
     }
 }
 
@@ -202,7 +202,7 @@ fn a_hole_that_leans_by_0_7_degrees_fails_by_its_tilt() {
     assert_eq!((verdict.verdict, codes(&verdict)), (Answer::Fail, vec!["hole-tilted"]));
     let hole = &verdict.holes[2];
     assert!((hole.at_bottom - 0.1833).abs() < 0.01 && hole.at_entry < 0.01, "{hole:?}");
-    assert!(verdict.findings[0].message.contains("leans by 0.7"), "{}", verdict.findings[0].message);
+    assert!(verdict.findings[0].message.contains("is tilted by 0.7"), "{}", verdict.findings[0].message);
 }
 
 /// The feed is right and the head isn't: the hole leans, and the tool was dragged sideways.

@@ -248,7 +248,7 @@ pub(super) fn limit_per_kind(findings: impl Iterator<Item = Diagnostic>) -> Vec<
     for (count, last) in kinds.into_values().filter(|(count, _)| MAX_SHOWN < *count) {
         shown[last]
             .notes
-            .push(format!("and {} more of this kind; --format json has them all", count - MAX_SHOWN));
+            .push(format!("and {} more of this kind; --format json lists them all", count - MAX_SHOWN));
     }
     // What stopped the run explains what else is wrong.
     shown.sort_by_key(|finding| finding.severity != Severity::Alarm);
@@ -319,11 +319,11 @@ fn worst_from(hole: &HoleVerdict, shares: &[AxisRounding]) -> String {
     let shares = if shares.is_empty() { String::new() } else { format!(" ({})", shares.join(", ")) };
     // What can be explained by rounding is compared with room for the arithmetic itself.
     let blame = match hole.position_deviation <= hole.rounding + 1e-6 {
-        true => "within what rounding explains",
-        false => "more than rounding explains",
+        true => "within the effect of rounding",
+        false => "beyond the effect of rounding",
     };
     format!(
-        "hole {}, {off:.4} mm off at its {end}, {blame}; rounding alone makes at most Φ{:.4} there{shares}",
+        "hole {}, off by {off:.4} mm at its {end}, {blame}; rounding alone causes at most Φ{:.4} there{shares}",
         hole.id, hole.rounding
     )
 }

@@ -72,16 +72,16 @@ fn foreign(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
         '\u{a0}' | '\u{2000}'..='\u{200b}' | '\u{202f}' | '\u{3000}' | '\u{feff}' => "a space".to_owned(),
         '\u{ff01}'..='\u{ff5e}' => {
             let plain = char::from_u32(u32::from(found) - 0xfee0).unwrap_or(found);
-            format!("'{plain}' of half its width")
+            format!("'{plain}' in half width")
         }
         '×' => "'*'".to_owned(),
         '÷' => "'/'".to_owned(),
         _ => {
             let number = u32::from(found);
-            return Some(format!("'{found}' (U+{number:04X}) is no character of a control: type it anew"));
+            return Some(format!("'{found}' (U+{number:04X}) is not a character of a control: retype it"));
         }
     };
-    Some(format!("the character U+{:04X} is no character of a control: type {instead}", u32::from(found)))
+    Some(format!("the character U+{:04X} is not a character of a control: type {instead}", u32::from(found)))
 }
 
 /// `GO1`, `M3O`, `X1O.`: a letter O in a number.
@@ -105,7 +105,7 @@ fn letter_o(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
             letter == 'D' && number.starts_with('O') || matches!(letter, 'G' | 'T') && number == "O";
         (number.contains('O') && is_word && !is_statement).then(|| {
             let meant = number.replace('O', "0");
-            format!("'{letter}{number}' has the letter O where a zero was meant: write {letter}{meant}")
+            format!("'{letter}{number}' has the letter O instead of a zero: write {letter}{meant}")
         })
     })
 }
@@ -127,11 +127,11 @@ fn comma(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
     let whole: String = whole.chars().rev().collect();
     let part: String = behind.chars().take_while(char::is_ascii_digit).collect();
     if !part.is_empty() && !whole.is_empty() {
-        return Some(format!("a decimal point is a point: write {whole}.{part}"));
+        return Some(format!("write {whole}.{part}: the decimal separator is a point"));
     }
     let next = behind.trim_start().chars().next()?;
     let is_word = next.is_ascii_alphabetic() && !matches!(next, 'R' | 'C');
-    is_word.then(|| "words stand beside one another without commas: take it out".to_owned())
+    is_word.then(|| "remove the comma: words are not separated by commas".to_owned())
 }
 
 /// `1E3`.
@@ -148,7 +148,7 @@ fn exponent(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
             line[at + 1..].chars().take_while(|c| matches!(c, '0'..='9' | '-' | '+')).collect();
         let written = format!("{mantissa}E{power}");
         let value: f64 = written.parse().ok().filter(|_| !mantissa.is_empty())?;
-        Some(format!("numbers have no exponent: write {value} for {written}"))
+        Some(format!("write {value} for {written}: numbers have no exponent"))
     })
 }
 
@@ -161,7 +161,8 @@ fn operator(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
     let at = line.rfind('#')?;
     let before = line[..at].trim_end();
     let is_value = before.ends_with(|c: char| c.is_ascii_digit() || matches!(c, '.' | ']'));
-    (is_value && before.contains('=')).then(|| format!("is + - * or / missing before {}?", &line[at..]))
+    (is_value && before.contains('='))
+        .then(|| format!("check for a missing + - * or / before {}", &line[at..]))
 }
 
 /// `IF[…]THEN #1=2 ELSE #1=3`.
@@ -169,7 +170,7 @@ fn else_case(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
     let is_else =
         matches!(alarm, Alarm::NoDataAfterAddress { letter: 'E' }) && place.rest.starts_with("ELSE");
     is_else.then(|| {
-        "a control has no ELSE: write a second IF with the opposite condition, or GOTO past it".to_owned()
+        "write a second IF with the opposite condition, or GOTO past it: a control has no ELSE".to_owned()
     })
 }
 
@@ -178,14 +179,14 @@ fn two_signs(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
     let Alarm::IllegalMinus { letter } = alarm else { return None };
     let value = place.rest.strip_prefix('-').filter(|_| place.before.trim_end().ends_with('-'))?;
     let value: String = value.chars().take_while(|c| matches!(c, '0'..='9' | '.')).collect();
-    Some(format!("one sign is enough: write {letter}-{value}, or {letter}-[-{value}]"))
+    Some(format!("write one sign: {letter}-{value}, or {letter}-[-{value}]"))
 }
 
 /// `10/0`.
 fn divisor(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
     let (_, divisor) = place.text.rsplit_once('/').filter(|_| *alarm == Alarm::DivideByZero)?;
     let is_zero = divisor.chars().all(|c| matches!(c, '0' | '.' | ' ')) && divisor.contains('0');
-    is_zero.then(|| "the divisor is 0 as it is written".to_owned())
+    is_zero.then(|| "correct the divisor: it is written as 0".to_owned())
 }
 
 /// `R5` where `R5.` was meant.
@@ -194,7 +195,7 @@ fn radius(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
     let number = place.text.strip_prefix('R')?.trim();
     let written: f64 = number.parse().ok().filter(|_| !number.contains('.'))?;
     let is_other = (written.abs() - radius).abs() > 1e-9;
-    is_other.then(|| format!("R{number} without a point is {radius} mm here: write R{number}."))
+    is_other.then(|| format!("write R{number}.: R{number} without a decimal point is {radius} mm here"))
 }
 
 /// `G04 X1.5 P500`.
@@ -202,8 +203,8 @@ fn dwell(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
     let Alarm::NotSimulated { what } = alarm else { return None };
     let line = format!("{}{}", place.before, place.rest);
     let is_dwell = line.split(|c: char| !c.is_ascii_alphanumeric()).any(|word| matches!(word, "G4" | "G04"));
-    (is_dwell && what.ends_with("in such a block") && line.contains('P'))
-        .then(|| "a dwell has one time: X in seconds or P in milliseconds".to_owned())
+    (is_dwell && what.ends_with("in this block") && line.contains('P'))
+        .then(|| "write one time for a dwell: X in seconds or P in milliseconds".to_owned())
 }
 
 #[cfg(test)]
@@ -249,11 +250,11 @@ mod tests {
     fn characters_that_only_look_right() {
         assert!(
             told(no_number('X'), "G00 X\u{2212}10.", "X")
-                .contains("U+2212 is no character of a control: type the minus")
+                .contains("U+2212 is not a character of a control: type the minus")
         );
         assert!(told(no_number('X'), "G00 X\u{2013}10.", "X").contains("type the minus"));
         assert!(told(not_a_word(), "G00\u{a0}X1.", "\u{a0}X").contains("type a space"));
-        assert!(told(not_a_word(), "G00 \u{ff38}10.", "\u{ff38}").contains("type 'X' of half its width"));
+        assert!(told(not_a_word(), "G00 \u{ff38}10.", "\u{ff38}").contains("type 'X' in half width"));
         assert!(told(not_a_word(), "G00 é", "é").contains("'é' (U+00E9)"));
         // In a comment anything may stand.
         assert!(!told(no_number('X'), "G00 X (é)", "X").contains("character"));
@@ -261,21 +262,21 @@ mod tests {
 
     #[test]
     fn commas_for_points_and_between_words() {
-        assert_eq!(told(not_a_word(), "G00 X10,5", ",5"), "a decimal point is a point: write 10.5");
-        assert!(told(Alarm::CornerWords, "G00 X10., Y5.", ", Y").contains("without commas"));
-        assert!(!told(Alarm::CornerWords, "G01 X10.,R1.,C1.", ",R1").contains("without commas"));
+        assert_eq!(told(not_a_word(), "G00 X10,5", ",5"), "write 10.5: the decimal separator is a point");
+        assert!(told(Alarm::CornerWords, "G00 X10., Y5.", ", Y").contains("not separated by commas"));
+        assert!(!told(Alarm::CornerWords, "G01 X10.,R1.,C1.", ",R1").contains("not separated by commas"));
     }
 
     #[test]
     fn what_other_languages_have() {
         assert_eq!(
             told(Alarm::MixedStatements, "#1=1E3", "#1"),
-            "numbers have no exponent: write 1000 for 1E3"
+            "write 1000 for 1E3: numbers have no exponent"
         );
         let alarm = Alarm::ImproperAddress { letter: 'E' };
-        assert_eq!(told(alarm, "G00 X2.5E-2", "E"), "numbers have no exponent: write 0.025 for 2.5E-2");
+        assert_eq!(told(alarm, "G00 X2.5E-2", "E"), "write 0.025 for 2.5E-2: numbers have no exponent");
         assert!(told(no_number('E'), "IF[#1EQ1]THEN #2=1 ELSE #2=2", "ELSE").contains("no ELSE"));
-        assert_eq!(told(Alarm::MissingEquals, "#1=5#2", "#2"), "is + - * or / missing before #2?");
+        assert_eq!(told(Alarm::MissingEquals, "#1=5#2", "#2"), "check for a missing + - * or / before #2");
         assert_eq!(told(no_value(), "GOTO N10", "N10"), "write GOTO 10, without N");
     }
 
@@ -283,15 +284,18 @@ mod tests {
     fn numbers_that_can_not_be_meant() {
         assert_eq!(
             told(Alarm::IllegalMinus { letter: 'Z' }, "G00 Z--5", "-5"),
-            "one sign is enough: write Z-5, or Z-[-5]"
+            "write one sign: Z-5, or Z-[-5]"
         );
-        assert_eq!(told(Alarm::DivideByZero, "#1=10/0", "10/0"), "the divisor is 0 as it is written");
+        assert_eq!(told(Alarm::DivideByZero, "#1=10/0", "10/0"), "correct the divisor: it is written as 0");
         assert!(told(Alarm::DivideByZero, "#1=10/#2", "10/#2").contains("vacant"));
         let small = |radius: f64| Alarm::RadiusTooSmall { radius, half: 5.0 };
-        assert_eq!(told(small(0.004), "G02 X10. R4", "R4"), "R4 without a point is 0.004 mm here: write R4.");
+        assert_eq!(
+            told(small(0.004), "G02 X10. R4", "R4"),
+            "write R4.: R4 without a decimal point is 0.004 mm here"
+        );
         // Where numbers are calculator's, the point is not what is wrong.
         assert!(!told(small(4.0), "G02 X10. R4", "R4").contains("without"));
-        let alarm = Alarm::NotSimulated { what: "X in such a block".into() };
+        let alarm = Alarm::NotSimulated { what: "X in this block".into() };
         assert!(told(alarm, "G04 X1.5 P500", "X1.5").contains("one time"));
     }
 }

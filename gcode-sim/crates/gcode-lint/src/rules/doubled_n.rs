@@ -23,11 +23,11 @@ pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
                 let line = subject.memory.sources().place(first[&number].0).line;
                 let jump = unit.flow.jumps.iter().any(|jump| jump.number == number && !jump.returns);
                 let so = if jump {
-                    ": which of the two GOTO takes depends on the control"
+                    ": the control decides which of the two GOTO takes"
                 } else {
                     ": a search finds one of the two"
                 };
-                let message = format!("N{number} stands in line {line} already{so}");
+                let message = format!("N{number} is already defined in line {line}{so}");
                 found.push(unit.warning(NAME, block, message).help("give one of them another number"));
             }
             Some(_) => {}

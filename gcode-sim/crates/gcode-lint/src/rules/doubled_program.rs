@@ -10,7 +10,7 @@ pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
     }
     let label = unit.program.label();
     let finding =
-        unit.error(NAME, 0, format!("a program {label} stands before this one: a control refuses it"));
+        unit.error(NAME, 0, format!("program {label} is already defined above: a control refuses it"));
     vec![finding.help("give one of them another number")]
 }
 

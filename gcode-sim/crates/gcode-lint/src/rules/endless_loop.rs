@@ -56,9 +56,12 @@ fn jumps(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>, told: &[bool]) -> V
         if has_exit(subject, unit, &inside, |to| circle.get(to) == Some(&around)) {
             continue;
         }
-        let message = format!("GOTO {} goes round for ever: nothing in between leads out", jump.number);
-        let finding = unit.warning(NAME, jump.block, message).label(unit.op(to).span, "it goes back to here");
-        found.push(finding.help("change what the exit asks, or count the passes"));
+        let message = format!("GOTO {} loops forever: no block in the loop exits it", jump.number);
+        let finding =
+            unit.warning(NAME, jump.block, message).label(unit.op(to).span, "it jumps back to here");
+        found.push(
+            finding.help("change a variable of the exit condition in the loop, or count the iterations"),
+        );
     }
     found
 }
@@ -70,19 +73,19 @@ fn loop_finding(unit: &ProgramUnit<'_>, block: OpIndex) -> RuleFinding {
             let mut names: Vec<String> = uses.reads.iter().map(|read| format!("#{}", read.number)).collect();
             names.dedup();
             let message = if names.is_empty() {
-                "once begun, this loop never ends: its condition is always true".to_owned()
+                "this loop never ends: its condition is always true".to_owned()
             } else {
-                format!("once begun, this loop never ends: nothing in it changes {}", names.join(" or "))
+                format!("this loop never ends: no block in it changes {}", names.join(" or "))
             };
             let help = match names.first() {
                 Some(name) => format!("change {name} in the loop, {name}={name}+1"),
-                None => "leave it by GOTO, or count the passes".to_owned(),
+                None => "exit it by GOTO, or count the iterations".to_owned(),
             };
             unit.warning(NAME, block, message).help(help)
         }
         None => unit
-            .warning(NAME, block, "this loop never ends: nothing in it leads out")
-            .help("leave it by GOTO, or count the passes"),
+            .warning(NAME, block, "this loop never ends: no block in it exits it")
+            .help("exit it by GOTO, or count the iterations"),
     }
 }
 
@@ -215,7 +218,7 @@ mod tests {
         let found = messages(NAME, "O1\n#1=0\nWHILE[#1 LT #2]DO1\nG65 P2 X#1\nEND1\nM30\nO2\n#1=5\nM99\n");
         assert_eq!(
             found,
-            ["once begun, this loop never ends: nothing in it changes #1 or #2"],
+            ["this loop never ends: no block in it changes #1 or #2"],
             "a macro has its own #1"
         );
     }

@@ -11,7 +11,7 @@ pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFind
         let Some(to) = jump.to else { continue };
         let entered = around[to].iter().find(|(first, last)| !(*first..=*last).contains(&jump.block));
         if let Some((first, _)) = entered.copied() {
-            let message = format!("PS1124: N{} stands in a loop that this jump doesn't begin", jump.number);
+            let message = format!("PS1124: N{} is in a loop that this jump does not begin", jump.number);
             let finding =
                 unit.error(NAME, jump.block, message).label(unit.op(first).span, "the loop begins here");
             found.push(finding.help("jump to the block that begins the loop"));

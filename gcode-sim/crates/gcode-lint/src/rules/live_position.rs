@@ -31,14 +31,14 @@ pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
         // One finding a block: a probe reads several axes at once.
         if let Some(read) = live.take(1).next() {
             let number = read.number;
-            let message = format!("#{number} is read while the move before it may still be under way");
+            let message = format!("#{number} is read while the preceding move may still be in progress");
             let finding = unit.warning(NAME, block, message).on(read.span);
             let finding = finding.label(unit.op(motion).span, "the move");
             found.push(finding.help(HELP));
         }
         let target = variables::assignment(written).and_then(|(target, _)| literal::variable(target));
         if let Some(number) = target.filter(|number| OUTPUTS.contains(number)) {
-            let message = format!("#{number} is set while the move before it may still be under way");
+            let message = format!("#{number} is set while the preceding move may still be in progress");
             let finding = unit.warning(NAME, block, message);
             found.push(finding.label(unit.op(motion).span, "the move").help(HELP));
         }
@@ -46,7 +46,7 @@ pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
     found
 }
 
-const HELP: &str = "put a block before it that waits for the move, as G53 or M00 do, or G31";
+const HELP: &str = "insert a block before it that waits for the move: G53, M00 or G31";
 
 /// For each block a move that may still be under way before it, where there is one.
 fn moving(settings: &Settings, unit: &ProgramUnit<'_>) -> Vec<Option<OpIndex>> {

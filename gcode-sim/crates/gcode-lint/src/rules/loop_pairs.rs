@@ -23,7 +23,7 @@ pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFind
             found.push(unit.error(NAME, block, message).help("number it 1, 2 or 3"));
         } else if begins {
             if let Some((.., outer)) = open.iter().find(|(n, ..)| *n == number) {
-                let message = format!("PS0124: DO{number} inside a DO{number} that is still open");
+                let message = format!("PS0124: DO{number} inside an open DO{number}");
                 let finding = unit.error(NAME, block, message).label(*outer, "the outer loop begins here");
                 found.push(finding.help("give the inner loop another number, 1 to 3"));
             }
@@ -31,12 +31,12 @@ pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFind
         } else {
             let Some(place) = open.iter().rposition(|(n, ..)| *n == number) else {
                 let message = format!("PS1124: END{number} without a DO{number} before it");
-                found.push(unit.error(NAME, block, message).help("write its DO, or take it out"));
+                found.push(unit.error(NAME, block, message).help("write its DO, or remove it"));
                 continue;
             };
             let crossed = open.split_off(place);
             if let Some((inner, _, begun)) = crossed.get(1) {
-                let message = format!("PS0124: END{number} while DO{inner} is still open: the loops overlap");
+                let message = format!("PS0124: END{number} while DO{inner} is open: the loops overlap");
                 let finding =
                     unit.error(NAME, block, message).label(*begun, format!("DO{inner} begins here"));
                 found.push(finding.help(format!("write END{inner} before END{number}")));
@@ -47,7 +47,7 @@ pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFind
     }
     for (number, block, _) in open {
         let message = format!("PS0124: DO{number} has no END{number}");
-        found.push(unit.error(NAME, block, message).help(format!("write END{number} behind the loop")));
+        found.push(unit.error(NAME, block, message).help(format!("write END{number} after the loop")));
     }
     found.retain(|finding| unit.reached[finding.block]);
     found
@@ -108,6 +108,6 @@ mod tests {
     fn overlapping_loops_are_one_fault() {
         let text = "O1\n#1=0\nWHILE[#1 LT 3]DO1\nWHILE[#1 LT 2]DO2\n#1=#1+1\nEND1\nEND2\nM30\n";
         let found = messages(NAME, text);
-        assert_eq!(found, ["PS0124: END1 while DO2 is still open: the loops overlap"]);
+        assert_eq!(found, ["PS0124: END1 while DO2 is open: the loops overlap"]);
     }
 }

@@ -63,7 +63,9 @@ fn lacking(
             && refusal(subject, called, &states(called, filled)).is_none()
         {
             told.insert(*local as u32);
-            let message = format!("{label} needs {letter} (#{local}): without it, it stops with {alarm}");
+            let message = format!(
+                "{label} needs {letter} (#{local}): if it is omitted, the program stops with {alarm}"
+            );
             lacks.push(MissingArgumentEffect::Refused(message));
         }
     }
@@ -76,9 +78,8 @@ fn lacking(
         let Some(letter) = argument_letter(local as usize) else { continue };
         if usage == Use::Computed && told.insert(local) {
             let line = subject.memory.sources().place(called.op(block).span).line;
-            let message = format!(
-                "{label} reckons with {letter} (#{local}) in line {line}: without it, it counts as 0"
-            );
+            let message =
+                format!("{label} uses {letter} (#{local}) in line {line}; if it is omitted, it is 0");
             lacks.push(MissingArgumentEffect::Reckoned(message));
         }
     }
@@ -139,10 +140,14 @@ mod tests {
         assert_eq!(call("R#500 D#501 F#502"), [""; 0], "values that only a run knows");
         assert_eq!(
             call("D2. F3."),
-            ["O2 needs R (#18): without it, it stops with MC3001 (R MISSING)".replace("O2", "O0002")]
+            ["O2 needs R (#18): if it is omitted, the program stops with MC3001 (R MISSING)"
+                .replace("O2", "O0002")]
         );
-        assert_eq!(call("R5. F3."), ["O0002 needs D (#7): without it, it stops with MC3002 (D MISSING)"]);
-        assert_eq!(call("R5. D2."), ["O0002 reckons with F (#9) in line 9: without it, it counts as 0"]);
+        assert_eq!(
+            call("R5. F3."),
+            ["O0002 needs D (#7): if it is omitted, the program stops with MC3002 (D MISSING)"]
+        );
+        assert_eq!(call("R5. D2."), ["O0002 uses F (#9) in line 9; if it is omitted, it is 0"]);
         assert_eq!(call("").len(), 2, "R and D; F is not looked at before they are there");
     }
 
@@ -154,7 +159,10 @@ mod tests {
         let call = |words: &str| messages(NAME, &format!("O1\nG65 P2 {words}\nM30\n{arcs}"));
         assert_eq!(call(""), [""; 0]);
         assert_eq!(call("K14. Q4."), [""; 0]);
-        assert_eq!(call("K14."), ["O0002 needs Q (#17): without it, it stops with MC3002 (Q MISSING)"]);
+        assert_eq!(
+            call("K14."),
+            ["O0002 needs Q (#17): if it is omitted, the program stops with MC3002 (Q MISSING)"]
+        );
     }
 
     #[test]

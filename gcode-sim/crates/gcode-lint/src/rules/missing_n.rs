@@ -10,16 +10,17 @@ pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
         let number = jump.number;
         if !jump.returns {
             if jump.to.is_none() {
-                let message =
-                    format!("PS0128: there is no block N{number} in {} to go to", unit.program.label());
+                let message = format!("PS0128: sequence number N{number} is not in {}", unit.program.label());
                 found.push(unit.error(NAME, jump.block, message).help(HELP));
             }
             continue;
         }
         match unit.role {
             Role::Main if jump.to.is_none() => {
-                let message =
-                    format!("PS0078: there is no block N{number} in {} to go on at", unit.program.label());
+                let message = format!(
+                    "PS0078: sequence number N{number}, where execution continues, is not in {}",
+                    unit.program.label()
+                );
                 found.push(unit.error(NAME, jump.block, message).help(HELP));
             }
             Role::Main | Role::Resident => {}
@@ -31,7 +32,7 @@ pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
                 if let Some((caller, site)) = lacking {
                     let caller = &subject.units[*caller];
                     let message = format!(
-                        "PS0078: there is no block N{number} in {} to return to",
+                        "PS0078: sequence number N{number}, the return target, is not in {}",
                         caller.program.label()
                     );
                     let call = caller.op(caller.calls[*site].block).span;
@@ -45,21 +46,21 @@ pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
             let program = subject.units[called].program;
             if program.find_number(number, 0).is_none() {
                 let label = program.label();
-                let message = format!("PS0078: there is no block N{number} in {label} to start at");
+                let message = format!("PS0078: sequence number N{number}, the start, is not in {label}");
                 found.push(unit.error(NAME, call.block, message).help(HELP));
             }
         } else if let (Some(number), CalledAs::Nothing) = (call.start, &call.target)
             && unit.program.find_number(number, 0).is_none()
         {
             let message =
-                format!("PS0078: there is no block N{number} in {} to start at", unit.program.label());
+                format!("PS0078: sequence number N{number}, the start, is not in {}", unit.program.label());
             found.push(unit.error(NAME, call.block, message).help(HELP));
         }
     }
     found
 }
 
-const HELP: &str = "number the block it is meant for, or correct the jump";
+const HELP: &str = "number the target block, or correct the jump";
 
 #[cfg(test)]
 mod tests {

@@ -23,7 +23,11 @@ pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
             };
             let alarm = Alarm::OffsetNumber { number: i64::from(number) }.at(word.span);
             let told = finding(subject, unit, NAME, block, &alarm);
-            found.push(told.help(format!("this control has {most}: correct it, or --control OFFSETS=…")));
+            found.push(
+                told.help(format!(
+                    "correct the number: this control has {most}, or give --control OFFSETS=…"
+                )),
+            );
         }
     }
     found

@@ -21,12 +21,12 @@ pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
             CalledAs::Nothing if call.start.is_some() => continue,
             CalledAs::Nothing => unit
                 .error(NAME, call.block, "PS0076: a call without a program number")
-                .help("write the program's number behind P"),
+                .help("write the program number after P"),
             CalledAs::Number(_) => unit
-                .error(NAME, call.block, format!("PS0076: program {label} is not here"))
+                .error(NAME, call.block, format!("PS0076: program {label} is not found"))
                 .help("give the folder that holds it with --lib"),
             CalledAs::Name(_) => unit
-                .error(NAME, call.block, format!("PS0310: program {label} is not here"))
+                .error(NAME, call.block, format!("PS0310: program {label} is not found"))
                 .help("give the folder that holds it with --lib, or put it into the same file"),
         };
         found.push(finding.on(call.span));

@@ -8,7 +8,7 @@ pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFind
     let mut found = Vec::new();
     for (index, block) in unit.blocks.iter().enumerate() {
         for comment in block.comments.iter().filter(|comment| comment.mark == CommentMark::Unclosed) {
-            let message = "the comment isn't closed: all the rest of the line is part of it";
+            let message = "the comment is not closed: it extends to the end of the line";
             let help = "close it with ): some controls refuse the line";
             found.push(unit.warning(NAME, index, message).on(comment.span).help(help));
         }

@@ -23,7 +23,7 @@ pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFind
             let off = (pi - PI) / PI * 100.0;
             let written = format!("{pi:.7}");
             let message = format!(
-                "{} is not π but {:.4} % too {}: round a diameter of 500 mm that is {:.3} mm",
+                "{} is used for π: {:.4} % too {}, an error of {:.3} mm round a diameter of 500 mm",
                 written.trim_end_matches('0'),
                 off.abs(),
                 if off < 0.0 { "small" } else { "large" },
@@ -79,7 +79,7 @@ mod tests {
     fn what_it_costs_is_told() {
         assert_eq!(
             messages(NAME, "O1\n#2=3.14*500.\nM30\n"),
-            ["3.14 is not π but 0.0507 % too small: round a diameter of 500 mm that is 0.796 mm"]
+            ["3.14 is used for π: 0.0507 % too small, an error of 0.796 mm round a diameter of 500 mm"]
         );
     }
 }

@@ -28,7 +28,7 @@ pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
                 } else {
                     let message =
                         format!("M{first} is lost: of several M codes in a block only the last counts");
-                    let help = "give each a block of its own; M3B=1 is for a control that takes three";
+                    let help = "write each in a block of its own; M3B=1 is for a control that accepts three";
                     found.push(unit.warning(NAME, block, message).on(word.span).help(help));
                 }
             }

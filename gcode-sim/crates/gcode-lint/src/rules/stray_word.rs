@@ -19,8 +19,8 @@ pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
         found.extend(told.map(|(word, alarm)| {
             let told = finding(subject, unit, NAME, block, &alarm.at(word.span));
             match (word.comma, word.letter) {
-                (true, _) => told.help("words aren't parted by commas: take it out"),
-                (_, b'E') => told.help("numbers have no exponent: write it out, 1000. for 1E3"),
+                (true, _) => told.help("remove the comma: words are not separated by commas"),
+                (_, b'E') => told.help("write the number in full, 1000. for 1E3: numbers have no exponent"),
                 _ => told,
             }
         }));

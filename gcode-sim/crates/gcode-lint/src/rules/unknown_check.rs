@@ -10,10 +10,10 @@ pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
     let unknown = silence.names().filter(|(name, _)| !known(name)).map(|(name, span)| {
         let block = unit.blocks.iter().position(|b| b.comments.iter().any(|c| c.span == span)).unwrap_or(0);
         let message = match name {
-            "" => "CHECK-OFF names no rule".to_owned(),
-            name => format!("no rule is called {name}: CHECK-OFF silences nothing"),
+            "" => "CHECK-OFF does not name a rule".to_owned(),
+            name => format!("{name} is not a rule: CHECK-OFF suppresses nothing"),
         };
-        unit.warning(NAME, block, message).on(span).help("docs/checks.md lists the rules")
+        unit.warning(NAME, block, message).on(span).help("see docs/checks.md for the rules")
     });
     unknown.collect()
 }

@@ -47,7 +47,7 @@ fn about(subject: &CheckContext<'_>, word: &LoweredWord) -> Option<(String, Stri
                 None => Some((name.clone(), format!("PS0010: the control has no {name}"), true)),
                 Some(Effect::NotSimulated) => {
                     let help = row.map_or("", |row| row.help);
-                    Some((name.clone(), format!("{name} ({help}) is not executed by a run here"), false))
+                    Some((name.clone(), format!("{name} ({help}) is not simulated"), false))
                 }
                 Some(_) => None,
             }
@@ -59,11 +59,11 @@ fn about(subject: &CheckContext<'_>, word: &LoweredWord) -> Option<(String, Stri
             match m_codes::find(code, subject.settings.codes) {
                 _ if calls => None,
                 Some(MEffect::NotSimulated) => {
-                    Some((name.clone(), format!("{name} is not executed by a run here"), false))
+                    Some((name.clone(), format!("{name} is not simulated"), false))
                 }
                 Some(_) => None,
                 None => {
-                    let message = format!("what {name} does only the machine's builder knows");
+                    let message = format!("{name} is a code of the machine builder: its effect is unknown");
                     Some((name, message, false))
                 }
             }

@@ -21,11 +21,11 @@ pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
         if let (Some(first), Some(last)) = (lost.first(), lost.last()) {
             let line = |block: usize| subject.memory.sources().place(ops[block].span).line;
             let message = if first == last {
-                "nothing reaches this block".to_owned()
+                "this block is never reached".to_owned()
             } else {
-                format!("nothing reaches this block and what follows, up to line {}", line(*last))
+                format!("this block and the following ones, up to line {}, are never reached", line(*last))
             };
-            let help = "take it out, or jump to its number";
+            let help = "remove it, or jump to its number";
             found.push(unit.warning(NAME, *first, message).help(help));
         }
         block = end;
@@ -75,6 +75,6 @@ mod tests {
     #[test]
     fn a_run_of_blocks_is_one_finding() {
         let found = messages(NAME, "O1\nGOTO 5\nG0 X1.\nG0 X2.\nN5 M30\n");
-        assert_eq!(found, ["nothing reaches this block and what follows, up to line 4"]);
+        assert_eq!(found, ["this block and the following ones, up to line 4, are never reached"]);
     }
 }

@@ -14,8 +14,8 @@ pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFind
     let mut found = Vec::new();
     for (block, op) in unit.program.ops().iter().enumerate().filter(|(_, op)| raises(op.kind())) {
         if !unit.reached[block] {
-            let help = "jump to its number, or take it out";
-            let message = "nothing reaches this alarm, so it never stops anything";
+            let help = "jump to its number, or remove it";
+            let message = "this alarm is never reached, so it never stops the program";
             found.push(unit.warning(NAME, block, message).help(help));
             continue;
         }
@@ -27,7 +27,7 @@ pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFind
             _ => false,
         };
         if never {
-            let message = "this alarm is never raised: what stands before it decides its condition";
+            let message = "this alarm is never raised: the preceding blocks decide its condition";
             let help = "test the variable before it is set";
             found.push(unit.warning(NAME, block, message).on(op.span).help(help));
         }

@@ -37,12 +37,12 @@ pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
     for ((block, local), (span, usage)) in unset {
         let so = match usage {
             Use::Word => "its word is ignored",
-            Use::Passed => "vacancy is passed on",
+            Use::Passed => "it is passed on vacant",
             Use::Tested | Use::Compared => "a vacant variable is compared",
             Use::Computed => "it counts as 0",
         };
-        let message = format!("#{local} is read and nothing has set it: {so}");
-        let help = format!("set #{local} before, or correct its number");
+        let message = format!("#{local} is read but never set: {so}");
+        let help = format!("set #{local} before it is read, or correct its number");
         found.push(unit.warning(NAME, block, message).on(span).help(help));
     }
     found
@@ -59,7 +59,7 @@ mod tests {
         assert_eq!(lines(NAME, "O1\nIF[#9 EQ #0]THEN #10=#9*2\nM30\n"), [2]);
         assert_eq!(lines(NAME, "O1\nIF[#8 NE #0]THEN #10=#500\nIF[#9 LT 2]THEN #11=1\nM30\n"), [3]);
         let found = messages(NAME, "O1\nG0 Y#2\nM30\n");
-        assert_eq!(found, ["#2 is read and nothing has set it: its word is ignored"]);
+        assert_eq!(found, ["#2 is read but never set: its word is ignored"]);
     }
 
     #[test]

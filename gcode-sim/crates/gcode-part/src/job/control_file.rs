@@ -158,8 +158,8 @@ mod tests {
     #[test]
     fn what_is_wrong_is_named_with_its_line() {
         for (text, message) in [
-            ("NAT = 1\nNATT = 1\n", "line 2: no setting 'NATT': `gcode-sim settings` lists them"),
-            ("NAT = 2\n", "line 1: setting NAT can't be '2': 0 or 1"),
+            ("NAT = 1\nNATT = 1\n", "line 2: no setting 'NATT': see `gcode-sim settings`"),
+            ("NAT = 2\n", "line 1: setting NAT is '2': 0 or 1"),
             ("\nNAT = [1]\n", "line 2: key 'NAT': a number or a text in quotes"),
         ] {
             let error = apply(text, &mut Settings::default()).unwrap_err();

@@ -96,8 +96,10 @@ impl Job {
             "honeycomb" => honeycomb::parse(&reader).map(Self::Honeycomb),
             "burr" => burr::parse(&reader).map(Self::Burr),
             "alignment" => alignment::parse(&reader).map(Self::Alignment),
-            other => Err(reader
-                .error(&family, format!("family '{other}' is not known: one of {}", FAMILIES.join(", ")))),
+            other => {
+                Err(reader
+                    .error(&family, format!("family '{other}' is unknown: one of {}", FAMILIES.join(", "))))
+            }
         }
     }
 

@@ -234,7 +234,7 @@ mod tests {
     #[test]
     fn what_cannot_be_used_is_named_with_its_line() {
         for (section, message) in [
-            ("[sheet]\nname = \"x\"\n", "line 13: key 'sheet.name' is not known; allowed: part, drawing"),
+            ("[sheet]\nname = \"x\"\n", "line 13: key 'sheet.name' is unknown; allowed: part, drawing"),
             (
                 "[sheet]\nsetup_minutes = -1\n",
                 "line 13: key 'sheet.setup_minutes' is -1: 0 to 1000000 minutes",

@@ -17,12 +17,12 @@ pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> S
     if let Some(field) = quoted(message, "unknown field ") {
         let allowed = message.split_once("expected ").map_or("no keys", |(_, rest)| rest);
         let allowed = allowed.trim_start_matches("one of ").replace('`', "").replace(" or ", ", ");
-        return format!("key '{}' is not known; allowed: {allowed}", place.beside(field));
+        return format!("key '{}' is unknown; allowed: {allowed}", place.beside(field));
     }
     if let Some((found, wanted)) =
         message.strip_prefix("invalid length ").and_then(|rest| rest.split_once(", expected "))
     {
-        return format!("key '{}' has {found} values: {wanted} are needed", place.name());
+        return format!("key '{}' has {found} values: {wanted} are required", place.name());
     }
     let Some(mismatch) = message.strip_prefix("invalid type: ") else { return message.to_owned() };
     let Some((found, expected)) = mismatch.split_once(", expected ") else { return message.to_owned() };
@@ -34,7 +34,7 @@ pub(super) fn reword(text: &str, span: Option<Range<usize>>, message: &str) -> S
         other if other.starts_with("struct") => "a table",
         other => other,
     };
-    format!("key '{}' is {}: {expected} is needed", place.name(), found.replace('`', ""))
+    format!("key '{}' is {}: {expected} is required", place.name(), found.replace('`', ""))
 }
 
 /// The first word in backquotes behind `before`.
@@ -117,25 +117,25 @@ mod tests {
         assert_eq!(told(4, "missing field `id`"), "key 'hole.id' is missing");
         assert_eq!(
             told(5, "unknown field `radius`, expected `a` or `b`"),
-            "key 'hole.radius' is not known; allowed: a, b"
+            "key 'hole.radius' is unknown; allowed: a, b"
         );
         assert_eq!(
             told(3, "unknown field `sgn`, expected one of `letter`, `sign`"),
-            "key 'machine.rotary.sgn' is not known; allowed: letter, sign"
+            "key 'machine.rotary.sgn' is unknown; allowed: letter, sign"
         );
         assert_eq!(
             told(4, "unknown field `hole`, expected one of `tool`, `drill`"),
-            "key 'hole' is not known; allowed: tool, drill"
+            "key 'hole' is unknown; allowed: tool, drill"
         );
         assert_eq!(
             told(5, "invalid type: string \"x\", expected f64"),
-            "key 'hole.radius' is string \"x\": a number is needed"
+            "key 'hole.radius' is string \"x\": a number is required"
         );
         assert_eq!(told(5, "duplicate key"), "duplicate key");
         let nested = "[errors.part]\nx = 1\n";
         assert_eq!(
             reword(nested, Some(8..12), "unknown field `part`, expected `linear` or `head`"),
-            "key 'errors.part' is not known; allowed: linear, head"
+            "key 'errors.part' is unknown; allowed: linear, head"
         );
         for dotted in [
             "[part]\nshif.x = { fixed = 1 }\n",
@@ -145,7 +145,7 @@ mod tests {
             let at = dotted.find("shif").unwrap();
             assert_eq!(
                 reword(dotted, Some(at..at + 4), "unknown field `shif`, expected `shift` or `tilt`"),
-                "key 'part.shif' is not known; allowed: shift, tilt",
+                "key 'part.shif' is unknown; allowed: shift, tilt",
                 "{dotted}"
             );
         }

@@ -121,7 +121,7 @@ pub fn error_file(text: &str, machine: &Machine) -> Result<Vec<ErrorSource>, Fil
     if let Some(linear) = &file.linear {
         collector.linear(linear)?;
         if let Some(wave) = &linear.wave {
-            let message = "key 'linear.wave' goes into a machine file: a budget draws each hole anew";
+            let message = "key 'linear.wave' is for a machine file: a budget draws each hole anew";
             return Err(reader.error(wave, message));
         }
     }
@@ -135,7 +135,7 @@ pub fn error_file(text: &str, machine: &Machine) -> Result<Vec<ErrorSource>, Fil
     let rotary = file.rotary.as_ref().and_then(|rotary| rotary.seed.as_ref());
     let head = file.head.as_ref().and_then(|head| head.seed.as_ref());
     if let Some(seed) = linear.or(rotary).or(head) {
-        return Err(reader.error(seed, "key 'seed' goes into a machine file: a budget has --seed"));
+        return Err(reader.error(seed, "key 'seed' is for a machine file: a budget has --seed"));
     }
     Ok(collector.found)
 }
@@ -203,11 +203,11 @@ seed = 2
         );
         assert_eq!(
             machine("[errors.linear]\n\nx = { normal = 0.1, fixed = 1 }\n"),
-            "line 3: key 'errors.linear.x' has one of normal (standard deviation), uniform (plus and minus), fixed"
+            "line 3: key 'errors.linear.x' needs one of normal (standard deviation), uniform (plus and minus), fixed"
         );
         assert_eq!(
             machine("[errors.part]\nrunout = { normal = 1 }\n"),
-            "line 1: key 'errors.part' is not known; allowed: linear, rotary, head, probe"
+            "line 1: key 'errors.part' is unknown; allowed: linear, rotary, head, probe"
         );
         assert_eq!(
             machine("[errors.head]\nangle = { normal = 1 }\n"),
@@ -219,11 +219,12 @@ seed = 2
         );
         assert_eq!(
             machine("table = []\n[errors.rotary]\nindex = { normal = 1 }\n"),
-            "line 3: key 'errors.rotary.index': needs one axis that turns the part; this machine has none, or several"
+            "line 3: key 'errors.rotary.index': needs exactly one axis that rotates the part; this machine \
+             has none, or several"
         );
         assert_eq!(
             budget("[linear]\nx = { normal = 0.1 }\nseed = 3\n"),
-            "line 3: key 'seed' goes into a machine file: a budget has --seed"
+            "line 3: key 'seed' is for a machine file: a budget has --seed"
         );
         assert_eq!(
             budget("[part]\ntilt.z = { normal = 46 }\n"),

@@ -109,10 +109,11 @@ impl FileHead {
                 let value = self.letter.as_ref().ok_or_else(|| needs("letter"))?;
                 let axis = letter(reader, "head.letter", value, axes)?;
                 if !axes.is_rotary(axis) {
-                    return Err(reader.error(value, "key 'head.letter': the head turns by A, B or C"));
+                    return Err(reader.error(value, "key 'head.letter': the head rotates by A, B or C"));
                 }
                 if table.has(axis) {
-                    let message = format!("key 'head.letter' is {}, which is the table's", axes.letter(axis));
+                    let message =
+                        format!("key 'head.letter' is {}, the letter of the table", axes.letter(axis));
                     return Err(reader.error(value, message));
                 }
                 HeadKind::Axis {
@@ -139,7 +140,7 @@ impl FileHead {
             if let (Some(place), false) = (place, kinds.contains(&kind)) {
                 let names: Vec<_> =
                     KINDS.iter().filter(|(_, k)| kinds.contains(k)).map(|(name, _)| *name).collect();
-                let message = format!("key 'head.{key}' goes with kind {} only", names.join(", "));
+                let message = format!("key 'head.{key}' is for kind {} only", names.join(", "));
                 return Err(FileError { line: Some(reader.line(place)), message });
             }
         }

@@ -57,7 +57,7 @@ impl FileLink {
     ) -> Result<AxisLink, FileError> {
         let axis = letter(reader, "table.letter", &self.letter, axes)?;
         if inner.has(axis) {
-            let message = format!("key 'table.letter': {} is there twice", axes.letter(axis));
+            let message = format!("key 'table.letter': {} is used twice", axes.letter(axis));
             return Err(reader.error(&self.letter, message));
         }
         let sign = sign(reader, "table.sign", &self.sign)?;
@@ -66,19 +66,19 @@ impl FileLink {
             (Some(about), None) => ("turns", about),
             (None, Some(along)) => ("slides", along),
             _ => {
-                let message = "a [[table]] has one of the keys 'turns' and 'slides': x, y or z";
+                let message = "a [[table]] needs exactly one of the keys 'turns' and 'slides': x, y or z";
                 return Err(reader.error(&self.letter, message));
             }
         };
         if (key == "turns") != axes.is_rotary(axis) {
             let message =
-                format!("key 'table.{key}' doesn't go with {}: A B C turn, others slide", axes.letter(axis));
+                format!("key 'table.{key}' does not match {}: A B C rotate, others slide", axes.letter(axis));
             return Err(reader.error(direction, message));
         }
         let unit = Unit::new_unchecked(reader.choice(&format!("table.{key}"), direction, &DIRECTIONS)?);
         match (&self.centre, key) {
             (Some(FixedArray([x, ..])), "slides") => {
-                Err(reader.error(x, "key 'table.centre' goes with 'turns' only"))
+                Err(reader.error(x, "key 'table.centre' is for 'turns' only"))
             }
             (_, "slides") => Ok(AxisLink::slide(axis, unit, sign)),
             (Some(centre), _) => {

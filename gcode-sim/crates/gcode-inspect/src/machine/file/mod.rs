@@ -103,7 +103,7 @@ impl Machine {
         for tool in file.tool.iter().flatten() {
             let checked = tool.check(&reader, &head)?;
             if tools.iter().any(|other| other.number == checked.number) {
-                let message = format!("key 'tool.number': {} is there twice", checked.number);
+                let message = format!("key 'tool.number': {} is used twice", checked.number);
                 return Err(reader.error(&tool.number, message));
             }
             tools.push(checked);
@@ -262,7 +262,8 @@ tilt = [0.0, 0.0, 1.0]
         let cases = [
             (
                 "tables = []\n",
-                "line 1: key 'tables' is not known; allowed: control, table, head, wheel, tool, offsets, part, probe, errors",
+                "line 1: key 'tables' is unknown; allowed: control, table, head, wheel, tool, offsets, \
+                 part, probe, errors",
             ),
             ("[[table]]\nletter = \"B\"\nturns = \"y\"\n", "line 1: key 'table.sign' is missing"),
             (
@@ -282,18 +283,18 @@ tilt = [0.0, 0.0, 1.0]
                 "line 4: key 'head.pivot' is -1: mm, 0 or more",
             ),
             ("table = []\n[head]\nkind = \"axis\"\n", "line 3: kind = \"axis\" needs the key 'head.letter'"),
-            ("[part]\norigin = [1, 2, 3, 4]\n", "line 2: key 'part.origin' has 4 values: 3 are needed"),
+            ("[part]\norigin = [1, 2, 3, 4]\n", "line 2: key 'part.origin' has 4 values: 3 are required"),
             (
                 "[head]\nkind = \"fixed\"\ndirection = [0, 1]\n",
-                "line 3: key 'head.direction' has 2 values: 3 are needed",
+                "line 3: key 'head.direction' has 2 values: 3 are required",
             ),
             (
                 "table = []\n[head]\nkind = \"manual\"\ndirection = [0.0, 1.0, 0.0]\n",
-                "line 4: key 'head.direction' goes with kind fixed only",
+                "line 4: key 'head.direction' is for kind fixed only",
             ),
             (
                 "table = []\n[offsets]\nG53 = { X = 1.0 }\n",
-                "line 2: key 'offsets.G53' is not known: G54 to G59",
+                "line 2: key 'offsets.G53' is unknown: G54 to G59",
             ),
             ("table = []\n[part]\ntilt = [0.0, nan, 0.0]\n", "line 3: key 'part.tilt' is NaN: degrees"),
             (

@@ -52,10 +52,10 @@ pub(super) fn work_offsets(
         let code = name.strip_prefix('G').and_then(|code| code.parse::<u32>().ok());
         let code = code
             .filter(|code| (54..=59).contains(code))
-            .ok_or_else(|| fail(format!("key 'offsets.{name}' is not known: G54 to G59")))?;
+            .ok_or_else(|| fail(format!("key 'offsets.{name}' is unknown: G54 to G59")))?;
         let values = values
             .as_table()
-            .ok_or_else(|| fail(format!("key 'offsets.{name}' names axes: {{ X = 0.0, Y = 0.0 }}")))?;
+            .ok_or_else(|| fail(format!("key 'offsets.{name}' gives axes: {{ X = 0.0, Y = 0.0 }}")))?;
         let mut offset = WorkOffset { code, values: Vec::new() };
         for (letter, value) in values {
             let axis = match letter.as_bytes() {

@@ -127,8 +127,10 @@ impl Collector<'_, '_> {
             let axis: Option<AxisIndex> =
                 self.machine.axes.find(letter).filter(|axis| self.machine.carries(*axis));
             let Some(axis) = axis else {
-                let message =
-                    format!("key '{}linear.{name}': no such axis moves the tool or the part", self.before);
+                let message = format!(
+                    "key '{}linear.{name}': no linear axis with this letter moves the tool or the part",
+                    self.before
+                );
                 return Err(self.reader.error(written, message));
             };
             self.one(&format!("linear.{name}"), spread, Quantity::Linear(axis), LENGTH)?;
@@ -151,7 +153,9 @@ impl Collector<'_, '_> {
         match quantity {
             Quantity::RunOut | Quantity::Index | Quantity::Centre(_) | Quantity::AxisTilt(_) => {
                 let one = self.machine.rotary_axis().is_some();
-                (!one).then_some("needs one axis that turns the part; this machine has none, or several")
+                (!one).then_some(
+                    "needs exactly one axis that rotates the part; this machine has none, or several",
+                )
             }
             Quantity::Head => {
                 let turns = matches!(self.machine.head.kind, HeadKind::Manual { .. } | HeadKind::Axis { .. });

@@ -82,7 +82,7 @@ impl FileSpread {
             (None, None, Some(half)) => Ok(Distribution::Uniform(number("uniform", half, 0.0)?)),
             _ => {
                 let message = format!(
-                    "key '{key}' has one of normal (standard deviation), uniform (plus and minus), fixed"
+                    "key '{key}' needs one of normal (standard deviation), uniform (plus and minus), fixed"
                 );
                 Err(FileError { line: Some(reader.line(at)), message })
             }

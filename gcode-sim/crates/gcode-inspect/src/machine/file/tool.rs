@@ -29,8 +29,8 @@ impl FileTool {
                 reader.error(&self.number, format!("key 'tool.number' is {number}: 1 to 99999999"))
             })?;
         if let (Some(length), HeadKind::Free) = (&self.length, &head.kind) {
-            let message = "key 'tool.length' acts along the tool, whose direction isn't known: give [head] with its kind, \
-                           or leave the length out";
+            let message = "key 'tool.length' acts along the tool, whose direction is unknown: give [head] \
+                           with its kind, or remove the length";
             return Err(reader.error(length, message));
         }
         let within = |key: &str, value: &Option<Spanned<f64>>, allowed: &str, least: f64| {

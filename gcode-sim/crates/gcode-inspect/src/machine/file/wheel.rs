@@ -37,7 +37,7 @@ impl FileWheel {
         let swivels = match (&self.letter, &self.sign) {
             (None, None) => None,
             (None, Some(given)) => {
-                return Err(reader.error(given, "key 'wheel.sign' goes with 'wheel.letter' only"));
+                return Err(reader.error(given, "key 'wheel.sign' is for 'wheel.letter' only"));
             }
             (Some(name), given) => {
                 let axis = letter(reader, "wheel.letter", name, axes)?;
@@ -47,7 +47,7 @@ impl FileWheel {
                 let of_head = matches!(head.kind, HeadKind::Axis { axis: other, .. } if other == axis);
                 if table.has(axis) || of_head {
                     let message = format!(
-                        "key 'wheel.letter' is {}, which is the table's or the head's",
+                        "key 'wheel.letter' is {}, the letter of the table or the head",
                         axes.letter(axis)
                     );
                     return Err(reader.error(name, message));

@@ -46,10 +46,9 @@ pub(in crate::verify) fn check(
         true => format!("{high:.3} mm"),
         false => format!("{low:.3} to {high:.3} mm"),
     };
-    let message =
-        format!("{feeds} along the tool's axis ended {far} above the surface, over holes that are missing");
+    let message = format!("{feeds} along the tool axis ended {far} above the surface, over missing holes");
     let mut finding = Diagnostic::error("hole-in-air", message).help(
-        "check the zero in the tool's direction (the work offset), the tool's length and its offset, and the depth",
+        "check the zero along the tool axis (the work offset), the tool length and its offset, and the depth",
     );
     finding.notes.extend(folded_note(folded));
     objections

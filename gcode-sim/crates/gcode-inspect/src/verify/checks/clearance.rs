@@ -17,12 +17,12 @@ fn finding(close_motion: &CloseMotion, conduct: &ProcessLimits) -> Diagnostic {
     match close_motion.kind {
         CloseMotionKind::RotaryTurn { letter, angle: by } => {
             let mut message =
-                format!("{letter} turns {:.3}° while the tool stands {above:.3} mm above the part", by.0);
+                format!("{letter} rotates by {:.3}° with the tool {above:.3} mm above the part", by.0);
             if close_motion.tip_clearance < CONTACT_CLEARANCE {
                 let finding = Diagnostic::error("turns-near-part", message).note(format!(
-                    "a tool length or a part that is {CONTACT_CLEARANCE} mm off makes it touch"
+                    "an error of {CONTACT_CLEARANCE} mm in the tool length or the part position makes it touch"
                 ));
-                return finding.help(format!("retract to a safe height before {letter} turns"));
+                return finding.help(format!("retract to a safe height before {letter} rotates"));
             }
             if let Some(edge) = close_motion
                 .edge_clearance
@@ -32,7 +32,8 @@ fn finding(close_motion: &CloseMotion, conduct: &ProcessLimits) -> Diagnostic {
                 message.push_str(&format!(", the edge of a flat end {far:.3} mm {side}"));
             }
             let help = format!(
-                "retract before {letter} turns: from {} mm above the surface the job feeds, and turning wants more",
+                "retract before {letter} rotates: the job starts feeds {} mm above the surface, and a \
+                 rotation needs more clearance",
                 conduct.clearance.unwrap_or_default()
             );
             Diagnostic::warning("turns-near-part", message).help(help)
@@ -40,29 +41,31 @@ fn finding(close_motion: &CloseMotion, conduct: &ProcessLimits) -> Diagnostic {
         CloseMotionKind::LowRetract { letter, angle: by } => {
             let retract = conduct.retract.unwrap_or_default();
             let message = format!(
-                "{letter} turns {:.3}° while the tool stands {above:.3} mm above the part, and the job wants {retract} mm there",
+                "{letter} rotates by {:.3}° with the tool {above:.3} mm above the part; the job specifies \
+                 {retract} mm",
                 by.0
             );
             Diagnostic::warning("turns-near-part", message)
-                .help(format!("retract to machine.retract before {letter} turns, or correct it in the job"))
+                .help(format!("retract to machine.retract before {letter} rotates, or correct it in the job"))
         }
         CloseMotionKind::RapidPast => {
-            let message = format!("the rapid goes past the part {above:.3} mm above the surface");
-            let finding = Diagnostic::warning("rapid-near-part", message)
-                .note(format!("a tool length or a part that is {CONTACT_CLEARANCE} mm off makes it touch"));
-            finding.help("go from hole to hole at a safe height")
+            let message = format!("the rapid passes {above:.3} mm above the part surface");
+            let finding = Diagnostic::warning("rapid-near-part", message).note(format!(
+                "an error of {CONTACT_CLEARANCE} mm in the tool length or the part position makes it touch"
+            ));
+            finding.help("move from hole to hole at a safe height")
         }
         CloseMotionKind::RapidTowards if CONTACT_CLEARANCE <= close_motion.tip_clearance => {
             let approach = conduct.approach.unwrap_or_default();
             let message =
-                format!("the rapid ends {above:.3} mm above the part, and the job feeds from {approach} mm");
+                format!("the rapid ends {above:.3} mm above the part; the job specifies {approach} mm");
             Diagnostic::warning("rapid-near-part", message)
                 .help("raise R, or the end of the approach, to machine.clearance, or correct it in the job")
         }
         CloseMotionKind::RapidTowards => {
             let message = format!("the rapid ends {above:.3} mm above the part");
             let finding = Diagnostic::warning("rapid-near-part", message);
-            finding.help("end it at a clearance from which the feed begins: is R without a point?")
+            finding.help("end it at the clearance where the feed begins; check R for a missing decimal point")
         }
     }
 }

@@ -106,14 +106,13 @@ fn report_common_depths(comparison: &Comparison<'_>, objections: &mut [HoleFindi
             false => format!("{least:.3} to {most:.3}"),
         };
         let message = format!(
-            "{} {by} mm too {} ({} allowed)",
+            "{}: {by} mm too {} (tolerance ±{})",
             describe_set(comparison, &members),
             if error > 0.0 { "deep" } else { "shallow" },
             comparison.tolerances.depth
         );
-        let mut finding = Diagnostic::error("holes-alike", message).help(
-            "check the programmed depth, the zero in the tool's direction, the tool's length and its offset",
-        );
+        let mut finding = Diagnostic::error("holes-alike", message)
+            .help("check the programmed depth, the zero along the tool axis, the tool length and its offset");
         let wanted = comparison.nominal[group[0].nominal].depth;
         finding.notes.extend(super::depth::mistaken_factor(wanted, wanted + error).map(str::to_owned));
         finding.notes.extend(folded_note(folded));
@@ -172,8 +171,8 @@ fn report_repeated_set(comparison: &Comparison<'_>, objections: &mut [HoleFindin
     let is_again = membership(comparison.actual.len(), &extras);
     let folded = fold(objections, &["hole-twice"], |o| o.extra.is_some_and(|extra| is_again[extra]));
     let set = describe_set(comparison, &members);
-    let mut finding = Diagnostic::error("hole-twice", format!("{set} drilled a second time")).help(
-        "the same tool comes back for nothing: take the second call, or the second round of the loop, out",
+    let mut finding = Diagnostic::error("hole-twice", format!("{set}: drilled a second time")).help(
+        "remove the second call, or the second iteration of the loop: the same tool drills these holes twice",
     );
     finding.notes.extend(folded_note(folded));
     Some(locate_at_call(finding, &comparison.actual[extras[0]].backtrace))
@@ -181,7 +180,7 @@ fn report_repeated_set(comparison: &Comparison<'_>, objections: &mut [HoleFindin
 
 fn rotation_finding(set: &str, machine: &Machine, axis: AxisIndex, by: Deg) -> Diagnostic {
     let letter = machine.axes.letter(axis);
-    Diagnostic::error("holes-alike", format!("{set} turned by {letter}{:+.3}°", by.0))
+    Diagnostic::error("holes-alike", format!("{set}: rotated by {letter}{:+.3}°", by.0))
         .help(format!("correct {letter} in the program, or its zero in the work offset"))
 }
 
@@ -194,11 +193,11 @@ fn shift_finding(set: &str, offset: &Vector3<f64>, pattern: Option<&Pattern>) ->
         .collect();
     // A honeycomb's cylinder lies along x: what goes across that leaves its axis.
     let off_axis_note = match pattern {
-        Some(_) if libm::hypot(offset.y, offset.z) > 0.0005 => ", beside the cylinder's axis",
+        Some(_) if libm::hypot(offset.y, offset.z) > 0.0005 => ", off the cylinder axis",
         _ => "",
     };
-    Diagnostic::error("holes-alike", format!("{set} shifted by {}{off_axis_note}", by.join(" "))).help(
-        "actual less nominal, along the machine's axes: correct the programmed point or the work offset",
+    Diagnostic::error("holes-alike", format!("{set}: shifted by {}{off_axis_note}", by.join(" "))).help(
+        "correct the programmed point or the work offset: the shift is actual − nominal along the machine axes",
     )
 }
 
@@ -255,5 +254,5 @@ fn describe_set(comparison: &Comparison<'_>, members: &[usize]) -> String {
             return format!("the {} group of rows ({count} holes)", ["first", "second"][group]);
         }
     }
-    format!("{count} of {all} holes, {} the first,", comparison.id(members[0]))
+    format!("{count} of {all} holes (first: {})", comparison.id(members[0]))
 }

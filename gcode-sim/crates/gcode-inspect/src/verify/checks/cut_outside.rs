@@ -19,16 +19,17 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
             }
             let tool = cut.tool.map_or(String::new(), |tool| format!(" by T{tool}"));
             let message = format!(
-                "hole {} is cut{tool} {aside:.4} mm aside before it is finished ({allowed:.4} allowed)",
+                "hole {}: a pass before the finishing one{tool} is out of position by {aside:.4} mm, limit \
+                 {allowed:.4}",
                 comparison.id(pair.nominal)
             );
             // Another tool whose size isn't known may be as small as it likes.
             let unknown = cut.tool != found.tool && cut.diameter.is_none();
             let finding = match unknown {
                 true => Diagnostic::warning("hole-cut-aside", message)
-                    .help("give the tools' diameters in the machine file: then it can be judged"),
+                    .help("give the tool diameters in the machine file, so that this can be judged"),
                 false => Diagnostic::error("hole-cut-aside", message)
-                    .help("correct the point of that pass: what it cuts outside the hole stays cut"),
+                    .help("correct the point of that pass: material cut outside the hole cannot be restored"),
             };
             let finding = finding.at(cut.backtrace.clone());
             objections.push(match unknown {

@@ -34,7 +34,7 @@ pub(in crate::verify) fn findings(
     }
     let counted = |(finding, times): (Diagnostic, u64)| match times {
         1 => finding,
-        more => finding.note(format!("in {more} cuts; the first of them is here")),
+        more => finding.note(format!("in {more} cuts; this is the first")),
     };
     told.into_iter().map(counted).collect()
 }
@@ -42,8 +42,8 @@ pub(in crate::verify) fn findings(
 fn reversed(cutting: &CutConditions, _: &ProcessLimits, _: &Machine) -> Option<Diagnostic> {
     (cutting.spindle_direction == SpindleDirection::Counterclockwise).then(|| {
         Diagnostic::warning("spindle-reversed", format!("{} cuts with M04", name(cutting)))
-            .note("a drill that is no left-hand one rubs and breaks; which it is no reference says")
-            .help("M03, if the tool isn't a left-hand one")
+            .note("a right-hand drill rubs and breaks; the reference does not give the hand of the tool")
+            .help("use M03, unless the tool is left-hand")
     })
 }
 
@@ -52,7 +52,7 @@ fn speed(cutting: &CutConditions, conduct: &ProcessLimits, _: &Machine) -> Optio
     let found = cutting.speed.0;
     // One that stands is told already.
     let severity = severity(found, wanted).filter(|_| cutting.spindle_direction != SpindleDirection::Off)?;
-    let message = format!("{} cuts at S{found} where S{wanted} is asked for", name(cutting));
+    let message = format!("{} cuts at S{found}; the job specifies S{wanted}", name(cutting));
     Some(Diagnostic::new(severity, "drill-speed", message).help("correct S, or the tool's speed in the job"))
 }
 
@@ -62,13 +62,13 @@ fn feed(cutting: &CutConditions, conduct: &ProcessLimits, _: &Machine) -> Option
     let found = cutting.feed_range.map(|feed| feed.0).into_iter().max_by(|a, b| off(a).total_cmp(&off(b)))?;
     let severity = severity(found, wanted)?;
     let message = format!(
-        "{} is fed at {} mm/min where {wanted} is asked for",
+        "{} feeds at {} mm/min; the job specifies {wanted} mm/min",
         name(cutting),
         (found * 1e3).round() / 1e3
     );
     Some(
         Diagnostic::new(severity, "drill-feed", message)
-            .help("correct F, or the tool's feed in the job; is G94 in force, and G21?"),
+            .help("correct F, or the tool's feed in the job; check that G94 and G21 are in force"),
     )
 }
 
@@ -77,20 +77,20 @@ fn peck(cutting: &CutConditions, conduct: &ProcessLimits, _: &Machine) -> Option
     let shown = |mm: f64| (mm * 1e3).round() / 1e3;
     if let Some(severity) = severity(cutting.max_cut, wanted).filter(|_| wanted < cutting.max_cut) {
         let message = format!(
-            "{} cuts {} mm in one go where pecks of {wanted} mm are asked for",
+            "{} drills {} mm without retracting; the job specifies pecks of {wanted} mm",
             name(cutting),
             shown(cutting.max_cut)
         );
         let finding = Diagnostic::new(severity, "drill-peck", message);
-        return Some(finding.help("G83 with the job's peck for Q, or correct drill.peck in the job"));
+        return Some(finding.help("use G83 with the job's peck as Q, or correct drill.peck in the job"));
     }
     let peck = cutting.min_peck.filter(|peck| *peck < wanted && severity(*peck, wanted).is_some())?;
     let message =
-        format!("{} goes in by pecks of {} mm where {wanted} mm are asked for", name(cutting), shown(peck));
+        format!("{} drills in pecks of {} mm; the job specifies {wanted} mm", name(cutting), shown(peck));
     Some(
         Diagnostic::warning("drill-peck", message)
-            .note("it costs time, and chips are ground twice")
-            .help("correct Q, or drill.peck in the job; does the number have its point?"),
+            .note("this costs time, and chips are cut twice")
+            .help("correct Q, or drill.peck in the job; check Q for a missing decimal point"),
     )
 }
 
@@ -106,13 +106,13 @@ fn tool(cutting: &CutConditions, conduct: &ProcessLimits, _: &Machine) -> Option
     Some(match cutting.tool {
         None => Diagnostic::warning(
             "job-tool",
-            format!("the part is cut before any tool is put in: the job has {names}"),
+            format!("the part is cut before the first tool change; the job specifies {names}"),
         )
-        .note("what is in the spindle when the program begins isn't known")
-        .help(format!("T{} M06 before the first hole", first.number)),
-        Some(number) => Diagnostic::warning("job-tool", format!("T{number} cuts, and the job has {names}"))
-            .note("nothing is known of what it is to be run at")
-            .help("put in the job's tool, or correct the number in the job"),
+        .note("the tool in the spindle at the start is unknown")
+        .help(format!("command T{} M06 before the first hole", first.number)),
+        Some(number) => Diagnostic::warning("job-tool", format!("T{number} cuts; the job specifies {names}"))
+            .note("speed and feed of this tool are not specified")
+            .help("use the job's tool, or correct its number in the job"),
     })
 }
 
@@ -132,37 +132,36 @@ fn length(cutting: &CutConditions, conduct: &ProcessLimits, machine: &Machine) -
     }
     let asked = conduct.tool_process(cutting.tool).and_then(|duty| duty.offset);
     let tool = name(cutting);
-    let note =
-        "the machine file has no length of it, so that the holes come out alike here whatever is in force";
+    let note = "the machine file does not give the tool's length, so the simulated holes do not depend on \
+                the length offset";
     let finding = |severity, message| Diagnostic::new(severity, "length-offset", message).note(note);
     match (cutting.compensation, asked) {
         (LengthCompensation::Minus(h), asked) => {
             let severity = if asked.is_some() { Severity::Error } else { Severity::Warning };
-            let message = format!("{tool} cuts with G44 H{h}: its length is taken away instead of added");
-            Some(finding(severity, message).help("G43, if offsets are measured as lengths"))
+            let message = format!("{tool} cuts with G44 H{h}: its length is subtracted instead of added");
+            Some(finding(severity, message).help("use G43, if the offsets are measured as lengths"))
         }
         (LengthCompensation::Off | LengthCompensation::Plus(0), Some(asked)) => {
-            let message = format!("{tool} cuts without its length offset, and the job has H{asked} for it");
+            let message = format!("{tool} cuts without a length offset; the job specifies H{asked}");
             Some(finding(Severity::Warning, message).help(format!(
-                "G43 H{asked} before the first hole, if the work zero isn't that of this tool's tip"
+                "command G43 H{asked} before the first hole, unless the work zero is set for this tool's tip"
             )))
         }
         (LengthCompensation::Plus(h), Some(asked)) if h != asked => {
-            let message = format!(
-                "{tool} cuts with H{h} where the job has H{asked} for it: the length of another tool"
-            );
+            let message =
+                format!("{tool} cuts with H{h}, the length of another tool; the job specifies H{asked}");
             Some(
                 finding(Severity::Error, message)
-                    .help(format!("G43 H{asked}, or correct the tool's number in the job")),
+                    .help(format!("command G43 H{asked}, or correct the tool's number in the job")),
             )
         }
         (LengthCompensation::Plus(h), None) => {
             let number = cutting.tool.filter(|number| *number != h)?;
             machine.find_tool(h)?;
-            let message = format!("{tool} cuts with H{h}, which has the number of another tool");
+            let message = format!("{tool} cuts with H{h}, the number of another tool");
             Some(
                 finding(Severity::Warning, message)
-                    .help(format!("H{number}, if offsets have the numbers of their tools")),
+                    .help(format!("command H{number}, if offsets have the numbers of their tools")),
             )
         }
         (LengthCompensation::Off | LengthCompensation::Plus(_), _) => None,

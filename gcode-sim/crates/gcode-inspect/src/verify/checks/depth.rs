@@ -10,7 +10,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
         }
         let nominal = comparison.nominal[pair.nominal].depth;
         let message = format!(
-            "hole {} is {:.3} mm deep, {nominal} wanted: {:.3} mm too {} ({} allowed)",
+            "hole {} is {:.3} mm deep, nominal {nominal}: {:.3} mm too {} (tolerance ±{})",
             comparison.id(pair.nominal),
             nominal + error,
             error.abs(),
@@ -18,7 +18,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
             comparison.tolerances.depth
         );
         let mut finding = Diagnostic::error("hole-depth", message)
-            .help("check the programmed depth, the tool's length and its offset")
+            .help("check the programmed depth, the tool length and its offset")
             .at(comparison.actual[pair.actual].backtrace.clone());
         if let Some(note) = mistaken_factor(nominal, nominal + error) {
             finding = finding.note(note);
@@ -32,17 +32,20 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
 pub(super) fn mistaken_factor(nominal: f64, actual: f64) -> Option<&'static str> {
     let is = |parts: f64| (actual * parts / nominal - 1.0).abs() < 0.01;
     match () {
-        () if is(1e3) => {
-            Some("that is a thousandth of it: a number without a decimal point counts thousandths here")
-        }
-        () if is(1e4) => Some(
-            "that is a ten-thousandth of it: a number without a decimal point counts ten-thousandths here",
+        () if is(1e3) => Some(
+            "this is a thousandth of the nominal depth: a number without a decimal point counts thousandths here",
         ),
-        () if (actual / nominal / 25.4 - 1.0).abs() < 0.001 => {
-            Some("that is 25.4 times it: millimetres read as inches; is G20 in force where G21 is meant?")
-        }
+        () if is(1e4) => Some(
+            "this is a ten-thousandth of the nominal depth: a number without a decimal point counts \
+             ten-thousandths here",
+        ),
+        () if (actual / nominal / 25.4 - 1.0).abs() < 0.001 => Some(
+            "this is 25.4 times the nominal depth: millimetres read as inches; check whether G20 is in \
+             force instead of G21",
+        ),
         () if (actual * 25.4 / nominal - 1.0).abs() < 0.001 => Some(
-            "that is it divided by 25.4: inches read as millimetres; is G21 in force where G20 is meant?",
+            "this is the nominal depth divided by 25.4: inches read as millimetres; check whether G21 is \
+             in force instead of G20",
         ),
         () => None,
     }

@@ -11,9 +11,9 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
         if (actual - wanted).abs() <= comparison.tolerances.diameter {
             continue;
         }
-        let tool = found.tool.map_or(String::new(), |tool| format!(" by T{tool}"));
+        let tool = found.tool.map_or(String::new(), |tool| format!(" T{tool}"));
         let message = format!(
-            "hole {} is finished{tool} with Φ{actual}, Φ{wanted} wanted",
+            "hole {}: the finishing tool{tool} is Φ{actual}, nominal Φ{wanted}",
             comparison.id(pair.nominal)
         );
         let finding = Diagnostic::error("hole-diameter", message)

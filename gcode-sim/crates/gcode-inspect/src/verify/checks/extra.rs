@@ -8,8 +8,8 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
     for index in &comparison.extra {
         let twice = comparison.nominal_on_line_of(*index).is_some();
         let (code, help) = match twice {
-            true => ("hole-twice", "the same tool comes back for nothing: take the second call out"),
-            false => ("hole-extra", "take it out of the program, or correct its place"),
+            true => ("hole-twice", "remove the second call: the same tool drills this hole twice"),
+            false => ("hole-extra", "remove it from the program, or correct its position"),
         };
         let finding = Diagnostic::error(code, explain(comparison, *index))
             .help(help)
@@ -25,5 +25,8 @@ pub(crate) fn explain(comparison: &Comparison<'_>, extra: usize) -> String {
         return format!("hole {} is drilled a second time", comparison.id(wanted));
     }
     let Point3 { coords: p } = found.entry;
-    format!("nobody asked for the hole that begins at x {:.3} y {:.3} z {:.3} on the part", p.x, p.y, p.z)
+    format!(
+        "extra hole at x {:.3} y {:.3} z {:.3} on the part: the reference has no hole there",
+        p.x, p.y, p.z
+    )
 }

@@ -61,17 +61,19 @@ pub(in crate::verify) fn check(
     let Some(MirrorImage { axis, agreeing: agree, .. }) = MirrorImage::of(comparison) else { return };
     let name = ["x", "y", "z"][axis];
     let lie = format!(
-        "the holes lie mirrored: with {name} turned round {agree} of {} would be there",
+        "the holes are mirrored: with {name} negated, {agree} of {} are in position",
         comparison.nominal.len()
     );
     let finding = match is_wrong_rotation_sign(comparison, machine, axis) {
         true => Diagnostic::error(
             "rotary-sign",
-            format!("{lie}; the rotary table turns the other way than the program believes"),
+            format!("{lie}; the rotary table direction is opposite to the one the program assumes"),
         )
-        .help("turn round the table's sign in the machine file, or machine.rotary.sign in the job"),
-        false => Diagnostic::error("mirror-image", format!("{lie}; no turn of the table does that"))
-            .help("is a mirror image (G51.1) left on, or a coordinate's sign the wrong one?"),
+        .help("reverse the table's sign in the machine file, or machine.rotary.sign in the job"),
+        false => {
+            Diagnostic::error("mirror-image", format!("{lie}; no rotation of the table has this effect"))
+                .help("check for a mirror image (G51.1) left in force, or a wrong sign of a coordinate")
+        }
     };
     let place = comparison.actual[comparison.extra[0]].backtrace.clone();
     objections.push(HoleFinding::unlocated(finding.at(place)));

@@ -22,13 +22,14 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
                 let off = found.bottom() - end;
                 finding
                     .note(format!(
-                        "the nearest hole nobody asked for ends {distance:.3} mm away: {:+.3} {:+.3} {:+.3} in x, y, z",
+                        "the nearest extra hole ends {distance:.3} mm away; actual − nominal: x {:+.3}, y \
+                         {:+.3}, z {:+.3} mm",
                         off.x, off.y, off.z
                     ))
-                    .help("if that is the hole meant, its place is wrong; else the program leaves the hole out")
+                    .help("if that hole is the intended one, correct its position; otherwise add the missing hole")
                     .at(found.backtrace.clone())
             }
-            None => finding.help("the program leaves it out"),
+            None => finding.help("add the hole to the program"),
         };
         objections.push(HoleFinding::of_nominal(*wanted, finding));
     }

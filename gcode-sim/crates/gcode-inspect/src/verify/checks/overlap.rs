@@ -10,7 +10,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
     for overlap in overlaps(comparison.nominal) {
         let message = overlap.sentence(comparison.nominal);
         let finding = Diagnostic::new(Severity::Note, "hole-overlap", message)
-            .help("if the drawing doesn't mean that: look for a slip in the radius, azimuth or depth of one of them");
+            .help("check radius, azimuth and depth of both holes, unless the drawing specifies this");
         objections.push(HoleFinding::of_nominal(overlap.holes[0], finding));
     }
 }

@@ -17,7 +17,7 @@ fn finding(comparison: &Comparison<'_>, pair: &HolePair) -> Diagnostic {
     let id = comparison.id(pair.nominal);
     let leans = deviation.tilt.tan() * wanted.depth;
     let limits = format!(
-        "Φ{:.4} where Φ{} is allowed ({:.4} mm at the entry, {:.4} mm at the bottom)",
+        "Φ{:.4}, tolerance Φ{} (axis off by {:.4} mm at the entry, {:.4} mm at the bottom)",
         deviation.zone_diameter(),
         comparison.tolerances.position,
         deviation.at_entry,
@@ -27,12 +27,15 @@ fn finding(comparison: &Comparison<'_>, pair: &HolePair) -> Diagnostic {
     let finding = if leans > deviation.at_entry.min(deviation.at_bottom)
         && leans > comparison.tolerances.position / 4.0
     {
-        Diagnostic::error("hole-tilted", format!("hole {id} leans by {:.3}°: {limits}", deviation.tilt.0))
-            .help("check the head's angle, and that the feed runs along the hole")
+        Diagnostic::error("hole-tilted", format!("hole {id} is tilted by {:.3}°: {limits}", deviation.tilt.0))
+            .help("check the head angle, and that the feed runs along the hole")
     } else {
-        let d: Vec<_> = (0..3).map(|i| format!("{:+.4}", deviation.entry[i] - wanted.entry[i])).collect();
-        Diagnostic::error("hole-position", format!("hole {id} stands aside by {}: {limits}", d.join(" ")))
-            .help("the three numbers are actual less nominal in x, y, z of the part: correct the programmed point")
+        let [x, y, z] = [0, 1, 2].map(|i| deviation.entry[i] - wanted.entry[i]);
+        Diagnostic::error("hole-position", format!("hole {id} is out of position: {limits}"))
+            .note(format!(
+                "actual − nominal at the entry, part coordinates: x {x:+.4}, y {y:+.4}, z {z:+.4} mm"
+            ))
+            .help("correct the programmed point")
     };
     finding.at(found.backtrace.clone())
 }

@@ -57,28 +57,28 @@ fn finding(mismatch: &LengthMismatch, conduct: &ProcessLimits, machine: &Machine
     let own = conduct.tool_process(Some(tool)).and_then(|duty| duty.offset).unwrap_or(tool);
     let (how, help) = match mismatch.compensation {
         LengthCompensation::Off | LengthCompensation::Plus(0) | LengthCompensation::Minus(0) => {
-            ("without its length offset".to_owned(), format!("G43 H{own} before the first hole"))
+            ("without its length offset".to_owned(), format!("command G43 H{own} before the first hole"))
         }
         LengthCompensation::Plus(h) if h == own => (
-            format!("with H{h}, which holds {}", rounded_mm(length - beyond)),
-            format!("H{h} in the control has to hold the length of T{tool}"),
+            format!("with H{h}, which is {}", rounded_mm(length - beyond)),
+            format!("set H{h} in the control to the length of T{tool}"),
         ),
         LengthCompensation::Plus(h) => {
-            (format!("with H{h}, which holds {}", rounded_mm(length - beyond)), format!("G43 H{own}"))
+            (format!("with H{h}, which is {}", rounded_mm(length - beyond)), format!("command G43 H{own}"))
         }
         LengthCompensation::Minus(h) => {
-            (format!("with G44 H{h}, which takes the length away"), format!("G43 H{own}"))
+            (format!("with G44 H{h}, which subtracts the length"), format!("command G43 H{own}"))
         }
     };
     let length = rounded_mm(length);
     let message = format!("T{tool}, {length} mm long, cuts {how}: its tip is {by} mm {side} than programmed");
     let other = conduct.tools.first().filter(|_| conduct.tool_process(Some(tool)).is_none());
     let help = match other {
-        Some(duty) => format!("put in the job's tool, T{}, or {help}", duty.number),
+        Some(duty) => format!("use the job's tool, T{}, or {help}", duty.number),
         None => help,
     };
     Diagnostic::error("length-offset", message)
-        .note("just that puts its feeds beside the holes; the length is the machine file's")
+        .note("this length error alone explains the missed depths; the length comes from the machine file")
         .help(help)
         .at(mismatch.backtrace.clone())
 }

@@ -27,8 +27,8 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
     let (found, right) = (pattern.arc(usual), pattern.arc(wanted));
     let fits = pattern.diameter * wanted.0 / usual.0;
     let message = format!(
-        "the rows stand {}° apart, {:.4}° wanted: neighbours round the circumference are {found:.2} mm apart instead of \
-         {right:.2}",
+        "the rows are {}° apart, nominal {:.4}°: neighbours round the circumference are {found:.2} mm \
+         apart, nominal {right:.2}",
         format_angle(usual),
         wanted.0
     );
@@ -37,14 +37,14 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
     if is_whole(usual) && !is_whole(wanted) {
         let cut = if usual.0 < wanted.0 { "FIX or ROUND" } else { "FUP or ROUND" };
         finding = finding.note(format!(
-            "{}° is a whole number of degrees: what did {cut} leave off?",
+            "{}° is a whole number of degrees: check for rounding by {cut}",
             format_angle(usual)
         ));
     } else if let Some(closes) = explain_closure(pattern, &rows, usual) {
         finding = finding.note(closes);
     } else {
         finding = finding.note(format!(
-            "this angle would be right for a diameter of {fits:.2} mm, the pitch is to hold on {}",
+            "this angle is right for a diameter of {fits:.2} mm; the pitch is specified on {}",
             pattern.diameter
         ));
         if let Some(causes) = describe_causes(pattern, fits / pattern.diameter, true) {
@@ -60,8 +60,8 @@ fn explain_closure(pattern: &Pattern, rows: &PatternRows, usual: Deg) -> Option<
     let even = (usual.0 * f64::from(count) - 360.0).abs() < ROUNDING_ALLOWANCE.0;
     (even && count.is_multiple_of(2) && !rows.is_single_group(pattern)).then(|| {
         format!(
-            "so {} rows of each group close it, as a pitch of about {:.3} asks for: are divisions, pitch or diameter in the call \
-             others?",
+            "this is the angle of {} rows in each group, for a pitch of about {:.3}: check divisions, \
+             pitch and diameter in the call",
             count / 2,
             pattern.pitch_of(count)
         )
@@ -70,7 +70,7 @@ fn explain_closure(pattern: &Pattern, rows: &PatternRows, usual: Deg) -> Option<
 
 fn help(pattern: &Pattern) -> String {
     format!(
-        "{} rows of each group close it: 360/{0}° from one to the next of its group, unrounded",
+        "use {} rows in each group: 360/{0}° from one row of a group to the next, unrounded",
         pattern.rows / 2
     )
 }

@@ -29,23 +29,23 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
     let alike = rows.rows.iter().all(|row| (row.start - first.start).abs() < SAME_SHIFT);
     let begin = match alike {
         true => format!("begin at x {:.3}", first.start),
-        false => format!("begin whole pitches from x {:.3}", first.start),
+        false => format!("begin at whole pitches from x {:.3}", first.start),
     };
     let (message, help) = match rows.is_single_group(pattern) {
         true => (
             format!(
-                "one of two groups of rows is missing, half of the pattern: all {count} rows {begin}, none is \
-                 staggered; {second} of {} wanted holes belong to the other group",
+                "one of the two groups of rows is missing, half of the pattern: all {count} rows {begin}, \
+                 no row is staggered; {second} of {} holes belong to the other group",
                 comparison.nominal.len()
             ),
             format!(
-                "drill the second group too: {:.4}° further round than the first, half a pitch ({half:.3} mm) later in x",
+                "drill the second group: rotated by {:.4}° from the first and half a pitch ({half:.3} mm) later in x",
                 pattern.step().0
             ),
         ),
         false => (
             format!("no row is staggered: all {count} rows {begin}"),
-            format!("every second row begins half a pitch later in x: {half:.3} mm"),
+            format!("begin every second row half a pitch later in x: {half:.3} mm"),
         ),
     };
     let finding = locate_at_call(
@@ -79,14 +79,15 @@ fn shifted_group(comparison: &Comparison<'_>, pattern: &Pattern, rows: &PatternR
         _ => return None,
     };
     let message = format!(
-        "the {} group of rows begins at x {:.3}, {:.3} wanted: {:.3} mm too {}",
+        "the {} group of rows begins at x {:.3}, nominal {:.3}: {:.3} mm too {}",
         ["first", "second"][group],
         begins[group],
         wanted[group],
         off[group].abs(),
         if off[group] < 0.0 { "early" } else { "late" }
     );
-    let help = "the first group begins at x 0, the second half a pitch later; all holes of a row follow from its first";
+    let help = "begin the first group at x 0 and the second half a pitch later; the first hole of a row \
+                positions the others";
     Some(locate_at_call(
         Diagnostic::error("row-group", message).help(help),
         &comparison.actual[first[group].first].backtrace,

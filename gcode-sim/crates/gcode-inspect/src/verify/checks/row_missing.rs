@@ -43,8 +43,8 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
         }
     };
     let help = match to + 1 == pattern.rows as usize {
-        true => format!("rows count from 0 to {to}: does the loop over them end too early?"),
-        false => "the program leaves this out: is a row skipped, or drilled at another angle?".to_owned(),
+        true => format!("check whether the loop over the rows ends too early: rows count from 0 to {to}"),
+        false => "check for a row that is skipped or drilled at another angle".to_owned(),
     };
     let mut finding = Diagnostic::error("row-missing", message).help(help);
     finding.notes.extend(folded_note(folded));

@@ -23,7 +23,8 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
         return;
     }
     let message = format!(
-        "the holes of a row stand {spacing:.4} mm apart, {:.4} wanted: over {pitches:.0} pitches that is {sum:.2} mm",
+        "the holes of a row are {spacing:.4} mm apart, nominal {:.4}: over {pitches:.0} pitches the error \
+         is {sum:.2} mm",
         pattern.pitch
     );
     let mut finding =
@@ -32,13 +33,13 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
         && (spacing - asked).abs() < (spacing - pattern.pitch).abs()
     {
         finding = finding.note(format!(
-            "{asked} mm are what was asked for; round the circumference the pattern closes with {:.4}",
+            "{asked} mm is the specified pitch; the pattern closes round the circumference with {:.4}",
             pattern.pitch
         ));
     }
     if let Some(causes) = describe_causes(pattern, spacing / pattern.pitch, false) {
         finding = finding.note(causes);
     }
-    let finding = finding.help("compute the pitch from the number of rows that close, after the angle");
+    let finding = finding.help("compute the angle from the number of rows that close, then the pitch");
     objections.push(HoleFinding::unlocated(finding));
 }

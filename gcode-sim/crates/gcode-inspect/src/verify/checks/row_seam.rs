@@ -22,7 +22,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
         return;
     }
     let message = format!(
-        "a seam: the rows at {:.3}° and {:.3}° are {:.3}° apart, {:.2} mm, all others {:.3}°, {:.2} mm",
+        "a seam: the rows at {:.3}° and {:.3}° are {:.3}° ({:.2} mm) apart, all others {:.3}° ({:.2} mm)",
         before.azimuth.0,
         after.azimuth.0,
         gap.0,
@@ -30,7 +30,10 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
         rows.typical_gap.0,
         pattern.arc(rows.typical_gap)
     );
-    let finding = Diagnostic::error("row-seam", message).help("the angle from row to row must divide 360: take a whole number of rows first, then the angle, then the pitch");
+    let finding = Diagnostic::error("row-seam", message).help(
+        "make the angle from row to row divide 360: choose a whole number of rows, then compute the angle, \
+         then the pitch",
+    );
     objections
         .push(HoleFinding::unlocated(locate_at_call(finding, &comparison.actual[before.first].backtrace)));
 }

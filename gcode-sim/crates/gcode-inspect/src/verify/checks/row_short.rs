@@ -19,14 +19,14 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
     let folded = fold(objections, &["hole-missing"], |_| true);
     let farthest = comparison.missing.iter().map(|wanted| x(*wanted)).fold(end, f64::max);
     let message = format!(
-        "the pattern ends too early: the last hole stands at x {end:.3}, and beyond it, up to x {farthest:.3}, {} missing",
+        "the pattern ends too early: the last hole is at x {end:.3}; beyond it, up to x {farthest:.3}, {} missing",
         match comparison.missing.len() {
             1 => "1 hole is".to_owned(),
             missing => format!("{missing} holes are"),
         }
     );
     let mut finding =
-        Diagnostic::error("row-short", message).help("is the length in the call right, and with its point?");
+        Diagnostic::error("row-short", message).help("check the length in the call, and its decimal point");
     finding.notes.extend(folded_note(folded));
     // A missing group is what that looks like.
     objections.retain(|objection| objection.finding.code != "row-group");

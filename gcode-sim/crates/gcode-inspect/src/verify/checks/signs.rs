@@ -20,10 +20,10 @@ pub(in crate::verify) fn finding(reference: &Reference, machine: &Machine) -> Op
     (sign != job).then(|| {
         let letter = rotary.letter;
         let message =
-            format!("{letter} has the sign {sign} in the machine file and {job} in the job: it turns the other way there");
+            format!("{letter} has sign {sign} in the machine file and {job} in the job: the directions are opposite");
         Diagnostic::warning("axis-signs", message)
-            .note("what is said of the holes is of the machine file's machine; programs emitted from the job are for the other")
-            .help("turn the part by hand and look; then correct the one that is wrong")
+            .note("the results are for the machine file's direction; programs emitted from the job assume the job's")
+            .help("rotate the part by hand, observe its direction and correct the wrong sign")
     })
 }
 

@@ -15,7 +15,7 @@ pub(in crate::verify) fn check(
     objections.retain(|objection| !objection.finding.code.starts_with("row-"));
     if let [one] = comparison.missing.as_slice() {
         for objection in objections.iter_mut().filter(|objection| objection.nominal == Some(*one)) {
-            objection.finding.help = Some("the run stopped before its end: see why first".to_owned());
+            objection.finding.help = Some("find out first why the run stopped before its end".to_owned());
         }
         return;
     }
@@ -23,7 +23,7 @@ pub(in crate::verify) fn check(
     let (missing, all) = (comparison.missing.len(), comparison.nominal.len());
     let message = format!("the run stopped before its end: {missing} of {all} holes are missing");
     let mut finding = Diagnostic::error("hole-missing", message)
-        .help("what stopped it comes first: the holes behind it were never begun");
+        .help("correct the cause of the stop first: the holes after it were not begun");
     finding.notes.extend(folded_note(missing));
     objections.insert(0, HoleFinding::unlocated(finding));
 }

@@ -29,16 +29,15 @@ pub(in crate::verify) fn check(
     let sentence = |which: &str, wanted: usize, thick: f64| {
         let depth = comparison.nominal[wanted].depth;
         let message =
-            format!("{which} through: {depth} mm deep where the part is {thick:.1} mm thick along its axis");
-        Diagnostic::warning("hole-through", message).help(
-            "if the drawing doesn't mean that: look for a slip in the depth, the radius or the direction",
-        )
+            format!("{which} through: {depth} mm deep, the part is {thick:.1} mm thick along its axis");
+        Diagnostic::warning("hole-through", message)
+            .help("check depth, radius and direction, unless the drawing specifies a through hole")
     };
     let many = MIN_HOLES <= through.len();
     if let Some((wanted, thick)) = through.first().filter(|_| many) {
         let (count, all, id) = (through.len(), comparison.nominal.len(), comparison.id(*wanted));
         let mut finding =
-            sentence(&format!("{count} of {all} holes go through; {id}, the first, goes"), *wanted, *thick);
+            sentence(&format!("{count} of {all} holes go through; the first, {id}, goes"), *wanted, *thick);
         finding.notes.extend(folded_note(count));
         objections.push(HoleFinding::unlocated(finding));
     }

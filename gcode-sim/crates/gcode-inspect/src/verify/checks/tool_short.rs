@@ -57,11 +57,15 @@ pub(in crate::verify) fn check(
         let Deepest { nominal: wanted, depth, place, holes } = deepest;
         let more = if holes > 1 { format!(" (and in {} more holes)", holes - 1) } else { String::new() };
         let message = format!(
-            "T{tool} is {length} mm long and goes {depth:.1} mm deep in hole {}{more}: the spindle would be in the part",
+            "T{tool} is {length} mm long and goes {depth:.1} mm deep in hole {}{more}: the spindle would \
+             enter the part",
             comparison.id(wanted)
         );
         let finding = Diagnostic::warning("tool-short", message)
-            .help("is the length in the machine file that from the spindle's gauge line to the tip? Else take a longer tool")
+            .help(
+                "check that the length in the machine file runs from the spindle gauge line to the tip; \
+                 otherwise use a longer tool",
+            )
             .at(place.clone());
         objections.push(HoleFinding::of_nominal(wanted, finding));
     }

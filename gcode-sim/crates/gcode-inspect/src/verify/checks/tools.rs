@@ -31,13 +31,13 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
                 usual.iter().filter(|tool| !cuts(tool)).map(|tool| format!("T{tool}")).collect();
             let pair = &comparison.pairs[*index];
             let message = format!(
-                "hole {} is made without {}, which most holes of Φ{} get",
+                "hole {} is made without {}; most holes of Φ{} are made with it",
                 comparison.id(pair.nominal),
                 lacks.join(", "),
                 f64::from_bits(diameter)
             );
             let finding = Diagnostic::warning("hole-tools", message)
-                .help("was a call left out?")
+                .help("check for a missing call")
                 .at(comparison.actual[pair.actual].backtrace.clone());
             objections.push(HoleFinding::of_nominal(pair.nominal, finding));
         }

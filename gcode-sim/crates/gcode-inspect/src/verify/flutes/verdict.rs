@@ -100,8 +100,8 @@ impl FluteVerdict {
     /// How many flutes there are, and what else is wrong, in one line.
     pub fn sentence(&self) -> String {
         let mut text = match self.flutes <= self.nominal_flutes {
-            true => format!("{} of {} wanted flutes are there", self.flutes, self.nominal_flutes),
-            false => format!("{} flutes are there where {} are wanted", self.flutes, self.nominal_flutes),
+            true => format!("{} of {} flutes ground", self.flutes, self.nominal_flutes),
+            false => format!("{} flutes ground, {} specified", self.flutes, self.nominal_flutes),
         };
         let mut mentioned: Vec<&str> = Vec::new();
         for finding in self.findings.iter().filter(|f| f.severity == "error" || f.severity == "alarm") {
@@ -122,20 +122,20 @@ impl FluteVerdict {
 pub fn describe_code(code: &str) -> Option<&'static str> {
     Some(match code {
         "flute-missing" => "a flute is missing",
-        "flute-extra" => "a flute too many",
+        "flute-extra" => "an extra flute",
         "flute-twice" => "a flute is ground twice",
         "flute-surface" => "contact off the tooth bottom",
-        "flute-helix" => "helix angle out",
-        "flute-index" => "spacing uneven",
-        "flute-end" => "an end out of place",
-        "flute-head" => "the wheel's angle out",
-        "flute-speed" => "speed out",
-        "wheel-speed" => "the wheel's S out",
-        "wheel-feed" => "the feed into the blank out",
-        "burr-offset" => "the burr's place isn't the job's",
-        "spindle-stopped" => "the wheel stands",
-        "flutes-meet" => "neighbours meet",
-        "wheel-into-burr" => "the wheel runs into the burr",
+        "flute-helix" => "helix angle out of tolerance",
+        "flute-index" => "spacing out of tolerance",
+        "flute-end" => "an end out of position",
+        "flute-head" => "head angle out of tolerance",
+        "flute-speed" => "speed out of tolerance",
+        "wheel-speed" => "wheel speed out of tolerance",
+        "wheel-feed" => "feed into the blank out of tolerance",
+        "burr-offset" => "the burr's position differs from the job's",
+        "spindle-stopped" => "the wheel is stopped",
+        "flutes-meet" => "neighbours overlap",
+        "wheel-into-burr" => "the wheel enters the burr",
         _ => return None,
     })
 }
@@ -221,35 +221,37 @@ fn not_checked(
     locate: &dyn Fn(Span) -> (String, u32),
 ) -> Vec<String> {
     let mut all = vec![
-        "the wheel's width, form and body: it is one point, so whether it gouges a neighbouring tooth beside its contact \
-         isn't known"
+        "the wheel's width, form and body: it is simulated as one point, so gouging of a neighbouring \
+         tooth next to the contact is unknown"
             .to_owned(),
-        "which side of the wheel's swivel B is right: only its angle is held against the helix angle".to_owned(),
-        "which way round the wheel has to turn: the job doesn't say".to_owned(),
+        "the direction of the wheel's swivel B: only its angle is compared with the helix angle".to_owned(),
+        "the wheel's direction of rotation: the job does not give it".to_owned(),
     ];
     if wanted.speed.is_none() {
         all.push("the speed along the flutes: the job has no program.speed".to_owned());
     }
     if wanted.wheel.is_none() {
-        all.push("how fast the wheel turns: the job has no program.wheel".to_owned());
+        all.push("the wheel's spindle speed: the job has no program.wheel".to_owned());
     }
     if wanted.plunge.is_none() {
-        all.push("how fast the wheel is fed into the blank: the job has no program.plunge".to_owned());
+        all.push("the wheel's feed into the blank: the job has no program.plunge".to_owned());
     }
     if wanted.clearance.is_none() {
         all.push(
-            "how far off the blank rapid motion ends, but for that it doesn't touch: the job has no machine.clearance".to_owned(),
+            "the distance from the blank where rapid motion ends, except for contact: the job has no \
+             machine.clearance"
+                .to_owned(),
         );
     }
     if ground.offset.is_none() {
-        all.push("the job's c_offset: the machine file has no axis C that turns about z".to_owned());
+        all.push("the job's c_offset: the machine file has no axis C that rotates about z".to_owned());
     }
     let unseen = ground.unchecked_rapids;
     if 0 < unseen {
         let moves = if unseen == 1 { "1 move" } else { &format!("{unseen} moves") };
         all.push(format!(
-            "rapid motion up to where the wheel first stands off the blank ({moves}): where the axes stand at the start isn't \
-             known"
+            "rapid motion up to where the wheel is first clear of the blank ({moves}): the axes' start \
+             position is unknown"
         ));
     }
     all.extend(

@@ -108,7 +108,7 @@ mod tests {
                 "line 10: key 'ellipse.chord_error' is 0.0005: 0.001 (the least increment) to 1 mm",
             ),
             ("feed = 0", "line 10: key 'ellipse.feed' is 0: 1 to 10000 mm/min"),
-            ("speed = 1", "line 10: key 'ellipse.speed' is not known; allowed: from, to, chord_error, feed"),
+            ("speed = 1", "line 10: key 'ellipse.speed' is unknown; allowed: from, to, chord_error, feed"),
             (
                 "to = 318",
                 "line 10: the ellipse begins and ends at x = 318 mm: 'ellipse.from' and 'ellipse.to' (by default F and E) must differ",

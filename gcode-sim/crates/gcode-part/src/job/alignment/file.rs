@@ -170,7 +170,8 @@ impl FileSineTable {
         let (height, most) = (gauge::height(Mm(table.length), Deg(table.phi)).0, table.gauge_blocks.total());
         if height > most.mm() {
             let message = format!(
-                "key 'sine_table.gauge_blocks' is '{}': all its blocks together are {most} mm high, and L*sin(phi) is {height:.3} mm",
+                "key 'sine_table.gauge_blocks' is '{}': all its blocks together are {most} mm high, \
+                 L*sin(phi) is {height:.3} mm",
                 table.gauge_blocks.name
             );
             return Err(reader.error(&self.gauge_blocks, message));
@@ -178,8 +179,8 @@ impl FileSineTable {
         let setting = gauge::setting(Mm(table.length), Deg(table.phi), &table.gauge_blocks);
         if setting.stack.blocks.is_empty() && table.phi > 0.0 {
             let message = format!(
-                "key 'sine_table.phi' is {}: L*sin(phi) is {:.4} mm, and no block of '{}' comes nearer to it than none; put blocks under \
-                 both rollers and choose the phi that their difference makes, or 0",
+                "key 'sine_table.phi' is {}: L*sin(phi) is {:.4} mm, lower than any stack of '{}'; put \
+                 blocks under both rollers and choose the phi of their difference, or 0",
                 table.phi, setting.height.0, table.gauge_blocks.name
             );
             return Err(reader.error(&self.phi, message));
@@ -196,8 +197,9 @@ impl FileChord {
         let e_radius = radius("chord.e_radius", &self.e_radius)?;
         let f_radius = radius("chord.f_radius", &self.f_radius)?;
         if e_radius == f_radius {
-            let message =
-                format!("key 'chord.f_radius' is {f_radius}: as large as e_radius, and there is no chord");
+            let message = format!(
+                "key 'chord.f_radius' is {f_radius}, equal to e_radius: E and F need different values"
+            );
             return Err(reader.error(&self.f_radius, message));
         }
         let circle = length(reader, "chord.circle", &self.circle)?;
@@ -249,7 +251,8 @@ impl FileChord {
         }
         if search < 8.0 * circle {
             let message = format!(
-                "key 'chord.circle' is {circle}: at most an eighth of 'probe.search', which is {search} mm, for the surface falls within the circle"
+                "key 'chord.circle' is {circle}: at most an eighth of 'probe.search', which is {search} \
+                 mm, because the surface falls within the circle"
             );
             return Err(reader.error(&self.circle, message));
         }
@@ -261,8 +264,8 @@ impl FileChord {
             let part = up / (across * across + up * up).sqrt();
             if part < STEEP {
                 let message = format!(
-                    "key '{key}' is {x}: the surface stands at {:.1} degrees to y there, and less than {:.1} is too steep to \
-                     be touched along y; choose it nearer to the pole",
+                    "key '{key}' is {x}: the surface is at {:.1} degrees to y there, and less than {:.1} \
+                     is too steep for a touch along y; choose it nearer to the pole",
                     Deg::asin(part).0,
                     Deg::asin(STEEP).0
                 );
@@ -334,7 +337,7 @@ angles = [-25.0, 25.0, 11]
             (
                 "radius = 3.0",
                 "diameter = 6",
-                "line 12: key 'probe.diameter' is not known; allowed: radius, feed, search, noise",
+                "line 12: key 'probe.diameter' is unknown; allowed: radius, feed, search, noise",
             ),
             ("phi = 38.5", "phi = 46", "line 15: key 'sine_table.phi' is 46: 0 to 45 degrees"),
             ("length = 200.0", "sign = 2\nlength = 200.0", "line 14: key 'sine_table.sign' is 2: 1 or -1"),
@@ -348,15 +351,15 @@ angles = [-25.0, 25.0, 11]
             (
                 "length = 200.0\nphi = 38.5\ngauge_blocks = \"metric-87\"",
                 "length = 500.0\nphi = 45.0\ngauge_blocks = \"metric-32\"",
-                "line 16: key 'sine_table.gauge_blocks' is 'metric-32': all its blocks together are 188.955 mm high, \
-                 and L*sin(phi) is 353.553 mm",
+                "line 16: key 'sine_table.gauge_blocks' is 'metric-32': all its blocks together are \
+                 188.955 mm high, L*sin(phi) is 353.553 mm",
             ),
             ("candidates = 10", "candidates = 11", "line 21: key 'chord.candidates' is 11: 1 to 10"),
             ("[runout]", "uneven = 0\n[runout]", "line 22: key 'chord.uneven' is 0: 0.001 to 100 mm"),
             (
                 "e_radius = 812.4",
                 "e_radius = 318",
-                "line 19: key 'chord.f_radius' is 318: as large as e_radius, and there is no chord",
+                "line 19: key 'chord.f_radius' is 318, equal to e_radius: E and F need different values",
             ),
             ("radius = 3.0", "radius = 3.0\nfeed = 0", "line 13: key 'probe.feed' is 0: 0.01 to 1000 mm/min"),
             (
@@ -367,8 +370,8 @@ angles = [-25.0, 25.0, 11]
             (
                 "circle = 1.0",
                 "circle = 2.0",
-                "line 20: key 'chord.circle' is 2: at most an eighth of 'probe.search', which is 10 mm, for the surface falls \
-                 within the circle",
+                "line 20: key 'chord.circle' is 2: at most an eighth of 'probe.search', which is 10 mm, \
+                 because the surface falls within the circle",
             ),
             (
                 "f_radius = 318.0",
@@ -379,8 +382,8 @@ angles = [-25.0, 25.0, 11]
             (
                 "e_radius = 812.4",
                 "e_radius = 1140.0",
-                "line 18: key 'chord.e_radius' is 1140: the surface stands at 16.3 degrees to y there, and less than 17.5 is too \
-                 steep to be touched along y; choose it nearer to the pole",
+                "line 18: key 'chord.e_radius' is 1140: the surface is at 16.3 degrees to y there, and \
+                 less than 17.5 is too steep for a touch along y; choose it nearer to the pole",
             ),
             (
                 "radius = 3.0",
@@ -391,57 +394,61 @@ angles = [-25.0, 25.0, 11]
             (
                 "[150.0, 420.0]",
                 "[150.0]",
-                "line 23: key 'runout.heights' is two different y, each less than b = 724.3 mm from 0, and it has 1",
+                "line 23: key 'runout.heights' needs two different y, each less than b = 724.3 mm from 0; it has 1",
             ),
             (
                 "[150.0, 420.0]",
                 "[150.0, 150.0]",
-                "line 23: key 'runout.heights' is two different y, each less than b = 724.3 mm from 0, and both are 150",
+                "line 23: key 'runout.heights' needs two different y, each less than b = 724.3 mm from 0; \
+                 both are 150",
             ),
             (
                 "[150.0, 420.0]",
                 "[150.0, -800.0]",
-                "line 23: key 'runout.heights' is two different y, each less than b = 724.3 mm from 0, and -800 isn't",
+                "line 23: key 'runout.heights' needs two different y, each less than b = 724.3 mm from 0; -800 is not",
             ),
             (
                 "phi = 38.5",
                 "phi = 0.01",
-                "line 15: key 'sine_table.phi' is 0.01: L*sin(phi) is 0.0349 mm, and no block of 'metric-87' comes nearer to it than \
-                 none; put blocks under both rollers and choose the phi that their difference makes, or 0",
+                "line 15: key 'sine_table.phi' is 0.01: L*sin(phi) is 0.0349 mm, lower than any stack of \
+                 'metric-87'; put blocks under both rollers and choose the phi of their difference, or 0",
             ),
             (
                 "[-25.0, 25.0",
                 "[10.0, 60.0",
-                "line 24: key 'runout.angles' is from 10 to 60: 0 has to be among them, for the chord and the ellipse are touched at \
-                 B0; shift the work zero of the rotary so that 0 is on the petal",
+                "line 24: key 'runout.angles' runs from 10 to 60: it must include 0, because the chord and \
+                 the ellipse are touched at B0; shift the work zero of the rotary so that 0 is on the petal",
             ),
             (
                 "[-25.0, 25.0",
                 "[-60.0, -0.5",
-                "line 24: key 'runout.angles' is from -60 to -0.5: 0 has to be among them, for the chord and the ellipse are touched \
-                 at B0; shift the work zero of the rotary so that 0 is on the petal",
+                "line 24: key 'runout.angles' runs from -60 to -0.5: it must include 0, because the chord \
+                 and the ellipse are touched at B0; shift the work zero of the rotary so that 0 is on the \
+                 petal",
             ),
             (
                 "25.0, 11]",
                 "25.0, 2]",
-                "line 24: key 'runout.angles' is from, to and the number of readings, and the number of readings is 2: a whole number, 3 to \
-                 100",
+                "line 24: key 'runout.angles' is from, to and the number of readings; the number of \
+                 readings is 2: a whole number, 3 to 100",
             ),
             (
                 "25.0, 11]",
                 "25.0, 10.5]",
-                "line 24: key 'runout.angles' is from, to and the number of readings, and the number of readings is 10.5: a whole number, \
-                 3 to 100",
+                "line 24: key 'runout.angles' is from, to and the number of readings; the number of \
+                 readings is 10.5: a whole number, 3 to 100",
             ),
             (
                 "[-25.0, 25.0",
                 "[25.0, -25.0",
-                "line 24: key 'runout.angles' is from, to and the number of readings, and it goes from 25 to -25: from has to be below to",
+                "line 24: key 'runout.angles' is from, to and the number of readings; it runs from 25 to \
+                 -25: from must be less than to",
             ),
             (
                 "[-25.0, 25.0",
                 "[-25.0, 365.0",
-                "line 24: key 'runout.angles' is from, to and the number of readings, and the angle to is 365: -360 to 360 degrees",
+                "line 24: key 'runout.angles' is from, to and the number of readings; the angle to is 365: \
+                 -360 to 360 degrees",
             ),
         ] {
             let text = JOB.replacen(from, to, 1);

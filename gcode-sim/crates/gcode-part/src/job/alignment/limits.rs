@@ -97,7 +97,7 @@ mod tests {
             ("shift = 0", "line 10: key 'limits.shift' is 0: 0.001 to 10 mm"),
             ("tilt = 2", "line 10: key 'limits.tilt' is 2: 0.001 to 1 degrees"),
             ("dial = -0.03", "line 10: key 'limits.dial' is -0.03: 0.001 to 10 mm"),
-            ("chord = 1", "line 10: key 'limits.chord' is not known; allowed: shift, tilt, dial"),
+            ("chord = 1", "line 10: key 'limits.chord' is unknown; allowed: shift, tilt, dial"),
         ] {
             assert_eq!(job(&format!("[limits]\n{section}")).unwrap_err(), message);
         }

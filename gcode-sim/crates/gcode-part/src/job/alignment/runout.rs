@@ -29,12 +29,12 @@ impl FileRunout {
         let heights = match *all.as_slice() {
             [low, high] if low.abs() < b && high.abs() < b && low != high => Ok([low, high]),
             [low, high] if low == high => Err(format!("both are {low}")),
-            [low, high] => Err(format!("{} isn't", if low.abs() < b { high } else { low })),
+            [low, high] => Err(format!("{} is not", if low.abs() < b { high } else { low })),
             _ => Err(format!("it has {}", all.len())),
         };
         let heights = heights.map_err(|wrong| {
             let message = format!(
-                "key 'runout.heights' is two different y, each less than b = {b} mm from 0, and {wrong}"
+                "key 'runout.heights' needs two different y, each less than b = {b} mm from 0; {wrong}"
             );
             reader.error(&self.heights, message)
         })?;
@@ -45,20 +45,20 @@ impl FileRunout {
         let wrong = if let Some((which, angle)) = beyond {
             Some(format!("the angle {which} is {angle}: -360 to 360 degrees"))
         } else if from >= to {
-            Some(format!("it goes from {from} to {to}: from has to be below to"))
+            Some(format!("it runs from {from} to {to}: from must be less than to"))
         } else if !((3.0..=100.0).contains(&readings) && readings.fract() == 0.0) {
             Some(format!("the number of readings is {readings}: a whole number, 3 to 100"))
         } else {
             None
         };
         if let Some(wrong) = wrong {
-            let message = format!("key 'runout.angles' is from, to and the number of readings, and {wrong}");
+            let message = format!("key 'runout.angles' is from, to and the number of readings; {wrong}");
             return Err(reader.error(&self.angles, message));
         }
         if from > 0.0 || to < 0.0 {
             let message = format!(
-                "key 'runout.angles' is from {from} to {to}: 0 has to be among them, for the chord and the ellipse are touched at B0; \
-                 shift the work zero of the rotary so that 0 is on the petal"
+                "key 'runout.angles' runs from {from} to {to}: it must include 0, because the chord and \
+                 the ellipse are touched at B0; shift the work zero of the rotary so that 0 is on the petal"
             );
             return Err(reader.error(&self.angles, message));
         }

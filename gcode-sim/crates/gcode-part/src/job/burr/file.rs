@@ -158,24 +158,21 @@ pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<Burr, FileError> {
     let burr = &file.burr;
     let profile = match (&burr.profile, &file.machine.profile) {
         (Some(_), Some(second)) => {
-            return Err(
-                reader.error(second, "key 'profile' stands in [burr] and in [machine]: once is enough")
-            );
+            return Err(reader.error(second, "key 'profile' is in [burr] and in [machine]: remove one"));
         }
         (one, other) => one.as_ref().or(other.as_ref()),
     };
     let helix = reader.number(
         "burr.helix",
         &burr.helix,
-        "1 to 60 degrees, or -60 to -1 for a left-hand burr (a straight flute has no move that turns A, which tells \
-         grinding from approach)",
+        "1 to 60 degrees, or -60 to -1 for a left-hand burr (a straight flute has no move that rotates A, \
+         which distinguishes grinding from approach)",
         |v| within(1.0, 60.0)(v.abs()),
     )?;
     let shape = burr.shape(reader, profile)?;
     let increment = control.increment.size();
-    let chord = format!(
-        "{increment} to 1 mm: rounding to the least increment of {increment} takes half of that, and is part of it"
-    );
+    let chord =
+        format!("{increment} to 1 mm: rounding to the least increment of {increment} uses half of it");
     let chord_error = reader.number("burr.chord_error", &burr.chord_error, &chord, within(increment, 1.0))?;
     Ok(Burr {
         control,
@@ -224,7 +221,7 @@ impl FileBurr {
             tip_angle: reader.number(
                 "burr.tip_angle",
                 &self.tip_angle,
-                "1 to 85 degrees: at the pole a flute would have no width",
+                "1 to 85 degrees: at the pole a flute has no width",
                 within(1.0, 85.0),
             )?,
             tooth_depth: optional(
@@ -250,10 +247,11 @@ impl FileBurr {
             let message = match most < 360.0 {
                 _ if flutes < 1 => format!("key 'burr.flutes' is {flutes}: a burr has at least 1"),
                 true => format!(
-                    "key 'burr.flutes' is {flutes}: {most:.0} at most, for they end on a circle {round:.3} mm round, and \
-                     each takes up to four chord errors of it: fewer flutes, a larger tip_angle or a smaller chord_error"
+                    "key 'burr.flutes' is {flutes}: at most {most:.0}, because they end on a circle of \
+                     {round:.3} mm circumference and each needs up to four chord errors of it: fewer \
+                     flutes, a larger tip_angle or a smaller chord_error"
                 ),
-                false => format!("key 'burr.flutes' is {flutes}: 360 at most"),
+                false => format!("key 'burr.flutes' is {flutes}: at most 360"),
             };
             reader.error(&self.flutes, message)
         })
@@ -336,7 +334,8 @@ impl FileProgram {
         let form = match file.and_then(|file| file.form.as_ref()) {
             Some(form) => match reader.choice("program.form", form, &FORMS)? {
                 ProgramForm::Loop if without_loop => {
-                    let message = "key 'program.form' is 'loop': haas-ngc has no LN, which the loop computes with; 'moves'";
+                    let message =
+                        "key 'program.form' is 'loop': haas-ngc has no LN, which the loop needs; use 'moves'";
                     return Err(reader.error(form, message));
                 }
                 form => form,

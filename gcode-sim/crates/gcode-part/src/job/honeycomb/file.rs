@@ -165,7 +165,7 @@ impl FileClamp {
         };
         let clamp = Clamp { on: own("on", &self.on)?, off: own("off", &self.off)? };
         if clamp.on == clamp.off {
-            let message = format!("key 'machine.clamp.off' is {}, which is 'on' too", clamp.off);
+            let message = format!("key 'machine.clamp.off' is {}, the same as 'on'", clamp.off);
             return Err(reader.error(&self.off, message));
         }
         Ok(clamp)
@@ -188,7 +188,8 @@ impl FileCylinder {
                 let wide = reader.number("cylinder.bore", bore, &allowed, within(0.0, diameter))?;
                 if wide >= outer {
                     let message = format!(
-                        "key 'cylinder.bore' is {wide}: below the outer diameter of {outer} mm, for the tube needs a wall"
+                        "key 'cylinder.bore' is {wide}: below the outer diameter of {outer} mm, because \
+                         the tube needs a wall"
                     );
                     return Err(reader.error(bore, message));
                 }
@@ -207,7 +208,7 @@ impl FileDrill {
         let depth = length(reader, "drill.depth", &self.depth)?;
         if depth >= radius {
             let message = format!(
-                "key 'drill.depth' is {depth}: below the radius of {radius} mm, for the holes meet on the axis"
+                "key 'drill.depth' is {depth}: below the radius of {radius} mm, because the holes meet on the axis"
             );
             return Err(reader.error(&self.depth, message));
         }
@@ -256,8 +257,10 @@ fn spacing(
 ) -> Result<Spacing, FileError> {
     let FilePattern { pitch, divisions, .. } = pattern.as_ref();
     match (pitch, divisions) {
-        (Some(_), Some(divisions)) => Err(reader
-            .error(divisions, "key 'pattern.divisions' goes without 'pitch': each follows from the other")),
+        (Some(_), Some(divisions)) => {
+            Err(reader
+                .error(divisions, "key 'pattern.divisions' excludes 'pitch': each follows from the other"))
+        }
         (None, None) => {
             Err(reader.error(pattern, "key 'pattern.pitch' is missing: give it, or 'divisions' instead"))
         }
@@ -276,12 +279,14 @@ fn spacing(
             };
             if pitch <= drill.diameter {
                 let diameter = drill.diameter;
-                return told(format!("above the drill's diameter of {diameter} mm, else the holes overlap"));
+                return told(format!(
+                    "above the drill diameter of {diameter} mm, otherwise the holes overlap"
+                ));
             }
             let (most, diameter) = (largest_pitch(cylinder.diameter), cylinder.diameter);
             if most < pitch {
                 return told(format!(
-                    "at most {most:.3} mm, or fewer than two rows fit round diameter {diameter}"
+                    "at most {most:.3} mm, otherwise fewer than two rows fit round diameter {diameter}"
                 ));
             }
             Ok(Spacing::Pitch(pitch))

@@ -173,7 +173,7 @@ depth = 12.0
             (
                 "pitch = 10.0",
                 "pitch = 10.0\ndivisions = 91",
-                "line 14: key 'pattern.divisions' goes without 'pitch': each follows from the other",
+                "line 14: key 'pattern.divisions' excludes 'pitch': each follows from the other",
             ),
             (
                 "pitch = 10.0",
@@ -183,19 +183,20 @@ depth = 12.0
             (
                 "pitch = 10.0",
                 "pitch = 4.9",
-                "line 13: key 'pattern.pitch' is 4.9: above the drill's diameter of 5 mm, else the holes overlap",
+                "line 13: key 'pattern.pitch' is 4.9: above the drill diameter of 5 mm, otherwise the holes overlap",
             ),
             (
                 "pitch = 10.0",
                 "pitch = 700.0",
-                "line 13: key 'pattern.pitch' is 700: at most 604.599 mm, or fewer than two rows fit round diameter 500",
+                "line 13: key 'pattern.pitch' is 700: at most 604.599 mm, otherwise fewer than two rows \
+                 fit round diameter 500",
             ),
             ("pitch = 10.0", "pitch = -1", "line 13: key 'pattern.pitch' is -1: 0.01 to 99999 mm"),
             ("\"arc\"", "\"straight\"", "line 14: key 'pattern.metric' is 'straight': one of arc, chord"),
             (
                 "depth = 12.0",
                 "depth = 250",
-                "line 17: key 'drill.depth' is 250: below the radius of 250 mm, for the holes meet on the axis",
+                "line 17: key 'drill.depth' is 250: below the radius of 250 mm, because the holes meet on the axis",
             ),
             (
                 "length = 300.0",
@@ -210,12 +211,13 @@ depth = 12.0
             (
                 "length = 300.0",
                 "length = 300.0\nbore = 500",
-                "line 12: key 'cylinder.bore' is 500: below the outer diameter of 500 mm, for the tube needs a wall",
+                "line 12: key 'cylinder.bore' is 500: below the outer diameter of 500 mm, because the tube \
+                 needs a wall",
             ),
             (
                 "sign = 1 }",
                 "sign = 1 }\nclamp = { on = 10, off = 10 }",
-                "line 7: key 'machine.clamp.off' is 10, which is 'on' too",
+                "line 7: key 'machine.clamp.off' is 10, the same as 'on'",
             ),
             (
                 "sign = 1 }",
@@ -226,7 +228,8 @@ depth = 12.0
             (
                 "[drill]",
                 "[dril]",
-                "line 15: key 'dril' is not known; allowed: family, control, machine, tolerance, cylinder, pattern, drill, sheet",
+                "line 15: key 'dril' is unknown; allowed: family, control, machine, tolerance, cylinder, \
+                 pattern, drill, sheet",
             ),
             (
                 "depth = 12.0",

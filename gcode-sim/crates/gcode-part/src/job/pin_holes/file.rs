@@ -168,12 +168,12 @@ impl File {
     /// The tools in the order of use, and for each hole the numbers of those that make it.
     fn tools(&self, reader: &Reader<'_>) -> Result<(Vec<Tool>, Vec<Vec<u32>>), FileError> {
         let Some(first) = self.hole.first() else {
-            return Err(FileError { line: None, message: "there is no hole: add a [[hole]]".into() });
+            return Err(FileError { line: None, message: "no holes: add a [[hole]]".into() });
         };
         let mut ids = BTreeSet::new();
         for hole in &self.hole {
             if !ids.insert(hole.id.as_ref().as_str()) {
-                let message = format!("key 'hole.id': '{}' is there twice", hole.id.as_ref());
+                let message = format!("key 'hole.id': '{}' is used twice", hole.id.as_ref());
                 return Err(reader.error(&hole.id, message));
             }
             length(reader, "hole.diameter", &hole.diameter)?;
@@ -181,12 +181,12 @@ impl File {
         let wanted: Vec<_> = self.hole.iter().map(FileHole::tools_wanted).collect();
         let Some(tools) = &self.tool else { return default_tools(reader, &wanted) };
         if tools.is_empty() {
-            return Err(reader.error(&first.id, "'tool' is empty: leave it out, or add a [[tool]]"));
+            return Err(reader.error(&first.id, "'tool' is empty: remove it, or add a [[tool]]"));
         }
         let mut numbers = BTreeSet::new();
         for tool in tools {
             if !numbers.insert(*tool.number().as_ref()) {
-                let message = format!("key 'tool.number': {} is there twice", tool.number().as_ref());
+                let message = format!("key 'tool.number': {} is used twice", tool.number().as_ref());
                 return Err(reader.error(tool.number(), message));
             }
         }
@@ -234,7 +234,7 @@ impl FileHead {
         let kind = match (&self.letter, by_axis) {
             (None, false) => HeadKind::Manual,
             (Some(letter), false) => {
-                return Err(reader.error(letter, "key 'machine.head.letter' goes with kind = \"axis\" only"));
+                return Err(reader.error(letter, "key 'machine.head.letter' is for kind = \"axis\" only"));
             }
             (None, true) => {
                 return Err(reader
@@ -245,7 +245,7 @@ impl FileHead {
                 if chosen == rotary {
                     return Err(reader.error(
                         letter,
-                        format!("key 'machine.head.letter' is {chosen}, which is the rotary table's"),
+                        format!("key 'machine.head.letter' is {chosen}, the letter of the rotary table"),
                     ));
                 }
                 HeadKind::Axis(chosen)
@@ -288,7 +288,9 @@ impl FileMacro {
         }
         Err(reader.error(
             &self.common,
-            format!("key 'macro.common' is {common}: 100 to 198 or 500 to 998, for it and the next are used"),
+            format!(
+                "key 'macro.common' is {common}: 100 to 198 or 500 to 998, because it and the next are used"
+            ),
         ))
     }
 }

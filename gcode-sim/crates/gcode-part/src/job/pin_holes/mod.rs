@@ -146,9 +146,13 @@ depth = 15.0
     fn every_error_names_the_key_the_line_and_what_is_allowed() {
         for (from, to, message) in [
             ("a = 1158.8\n", "", "line 7: key 'surface.a' is missing"),
-            ("a = 1158.8", "a = \"wide\"", "line 9: key 'surface.a' is string \"wide\": a number is needed"),
+            (
+                "a = 1158.8",
+                "a = \"wide\"",
+                "line 9: key 'surface.a' is string \"wide\": a number is required",
+            ),
             ("a = 1158.8", "a = inf", "line 9: key 'surface.a' is inf: 0.01 to 99999 mm"),
-            ("b = 724.3", "b = 1\nc = 1", "line 11: key 'surface.c' is not known; allowed: kind, a, b"),
+            ("b = 724.3", "b = 1\nc = 1", "line 11: key 'surface.c' is unknown; allowed: kind, a, b"),
             (", sign = 1", "", "line 6: key 'machine.rotary.sign' is missing"),
             ("sign = 1", "sign = 2", "line 6: key 'machine.rotary.sign' is 2: 1 or -1"),
             ("[tolerance]\nposition = 0.1\n", "", "line 1: key 'tolerance' is missing"),
@@ -166,12 +170,13 @@ depth = 15.0
             (
                 "pin-holes",
                 "pinholes",
-                "line 1: family 'pinholes' is not known: one of pin-holes, honeycomb, burr, alignment",
+                "line 1: family 'pinholes' is unknown: one of pin-holes, honeycomb, burr, alignment",
             ),
             (
                 "[control]\n",
                 "[contrl]\n",
-                "line 2: key 'contrl' is not known; allowed: family, control, machine, surface, tolerance, hole, tool, macro, sheet",
+                "line 2: key 'contrl' is unknown; allowed: family, control, machine, surface, tolerance, \
+                 hole, tool, macro, sheet",
             ),
         ] {
             assert_eq!(told(from, to), message, "{from:?} -> {to:?}");
@@ -241,11 +246,11 @@ depth = 15.0
              diameter 6 as the last one"
         );
         let large = format!("{MINIMAL}{}", tool(7, 9.0));
-        assert!(Job::parse(&large).unwrap_err().to_string().contains("no tool of [[tool]] is as small"));
+        assert!(Job::parse(&large).unwrap_err().to_string().contains("every [[tool]] is larger"));
         let twice = format!("{MINIMAL}{}{}", tool(7, 6.0), tool(7, 6.0));
         assert_eq!(
             Job::parse(&twice).unwrap_err().to_string(),
-            "line 26: key 'tool.number': 7 is there twice"
+            "line 26: key 'tool.number': 7 is used twice"
         );
     }
 }

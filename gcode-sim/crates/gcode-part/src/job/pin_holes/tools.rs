@@ -91,7 +91,7 @@ pub(super) fn default_tools(
     let mut of_holes = Vec::new();
     for hole in holes {
         if let Some(tools) = hole.tools {
-            return Err(reader.error(tools, "key 'hole.tools' names tools of [[tool]], and there are none"));
+            return Err(reader.error(tools, "key 'hole.tools' names tools of [[tool]], but there are none"));
         }
         let diameter = *hole.diameter.as_ref();
         let index = diameters.iter().position(|d| *d == diameter).unwrap_or_else(|| {
@@ -161,7 +161,7 @@ fn assign_one(reader: &Reader<'_>, tools: &[Tool], hole: &HoleToolSpec<'_>) -> R
         None => Err(reader.error(
             hole.diameter,
             format!(
-                "key 'hole.diameter' is {diameter}: no tool of [[tool]] is as small; add one of diameter {diameter}"
+                "key 'hole.diameter' is {diameter}: every [[tool]] is larger; add one of diameter {diameter}"
             ),
         )),
     }

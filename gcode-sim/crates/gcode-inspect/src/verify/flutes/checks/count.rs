@@ -11,11 +11,12 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
         findings.push(missing(inspection, found, wanted));
     }
     if wanted < found {
-        let finding = Diagnostic::error("flute-extra", format!("{found} flutes where {wanted} are wanted"));
+        let finding = Diagnostic::error("flute-extra", format!("{found} flutes, {wanted} specified"));
         let (pass, finding) = match passes_beside(inspection) {
             Some((pass, other, apart)) => {
                 let note = format!(
-                    "pass {} stands {apart:.3}° beside pass {}: within {}° it would be another round over the same flute",
+                    "pass {} is {apart:.3}° from pass {}: within {}° it would count as a repeated pass \
+                     over the same flute",
                     pass + 1,
                     other + 1,
                     SAME_FLUTE * inspection.nominal.index_tolerance.0
@@ -24,7 +25,7 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
             }
             None => {
                 let last = inspection.spacing.flutes.iter().map(|(pass, _)| *pass).max().unwrap_or(0);
-                (last, finding.help("the loop over the flutes goes on too long, or the index is too small"))
+                (last, finding.help("check the end of the loop over the flutes, and the index"))
             }
         };
         let finding = describe_gap(inspection).into_iter().fold(finding, Diagnostic::note);
@@ -60,17 +61,17 @@ fn missing(inspection: &Inspection<'_>, found: usize, wanted: usize) -> Diagnost
             CollisionKind::RapidPass(number) if all == 1 => format!("flute {number}'s pass is"),
             _ => format!("{all} passes are"),
         };
-        return missing(format!("{found} flutes where {wanted} are wanted: {which} made in rapid motion"))
+        return missing(format!("{found} flutes, {wanted} specified: {which} made in rapid motion"))
             .help("grind with G01: G00 stays in force until another motion code")
             .at(first.backtrace.clone())
             .on(sites);
     }
     if found == 0 {
-        return missing(format!("no flute is ground where {wanted} are wanted: no feed turns A"))
-            .help("grinding moves are feeds (G01) with an A word");
+        return missing(format!("0 flutes, {wanted} specified: no feed rotates A"))
+            .help("command grinding moves as feeds (G01) with an A word");
     }
     let pitch = 360.0 / wanted as f64;
-    let mut finding = missing(format!("{found} flutes where {wanted} are wanted"));
+    let mut finding = missing(format!("{found} flutes, {wanted} specified"));
     let again = &inspection.spacing.repeated;
     if let Some(first) = again.first() {
         finding = finding.note(twice::sentence(*first));
@@ -83,7 +84,7 @@ fn missing(inspection: &Inspection<'_>, found: usize, wanted: usize) -> Diagnost
         let (pass, _) = inspection.spacing.flutes[gap.from_flute];
         finding = finding
             .note(format!(
-                "the widest gap round the burr is {:.3}° where {pitch:.3}° are wanted, behind the flute that begins here",
+                "the widest gap round the burr is {:.3}°, nominal {pitch:.3}°, after the flute that begins here",
                 gap.actual.0
             ))
             .at(inspection.actual.passes[pass].backtrace.clone());
@@ -91,11 +92,11 @@ fn missing(inspection: &Inspection<'_>, found: usize, wanted: usize) -> Diagnost
     match again.first() {
         Some(first) => finding
             .at(inspection.actual.passes[first.pass].backtrace.clone())
-            .help("is the index of that pass the one it should have?")
+            .help("check the index of that pass")
             .on(sites),
-        None => {
-            finding.help("the loop over the flutes ends too early, or an index move is missing").on(sites)
-        }
+        None => finding
+            .help("check for a loop over the flutes that ends too early, or a missing index move")
+            .on(sites),
     }
 }
 
@@ -104,7 +105,7 @@ fn describe_gap(inspection: &Inspection<'_>) -> Option<String> {
     let wanted = inspection.nominal;
     let step = inspection.spacing.index_step(wanted).filter(|step| wanted.index_tolerance < step.error())?;
     Some(format!(
-        "the flutes are {:.3}° apart, where {} flutes are {:.3}° apart",
+        "the flutes are {:.3}° apart; {} flutes are {:.3}° apart",
         step.actual.0.abs(),
         wanted.count,
         360.0 / f64::from(wanted.count)

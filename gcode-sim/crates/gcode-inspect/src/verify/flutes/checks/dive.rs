@@ -9,29 +9,29 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
         let depth = dive.depth;
         let message = match dive.kind {
             CollisionKind::Rapid => {
-                format!("rapid motion while the wheel touches the blank, {depth:.3} mm below its surface")
+                format!("rapid motion with the wheel in the blank, {depth:.3} mm below its surface")
             }
             CollisionKind::RapidPass(_) => {
                 format!(
-                    "rapid motion along a flute while the wheel touches the blank, {depth:.3} mm below its surface"
+                    "rapid motion along a flute with the wheel in the blank, {depth:.3} mm below its surface"
                 )
             }
             CollisionKind::BelowToothBottom => {
-                format!("a feed that doesn't turn A takes the wheel {depth:.3} mm below the tooth bottom")
+                format!("a feed that does not rotate A takes the wheel {depth:.3} mm below the tooth bottom")
             }
             CollisionKind::Sideways(by) => format!(
-                "a feed that doesn't turn A takes the wheel {by:.3} mm along the burr in the cut, {depth:.3} mm below the \
-                 blank's surface"
+                "a feed that does not rotate A takes the wheel {by:.3} mm along the burr in the cut, \
+                 {depth:.3} mm below the blank surface"
             ),
             CollisionKind::LowClearance => {
                 format!(
-                    "the rapid ends with the wheel {:.3} mm off the blank, and the job wants {} mm",
+                    "the rapid ends with the wheel {:.3} mm off the blank; the job specifies {} mm",
                     -depth,
                     inspection.nominal.clearance.unwrap_or_default()
                 )
             }
             CollisionKind::PlungeWithoutPass => {
-                format!("the wheel is fed {depth:.3} mm below the blank's surface where no pass begins")
+                format!("the wheel is fed {depth:.3} mm below the blank surface where no pass begins")
             }
         };
         let help = match dive.kind {
@@ -42,7 +42,7 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
             CollisionKind::Rapid
             | CollisionKind::BelowToothBottom
             | CollisionKind::Sideways(_)
-            | CollisionKind::PlungeWithoutPass => "move Y clear of the burr first, then turn A and C",
+            | CollisionKind::PlungeWithoutPass => "move Y clear of the burr first, then rotate A and C",
         };
         let again = dive.count - 1;
         let note = match dive.kind {

@@ -17,7 +17,7 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
     };
     findings.extend(report_passes(inspection, wrong, |message| {
         Diagnostic::error("flute-end", message)
-            .help("check the length of the cylinder (X) and the last C, 90° less the tip angle")
+            .help("check the length of the cylinder (X) and the last C: 90° minus the tip angle")
     }));
 }
 
@@ -29,12 +29,12 @@ fn end_error(inspection: &Inspection<'_>, pass: &GrindingPass) -> Option<(String
     let tip = samples().min_by(|a, b| a.polar.0.total_cmp(&b.polar.0))?;
     if SHANK_TOLERANCE < (start.point.x - wanted.start).abs() {
         let message = format!(
-            "a flute begins {:.3} mm behind the end of the cylinder where {:.3} mm are wanted",
+            "a flute begins {:.3} mm from the end of the cylinder, nominal {:.3} mm",
             start.point.x, wanted.start
         );
         return Some((message, start.point));
     }
     let message =
-        format!("a flute ends at polar angle {:.3}° where {:.3}° is wanted", tip.polar.0, wanted.tip_angle.0);
+        format!("a flute ends at polar angle {:.3}°, nominal {:.3}°", tip.polar.0, wanted.tip_angle.0);
     (TIP_TOLERANCE < (tip.polar - wanted.tip_angle).abs().0).then_some((message, tip.point))
 }

@@ -28,5 +28,5 @@ fn head_error(inspection: &Inspection<'_>, pass: &GrindingPass) -> Option<String
         return Some(format!("the head swivels from {:.3}° to {:.3}° during a pass", least.0, most.0));
     }
     (tolerance < (least - wanted).abs())
-        .then(|| format!("the head stands at {:.3}° where the helix angle is {:.3}°", least.0, wanted.0))
+        .then(|| format!("the head is at {:.3}°, the helix angle is {:.3}°", least.0, wanted.0))
 }

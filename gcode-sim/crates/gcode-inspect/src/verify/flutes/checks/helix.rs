@@ -11,7 +11,7 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
     let Some(worst) = inspection.helix.worst.filter(|worst| tolerance < worst.error()) else { return };
     let pass = &inspection.actual.passes[worst.pass];
     let here = format!(
-        "{} has a helix angle of {:.2}° at polar angle {:.1}° where {:.2}° is wanted: {}° either way is allowed",
+        "{} has a helix angle of {:.2}° at polar angle {:.1}°, nominal {:.2}° (tolerance ±{}°)",
         inspection.pass_name(worst.pass),
         worst.actual.0,
         worst.polar.0,
@@ -30,7 +30,7 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
             match all.len() - 1 {
                 0 => finding,
                 more => finding
-                    .note(format!("beyond that are {more} more of the passes too, this one the farthest")),
+                    .note(format!("out of tolerance in {more} more passes; this pass has the largest error")),
             }
         }
     };
@@ -55,27 +55,27 @@ fn common_error(inspection: &Inspection<'_>) -> Option<(String, &'static str)> {
             };
             let (other, asked) = (other.name(), wanted.law.name());
             (
-                format!("{flutes} the helix angle of the law '{other}' where '{asked}' is asked for"),
+                format!("{flutes} the helix angle of the law '{other}'; the job specifies '{asked}'"),
                 "compute A by the job's law (H of the call)",
             )
         }
         CommonDeviation::OtherHelix(helix) if helix.0 * wanted.helix.0 < 0.0 => (
             format!(
-                "{flutes} the other hand: {}, with a helix of {:.1}°, where {:.1}°, {}, is asked for",
+                "{flutes} the wrong hand: {}, with a helix of {:.1}°, nominal {:.1}°, {}",
                 helix_hand(helix),
                 helix.0,
                 wanted.helix.0,
                 helix_hand(wanted.helix)
             ),
-            "A turns the wrong way round: check its sign, and that of the helix angle in the program",
+            "check the sign of A, and that of the helix angle in the program: A rotates in the opposite direction",
         ),
         CommonDeviation::OtherHelix(helix) => (
-            format!("{flutes} a helix of {:.1}° where {:.1}° is asked for", helix.0, wanted.helix.0),
+            format!("{flutes} a helix of {:.1}°, nominal {:.1}°", helix.0, wanted.helix.0),
             "check the helix angle and the radius that A is computed from, and that A is in degrees",
         ),
         CommonDeviation::GroundHigh => (
-            format!("{flutes} another helix angle on the wanted diameter than {:.1}°", wanted.helix.0),
-            "it comes of the diameter they are ground to, on which the angle is the wanted one: see flute-surface",
+            format!("{flutes} the wrong helix angle on the nominal diameter, nominal {:.1}°", wanted.helix.0),
+            "correct the ground diameter, on which the angle is nominal: see flute-surface",
         ),
     })
 }
@@ -83,7 +83,7 @@ fn common_error(inspection: &Inspection<'_>) -> Option<(String, &'static str)> {
 /// Where all heads stand at the angle that all flutes have: that they do isn't told by itself.
 fn describe_heads(inspection: &Inspection<'_>) -> Option<String> {
     let Some(CommonDeviation::OtherHelix(helix)) = inspection.common_deviation else { return None };
-    do_heads_match(inspection).then(|| format!("so is the head B set, to {:.1}° in all passes", helix.0))
+    do_heads_match(inspection).then(|| format!("the head B is also set to {:.1}° in all passes", helix.0))
 }
 
 /// Whether every pass has its head at the helix angle that all flutes have instead of the wanted one.

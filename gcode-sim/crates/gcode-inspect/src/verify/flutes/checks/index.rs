@@ -17,31 +17,34 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
     let finding = match inspection.spacing.index_step(wanted) {
         Some(step) => {
             let message = format!(
-                "the flutes are {:.3}° apart where {:.3}° is asked for: {}° either way is allowed",
+                "the flutes are {:.3}° apart, nominal {:.3}° (tolerance ±{}°)",
                 step.actual.0.abs(),
                 step.nominal.0.abs(),
                 wanted.index_tolerance.0
             );
             Diagnostic::error("flute-index", message)
-                .note(format!("from the last to the first of them {:.3}° are left", gap.actual.0))
-                .help("check the index of A, 360° over the number of flutes")
+                .note(format!("{:.3}° are left from the last flute to the first", gap.actual.0))
+                .help("check the index of A: 360° divided by the number of flutes")
                 .at(inspection.actual.passes[step.pass].backtrace.clone())
         }
         None => {
             let message = format!(
-                "from one flute to the next it is {:.3}° where {pitch:.3}° is wanted, at x = {:.3} and polar angle {:.1}°: \
-                 {}° either way is allowed",
+                "neighbouring flutes are {:.3}° apart, nominal {pitch:.3}°, at x = {:.3} and polar angle \
+                 {:.1}° (tolerance ±{}°)",
                 gap.actual.0, gap.x, gap.polar.0, wanted.index_tolerance.0
             );
             let name = inspection.pass_name(gap.pass);
             let note = match gap.index_error {
-                Some(off) => {
-                    Some(format!("{name} stands {:.3}° from its place between the others there", off.0))
+                Some(off) => Some(format!(
+                    "{name} is off by {:.3}° from its position between the neighbouring flutes",
+                    off.0
+                )),
+                None => {
+                    (wanted.count == 2).then(|| format!("either flute may be right: {name} is ground later"))
                 }
-                None => (wanted.count == 2).then(|| format!("either may be right: {name} is ground later")),
             };
             let finding = Diagnostic::error("flute-index", message)
-                .help("check A in this block, and where the flute begins")
+                .help("check A in this block, and the start of the flute")
                 .at(trace.backtrace(&trace.samples[gap.first_sample]).clone());
             note.into_iter().fold(finding, Diagnostic::note)
         }

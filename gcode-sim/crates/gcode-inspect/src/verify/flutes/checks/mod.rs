@@ -51,7 +51,7 @@ fn report_passes<'g, T>(
     let finding = finding(what).at(place);
     let finding = match others.len() {
         0 => finding,
-        more => finding.note(format!("and so with {more} more of the passes")),
+        more => finding.note(format!("the same applies to {more} more passes")),
     };
     Some(finding.on([Site::new(Some(index), at)]).on(others))
 }

@@ -12,14 +12,21 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
         return;
     }
     let message = format!(
-        "the machine file has the end of the burr's cylinder X{} Y{} from the C axis, and the job's c_offset is X{job_x} Y{job_y}",
+        "the end of the burr's cylinder is at X{} Y{} from the C axis in the machine file, X{job_x} \
+         Y{job_y} in the job's c_offset",
         rounded_mm(x),
         rounded_mm(y)
     );
     findings.push(
         Diagnostic::error("burr-offset", message)
-            .note("what is said of the flutes is of the machine file's burr: at the job's place the same moves grind another")
-            .help("measure it; then emit the programs again from the job, or correct part.origin in the machine file"),
+            .note(
+                "the results are for the machine file's position; with the job's position the same moves \
+                 grind a different burr",
+            )
+            .help(
+                "measure the position; then emit the programs again from the job, or correct part.origin \
+                 in the machine file",
+            ),
     );
 }
 

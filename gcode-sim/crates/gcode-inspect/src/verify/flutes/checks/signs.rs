@@ -14,10 +14,11 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
         return;
     }
     let (names, verb) = (others.join(", "), if others.len() == 1 { "runs" } else { "run" });
-    let message = format!("{names} {verb} the other way in the machine file than by the job's machine.signs");
+    let message =
+        format!("{names} {verb} in opposite directions in the machine file and in the job's machine.signs");
     findings.push(
         Diagnostic::warning("axis-signs", message)
-            .note("what is said of the flutes is of the machine file's machine; programs emitted from the job are for the other")
-            .help("command each of them by hand and look; then correct the one that is wrong"),
+            .note("the results are for the machine file's directions; programs emitted from the job assume the job's")
+            .help("command each axis by hand, observe its direction and correct the wrong sign"),
     );
 }

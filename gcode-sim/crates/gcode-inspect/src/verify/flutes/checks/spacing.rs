@@ -8,9 +8,12 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
     findings.push(
         Diagnostic::error(
             "flutes-meet",
-            format!("neighbouring flutes come as near as {:.4} mm: {least} mm, twice the chord error, is the least", near.distance),
+            format!(
+                "neighbouring flutes come within {:.4} mm; limit {least} mm, twice the chord error",
+                near.distance
+            ),
         )
-        .help("fewer flutes, or a larger tip angle")
+        .help("use fewer flutes, or a larger tip angle")
         .on([Site::new(Some(near.pass), near.point)]),
     );
 }

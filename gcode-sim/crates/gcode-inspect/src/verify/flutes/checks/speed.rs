@@ -10,7 +10,7 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
     let Some(worst) = wrong.first() else { return };
     let pass = &inspection.actual.passes[worst.pass];
     let message = format!(
-        "the wheel runs along {} at {} mm/min where {} is asked for: {:.0} % either way is allowed",
+        "the wheel moves along {} at {} mm/min; the job specifies {} (tolerance ±{:.0} %)",
         inspection.pass_name(worst.pass),
         format_speed(worst.actual),
         worst.nominal,
@@ -18,7 +18,7 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
     );
     let place = worst.backtrace(&pass.trace).unwrap_or(&pass.backtrace);
     let all = format!(
-        "from {} to {} mm/min along all flutes; beyond that in {} of {} passes",
+        "from {} to {} mm/min along all flutes; out of tolerance in {} of {} passes",
         format_speed(range.min),
         format_speed(range.max),
         wrong.len(),
@@ -27,7 +27,10 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
     findings.push(
         Diagnostic::error("flute-speed", message)
             .note(all)
-            .help("check F in this block, and that the code is in force which it is meant for: G93, F moves a minute, or G94")
+            .help(
+                "check F in this block, and that the code it is written for is in force: G93 (F moves a \
+                 minute) or G94",
+            )
             .at(place.clone())
             .on(wrong.iter().map(|worst| Site::new(Some(worst.pass), worst.point))),
     );

@@ -31,8 +31,8 @@ fn surface_finding(inspection: &Inspection<'_>, pass: usize, worst: &Sample) -> 
     if let Some(depth) = inspection.common_height {
         let flutes = inspection.flutes_with_verb();
         return error(format!(
-            "{flutes} ground to a diameter of {:.3} mm where {:.3} mm is asked for: the contact is {:.4} mm {side} the tooth \
-             bottom all along, {allowed} mm is allowed",
+            "{flutes} ground to a diameter of {:.3} mm, nominal {:.3} mm: the contact is {:.4} mm {side} \
+             the tooth bottom all along, tolerance {allowed} mm",
             2.0 * (radius + depth),
             2.0 * radius,
             depth.abs()
@@ -40,16 +40,16 @@ fn surface_finding(inspection: &Inspection<'_>, pass: usize, worst: &Sample) -> 
         .help("check Y where the wheel is fed into the blank, the work offset in Y, and wheel.contact in the machine file");
     }
     let finding = error(format!(
-        "the contact is {off:.4} mm {side} the tooth bottom at polar angle {:.1}°: {allowed} mm is allowed",
+        "the contact is {off:.4} mm {side} the tooth bottom at polar angle {:.1}°: tolerance {allowed} mm",
         worst.polar.0
     ));
     match Cause::of(wanted, &inspection.actual.passes[pass], off) {
         Cause::BetweenPoints => finding
-            .note("at the programmed points it is within half of that: it strays between them")
-            .help("the moves are too long, or the increment is too coarse for this chord error"),
+            .note("the deviation is less than half of this at the programmed points: it arises between them")
+            .help("use shorter moves, or a finer increment: the present ones are too coarse for this chord error"),
         Cause::Depth(depth) => finding
             .note(format!(
-                "it is {:.4} mm {side} the tooth bottom all along {}, at the programmed points too",
+                "the contact is {:.4} mm {side} the tooth bottom all along {}, at the programmed points too",
                 depth.abs(),
                 inspection.pass_name(pass)
             ))
@@ -58,16 +58,17 @@ fn surface_finding(inspection: &Inspection<'_>, pass: usize, worst: &Sample) -> 
             let [from_x, from_y] = inspection.actual.offset.unwrap_or(wanted.c_offset);
             finding
                 .note(format!(
-                    "it is off at the programmed points too, as if the end of the cylinder were X{:.3} Y{:.3} from the C axis, \
-                     where it is X{from_x} Y{from_y}: X{x:+.3} Y{y:+.3}",
+                    "the deviation is present at the programmed points too, as if the end of the cylinder \
+                     were at X{:.3} Y{:.3} from the C axis instead of X{from_x} Y{from_y}: X{x:+.3} Y{y:+.3}",
                     from_x + x,
                     from_y + y
                 ))
-                .help("check the numbers from which the program computes X and Y while C turns (I and J of the call), and c_offset")
+                .help("check the numbers from which the program computes X and Y while C rotates (I and J \
+                       of the call), and c_offset")
         }
         Cause::Other => finding.help(
-            "X and Y don't keep the arc's centre in place while C turns: check the sign of each axis, the formula for Y, \
-             and c_offset against the machine file's part.origin",
+            "check the sign of each axis, the formula for Y, and c_offset against the machine file's \
+             part.origin: X and Y do not keep the arc's centre in place while C rotates",
         ),
     }
 }

@@ -10,7 +10,7 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
         |pass| pass.stopped_wheel.as_ref().map(|idle| (idle.builder_code, idle.first.clone())),
         |builder| {
             let message =
-                "the wheel stands while it is fed along a flute: no M03 or M04 with an S is in force";
+                "the wheel is stopped while it is fed along a flute: no M03 or M04 with an S is in force";
             spindle_stopped_finding(message, builder)
                 .help("start the wheel with M03 S… before the first pass")
         },
@@ -19,11 +19,10 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
         inspection,
         |pass| pass.reversed_wheel.clone().map(|begun| ((), begun)),
         |()| {
-            let message =
-                "the wheel grinds with M04, where the programs that are emitted for a burr have M03";
+            let message = "the wheel grinds with M04; the programs emitted for a burr use M03";
             Diagnostic::warning("wheel-reversed", message)
-                .note("which way round this wheel has to turn the job doesn't say")
-                .help("M03, if the wheel isn't meant to run backwards")
+                .note("the job does not give the wheel's direction of rotation")
+                .help("use M03, unless the wheel is meant to run in reverse")
         },
     );
     findings.extend(idle.into_iter().chain(reversed));

@@ -21,17 +21,20 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
     let of_first = rounds(first.first_pass);
     let is_round = round.flutes.iter().all(|(flute, _)| rounds(*flute) == of_first);
     let (severity, help) = match is_round {
-        true => (Severity::Warning, "leave it if the wheel is meant to spark out; else take that round out"),
+        true => (
+            Severity::Warning,
+            "keep the repeated pass if the wheel is meant to spark out; otherwise remove it",
+        ),
         false => (
             Severity::Error,
-            "take the pass out of the program: does a loop over the flutes go round once too often?",
+            "remove the pass from the program; check for one iteration too many in a loop over the flutes",
         ),
     };
     let finding = Diagnostic::new(severity, "flute-twice", sentence(*first)).help(help);
     let finding = match (is_round, round.repeated.len() - 1) {
         (true, _) => finding.note(format!("every flute is ground {of_first} times")),
         (false, 0) => finding,
-        (false, more) => finding.note(format!("and {more} more of the passes go over flutes that are there")),
+        (false, more) => finding.note(format!("{more} more passes repeat flutes that are already ground")),
     };
     let sites = round.repeated.iter().filter_map(|again| {
         let samples = &inspection.actual.passes[again.pass].trace.samples;
@@ -42,5 +45,5 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
 
 /// In words which pass goes over which flute.
 pub(super) fn sentence(again: RepeatedPass) -> String {
-    format!("pass {} goes over the flute of pass {} again", again.pass + 1, again.first_pass + 1)
+    format!("pass {} repeats the flute of pass {}", again.pass + 1, again.first_pass + 1)
 }

@@ -22,7 +22,7 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
                 site: Site::new(Some(index), begun.point),
             })
         });
-        let message = |found| format!("the wheel grinds at S{found} where S{wanted} is asked for");
+        let message = |found| format!("the wheel grinds at S{found}; the job specifies S{wanted}");
         let told = report_worst("wheel-speed", wanted, speeds.collect(), message);
         findings.extend(told.map(|finding| finding.help("correct S, or program.wheel in the job")));
     }
@@ -32,11 +32,13 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
             place: &plunge.backtrace,
             site: Site::new(None, plunge.point),
         });
-        let message =
-            |found| format!("the wheel is fed into the blank at {found} mm/min where {wanted} is asked for");
+        let message = |found| {
+            format!("the wheel is fed into the blank at {found} mm/min; the job specifies {wanted} mm/min")
+        };
         let told = report_worst("wheel-feed", wanted, plunges.collect(), message);
         findings.extend(told.map(|finding| {
-            finding.help("correct F, or program.plunge in the job; is G94 in force here, and not G93?")
+            finding
+                .help("correct F, or program.plunge in the job; check that G94 is in force here, and not G93")
         }));
     }
 }
@@ -58,7 +60,7 @@ fn report_worst(
     let finding = Diagnostic::new(severity(first.actual, nominal)?, code, message(shown));
     let finding = match wrong.len() - 1 {
         0 => finding,
-        more => finding.note(format!("and so, or less far off, {more} more times")),
+        more => finding.note(format!("the same or a smaller difference occurs {more} more times")),
     };
     Some(finding.at(first.place.clone()).on(wrong.iter().map(|done| done.site)))
 }
