@@ -26,7 +26,7 @@ fn blocks(job: &Job) -> BTreeMap<String, u64> {
     let mut counted = BTreeMap::new();
     let outcome = loop {
         let outcome = control.step(&mut library, &mut ());
-        let source = control.memory().sources().get(control.place().block.source);
+        let source = control.memory().sources().get(control.backtrace().block.source);
         *counted.entry(source.name.clone()).or_insert(0) += 1;
         if let Some(outcome) = outcome {
             break outcome;

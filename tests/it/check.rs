@@ -5,7 +5,7 @@ use gcode_lang::control::Settings;
 use gcode_lang::diag::Severity;
 use gcode_lang::program::NoLibrary;
 use gcode_lint::rules::ALL;
-use gcode_lint::{Checked, check};
+use gcode_lint::{CheckResult, check};
 use gcode_sim::cli::library::Folders;
 use gcode_tests::workspace;
 
@@ -24,7 +24,7 @@ fn programs(dir: &Path) -> Vec<PathBuf> {
     found
 }
 
-fn messages(checked: &Checked) -> Vec<String> {
+fn messages(checked: &CheckResult) -> Vec<String> {
     checked.findings.iter().map(|f| format!("{}: {}", f.code, f.message)).collect()
 }
 
@@ -91,7 +91,7 @@ fn every_rule_has_its_page_and_a_case() {
         told += &std::fs::read_to_string(entry.unwrap().path().join("findings.snap")).unwrap();
     }
     for rule in ALL {
-        let heading = format!("\n## {}: {}\n", rule.name, rule.about);
+        let heading = format!("\n## {}: {}\n", rule.name, rule.summary);
         assert!(page.contains(&heading), "docs/checks.md lacks '{}'", heading.trim());
         let finds = [" error ", " warning "].iter().any(|s| told.contains(&format!("{s}{}:", rule.name)));
         assert!(finds, "no case in tests/suite/check finds {}", rule.name);

@@ -276,7 +276,7 @@ proptest! {
     ) {
         let head = format!("O1\n#13001={}.\n#13002=0.8\nF500\nG41 D1 G1 X5. Y-5.\n", f64::from(radius) / 1000.0);
         let text = format!("{}{}\nM30\nO2\n#2=#2+1\nM99\n", head.replace(".\n#13002", "\n#13002"), blocks.join("\n"));
-        let settings = Settings { start_up_b: type_b, blocks_read: read, ..Settings::default() };
+        let settings = Settings { starts_up_by_type_b: type_b, lookahead_blocks: read, ..Settings::default() };
         let (outcome, position, told) = run(&text, &settings);
         let (again, _, same) = run(&text, &settings);
         prop_assert_eq!(format!("{outcome:?}"), format!("{again:?}"));

@@ -52,8 +52,9 @@ fn programs() -> impl Strategy<Value = String> {
 fn settings() -> impl Strategy<Value = Settings> {
     (any::<bool>(), any::<bool>(), prop::option::of(0.0..1.0)).prop_map(
         |(calculator_input, rolls, skip_signal)| {
-            let mut settings = Settings { calculator_input, skip_signal, ..Settings::default() };
-            settings.roll_over[4] = rolls;
+            let mut settings =
+                Settings { uses_calculator_input: calculator_input, skip_signal, ..Settings::default() };
+            settings.rolls_over[4] = rolls;
             settings
         },
     )

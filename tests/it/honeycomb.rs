@@ -229,7 +229,7 @@ fn called(changes: &[(&str, &str)], modes: &str) -> (u32, String) {
         run(&Request::new("O1.nc", text.as_bytes(), machine), &mut Programs(&package), &mut moves).unwrap();
     match &done.outcome {
         Outcome::Alarm(stopped) => match &stopped.alarm {
-            Alarm::Raised { number, text, .. } => {
+            Alarm::UserAlarm { number, text, .. } => {
                 assert_eq!(moves.0, 0, "moved before the alarm: {call}");
                 (u32::from(*number), text.to_string())
             }

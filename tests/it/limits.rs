@@ -170,7 +170,7 @@ struct Impatient(Arc<Progress>);
 
 impl EventSink for Impatient {
     fn event(&mut self, _: &Event<'_>) {
-        self.0.stop.store(true, Ordering::Relaxed);
+        self.0.cancel.store(true, Ordering::Relaxed);
     }
 }
 

@@ -112,7 +112,7 @@ fn neither_the_machine_file_nor_the_range_of_atan_changes_the_verdict() {
     for machine in [Machine::default(), Machine::parse(&package.machine).unwrap()] {
         for signed in [false, true] {
             let mut request = Request::new("O8100.nc", main.text.as_bytes(), machine.clone());
-            request.settings.signed_angles = signed;
+            request.settings.returns_signed_angles = signed;
             let done = simulate(&request, &mut Programs(&package), reference.surface).unwrap();
             let verdict = done.verify(&reference, Tolerances::of(&reference, None), &machine);
             assert_eq!(verdict.verdict, Answer::Pass, "{:?}", verdict.findings);
@@ -242,7 +242,7 @@ fn refused(before: &str, call: &str, from: &str, to: &str) -> (u16, String) {
     assert_eq!(done.control.moves(), 0, "{changed} moves something before it is refused");
     match done.outcome {
         Outcome::Alarm(stopped) => match stopped.alarm {
-            Alarm::Raised { number, text, .. } => (number, text),
+            Alarm::UserAlarm { number, text, .. } => (number, text),
             other => panic!("{changed}: {other}"),
         },
         other => panic!("{changed} is not refused: {other:?}"),
@@ -314,7 +314,7 @@ fn a_hole_is_refused_where_the_head_does_not_come_to_its_angle() {
     let request = Request::new("O1.nc", format!("O1\nG21\n{CALL}\nM30\n").into_bytes(), Machine::default());
     let done = run(&request, &mut Programs(&package), &mut ()).unwrap();
     let Outcome::Alarm(stopped) = done.outcome else { panic!("{:?}", done.outcome) };
-    let Alarm::Raised { number, text, .. } = stopped.alarm else { panic!("{}", stopped.alarm) };
+    let Alarm::UserAlarm { number, text, .. } = stopped.alarm else { panic!("{}", stopped.alarm) };
     assert_eq!((number, text.as_str()), (16, "HEAD NOT AT ANGLE FOR R"));
     assert_eq!(done.control.moves(), 0);
 }

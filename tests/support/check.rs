@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use gcode_lang::program::NoLibrary;
 use gcode_lang::source::Span;
-use gcode_lint::{Checked, check};
+use gcode_lint::{CheckResult, check};
 
 use crate::{Case, expect};
 
@@ -16,7 +16,7 @@ pub(crate) fn run(case: &Case) {
     let mut shown = String::new();
     for finding in &checked.findings {
         let severity = finding.severity.name();
-        if let Some(place) = &finding.place {
+        if let Some(place) = &finding.backtrace {
             writeln!(shown, "{}", at(&checked, place.block)).unwrap();
         }
         writeln!(shown, "  {severity} {}: {}", finding.code, finding.message).unwrap();
@@ -31,8 +31,8 @@ pub(crate) fn run(case: &Case) {
     case.snapshot("findings", &shown);
 }
 
-fn at(checked: &Checked, block: Span) -> String {
+fn at(checked: &CheckResult, block: Span) -> String {
     let sources = checked.memory.sources();
     let program = checked.program(block).map_or_else(String::new, |program| program.label());
-    format!("{program} line {}: {}", sources.place(block).line, sources.text(block).trim())
+    format!("{program} line {}: {}", sources.line_column(block).line, sources.text(block).trim())
 }

@@ -106,7 +106,8 @@ impl Ran {
                 return self.not(kinds.join(",") == wanted, &format!("stops={wanted}"));
             }
             "passed_on" => {
-                let codes: Vec<_> = self.control.passed_on().keys().map(|code| format!("M{code}")).collect();
+                let codes: Vec<_> =
+                    self.control.auxiliary_codes().keys().map(|code| format!("M{code}")).collect();
                 return self.not(codes.join(",") == wanted, &format!("passed_on={wanted}"));
             }
             "note" => {

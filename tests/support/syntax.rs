@@ -24,7 +24,7 @@ fn program(program: &Program, sources: &Sources, id: SourceId) -> String {
         ProgramName::Unnamed => "program without a number\n".to_owned(),
     };
     for found in &program.blocks {
-        let line = sources.get(id).place(found.span.start).line;
+        let line = sources.get(id).line_column(found.span.start).line;
         shown.push_str(&format!("  line {line}: {}\n", block(found, sources)));
     }
     shown
@@ -50,7 +50,7 @@ fn block(block: &Block, sources: &Sources) -> String {
             Item::Skip(skip) => parts.push(format!("the rest skipped by switch {}", skip.node)),
             Item::Unreadable(found) => {
                 let row = found.alarm.node.row();
-                let column = sources.place(found.alarm.span).column;
+                let column = sources.line_column(found.alarm.span).column;
                 let help = row.help.map(|help| format!(" ({help})")).unwrap_or_default();
                 parts.push(format!("{} in column {column}: {}{help}", row.code, row.message));
             }
@@ -164,7 +164,7 @@ fn sign(written: OperatorSpelling) -> &'static str {
 
 fn condition(value: &Condition) -> String {
     match value {
-        Condition::Compare { left, relation, written, right, .. } => {
+        Condition::Compare { left, relation, spelling: written, right, .. } => {
             format!("{} {relation:?}{} {}", expr(left), sign(*written), expr(right))
         }
         Condition::Logic(op, written, left, right) => {

@@ -194,7 +194,7 @@ fn known_facts<const N: usize>(facts: [(&'static str, Option<f64>); N]) -> Vec<(
 fn finding_lines(shown: &[Diagnostic], data: &[Finding], run: &Run) -> Vec<FindingLine> {
     let one = |finding: &Diagnostic| {
         let mut head = format!("{} {}", finding.severity.name(), finding.code);
-        if let Some(place) = &finding.place {
+        if let Some(place) = &finding.backtrace {
             let mut word = " at ";
             for (program, line, _) in places(run, place) {
                 write!(head, "{word}{}", place_label(&program, line)).unwrap();
@@ -221,7 +221,7 @@ fn with_findings(mut shown: String, findings: &[Diagnostic], run: &Run) -> Strin
     for finding in findings {
         let severity = finding.severity.name();
         write!(shown, "\n{severity} {}: {}\n", finding.code, finding.message).unwrap();
-        if let Some(place) = &finding.place {
+        if let Some(place) = &finding.backtrace {
             let mut word = "at";
             for (program, line, text) in places(run, place) {
                 writeln!(shown, "  {word} {program} line {line}: {text}").unwrap();
@@ -236,8 +236,8 @@ fn with_findings(mut shown: String, findings: &[Diagnostic], run: &Run) -> Strin
 
 /// Program, line and text of a block, and of the calls that led to it, innermost first.
 fn places(run: &Run, place: &Backtrace) -> Vec<(String, u32, String)> {
-    let calls = std::iter::successors(place.calls.as_deref(), |call: &&Call| call.outer.as_deref());
-    let blocks = std::iter::once(place.block).chain(calls.map(|call| call.from));
+    let calls = std::iter::successors(place.calls.as_deref(), |call: &&Call| call.outer_calls.as_deref());
+    let blocks = std::iter::once(place.block).chain(calls.map(|call| call.calling_block));
     let located = blocks.map(|block| {
         let (program, line) = run.locate(block);
         (program, line, run.control.memory().sources().text(block).trim().to_owned())

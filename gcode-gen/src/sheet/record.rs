@@ -88,7 +88,7 @@ pub fn record(job: &Job, package: &Package) -> Result<Record, CheckError> {
         kept.extend(run.control.variables().filter(|(number, _)| KEPT.contains(number)));
         let stops = listener.stops.drain(..);
         record.stops.extend(stops.map(|(stop, place)| OperatorStop { at: places(&run, &place), ..stop }));
-        record.passed_on.extend(run.control.passed_on().keys());
+        record.passed_on.extend(run.control.auxiliary_codes().keys());
         if record.begins.iter().all(|earlier| earlier.main != main) {
             record.begins.push(begin);
         }
@@ -133,8 +133,11 @@ pub(super) fn request(package: &Package, begin: &ProgramStart) -> Result<Request
 }
 
 fn places(run: &Run, place: &Backtrace) -> Vec<(String, u32)> {
-    let calls = std::iter::successors(place.calls.as_deref(), |call| call.outer.as_deref());
-    std::iter::once(place.block).chain(calls.map(|call| call.from)).map(|span| run.locate(span)).collect()
+    let calls = std::iter::successors(place.calls.as_deref(), |call| call.outer_calls.as_deref());
+    std::iter::once(place.block)
+        .chain(calls.map(|call| call.calling_block))
+        .map(|span| run.locate(span))
+        .collect()
 }
 
 #[derive(Default)]
@@ -154,7 +157,7 @@ impl EventSink for Listener {
             }
             EventKind::Dwell { .. } => self.times.dwell += seconds,
             EventKind::ToolChange { number } => self.tools.push(*number),
-            EventKind::Stop { kind, text, named } => {
+            EventKind::Stop { kind, text, variables: named } => {
                 let stop = OperatorStop {
                     kind: *kind,
                     text: text.clone(),
@@ -163,7 +166,7 @@ impl EventSink for Listener {
                     after: self.times.all(),
                     at: Vec::new(),
                 };
-                self.stops.push((stop, event.place()));
+                self.stops.push((stop, event.backtrace()));
             }
             EventKind::ToolLength { .. }
             | EventKind::WorkZeroUnknown { .. }

@@ -85,7 +85,7 @@ impl Trace {
         let run = attended(job, package, request, &mut trace)?;
         trace.alarm = match &run.outcome {
             Outcome::Alarm(stopped) => {
-                let (program, line) = run.locate(stopped.place.block);
+                let (program, line) = run.locate(stopped.backtrace.block);
                 Some(format!("the run stops with {} in {program} line {line}", stopped.alarm.row().code))
             }
             Outcome::End | Outcome::Limit => None,

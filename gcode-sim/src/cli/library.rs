@@ -124,7 +124,7 @@ impl Library for Folders {
         Some((path.display().to_string(), bytes))
     }
 
-    fn unread(&self) -> Option<String> {
+    fn read_error(&self) -> Option<String> {
         let all: Vec<_> = self.unread.iter().map(String::as_str).collect();
         (!all.is_empty()).then(|| all.join("; "))
     }
@@ -163,10 +163,10 @@ mod tests {
         let place = tempfile::tempdir().unwrap();
         let mut folders = Folders::new(&place.path().join("main.nc"), &[]).unwrap();
         assert!(folders.program(1).is_none());
-        assert_eq!(folders.unread(), None, "an empty folder has been read");
+        assert_eq!(folders.read_error(), None, "an empty folder has been read");
         place.close().unwrap();
         assert!(folders.program(1).is_none());
-        let told = folders.unread().unwrap();
+        let told = folders.read_error().unwrap();
         assert!(told.contains("cannot be read"), "{told}");
     }
 }

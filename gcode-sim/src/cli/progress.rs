@@ -34,7 +34,7 @@ pub(super) fn of_run<T>(request: &mut Request, work: impl FnOnce(&Request) -> T)
     let watched = Arc::clone(&run);
     // Where no handler can be set, Ctrl-C ends the process as ever.
     _ = ctrlc::set_handler(move || {
-        if watched.stop.swap(true, Ordering::Relaxed) {
+        if watched.cancel.swap(true, Ordering::Relaxed) {
             std::process::exit(130);
         }
     });

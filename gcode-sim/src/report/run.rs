@@ -199,7 +199,7 @@ impl RunReport {
                 .collect(),
             output: control.output().iter().map(|line| printable(line)).collect(),
             passed_on: control
-                .passed_on()
+                .auxiliary_codes()
                 .iter()
                 .map(|(code, span)| {
                     let (program, line) = run.locate(*span);
@@ -270,8 +270,8 @@ fn alarm(run: &Run) -> Option<AlarmReport> {
     let Outcome::Alarm(stopped) = &run.outcome else { return None };
     let row = stopped.alarm.row();
     let sources = run.control.memory().sources();
-    let at = sources.place(stopped.span);
-    let BlockLocation { program, block, calls, .. } = BlockLocation::of(run, &stopped.place);
+    let at = sources.line_column(stopped.span);
+    let BlockLocation { program, block, calls, .. } = BlockLocation::of(run, &stopped.backtrace);
     Some(AlarmReport {
         number: row.code.number(),
         code: row.code.to_string(),

@@ -32,15 +32,15 @@ impl Finding {
     /// A finding on a program, the calls that led to it as second places.
     pub fn of(diagnostic: &Diagnostic, sources: &Sources) -> Self {
         let at = |span: Span| {
-            let place = sources.place(span);
+            let place = sources.line_column(span);
             let file = sources.get(span.source).name.clone();
             FileLocation { file, line: Some(place.line), column: Some(place.column) }
         };
-        let place = diagnostic.place.as_ref();
+        let place = diagnostic.backtrace.as_ref();
         let chain = std::iter::successors(place.and_then(|place| place.calls.as_deref()), |call| {
-            call.outer.as_deref()
+            call.outer_calls.as_deref()
         });
-        let calls = chain.map(|call| (at(call.from), "called from here".to_owned()));
+        let calls = chain.map(|call| (at(call.calling_block), "called from here".to_owned()));
         let labels = diagnostic.labels.iter().map(|(span, text)| (at(*span), text.clone()));
         let help = diagnostic.help.as_ref().map(|help| format!("; {help}")).unwrap_or_default();
         Self {

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-use gcode_lang::control::{CodeCallKind, FAMILIES, RANGES, ROWS};
+use gcode_lang::control::{CODE_RANGES, CodeCallKind, ROWS, SEQUENTIAL_CODES};
 
 /// The document of `settings --format json`.
 #[derive(Debug, Serialize, JsonSchema)]
@@ -36,14 +36,14 @@ impl SettingsReport {
         settings.push(SettingReport::new("#1000 to #1031", "an input signal", "0 or 1"));
         let (program, kind) = ("a code that calls a program", "the program's number; G-201 is a modal call");
         settings.push(SettingReport::new("G201, M50, T, …", program, kind));
-        for family in FAMILIES {
+        for family in SEQUENTIAL_CODES {
             let (first, last) = (family.first, family.last);
             let (letter, kind) = (char::from(family.letter), word(family.kind));
             let most = family.program + u32::from(last - first);
             let meaning = format!("{letter} codes that call O{} to O{most} as {kind}s", family.program);
             settings.push(SettingReport::new(format!("{first} to {last}"), meaning, "a code, 0 for none"));
         }
-        for range in RANGES {
+        for range in CODE_RANGES {
             let (first, last) = (range.first, range.first + 2);
             let (letter, kind) = (char::from(range.letter), word(range.kind));
             let meaning =

@@ -1,6 +1,6 @@
 //! G02 and G03: centre and sweep from I J K or from R, in all planes, with any other axes along.
 use super::Executor;
-use super::eval::{Checked, at};
+use super::evaluation::{ExecResult, locate};
 use super::linear_motion::Endpoint;
 use super::plan::BlockPlan;
 use super::words::BlockWords;
@@ -12,15 +12,15 @@ use gcode_lang::units::Deg;
 
 impl Executor {
     /// Tells an arc to `goal`.
-    pub(super) fn arc(
+    pub(super) fn plan_arc(
         &self,
         plan: &mut BlockPlan,
         given: &BlockWords,
         goal: &Endpoint,
         span: Span,
-    ) -> Checked<()> {
+    ) -> ExecResult<()> {
         let state = &plan.state;
-        let plane = at(self.plane_axes(state.modal.plane), span)?;
+        let plane = locate(self.plane_axes(state.modal.plane), span)?;
         let (first, second, stray) = match state.modal.plane {
             Plane::Xy => (b'I', b'J', b'K'),
             Plane::Zx => (b'K', b'I', b'J'),
@@ -31,33 +31,33 @@ impl Executor {
         let clockwise = state.modal.motion == Motion::Clockwise;
         let centre = if let Some(radius) = self.dimension(given, b'R', state)? {
             // R goes before I J K.
-            given.accept(b"IJK");
+            given.mark_read(b"IJK");
             if start == end {
                 // The start is the end: with R there is nothing to go round.
                 if goal.programmed != state.programmed {
                     let what = "an arc by R that ends at its start while another axis moves".into();
-                    return Err(Alarm::NotSimulated { what }.at(span));
+                    return Err(Alarm::NotSimulated { what }.located_at(span));
                 }
                 return Ok(());
             }
-            at(self.centre_by_radius(start, end, radius, clockwise), given.span(b'R'))?
+            locate(self.centre_by_radius(start, end, radius, clockwise), given.span(b'R'))?
         } else {
             if self.dimension(given, stray, state)?.unwrap_or(0.0) != 0.0 {
-                return Err(Alarm::PlaneSelect.at(given.span(stray)));
+                return Err(Alarm::PlaneSelect.located_at(given.span(stray)));
             }
             let i = self.dimension(given, first, state)?;
             let j = self.dimension(given, second, state)?;
             if i.is_none() && j.is_none() {
-                return Err(Alarm::NoRadiusOrCentre.at(span));
+                return Err(Alarm::NoRadiusOrCentre.located_at(span));
             }
             let (i, j) = (i.unwrap_or(0.0), j.unwrap_or(0.0));
             if i == 0.0 && j == 0.0 {
-                return Err(Alarm::NoRadiusOrCentre.at(span));
+                return Err(Alarm::NoRadiusOrCentre.located_at(span));
             }
             (start.0 + i, start.1 + j)
         };
         let (radius, sweep) = self.radius_and_sweep(start, end, centre, clockwise, span)?;
-        self.tell_arc(plan, given, goal, plane, centre, sweep, radius, span)
+        self.push_programmed_arc(plan, given, goal, plane, centre, sweep, radius, span)
     }
 
     /// The mean radius and the sweep of an arc, if its end is near enough to the circle of its start.
@@ -68,18 +68,19 @@ impl Executor {
         centre: (f64, f64),
         clockwise: bool,
         span: Span,
-    ) -> Checked<(f64, f64)> {
+    ) -> ExecResult<(f64, f64)> {
         let radius = |p: (f64, f64)| libm::hypot(p.0 - centre.0, p.1 - centre.1);
         let (from, to) = (radius(start), radius(end));
         if (from - to).abs() > self.settings.arc_tolerance + 1e-9 {
-            let alarm = Alarm::RadiusTolerance { start: from, end: to, allowed: self.settings.arc_tolerance };
-            return Err(alarm.at(span));
+            let alarm =
+                Alarm::RadiusTolerance { start: from, end: to, tolerance: self.settings.arc_tolerance };
+            return Err(alarm.located_at(span));
         }
         Ok(((from + to) / 2.0, sweep(start, end, centre, clockwise)))
     }
 
     #[expect(clippy::too_many_arguments, reason = "an arc is all of this")]
-    fn tell_arc(
+    fn push_programmed_arc(
         &self,
         plan: &mut BlockPlan,
         given: &BlockWords,
@@ -89,11 +90,11 @@ impl Executor {
         sweep: f64,
         radius: f64,
         span: Span,
-    ) -> Checked<()> {
+    ) -> ExecResult<()> {
         let state = &plan.state;
-        let (mirrored, round) = state.transform.on_arcs(plane);
+        let (mirrored, round) = state.transform.arc_effect(plane);
         if state.transform.tilt.is_some() {
-            return Err(Alarm::NotSimulated { what: "an arc in a tilted plane".into() }.at(span));
+            return Err(Alarm::NotSimulated { what: "an arc in a tilted plane".into() }.located_at(span));
         }
         let mut middle = state.programmed;
         (middle[plane.0], middle[plane.1]) = centre;
@@ -104,7 +105,9 @@ impl Executor {
             (radius * factor, if mirrored { -sweep } else { sweep })
         } else {
             if given.has(b'R') {
-                return Err(Alarm::NotSimulated { what: "an arc by R under unequal scaling".into() }.at(span));
+                return Err(
+                    Alarm::NotSimulated { what: "an arc by R under unequal scaling".into() }.located_at(span)
+                );
             }
             let (start, end) = (&state.machine, &goal.machine);
             let (start, end) = ((start[plane.0], start[plane.1]), (end[plane.0], end[plane.1]));
@@ -112,10 +115,10 @@ impl Executor {
         };
         let length = radius * sweep.abs().to_radians();
         // F is along the arc; all other axes follow (1403#5 HTG = 0).
-        let timed = self.time_along(state, length, given.has(b'F'));
+        let timed = self.path_time(state, length, given.has(b'F'));
         let (rate, seconds) = timed.map_err(|alarm| match alarm {
-            Alarm::FeedZero | Alarm::NoSpeedForFeed => Alarm::ArcFeedZero.at(span),
-            other => other.at(span),
+            Alarm::FeedZero | Alarm::NoSpeedForFeed => Alarm::ArcFeedZero.located_at(span),
+            other => other.located_at(span),
         })?;
         let arc = PlanarArc { plane, centre, sweep: Deg(sweep) };
         plan.events.push((EventKind::Arc { to: goal.machine, arc, rate }, seconds));
@@ -134,9 +137,10 @@ impl Executor {
         let (dx, dy) = (end.0 - start.0, end.1 - start.1);
         let chord = libm::hypot(dx, dy);
         let short = chord / 2.0 - radius.abs();
-        if radius == 0.0 || (short > self.settings.arc_tolerance && self.settings.unsure.small_radius_alarms)
+        if radius == 0.0
+            || (short > self.settings.arc_tolerance && self.settings.undocumented.small_radius_alarms)
         {
-            return Err(Alarm::RadiusTooSmall { radius: radius.abs(), half: chord / 2.0 });
+            return Err(Alarm::RadiusTooSmall { radius: radius.abs(), half_chord: chord / 2.0 });
         }
         let height = (radius * radius - chord * chord / 4.0).max(0.0).sqrt();
         // The centre of a short counterclockwise arc lies to the left of the way from start to end.

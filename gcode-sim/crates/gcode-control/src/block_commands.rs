@@ -1,7 +1,7 @@
 //! What a block commands that would otherwise be as it was left: modal codes, the places of axes, offsets.
 use super::words::computed_row;
 use super::{Control, Executor};
-use gcode_lang::program::codes::{Effect, OneShot, spelled};
+use gcode_lang::program::g_codes::{Effect, OneShot, spelled};
 use gcode_lang::program::modes::Distance;
 use gcode_lang::program::{OpKind, Statement, Words};
 
@@ -15,7 +15,7 @@ pub struct BlockCommands {
     /// Offsets that get a value by G10: `G10 L2 P1 X`.
     pub offsets: Vec<String>,
     /// Those of the letters F, S and T that it gives a value.
-    pub values: Vec<char>,
+    pub valued_letters: Vec<char>,
 }
 
 impl Control {
@@ -27,7 +27,7 @@ impl Control {
                 return;
             }
             if let OpKind::Words(words) = core.guarded_operation(op.kind()) {
-                core.commanded(words, &mut commanded);
+                core.collect_commands(words, &mut commanded);
             }
         });
         commanded
@@ -44,7 +44,7 @@ impl Control {
                 OpKind::Empty
                 | OpKind::Words(_)
                 | OpKind::Statement(_)
-                | OpKind::Compute(_)
+                | OpKind::AssignFree(_)
                 | OpKind::Alarm(_) => None,
             };
             let holds = condition.is_none_or(|condition| core.evaluate_condition(condition).unwrap_or(true));
@@ -55,19 +55,19 @@ impl Control {
 }
 
 impl Executor {
-    fn commanded(&self, words: &Words, commanded: &mut BlockCommands) {
+    fn collect_commands(&self, words: &Words, commanded: &mut BlockCommands) {
         // Behind G65 and M98 letters are arguments.
         if words.call().is_some() {
             return;
         }
-        let words = match words.short() {
-            Some((switch, short)) if self.skips(*switch) => short,
+        let words = match words.skipped_form() {
+            Some((switch, short)) if self.is_skip_on(*switch) => short,
             _ => words,
         };
         let mut distance = self.state.modal.distance;
         let mut act = None;
         for word in words.list.iter().filter(|word| word.letter == b'G') {
-            let Ok(Some(raw)) = self.raw(words, word) else { continue };
+            let Ok(Some(raw)) = self.evaluate_word(words, word) else { continue };
             let Ok(row) = computed_row(raw, self.settings.codes) else { continue };
             match row.effect {
                 Effect::OneShot(one) => act = Some(one),
@@ -77,24 +77,24 @@ impl Executor {
             commanded.modes.extend(row.effect.group().map(|group| (group, row.code)));
         }
         let values = words.list.iter().filter(|word| b"FST".contains(&word.letter) && !word.comma);
-        let values = values.filter(|word| matches!(self.raw(words, word), Ok(Some(_))));
-        commanded.values.extend(values.map(|word| char::from(word.letter)));
+        let values = values.filter(|word| matches!(self.evaluate_word(words, word), Ok(Some(_))));
+        commanded.valued_letters.extend(values.map(|word| char::from(word.letter)));
         if act == Some(OneShot::DataInput) {
-            self.offsets_written(words, commanded);
+            self.collect_written_offsets(words, commanded);
         } else if is_axis_positioned(act, distance) {
             let letters = words.list.iter().filter(|word| !word.comma && word.axis.is_none());
-            let given = letters.filter(|word| matches!(self.raw(words, word), Ok(Some(_))));
+            let given = letters.filter(|word| matches!(self.evaluate_word(words, word), Ok(Some(_))));
             let axes = given.filter(|word| self.settings.axes.find(word.letter).is_some());
             commanded.axes.extend(axes.map(|word| char::from(word.letter)));
         }
     }
 
     /// `G10 L2 P1 X`, for every value that the block gives.
-    fn offsets_written(&self, words: &Words, commanded: &mut BlockCommands) {
+    fn collect_written_offsets(&self, words: &Words, commanded: &mut BlockCommands) {
         let mut table = "G10".to_owned();
         for letter in *b"LP" {
             let word = words.list.iter().find(|word| word.letter == letter && !word.comma);
-            let raw = word.and_then(|word| self.raw(words, word).ok().flatten());
+            let raw = word.and_then(|word| self.evaluate_word(words, word).ok().flatten());
             if let Some(raw) = raw {
                 table.push_str(&format!(" {}{}", char::from(letter), raw.value()));
             }
@@ -153,8 +153,8 @@ mod tests {
         assert!(said("G92 X5.").0.axes.is_empty(), "no axis moves");
         assert_eq!(said("G91 G28 Z0").0.axes, ['Z']);
         assert_eq!(said("G10 L2 P1 X0 Y0").0.offsets, ["G10 L2 P1 X", "G10 L2 P1 Y"]);
-        assert_eq!(said("G1 X1. F100 S500 M3").0.values, ['F', 'S']);
-        assert!(said("G0 X1.").0.values.is_empty(), "F is as it was");
+        assert_eq!(said("G1 X1. F100 S500 M3").0.valued_letters, ['F', 'S']);
+        assert!(said("G0 X1.").0.valued_letters.is_empty(), "F is as it was");
         assert_eq!([modal_code(0), modal_code(541)], ["G00", "G54.1"]);
     }
 

@@ -1,22 +1,22 @@
 //! Checks a drilling block: its axis, its words, its repeats, and where it ends.
 use super::Executor;
-use super::drill::{CyclePlan, PolarRepeats};
-use super::eval::{Checked, at};
+use super::cycle_expansion::{CyclePlan, PolarRepeats};
+use super::evaluation::{ExecResult, locate};
 use super::notes::Note;
-use super::patterns::Pattern;
-use super::pecks::are_too_many;
+use super::patterns::BoltHolePattern;
+use super::pecks::has_too_many_pecks;
 use super::plan::BlockPlan;
 use super::state::{CycleLevel, State};
 use super::words::BlockWords;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{AxisIndex, Position};
-use gcode_lang::program::cycles::{Cycle, Step};
+use gcode_lang::program::cycles::{Cycle, CycleStep};
 use gcode_lang::program::modes::{Distance, Plane, Polar, ReturnTo};
 use gcode_lang::source::Span;
 
 impl Executor {
     /// Whether a block drills: it names an axis or R.
-    pub(super) fn drills(&self, given: &BlockWords) -> bool {
+    pub(super) fn is_drilling_block(&self, given: &BlockWords) -> bool {
         given.has(b'R') || self.names_axis(given)
     }
 
@@ -36,7 +36,7 @@ impl Executor {
             Plane::Yz => b"XU",
         };
         let mut named = along.iter().filter(|letter| given.has(**letter));
-        match (state.drilling.axis, named.next(), named.next()) {
+        match (state.cycle.axis, named.next(), named.next()) {
             (_, Some(_), Some(_)) => Err(Alarm::DrillingAxis),
             (None, named, None) => find(*named.unwrap_or(&along[0])),
             (Some(axis), named, None) => {
@@ -49,27 +49,27 @@ impl Executor {
     }
 
     /// Checks a drilling block and works out where it ends.
-    pub(super) fn prepare_drill(
+    pub(super) fn plan_cycle(
         &self,
         plan: &mut BlockPlan,
         given: &BlockWords,
         cycle: &'static Cycle,
-        pattern: Option<Pattern>,
+        pattern: Option<BoltHolePattern>,
         span: Span,
-    ) -> Checked<()> {
-        let axis = at(self.drilling_axis(given, &plan.state), span)?;
-        let stretch = at(stretch_along(plan, cycle, axis), span)?;
+    ) -> ExecResult<()> {
+        let axis = locate(self.drilling_axis(given, &plan.state), span)?;
+        let stretch = locate(stretch_along(plan, cycle, axis), span)?;
         let repeats = self.cycle_repeats(given, pattern)?;
         let incremental = plan.state.modal.distance == Distance::Incremental;
         let from = *plan.state;
         // The block's own depth words are not a move.
-        let mut goal = self.goal(given, &mut plan.state)?.programmed;
+        let mut goal = self.resolve_endpoint(given, &mut plan.state)?.programmed;
         goal[axis] = from.programmed[axis];
-        plan.state.set_unplaced(axis, from.work_zero_unknown >> axis & 1 == 1);
-        self.drilling_words(plan, given, axis, incremental)?;
-        let data = &plan.state.drilling;
+        plan.state.set_work_zero_unknown(axis, from.work_zero_unknown >> axis & 1 == 1);
+        self.read_cycle_words(plan, given, axis, incremental)?;
+        let data = &plan.state.cycle;
         for (level, letter) in [(data.r, 'R'), (data.z, self.settings.axes.letter(axis))] {
-            if !level.commanded {
+            if !level.is_commanded {
                 plan.notes.push(Note::CycleLevelMissing { letter });
             }
         }
@@ -77,21 +77,21 @@ impl Executor {
             plan.notes.push(Note::DrillsAlongZ { code: plan.state.modal.plane.code() });
         }
         if cycle.needs_q {
-            self.peck_words(plan, given, pattern, span)?;
+            self.check_peck_words(plan, given, pattern, span)?;
         }
-        let (rate, _) = at(self.time_along(&plan.state, 1.0, given.has(b'F')), span)?;
+        let (rate, _) = locate(self.path_time(&plan.state, 1.0, given.has(b'F')), span)?;
         plan.commands_axes = true;
-        if cycle.needs_q && are_too_many(&plan.state.drilling.unscaled(stretch), repeats) {
+        if cycle.needs_q && has_too_many_pecks(&plan.state.cycle.unscaled(stretch), repeats) {
             let what = "more than a million pecks in one block".into();
-            return Err(Alarm::NotSimulated { what }.at(span));
+            return Err(Alarm::NotSimulated { what }.located_at(span));
         }
         let rolls =
-            |(axis, letter): (AxisIndex, char)| self.settings.roll_over[axis] && given.has(letter as u8);
+            |(axis, letter): (AxisIndex, char)| self.settings.rolls_over[axis] && given.has(letter as u8);
         if incremental && self.settings.axes.iter().any(rolls) {
             let what = "a drilling cycle with an incremental axis that rolls over".into();
-            return Err(Alarm::NotSimulated { what }.at(span));
+            return Err(Alarm::NotSimulated { what }.located_at(span));
         }
-        if repeats == 0 && !self.settings.unsure.k0_positions {
+        if repeats == 0 && !self.settings.undocumented.k0_positions {
             plan.notes.push(Note::CycleRepeatsZero);
             return Ok(());
         }
@@ -102,78 +102,78 @@ impl Executor {
             }
         }
         let first = self.plane_axes(plan.state.modal.plane).map_or(0, |(first, _)| first);
-        let shift = plan.state.drilling.q.unwrap_or(0.0).abs();
-        let circle = self.circle(plan, given, incremental, repeats)?;
+        let shift = plan.state.cycle.q.unwrap_or(0.0).abs();
+        let circle = self.polar_repeats(plan, given, incremental, repeats)?;
         let drill = CyclePlan {
             cycle,
-            from: State { machine: from.machine, ..*plan.state },
-            hole: goal,
-            step,
-            circle,
+            start_state: State { machine: from.machine, ..*plan.state },
+            first_hole: goal,
+            hole_step: step,
+            polar_repeats: circle,
             pattern,
             repeats: repeats.max(1),
             axis,
             shift: (if first == axis { self.other_axis(axis) } else { first }, shift),
             rate,
-            dwell: plan.state.drilling.p,
+            dwell: plan.state.cycle.p,
             stretch,
         };
-        plan.state.programmed = drill.last(self);
+        plan.state.programmed = drill.last_hole(self);
         if repeats == 0 {
             // Positions only.
             let mut to = self.to_machine(&plan.state, &plan.state.programmed);
             to[axis] = from.machine[axis];
             plan.state.machine = from.machine;
-            self.rapid(plan, &to);
+            self.push_rapid(plan, &to);
             return Ok(());
         }
-        let data = &plan.state.drilling;
+        let data = &plan.state.cycle;
         let (level, unplaced) = if plan.state.modal.return_to == ReturnTo::R && cycle.starts_at_r {
-            (data.r_level(), data.r_unplaced())
+            (data.r_level(), data.is_r_unknown())
         } else {
-            (data.initial, data.initial_unplaced)
+            (data.initial, data.is_initial_unknown)
         };
-        plan.state.set_unplaced(axis, unplaced);
+        plan.state.set_work_zero_unknown(axis, unplaced);
         plan.state.programmed[axis] = level;
         plan.state.machine = self.to_machine(&plan.state, &plan.state.programmed);
-        plan.drill = Some(drill);
+        plan.cycle_plan = Some(drill);
         Ok(())
     }
 
-    fn cycle_repeats(&self, given: &BlockWords, pattern: Option<Pattern>) -> Checked<u32> {
-        let letter = self.settings.cycle_repeats;
+    fn cycle_repeats(&self, given: &BlockWords, pattern: Option<BoltHolePattern>) -> ExecResult<u32> {
+        let letter = self.settings.cycle_repeat_letter;
         let repeats = match pattern {
             Some(pattern) => pattern.count,
             None => given.count(letter)?.unwrap_or(1),
         };
-        if repeats > 9999 { Err(Alarm::TooManyDigits.at(given.span(letter))) } else { Ok(repeats) }
+        if repeats > 9999 { Err(Alarm::TooManyDigits.located_at(given.span(letter))) } else { Ok(repeats) }
     }
 
     /// A cycle with pecks needs their depth.
-    fn peck_words(
+    fn check_peck_words(
         &self,
         plan: &mut BlockPlan,
         given: &BlockWords,
-        pattern: Option<Pattern>,
+        pattern: Option<BoltHolePattern>,
         span: Span,
-    ) -> Checked<()> {
-        if self.settings.shrinking_pecks && pattern.is_none() {
-            self.shrinking_pecks(plan, given, span)?;
+    ) -> ExecResult<()> {
+        if self.settings.has_shrinking_pecks && pattern.is_none() {
+            self.read_peck_schedule(plan, given, span)?;
         }
-        let data = &plan.state.drilling;
+        let data = &plan.state.cycle;
         let none = data.pecks.is_none() && data.q.is_none_or(|q| q == 0.0);
-        if none { Err(Alarm::NoPeckDepth.at(span)) } else { Ok(()) }
+        if none { Err(Alarm::NoPeckDepth.located_at(span)) } else { Ok(()) }
     }
 
     /// How the holes of a block with K follow one another in polar coordinates; the next block's angle counts from the
     /// last of them.
-    fn circle(
+    fn polar_repeats(
         &self,
         plan: &mut BlockPlan,
         given: &BlockWords,
         incremental: bool,
         repeats: u32,
-    ) -> Checked<Option<PolarRepeats>> {
+    ) -> ExecResult<Option<PolarRepeats>> {
         let state = &mut plan.state;
         let Ok(plane) = self.plane_axes(state.modal.plane) else { return Ok(None) };
         if state.modal.polar == Polar::Off || !incremental {
@@ -190,29 +190,29 @@ impl Executor {
     }
 
     /// The depth, R, P and Q stay in force from hole to hole.
-    fn drilling_words(
+    fn read_cycle_words(
         &self,
         plan: &mut BlockPlan,
         given: &BlockWords,
         axis: AxisIndex,
         incremental: bool,
-    ) -> Checked<()> {
+    ) -> ExecResult<()> {
         let state = &plan.state;
-        let mut data = state.drilling;
+        let mut data = state.cycle;
         if let Some(value) = self.dimension(given, b'R', state)? {
-            data.r = CycleLevel { value, incremental, commanded: true };
+            data.r = CycleLevel { value, is_incremental: incremental, is_commanded: true };
         }
         if let Some(value) = self.dimension(given, self.settings.axes.letter(axis) as u8, state)? {
-            data.z = CycleLevel { value, incremental, commanded: true };
+            data.z = CycleLevel { value, is_incremental: incremental, is_commanded: true };
         }
         if let Some(value) = self.dimension(given, b'Q', state)? {
             // Its sign is ignored.
             data.q = Some(value.abs());
         }
-        if let Some(seconds) = self.pause(given)? {
+        if let Some(seconds) = self.dwell_seconds(given)? {
             data.p = seconds;
         }
-        plan.state.drilling = data;
+        plan.state.cycle = data;
         Ok(())
     }
 }
@@ -221,9 +221,9 @@ impl Executor {
 fn stretch_along(plan: &BlockPlan, cycle: &Cycle, axis: AxisIndex) -> Result<f64, Alarm> {
     let transform = &plan.state.transform;
     let stretch = transform.scaling.map_or(1.0, |s| s.factor[axis]);
-    let turned = stretch < 0.0 || transform.mirrored >> axis & 1 == 1;
+    let turned = stretch < 0.0 || transform.mirrored_axes >> axis & 1 == 1;
     // Of cycles with a shift the manual says that G51 leaves them out, not how far.
-    let shifts = stretch != 1.0 && cycle.steps.contains(&Step::Shift);
+    let shifts = stretch != 1.0 && cycle.steps.contains(&CycleStep::Shift);
     if transform.tilt.is_some() || turned || shifts {
         let what = "a drilling cycle whose axis is tilted or mirrored, or one with a shift that is scaled";
         return Err(Alarm::NotSimulated { what: what.into() });

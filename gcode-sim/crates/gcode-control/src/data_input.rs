@@ -1,9 +1,9 @@
 //! G10: offsets, parameters and variables that a program writes.
 use super::Executor;
-use super::eval::{Checked, at};
+use super::evaluation::{ExecResult, locate};
 use super::offsets::Register;
 use super::plan::{BlockPlan, TableWrite};
-use super::vars::{Value, VariableClass};
+use super::variables::{Value, VariableClass};
 use super::words::BlockWords;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::program::modes::Distance;
@@ -12,45 +12,52 @@ use gcode_lang::source::Span;
 impl Executor {
     /// G10: L2 and L20 work offsets, L10 to L13 tool offsets, L50 and L52 parameters, L85
     /// variables.
-    pub(super) fn data_input(&self, given: &BlockWords, plan: &mut BlockPlan, span: Span) -> Checked<()> {
-        let format = |what: &str| format(what).at(span);
+    pub(super) fn plan_data_input(
+        &self,
+        given: &BlockWords,
+        plan: &mut BlockPlan,
+        span: Span,
+    ) -> ExecResult<()> {
+        let format = |what: &str| format(what).located_at(span);
         let p = given.count(b'P')?;
         let l = given.count(b'L')?.ok_or_else(|| format("L is missing"))?;
         match l {
-            3 | 14 | 50 | 52 | 85 if !self.settings.parameter_input => {
+            3 | 14 | 50 | 52 | 85 if !self.settings.allows_parameter_input => {
                 Err(format(&format!("L{l} is not available")))
             }
-            2 | 20 => self.write_work(l, p.ok_or_else(|| format("P is missing"))?, given, plan, span),
-            1 | 10..=13 => self.write_tool(l, p.ok_or_else(|| format("P is missing"))?, given, plan, span),
+            2 | 20 => self.plan_work_offset(l, p.ok_or_else(|| format("P is missing"))?, given, plan, span),
+            1 | 10..=13 => {
+                self.plan_tool_offset(l, p.ok_or_else(|| format("P is missing"))?, given, plan, span)
+            }
             50 | 52 => {
-                plan.state.parameter_input = true;
+                plan.state.is_in_parameter_input = true;
                 Ok(())
             }
             85 => {
                 let number = p.ok_or_else(|| format("P, the variable, is missing"))?;
-                self.write_punched(number, given, plan, span)
+                self.plan_punched_variable(number, given, plan, span)
             }
-            3 => Err(Alarm::NotSimulated { what: "G10 L3 (tool life management)".into() }.at(span)),
-            14 => Err(Alarm::NotSimulated { what: "G10 L14 (tool geometry)".into() }.at(span)),
+            3 => Err(Alarm::NotSimulated { what: "G10 L3 (tool life management)".into() }.located_at(span)),
+            14 => Err(Alarm::NotSimulated { what: "G10 L14 (tool geometry)".into() }.located_at(span)),
             _ => Err(format(&format!("L{l} is not available"))),
         }
     }
 
     /// L2 P0 to P6, L20 P1 and up: work offsets.
-    fn write_work(
+    fn plan_work_offset(
         &self,
         l: u32,
         p: u32,
         given: &BlockWords,
         plan: &mut BlockPlan,
         span: Span,
-    ) -> Checked<()> {
+    ) -> ExecResult<()> {
         let p = p as usize;
         let adds = plan.state.modal.distance == Distance::Incremental;
         let system = match l {
             2 if p <= 6 => p,
             20 if (1..=self.offsets.additional.len()).contains(&p) => 6 + p,
-            _ => return Err(Alarm::OffsetNumber { number: p as i64 }.at(span)),
+            _ => return Err(Alarm::OffsetNumber { number: p as i64 }.located_at(span)),
         };
         for (axis, letter) in self.settings.axes.iter() {
             let Some(value) = self.dimension(given, letter as u8, &plan.state)? else { continue };
@@ -58,21 +65,21 @@ impl Executor {
             plan.writes.push(TableWrite::Work {
                 system,
                 axis,
-                value: at(self.offset_in_range(self.clean(old + value)), span)?,
+                value: locate(self.check_offset_range(self.remove_residue(old + value)), span)?,
             });
         }
         Ok(())
     }
 
     /// L1 and L10 to L13: tool offsets.
-    fn write_tool(
+    fn plan_tool_offset(
         &self,
         l: u32,
         number: u32,
         given: &BlockWords,
         plan: &mut BlockPlan,
         span: Span,
-    ) -> Checked<()> {
+    ) -> ExecResult<()> {
         let register = match l {
             10 => Register::HGeometry,
             12 => Register::DGeometry,
@@ -80,34 +87,40 @@ impl Executor {
             _ => Register::HWear,
         };
         let adds = plan.state.modal.distance == Distance::Incremental;
-        let old = at(self.offsets.tool(register, number), span)?;
+        let old = locate(self.offsets.tool(register, number), span)?;
         if number == 0 {
-            return Err(Alarm::OffsetNumber { number: 0 }.at(span));
+            return Err(Alarm::OffsetNumber { number: 0 }.located_at(span));
         }
-        let value =
-            self.dimension(given, b'R', &plan.state)?.ok_or_else(|| format("R is missing").at(span))?;
-        let value = at(self.offset_in_range(self.clean(if adds { old + value } else { value })), span)?;
+        let value = self
+            .dimension(given, b'R', &plan.state)?
+            .ok_or_else(|| format("R is missing").located_at(span))?;
+        let value = locate(
+            self.check_offset_range(self.remove_residue(if adds { old + value } else { value })),
+            span,
+        )?;
         plan.writes.push(TableWrite::Tool { register, number, value });
         Ok(())
     }
 
     /// L85: a variable, from the bits of its value.
-    fn write_punched(
+    fn plan_punched_variable(
         &self,
         number: u32,
         given: &BlockWords,
         plan: &mut BlockPlan,
         span: Span,
-    ) -> Checked<()> {
-        if !matches!(self.vars.kind(number), VariableClass::Common(_)) {
-            return Err(Alarm::NoSuchVariable { number: i64::from(number) }.at(given.span(b'P')));
+    ) -> ExecResult<()> {
+        if !matches!(self.vars.classify(number), VariableClass::Common(_)) {
+            return Err(Alarm::NoSuchVariable { number: i64::from(number) }.located_at(given.span(b'P')));
         }
-        let bits = given.punched.ok_or_else(|| format("L85 needs sixteen digits in brackets").at(span))?;
+        let bits = given
+            .punched_value
+            .ok_or_else(|| format("L85 needs sixteen digits in brackets").located_at(span))?;
         let value = match f64::from_bits(bits) {
             value if value.is_finite() => Value::Number(value),
             // All bits set are a vacant variable.
             _ if bits == u64::MAX => Value::Vacant,
-            _ => return Err(format("the digits are not a number").at(span)),
+            _ => return Err(format("the digits are not a number").located_at(span)),
         };
         plan.writes.push(TableWrite::Variable { number, value });
         Ok(())

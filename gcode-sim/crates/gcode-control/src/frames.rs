@@ -2,7 +2,7 @@
 use std::sync::Arc;
 
 use super::run::RunEnd;
-use super::vars::Locals;
+use super::variables::Locals;
 use super::{Control, Executor};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{Call, CallChain};
@@ -26,31 +26,34 @@ pub(super) struct Frame {
     /// DO1 to DO3 that are open: their first and last operation.
     pub(super) loops: [Option<(OpIndex, OpIndex)>; 3],
     /// How many of the modal calls its moves can trigger.
-    pub(super) modal: usize,
-    pub(super) by_code: CallOrigins,
+    pub(super) modal_call_count: usize,
+    pub(super) origins: CallOrigins,
     /// Called by M198, itself or one of its callers.
-    pub(super) external: bool,
+    pub(super) is_external: bool,
 }
 
 /// The kinds of codes that a program was called by, itself or one of its callers: inside it they are ordinary ones.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct CallOrigins {
-    pub(super) g: bool,
+    pub(super) has_g_code: bool,
     /// M, T, S, B and the addresses of 6090 and 6091.
-    pub(super) other: bool,
+    pub(super) has_other_code: bool,
 }
 
 impl CallOrigins {
-    fn and(self, more: Self) -> Self {
-        Self { g: self.g || more.g, other: self.other || more.other }
+    fn merged_with(self, more: Self) -> Self {
+        Self {
+            has_g_code: self.has_g_code || more.has_g_code,
+            has_other_code: self.has_other_code || more.has_other_code,
+        }
     }
 
     /// Whether a code still calls: GMP 6008#6 lets G codes call where another kind has called, and the other way round.
     pub(super) fn allows_call(self, g: bool, inside_others: bool) -> bool {
         match (inside_others, g) {
             (false, _) => self == Self::default(),
-            (true, true) => !self.g,
-            (true, false) => !self.other,
+            (true, true) => !self.has_g_code,
+            (true, false) => !self.has_other_code,
         }
     }
 }
@@ -75,14 +78,14 @@ impl Frame {
             arguments: None,
             calls: None,
             loops: [None; 3],
-            modal: usize::MAX,
-            by_code: CallOrigins::default(),
-            external: false,
+            modal_call_count: usize::MAX,
+            origins: CallOrigins::default(),
+            is_external: false,
         }
     }
 
     /// Whether two frames lead to the same blocks from here on.
-    pub(super) fn goes_on_like(&self, other: &Self) -> bool {
+    pub(super) fn continues_like(&self, other: &Self) -> bool {
         let Self {
             program,
             next,
@@ -92,15 +95,15 @@ impl Frame {
             arguments,
             calls: _,
             loops,
-            modal,
-            by_code,
-            external,
+            modal_call_count: modal,
+            origins: by_code,
+            is_external: external,
         } = self;
         (*program, *next, *kind, *start, *repeats)
             == (other.program, other.next, other.kind, other.start, other.repeats)
             && *arguments == other.arguments
-            && (*loops, *modal) == (other.loops, other.modal)
-            && (*by_code, *external) == (other.by_code, other.external)
+            && (*loops, *modal) == (other.loops, other.modal_call_count)
+            && (*by_code, *external) == (other.origins, other.is_external)
     }
 
     /// Goes to an operation and leaves the loops that it is not in.
@@ -125,7 +128,7 @@ impl Executor {
         Ok(())
     }
 
-    pub(super) fn called(
+    pub(super) fn callee_frame(
         &self,
         program: ProgramId,
         start: OpIndex,
@@ -134,15 +137,15 @@ impl Executor {
         by_code: CallOrigins,
         block: Span,
     ) -> Frame {
-        let calls = Some(Arc::new(Call { from: block, outer: self.frame.calls.clone() }));
-        let by_code = self.frame.by_code.and(by_code);
+        let calls = Some(Arc::new(Call { calling_block: block, outer_calls: self.frame.calls.clone() }));
+        let by_code = self.frame.origins.merged_with(by_code);
         Frame {
             next: start,
             kind,
             start,
             repeats: repeats.saturating_sub(1),
             calls,
-            by_code,
+            origins: by_code,
             ..Frame::main(program)
         }
     }
@@ -154,15 +157,15 @@ impl Executor {
     /// Back from a subprogram or macro to the program that called it.
     pub(super) fn pop(&mut self) {
         match self.frame.kind {
-            FrameKind::Macro => self.vars.leave(),
+            FrameKind::Macro => self.vars.pop_level(),
             FrameKind::Modal(index) => {
                 let locals = self.vars.locals();
                 if let Some(call) = self.modal_calls.get_mut(index)
-                    && self.settings.unsure.modal_keeps_locals
+                    && self.settings.undocumented.modal_keeps_locals
                 {
                     call.locals = locals;
                 }
-                self.vars.leave();
+                self.vars.pop_level();
             }
             FrameKind::Main | FrameKind::Subprogram => {}
         }
@@ -172,7 +175,7 @@ impl Executor {
     }
 
     /// M99 without P in a called program: the next pass, or back.
-    pub(super) fn repeat_or_leave(&mut self) {
+    pub(super) fn repeat_or_pop(&mut self) {
         let frame = &mut self.frame;
         if frame.repeats == 0 {
             return self.pop();
@@ -190,50 +193,54 @@ impl Executor {
 impl Control {
     /// Where M99 P leads, before anything of its block has happened; `None` where it leads nowhere.
     pub(super) fn find_return(&self, number: Option<u32>) -> Result<Option<OpIndex>, Alarm> {
-        let Some(number) = number.filter(|_| !self.is_last_pass()) else { return Ok(None) };
-        let program = self.memory.get(self.returns_to().program);
+        let Some(number) = number.filter(|_| !self.is_last_cycle()) else { return Ok(None) };
+        let program = self.memory.get(self.return_frame().program);
         let found = program.find_number(number, 0);
         found.map(Some).ok_or(Alarm::SequenceNumberNotFound { number })
     }
 
     /// Whether M99 of the main program ends the run.
-    fn is_last_pass(&self) -> bool {
-        let last = self.core.settings.cycles.is_some_and(|cycles| self.core.cycles + 1 >= cycles);
-        last && self.core.frame.kind == FrameKind::Main
+    fn is_last_cycle(&self) -> bool {
+        let last = self
+            .executor
+            .settings
+            .main_program_cycles
+            .is_some_and(|cycles| self.executor.cycles + 1 >= cycles);
+        last && self.executor.frame.kind == FrameKind::Main
     }
 
     /// The frame in which the run goes on after M99.
-    fn returns_to(&self) -> &Frame {
-        match self.core.frame.kind {
-            FrameKind::Main => &self.core.frame,
-            _ => self.core.callers.last().unwrap_or(&self.core.frame),
+    fn return_frame(&self) -> &Frame {
+        match self.executor.frame.kind {
+            FrameKind::Main => &self.executor.frame,
+            _ => self.executor.callers.last().unwrap_or(&self.executor.frame),
         }
     }
 
     /// M99, and M99 P with its number and the place that [`Control::find_return`] has found.
     pub(super) fn return_to(&mut self, to: Option<(u32, OpIndex)>) -> Option<RunEnd> {
-        let main = self.core.frame.kind == FrameKind::Main;
-        let ends = self.is_last_pass();
+        let main = self.executor.frame.kind == FrameKind::Main;
+        let ends = self.is_last_cycle();
         if main {
-            self.core.cycles += 1;
+            self.executor.cycles += 1;
         }
         if ends {
-            return Some(RunEnd::End);
+            return Some(RunEnd::ProgramEnd);
         }
         let Some((number, target)) = to else {
             if main {
-                self.core.frame.jump(0);
+                self.executor.frame.jump(0);
             } else {
-                self.core.repeat_or_leave();
+                self.executor.repeat_or_pop();
             }
             return None;
         };
-        let program = self.memory.get(self.returns_to().program);
+        let program = self.memory.get(self.return_frame().program);
         if !main {
-            self.core.pop();
+            self.executor.pop();
         }
-        self.core.note_ambiguous_jump(program, number, target);
-        self.core.frame.jump(target);
+        self.executor.note_ambiguous_jump(program, number, target);
+        self.executor.frame.jump(target);
         None
     }
 }

@@ -1,5 +1,5 @@
 //! What operators, comparisons and functions compute, with their domains and alarms.
-use super::vars::Value;
+use super::variables::Value;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::{Settings, UndocumentedChoices};
 use gcode_lang::syntax::ast::{BinaryOp, Function, Relation};
@@ -12,25 +12,32 @@ pub(super) fn is_finite(value: f64) -> bool {
 }
 
 /// Results beyond what a double holds are PS0111.
-fn finite(value: f64) -> Result<f64, Alarm> {
+fn check_finite(value: f64) -> Result<f64, Alarm> {
     if is_finite(value) { Ok(value) } else { Err(Alarm::FloatOverflow) }
 }
 
 #[inline(never)]
 pub fn binary(op: BinaryOp, left: f64, right: f64, unsure: &UndocumentedChoices) -> Result<f64, Alarm> {
-    finite(match op {
+    check_finite(match op {
         BinaryOp::Add => left + right,
         BinaryOp::Sub => left - right,
         BinaryOp::Mul => left * right,
         BinaryOp::Div if right != 0.0 => left / right,
         BinaryOp::Div => return Err(Alarm::DivideByZero),
-        BinaryOp::Mod | BinaryOp::And | BinaryOp::Or | BinaryOp::Xor => whole(op, left, right, unsure)?,
+        BinaryOp::Mod | BinaryOp::And | BinaryOp::Or | BinaryOp::Xor => {
+            integer_operation(op, left, right, unsure)?
+        }
     })
 }
 
 /// The operators on whole numbers.
 #[inline(never)]
-fn whole(op: BinaryOp, left: f64, right: f64, unsure: &UndocumentedChoices) -> Result<f64, Alarm> {
+fn integer_operation(
+    op: BinaryOp,
+    left: f64,
+    right: f64,
+    unsure: &UndocumentedChoices,
+) -> Result<f64, Alarm> {
     if op == BinaryOp::Mod {
         let (left, right) = (round(left), round(right));
         // The remainder has the sign of the dividend.
@@ -74,21 +81,21 @@ pub(super) fn compare(relation: Relation, left: Value, right: Value) -> bool {
 }
 
 pub fn function(name: Function, x: f64, settings: &Settings) -> Result<f64, Alarm> {
-    let value = value_of(name, x, settings);
-    if is_finite(value) { Ok(value) } else { Err(no_value(name, x)) }
+    let value = function_value(name, x, settings);
+    if is_finite(value) { Ok(value) } else { Err(function_alarm(name, x)) }
 }
 
 /// What a function gives; no number, or infinite, where it alarms.
 #[inline(never)]
-pub(super) fn value_of(name: Function, x: f64, settings: &Settings) -> f64 {
-    let residue = |y: f64| if settings.zero_residues && y.abs() < 1e-8 { 0.0 } else { y };
+pub(super) fn function_value(name: Function, x: f64, settings: &Settings) -> f64 {
+    let residue = |y: f64| if settings.zeroes_residues && y.abs() < 1e-8 { 0.0 } else { y };
     match name {
         Function::Sqrt => x.sqrt(),
         Function::Sin => residue(Deg(x).sin()),
         Function::Cos => residue(Deg(x).cos()),
-        Function::Tan if settings.unsure.tan_90_alarms && (x % 180.0).abs() == 90.0 => f64::NAN,
+        Function::Tan if settings.undocumented.tan_90_alarms && (x % 180.0).abs() == 90.0 => f64::NAN,
         Function::Tan => residue(Deg(x).tan()),
-        Function::Asin => signed(Deg::asin(x).0, settings),
+        Function::Asin => apply_angle_range(Deg::asin(x).0, settings),
         Function::Acos => Deg::acos(x).0,
         Function::Atan => Deg::atan2(x, 1.0).0,
         Function::Abs => x.abs(),
@@ -109,7 +116,7 @@ pub(super) fn value_of(name: Function, x: f64, settings: &Settings) -> f64 {
 
 /// The alarm of a function that has no value.
 #[cold]
-pub(super) fn no_value(name: Function, x: f64) -> Alarm {
+pub(super) fn function_alarm(name: Function, x: f64) -> Alarm {
     match name {
         Function::Adp => Alarm::ArgumentFormat { function: "ADP".into() },
         Function::Pow => Alarm::MissingComma,
@@ -118,8 +125,8 @@ pub(super) fn no_value(name: Function, x: f64) -> Alarm {
 }
 
 /// NAT: negative angles as they are, or a turn added.
-fn signed(degrees: f64, settings: &Settings) -> f64 {
-    if degrees < 0.0 && !settings.signed_angles { degrees + 360.0 } else { degrees }
+fn apply_angle_range(degrees: f64, settings: &Settings) -> f64 {
+    if degrees < 0.0 && !settings.returns_signed_angles { degrees + 360.0 } else { degrees }
 }
 
 pub fn atan2(y: f64, x: f64, settings: &Settings) -> Result<f64, Alarm> {
@@ -131,10 +138,10 @@ pub fn atan2(y: f64, x: f64, settings: &Settings) -> Result<f64, Alarm> {
 #[inline]
 pub(super) fn angle(y: f64, x: f64, settings: &Settings) -> f64 {
     if y == 0.0 && x == 0.0 {
-        return if settings.unsure.atan_of_nothing_alarms { f64::NAN } else { 0.0 };
+        return if settings.undocumented.atan_of_zeros_alarms { f64::NAN } else { 0.0 };
     }
     // A negative zero must not turn 180° into −180°.
-    signed(Deg::atan2(y + 0.0, x).0, settings)
+    apply_angle_range(Deg::atan2(y + 0.0, x).0, settings)
 }
 
 pub fn power(base: f64, exponent: f64) -> Result<f64, Alarm> {
@@ -144,7 +151,7 @@ pub fn power(base: f64, exponent: f64) -> Result<f64, Alarm> {
     if base == 0.0 && exponent < 0.0 {
         return Err(Alarm::DivideByZero);
     }
-    finite(libm::pow(base, exponent))
+    check_finite(libm::pow(base, exponent))
 }
 
 fn to_bcd(number: u32) -> u32 {
@@ -175,7 +182,7 @@ mod tests {
         let mut settings = Settings::default();
         assert_eq!(atan2(-1.0, -1.0, &settings), Ok(225.0));
         assert_eq!(atan2(-0.0, -1.0, &settings), Ok(180.0));
-        settings.signed_angles = true;
+        settings.returns_signed_angles = true;
         assert_eq!(atan2(-1.0, -1.0, &settings), Ok(-135.0));
     }
 

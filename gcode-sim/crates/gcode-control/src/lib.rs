@@ -1,4 +1,5 @@
 //! Operations to events: a control that can be stepped block by block, held and looked at.
+mod accessors;
 mod arcs;
 mod arguments;
 mod block;
@@ -7,32 +8,32 @@ mod block_effects;
 mod calls;
 mod code_calls;
 mod code_words;
-mod commit;
 mod contour;
+mod cycle_expansion;
 mod cycles;
 mod data_input;
-mod drill;
-mod eval;
+mod evaluation;
 mod frames;
 mod functions;
 mod linear_motion;
 mod lookahead;
 mod loop_detection;
 mod m_codes;
-mod modal;
 mod modal_calls;
 mod modal_codes;
+mod modal_state;
 mod moves;
 mod notes;
 mod observer;
 mod offsets;
-mod one_shot;
+mod one_shot_codes;
 mod outcome;
 mod parameters;
 mod patterns;
 mod pecks;
 mod plain_move;
 mod plan;
+mod plan_commit;
 mod pockets;
 mod print;
 mod probing;
@@ -44,14 +45,13 @@ mod state;
 mod statements;
 pub mod static_eval;
 mod stroke_limits;
-mod system_vars;
-mod thread;
+mod system_variables;
+mod threading;
 mod transform;
 mod transform_codes;
 mod transform_order;
 mod unsimulated;
-mod vars;
-mod view;
+mod variables;
 mod words;
 mod work_offset_use;
 
@@ -60,7 +60,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 pub use block_commands::{BlockCommands, modal_code};
-pub use modal::Modal;
+pub use modal_state::Modal;
 pub use notes::Note;
 pub use observer::Observer;
 pub use outcome::{AlarmStop, Limits, OperatorStop, Outcome, Progress};
@@ -68,10 +68,10 @@ pub use print::printable;
 pub use residual_state::{ResidualKind, ResidualValue, mode_name};
 pub use state::{Codes, State};
 pub use unsimulated::UnsimulatedCodes;
-pub use vars::{Value, Vars};
+pub use variables::{Value, Vars};
 
 use self::block_effects::BlockEffects;
-use self::eval::OperandStack;
+use self::evaluation::OperandStack;
 use self::frames::Frame;
 use self::linear_motion::CoordinateBasis;
 use self::lookahead::Lookahead;
@@ -87,18 +87,18 @@ use gcode_lang::program::{Memory, ProgramId, Slot};
 use gcode_lang::source::Span;
 
 /// As many operator stops are kept; a program that loops over M00 must not fill the memory.
-const STOPS: usize = 10_000;
+const MAX_STOPS: usize = 10_000;
 
 /// A control with programs in its memory: everything a run is.
 #[derive(Debug)]
 pub struct Control {
     memory: Memory,
-    core: Executor,
+    executor: Executor,
     plan: BlockPlan,
-    given: BlockWords,
+    block_words: BlockWords,
     main: ProgramId,
     outcome: Option<Outcome>,
-    watch: LoopDetector,
+    loop_detector: LoopDetector,
     progress: Option<Arc<Progress>>,
 }
 
@@ -108,11 +108,11 @@ pub struct Executor {
     settings: Settings,
     state: Box<State>,
     /// While a block can be a plain move: what its axis words count from.
-    plain: Option<CoordinateBasis>,
+    plain_basis: Option<CoordinateBasis>,
     vars: Vars,
     offsets: Offsets,
     /// What has been read and waits for the next move.
-    ahead: Lookahead,
+    lookahead: Lookahead,
     /// The program at hand.
     frame: Frame,
     /// The programs that wait for it, the main program first.
@@ -124,29 +124,29 @@ pub struct Executor {
     /// What #3001 and #3002 have been set off by: milliseconds, hours.
     clocks: (f64, f64),
     /// #3003 and #3004.
-    switches: [f64; 2],
+    control_switches: [f64; 2],
     /// #3901 and #3902.
-    parts: [f64; 2],
+    part_counters: [f64; 2],
     /// M99 of the main program, counted.
     cycles: u32,
     seconds: f64,
     /// Seconds that the clocks have gone on while the program waited for them.
-    idle: f64,
+    idle_seconds: f64,
     /// A clock was read since the last jump back.
-    clock_read: Cell<bool>,
+    has_read_clock: Cell<bool>,
     /// For values that wait for their operators.
-    waiting: OperandStack,
-    aftermath: BlockEffects,
+    operand_stack: OperandStack,
+    block_effects: BlockEffects,
     blocks: u64,
     moves: u64,
     /// Beyond so many the run ends.
-    most_moves: u64,
+    max_moves: u64,
     stops: Vec<OperatorStop>,
-    printed: print::Printed,
+    printed: print::PrintedLines,
     /// M codes that went to the machine builder's logic, with the block of the first of each.
-    passed_on: BTreeMap<u32, Span>,
+    auxiliary_codes: BTreeMap<u32, Span>,
     notes: BTreeMap<Note, Span>,
-    work_use: WorkOffsetUse,
+    work_offset_use: WorkOffsetUse,
     /// Parameters that the program has written and that have no effect.
     parameters: BTreeMap<ParameterId, f64>,
     block: Span,
@@ -156,47 +156,47 @@ impl Control {
     /// A control switched on, about to run the first program of `memory`.
     pub fn new(memory: Memory, settings: Settings) -> Self {
         let offsets = Offsets::new(settings.tool_offsets, settings.work_systems);
-        let vars = Vars::new(settings.more_commons, settings.aliased_commons);
+        let vars = Vars::new(settings.extra_commons, settings.aliases_commons);
         let core = Executor {
             settings,
             state: Box::default(),
-            plain: None,
+            plain_basis: None,
             vars,
             offsets,
-            ahead: Lookahead::default(),
+            lookahead: Lookahead::default(),
             frame: Frame::main(ProgramId::default()),
             callers: Vec::new(),
             modal_calls: Vec::new(),
             names: BTreeMap::new(),
             outputs: 0,
             clocks: (0.0, 0.0),
-            switches: [0.0; 2],
-            parts: [0.0; 2],
+            control_switches: [0.0; 2],
+            part_counters: [0.0; 2],
             cycles: 0,
             seconds: 0.0,
-            idle: 0.0,
-            clock_read: Cell::new(false),
-            waiting: OperandStack::default(),
-            aftermath: BlockEffects::default(),
+            idle_seconds: 0.0,
+            has_read_clock: Cell::new(false),
+            operand_stack: OperandStack::default(),
+            block_effects: BlockEffects::default(),
             blocks: 0,
             moves: 0,
-            most_moves: u64::MAX,
+            max_moves: u64::MAX,
             stops: Vec::new(),
-            printed: print::Printed::default(),
-            passed_on: BTreeMap::new(),
+            printed: print::PrintedLines::default(),
+            auxiliary_codes: BTreeMap::new(),
             notes: BTreeMap::new(),
-            work_use: WorkOffsetUse::default(),
+            work_offset_use: WorkOffsetUse::default(),
             parameters: BTreeMap::new(),
             block: Span::default(),
         };
         let mut control = Self {
             memory,
-            core,
+            executor: core,
             plan: BlockPlan::default(),
-            given: BlockWords::default(),
+            block_words: BlockWords::default(),
             main: ProgramId::default(),
             outcome: None,
-            watch: LoopDetector::default(),
+            loop_detector: LoopDetector::default(),
             progress: None,
         };
         control.select(ProgramId::default());
@@ -207,22 +207,23 @@ impl Control {
     pub fn select(&mut self, program: ProgramId) {
         self.main = program;
         self.outcome = None;
-        self.core.callers.clear();
-        self.core.frame = Frame::main(program);
+        self.executor.callers.clear();
+        self.executor.frame = Frame::main(program);
         if let Some(program) = self.memory.programs().get(program.0 as usize) {
-            self.core.state.codes.o = program.shown_number();
-            self.core.block = program.span;
+            self.executor.state.codes.o = program.shown_number();
+            self.executor.block = program.span;
         }
     }
 
     /// Lets somebody see how far the run is, and end it.
-    pub fn show_progress(&mut self, progress: Arc<Progress>) {
+    pub fn set_progress(&mut self, progress: Arc<Progress>) {
         self.progress = Some(progress);
     }
 
     /// Sets a variable before the run, as the operator would on the screen.
-    pub fn set(&mut self, number: u32, value: f64) -> Result<(), Alarm> {
-        let written = self.core.write(Slot::of(number), Value::Number(value), None, Span::default(), &mut ());
+    pub fn set_variable(&mut self, number: u32, value: f64) -> Result<(), Alarm> {
+        let written =
+            self.executor.write(Slot::of(number), Value::Number(value), None, Span::default(), &mut ());
         written.map_err(|alarm| alarm.node)
     }
 }

@@ -2,7 +2,7 @@
 use std::hint::cold_path;
 
 use super::Executor;
-use super::eval::{Checked, at};
+use super::evaluation::{ExecResult, locate};
 use super::notes::Note;
 use super::plan::BlockPlan;
 use super::quantities::Measure;
@@ -19,7 +19,7 @@ pub(super) struct Endpoint {
     pub(super) programmed: Position,
     pub(super) machine: Position,
     /// As [`State::work_zero_unknown`], there.
-    pub(super) unplaced: u8,
+    pub(super) work_zero_unknown: u8,
 }
 
 /// What axis words count from and in, the same for all of a block.
@@ -28,33 +28,33 @@ pub(super) struct CoordinateBasis {
     /// [`Executor::zeros`].
     zero: Position,
     /// The axes whose zero and tool length are none, as bits, axis 1 the lowest.
-    unshifted: u8,
-    incremental: bool,
+    unshifted_axes: u8,
+    is_incremental: bool,
     pub(super) measure: Measure,
     /// The largest coordinate: nine digits in increments, as a word has.
-    pub(super) most: f64,
+    pub(super) max_coordinate: f64,
 }
 
 /// How far axes move: the sums of the squares of those that slide, in mm, and of those that turn, in degrees.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct SquaredTravel {
-    sliding: f64,
-    turning: f64,
+    linear: f64,
+    rotary: f64,
 }
 
 impl SquaredTravel {
     #[inline(always)]
     pub(super) fn add(&mut self, way: f64, turns: bool) {
         if turns {
-            self.turning += way * way;
+            self.rotary += way * way;
         } else {
-            self.sliding += way * way;
+            self.linear += way * way;
         }
     }
 
     /// Whether one of the axes moves; the increments are far too large for squares that vanish.
     pub(super) fn is_some(self) -> bool {
-        self.sliding + self.turning > 0.0
+        self.linear + self.rotary > 0.0
     }
 }
 
@@ -62,14 +62,18 @@ impl Endpoint {
     /// Where the program stands.
     #[inline]
     pub(super) fn at_current_position(state: &State) -> Self {
-        Self { programmed: state.programmed, machine: state.machine, unplaced: state.work_zero_unknown }
+        Self {
+            programmed: state.programmed,
+            machine: state.machine,
+            work_zero_unknown: state.work_zero_unknown,
+        }
     }
 }
 
 impl Executor {
     /// Whether a block names an axis.
     pub(super) fn names_axis(&self, given: &BlockWords) -> bool {
-        given.has_of(self.settings.axes.mask())
+        given.has_letters(self.settings.axes.letter_bits())
     }
 
     /// The two axes of the plane, first axis first.
@@ -87,38 +91,40 @@ impl Executor {
     }
 
     /// The end point of the block's axis words, from where `state` stands.
-    pub(super) fn goal(&self, given: &BlockWords, state: &mut State) -> Checked<Endpoint> {
+    pub(super) fn resolve_endpoint(&self, given: &BlockWords, state: &mut State) -> ExecResult<Endpoint> {
         let mut goal = Endpoint::at_current_position(state);
-        let counting = self.counting(state);
+        let counting = self.coordinate_basis(state);
         self.resolve_axes(given, state, &counting, &mut goal)?;
-        state.work_zero_unknown = goal.unplaced;
+        state.work_zero_unknown = goal.work_zero_unknown;
         if state.modal.polar == Polar::On {
-            self.polar(given, state, &mut goal.programmed)?;
+            self.resolve_polar(given, state, &mut goal.programmed)?;
         }
-        if state.ended.is_some() && state.modal.distance == Distance::Absolute {
-            self.note_left_out(given, state);
+        if state.last_end_point.is_some() && state.modal.distance == Distance::Absolute {
+            self.note_axes_left_out(given, state);
         }
         let machine = self.to_machine(state, &goal.programmed);
         let turned = std::mem::replace(&mut goal.machine, machine);
-        for axis in self.settings.rolling().filter(|axis| given.has(self.settings.axes.letter(*axis) as u8)) {
+        for axis in
+            self.settings.rollover_axes().filter(|axis| given.has(self.settings.axes.letter(*axis) as u8))
+        {
             goal.machine[axis] = turned[axis];
         }
-        if goal.machine.0.iter().any(|at| at.abs() > counting.most) {
-            self.beyond_range(given, &goal.machine, counting.most)?;
+        if goal.machine.0.iter().any(|at| at.abs() > counting.max_coordinate) {
+            self.check_coordinate_range(given, &goal.machine, counting.max_coordinate)?;
         }
         Ok(goal)
     }
 
     /// What axis words count from where `state` stands.
-    pub(super) fn counting(&self, state: &State) -> CoordinateBasis {
+    pub(super) fn coordinate_basis(&self, state: &State) -> CoordinateBasis {
         let zero = self.zeros(state);
-        let unshifted = |axis: &AxisIndex| zero[*axis] == 0.0 && state.length[*axis] == 0.0;
+        let unshifted = |axis: &AxisIndex| zero[*axis] == 0.0 && state.length_offset[*axis] == 0.0;
         CoordinateBasis {
             zero,
-            unshifted: (0..MAX_AXES).filter(unshifted).fold(0, |axes, axis| axes | 1 << axis),
-            incremental: state.modal.distance == Distance::Incremental,
+            unshifted_axes: (0..MAX_AXES).filter(unshifted).fold(0, |axes, axis| axes | 1 << axis),
+            is_incremental: state.modal.distance == Distance::Incremental,
             measure: self.measure(state.modal.unit),
-            most: 999_999_999.0 / self.settings.increment.per_unit(),
+            max_coordinate: 999_999_999.0 / self.settings.increment.per_unit(),
         }
     }
 
@@ -129,20 +135,20 @@ impl Executor {
         state: &State,
         counting: &CoordinateBasis,
         goal: &mut Endpoint,
-    ) -> Checked<()> {
+    ) -> ExecResult<()> {
         let polar = state.modal.polar == Polar::On;
         for (axis, letter) in self.settings.axes.letters() {
             if polar && self.in_plane(state, axis) {
                 continue;
             }
             let Some((raw, span)) = given.get(letter) else { continue };
-            let value = at(self.dimension_of(&raw, letter, &counting.measure), span)?;
-            (goal.programmed[axis], goal.machine[axis]) = match self.settings.roll_over[axis] {
-                true => self.rolled_end(axis, value, state, counting),
-                false => self.end_of(axis, value, state, counting),
+            let value = locate(self.dimension_of(&raw, letter, &counting.measure), span)?;
+            (goal.programmed[axis], goal.machine[axis]) = match self.settings.rolls_over[axis] {
+                true => self.rollover_axis_end(axis, value, state, counting),
+                false => self.axis_end(axis, value, state, counting),
             };
-            if !counting.incremental {
-                goal.unplaced &= !(1 << axis);
+            if !counting.is_incremental {
+                goal.work_zero_unknown &= !(1 << axis);
             }
         }
         Ok(())
@@ -151,30 +157,30 @@ impl Executor {
     /// Where the value of one axis word leads: as programmed, and on the machine. There that is right as long as the other
     /// axes [stand where they should](Executor::is_placed).
     #[inline(always)]
-    pub(super) fn end_of(
+    pub(super) fn axis_end(
         &self,
         axis: AxisIndex,
         value: f64,
         state: &State,
         counting: &CoordinateBasis,
     ) -> (f64, f64) {
-        let programmed = if counting.incremental {
+        let programmed = if counting.is_incremental {
             // Else the compiler computes it in G90 too, for nothing.
             cold_path();
-            self.clean(state.programmed[axis] + value)
+            self.remove_residue(state.programmed[axis] + value)
         } else {
             value
         };
         // What is clean needn't be cleaned where nothing is added to it.
-        let machine = match counting.unshifted >> axis & 1 == 1 {
+        let machine = match counting.unshifted_axes >> axis & 1 == 1 {
             true => programmed + 0.0,
-            false => self.on_machine(programmed, counting.zero[axis], state.length[axis]),
+            false => self.on_machine(programmed, counting.zero[axis], state.length_offset[axis]),
         };
         (programmed, machine)
     }
 
     /// The same of an axis that rolls over.
-    fn rolled_end(
+    fn rollover_axis_end(
         &self,
         axis: AxisIndex,
         value: f64,
@@ -182,29 +188,29 @@ impl Executor {
         counting: &CoordinateBasis,
     ) -> (f64, f64) {
         let from = state.programmed[axis];
-        let way = if counting.incremental { value } else { shortest_rotation(from, value) };
-        (self.rolled(axis, from + way), self.clean(state.machine[axis] + way))
+        let way = if counting.is_incremental { value } else { shortest_rotation(from, value) };
+        (self.wrap_angle(axis, from + way), self.remove_residue(state.machine[axis] + way))
     }
 
     /// An axis that the block doesn't name keeps still, though its coordinate is another since a transform was switched.
     #[cold]
-    fn note_left_out(&self, given: &BlockWords, state: &State) {
+    fn note_axes_left_out(&self, given: &BlockWords, state: &State) {
         let stays = |(axis, letter): (AxisIndex, char)| {
             !given.has(letter as u8) && self.move_end(state)[axis] != state.programmed[axis]
         };
         if self.settings.axes.iter().any(stays) {
-            self.aftermath.record_note(Note::AxisLeftOut);
+            self.block_effects.record_note(Note::AxisLeftOut);
         }
     }
 
     /// The alarm of an axis beyond the largest coordinate, if one is there; one that rolls over begins anew with each turn.
     #[cold]
-    fn beyond_range(&self, given: &BlockWords, machine: &Position, most: f64) -> Checked<()> {
+    fn check_coordinate_range(&self, given: &BlockWords, machine: &Position, most: f64) -> ExecResult<()> {
         for (axis, letter) in self.settings.axes.iter() {
-            if machine[axis].abs() > most && !self.settings.roll_over[axis] {
+            if machine[axis].abs() > most && !self.settings.rolls_over[axis] {
                 let alarm = Alarm::PositionOverflow { letter, value: machine[axis] };
                 let named = given.has(letter as u8);
-                return Err(alarm.at(if named { given.span(letter as u8) } else { self.block }));
+                return Err(alarm.located_at(if named { given.span(letter as u8) } else { self.block }));
             }
         }
         Ok(())
@@ -215,7 +221,7 @@ impl Executor {
     }
 
     /// G16: the plane's first axis is the radius, the second the angle.
-    fn polar(&self, given: &BlockWords, state: &mut State, point: &mut Position) -> Checked<()> {
+    fn resolve_polar(&self, given: &BlockWords, state: &mut State, point: &mut Position) -> ExecResult<()> {
         let Ok((first, second)) = self.plane_axes(state.modal.plane) else { return Ok(()) };
         let letter = |axis| self.settings.axes.letter(axis) as u8;
         let radius = self.dimension(given, letter(first), state)?;
@@ -233,7 +239,7 @@ impl Executor {
         }
         if state.polar.radius.is_none() {
             let what = "an angle in G16 before any radius (write both in its first block)".into();
-            return Err(Alarm::NotSimulated { what }.at(given.span(letter(second))));
+            return Err(Alarm::NotSimulated { what }.located_at(given.span(letter(second))));
         }
         if let Some(angle) = angle {
             state.polar.angle = if incremental { state.polar.angle + angle } else { angle };
@@ -251,12 +257,12 @@ impl Executor {
     ) {
         let centre = if polar.is_incremental { (point[plane.0], point[plane.1]) } else { (0.0, 0.0) };
         let radius = polar.radius.unwrap_or(0.0);
-        point[plane.0] = self.clean(centre.0 + radius * Deg(polar.angle).cos());
-        point[plane.1] = self.clean(centre.1 + radius * Deg(polar.angle).sin());
+        point[plane.0] = self.remove_residue(centre.0 + radius * Deg(polar.angle).cos());
+        point[plane.1] = self.remove_residue(centre.1 + radius * Deg(polar.angle).sin());
     }
 
     /// Tells a rapid to a point in machine coordinates; nothing where the tool already is there.
-    pub(super) fn rapid(&self, plan: &mut BlockPlan, to: &Position) {
+    pub(super) fn push_rapid(&self, plan: &mut BlockPlan, to: &Position) {
         let from = &plan.state.machine;
         if to != from {
             plan.events.push((EventKind::Rapid { to: *to }, self.rapid_seconds(from, to)));
@@ -265,7 +271,12 @@ impl Executor {
     }
 
     /// Tells a straight cut; alarms where there is no feed, even if it leads nowhere.
-    pub(super) fn feed(&self, plan: &mut BlockPlan, to: &Position, given: &BlockWords) -> Result<(), Alarm> {
+    pub(super) fn push_feed(
+        &self,
+        plan: &mut BlockPlan,
+        to: &Position,
+        given: &BlockWords,
+    ) -> Result<(), Alarm> {
         let from = &plan.state.machine;
         let (rate, seconds) = self.feed_seconds(&plan.state, from, to, given.has(b'F'))?;
         if to != from {
@@ -307,13 +318,13 @@ impl Executor {
         to: &Position,
         f_in_block: bool,
     ) -> Result<(MmPerMin, f64), Alarm> {
-        let way = self.way(0..self.settings.axes.len(), from, to);
-        self.time_of(state, state.codes.f, way, f_in_block)
+        let way = self.squared_travel(0..self.settings.axes.len(), from, to);
+        self.travel_time(state, state.codes.f, way, f_in_block)
     }
 
     /// How far some axes move.
     #[inline]
-    pub(super) fn way(
+    pub(super) fn squared_travel(
         &self,
         axes: impl Iterator<Item = AxisIndex>,
         from: &Position,
@@ -326,30 +337,30 @@ impl Executor {
 
     /// As [`Executor::feed_seconds`] of an F that may not be in force yet.
     #[inline(always)]
-    pub(super) fn time_of(
+    pub(super) fn travel_time(
         &self,
         state: &State,
         f: f64,
-        SquaredTravel { sliding, turning }: SquaredTravel,
+        SquaredTravel { linear: sliding, rotary: turning }: SquaredTravel,
         f_in_block: bool,
     ) -> Result<(MmPerMin, f64), Alarm> {
-        let in_inches = || inches(sliding.sqrt(), turning);
-        self.time_at(state, f, ((sliding + turning).sqrt(), in_inches), f_in_block)
+        let in_inches = || inch_length(sliding.sqrt(), turning);
+        self.path_feed_time(state, f, ((sliding + turning).sqrt(), in_inches), f_in_block)
     }
 
     /// The rate and the time for a path of `length` mm on which nothing turns.
     #[inline]
-    pub(super) fn time_along(
+    pub(super) fn path_time(
         &self,
         state: &State,
         length: f64,
         f_in_block: bool,
     ) -> Result<(MmPerMin, f64), Alarm> {
-        self.time_at(state, state.codes.f, (length, || inches(length, 0.0)), f_in_block)
+        self.path_feed_time(state, state.codes.f, (length, || inch_length(length, 0.0)), f_in_block)
     }
 
     #[inline(always)]
-    fn time_at(
+    fn path_feed_time(
         &self,
         state: &State,
         f: f64,
@@ -384,7 +395,7 @@ impl Executor {
 }
 
 /// The composite of a way of `sliding` mm and of what turns, squared degrees, as it counts in inches: of inches and degrees.
-fn inches(sliding: f64, turning: f64) -> f64 {
+fn inch_length(sliding: f64, turning: f64) -> f64 {
     (sliding / 25.4 * (sliding / 25.4) + turning).sqrt()
 }
 

@@ -10,7 +10,7 @@ use super::modal_calls::ModalCall;
 use super::offsets::Offsets;
 use super::run::RunEnd;
 use super::state::State;
-use super::vars::Vars;
+use super::variables::Vars;
 use gcode_lang::control::{ParameterId, Settings};
 use gcode_lang::motion::Position;
 use gcode_lang::program::{OpIndex, ProgramId};
@@ -25,7 +25,7 @@ struct Fingerprint {
     machine: Position,
     vars: Vars,
     /// The place of the variable that told the control from this moment the last time.
-    differed: usize,
+    differing_place: usize,
 }
 
 /// Everything that can decide what the program does next; what it only leaves behind (time, counts, stops, lines
@@ -35,7 +35,7 @@ struct ControlSnapshot {
     state: State,
     vars: Vars,
     offsets: Offsets,
-    ahead: Lookahead,
+    lookahead: Lookahead,
     frame: Frame,
     callers: Vec<Frame>,
     modal_calls: Vec<ModalCall>,
@@ -44,9 +44,9 @@ struct ControlSnapshot {
     clocks: (f64, f64),
     idle: f64,
     switches: [f64; 2],
-    parts: [f64; 2],
+    part_counters: [f64; 2],
     cycles: u32,
-    output_open: bool,
+    is_output_open: bool,
     settings: Settings,
     parameters: std::collections::BTreeMap<ParameterId, f64>,
 }
@@ -72,44 +72,44 @@ pub(super) struct EndlessLoop {
 
 #[derive(Debug, Default)]
 pub(super) struct LoopDetector {
-    seen: Option<Fingerprint>,
-    copy: Option<Box<ControlSnapshot>>,
-    widest: Option<BackJump>,
+    fingerprint: Option<Fingerprint>,
+    snapshot: Option<Box<ControlSnapshot>>,
+    outermost_jump: Option<BackJump>,
     /// Jumps until another moment is kept.
-    left: u64,
+    remaining_jumps: u64,
     /// A clock was read since `seen` was kept.
-    clock_read: bool,
+    has_read_clock: bool,
     /// Nothing has happened since the program was found to wait for a clock.
-    waiting: bool,
+    is_waiting: bool,
     /// How long the motion had taken then.
     seconds: f64,
     /// How many they were the last time.
     iterations: u64,
-    found: Option<EndlessLoop>,
+    endless_loop: Option<EndlessLoop>,
 }
 
 impl LoopDetector {
     /// The loop that was found to run for ever.
-    pub(super) fn endless(&self) -> Option<EndlessLoop> {
-        self.found
+    pub(super) fn endless_loop(&self) -> Option<EndlessLoop> {
+        self.endless_loop
     }
 
     /// A run begins, or goes on.
-    pub(super) fn begin(&mut self) {
-        self.found = None;
+    pub(super) fn reset(&mut self) {
+        self.endless_loop = None;
     }
 
     /// Told of every jump back; ends the run where the program is now known never to leave the loop.
     #[inline(always)]
-    pub(super) fn jumped(&mut self, core: &mut Executor) {
-        if self.waiting || core.clock_read.get() {
-            self.wait(core);
+    pub(super) fn record_jump(&mut self, core: &mut Executor) {
+        if self.is_waiting || core.has_read_clock.get() {
+            self.advance_clock(core);
         }
-        if self.copy.is_some() {
-            self.widen(core);
+        if self.snapshot.is_some() {
+            self.record_outer_jump(core);
         }
-        if self.left > 0 && self.seen.as_ref().is_some_and(|seen| !seen.may_be_again(core)) {
-            self.left -= 1;
+        if self.remaining_jumps > 0 && self.fingerprint.as_ref().is_some_and(|seen| !seen.may_match(core)) {
+            self.remaining_jumps -= 1;
         } else {
             self.check(core);
         }
@@ -118,73 +118,74 @@ impl LoopDetector {
     /// Looks closely whether the control has come back, and keeps this moment when it is time.
     #[inline(never)]
     fn check(&mut self, core: &mut Executor) {
-        self.found = None;
-        if self.seen.as_mut().is_some_and(|seen| seen.is_again(core)) {
+        self.endless_loop = None;
+        if self.fingerprint.as_mut().is_some_and(|seen| seen.matches(core)) {
             self.check_revisit(core);
-            if self.found.is_some() {
-                core.aftermath.end_run(RunEnd::EndlessLoop);
+            if self.endless_loop.is_some() {
+                core.block_effects.end_run(RunEnd::EndlessLoop);
                 return;
             }
         }
-        if self.left == 0 {
-            self.keep(core);
+        if self.remaining_jumps == 0 {
+            self.store_fingerprint(core);
         }
-        self.left -= 1;
+        self.remaining_jumps -= 1;
     }
 
     /// Keeps this moment instead of an earlier one, for longer.
     #[cold]
-    fn keep(&mut self, core: &Executor) {
-        self.forget();
-        self.seen = Some(Fingerprint::of(core));
+    fn store_fingerprint(&mut self, core: &Executor) {
+        self.clear();
+        self.fingerprint = Some(Fingerprint::of(core));
         self.iterations = (self.iterations * 2).max(4);
-        self.left = self.iterations;
+        self.remaining_jumps = self.iterations;
     }
 
     /// The control has come to the moment that was kept.
     #[cold]
     fn check_revisit(&mut self, core: &Executor) {
-        match &self.copy {
-            None => self.copy = Some(Box::new(ControlSnapshot::of(core))),
+        match &self.snapshot {
+            None => self.snapshot = Some(Box::new(ControlSnapshot::of(core))),
             // It waits for the clock, which only motion has moved so far.
-            Some(copy) if copy.equals(core) && self.clock_read => {
-                (self.seconds, self.waiting) = (core.seconds, true);
-                self.forget();
+            Some(copy) if copy.equals(core) && self.has_read_clock => {
+                (self.seconds, self.is_waiting) = (core.seconds, true);
+                self.clear();
             }
             Some(copy) if copy.equals(core) => {
                 let found =
                     |jump: BackJump| EndlessLoop { program: jump.program, to: jump.to, from: jump.from };
-                self.found = self.widest.map(found);
+                self.endless_loop = self.outermost_jump.map(found);
             }
-            Some(_) => self.forget(),
+            Some(_) => self.clear(),
         }
     }
 
     /// Takes note of a jump that leads further out, or further up, than those since the control was copied.
     #[cold]
-    fn widen(&mut self, core: &Executor) {
+    fn record_outer_jump(&mut self, core: &Executor) {
         let Frame { program, next: to, .. } = core.frame;
         let callers = core.callers.len();
-        if self.widest.is_none_or(|w| (callers, to) < (w.callers, w.to)) {
-            self.widest = Some(BackJump { callers, to, program, from: core.block });
+        if self.outermost_jump.is_none_or(|w| (callers, to) < (w.callers, w.to)) {
+            self.outermost_jump = Some(BackJump { callers, to, program, from: core.block });
         }
     }
 
     /// A program that does nothing but wait for a clock is given a millisecond a jump, so that the wait ends.
     #[cold]
-    fn wait(&mut self, core: &mut Executor) {
-        let read = core.clock_read.take();
-        self.clock_read |= read;
+    fn advance_clock(&mut self, core: &mut Executor) {
+        let read = core.has_read_clock.take();
+        self.has_read_clock |= read;
         if core.seconds != self.seconds {
-            (self.seconds, self.waiting) = (core.seconds, false);
+            (self.seconds, self.is_waiting) = (core.seconds, false);
         }
-        if read && self.waiting {
-            core.idle += 0.001;
+        if read && self.is_waiting {
+            core.idle_seconds += 0.001;
         }
     }
 
-    fn forget(&mut self) {
-        (self.seen, self.copy, self.widest, self.clock_read) = (None, None, None, false);
+    fn clear(&mut self) {
+        (self.fingerprint, self.snapshot, self.outermost_jump, self.has_read_clock) =
+            (None, None, None, false);
     }
 }
 
@@ -196,21 +197,21 @@ impl Fingerprint {
             callers: core.callers.len(),
             machine: core.state.machine,
             vars: core.vars.clone(),
-            differed: 0,
+            differing_place: 0,
         }
     }
 
     /// Whether nothing that is looked at first differs. What counts turns tells nearly all moments apart.
     #[inline]
-    fn may_be_again(&self, core: &Executor) -> bool {
+    fn may_match(&self, core: &Executor) -> bool {
         self.machine[0].to_bits() == core.state.machine[0].to_bits()
             && self.next == core.frame.next
-            && !self.vars.differ_at(self.differed, &core.vars)
+            && !self.vars.differs_at(self.differing_place, &core.vars)
     }
 
     /// Whether the control has come to this moment again.
-    fn is_again(&mut self, core: &Executor) -> bool {
-        if !self.may_be_again(core)
+    fn matches(&mut self, core: &Executor) -> bool {
+        if !self.may_match(core)
             || self.program != core.frame.program
             || self.callers != core.callers.len()
             || self.machine.0.iter().zip(core.state.machine.0).any(|(a, b)| a.to_bits() != b.to_bits())
@@ -218,7 +219,7 @@ impl Fingerprint {
             return false;
         }
         let difference = self.vars.difference(&core.vars);
-        self.differed = difference.unwrap_or(self.differed);
+        self.differing_place = difference.unwrap_or(self.differing_place);
         difference.is_none()
     }
 }
@@ -229,39 +230,39 @@ impl ControlSnapshot {
             state: *core.state,
             vars: core.vars.clone(),
             offsets: core.offsets.clone(),
-            ahead: core.ahead.clone(),
+            lookahead: core.lookahead.clone(),
             frame: core.frame.clone(),
             callers: core.callers.clone(),
             modal_calls: core.modal_calls.clone(),
             names: core.names.clone(),
             outputs: core.outputs,
             clocks: core.clocks,
-            idle: core.idle,
-            switches: core.switches,
-            parts: core.parts,
+            idle: core.idle_seconds,
+            switches: core.control_switches,
+            part_counters: core.part_counters,
             cycles: core.cycles,
-            output_open: core.printed.open,
+            is_output_open: core.printed.is_open,
             settings: core.settings.clone(),
             parameters: core.parameters.clone(),
         }
     }
 
     fn equals(&self, core: &Executor) -> bool {
-        let frames = self.frame.goes_on_like(&core.frame)
+        let frames = self.frame.continues_like(&core.frame)
             && self.callers.len() == core.callers.len()
-            && self.callers.iter().zip(&core.callers).all(|(a, b)| a.goes_on_like(b));
+            && self.callers.iter().zip(&core.callers).all(|(a, b)| a.continues_like(b));
         frames
             && self.state == *core.state
-            && self.vars.same(&core.vars)
+            && self.vars.has_same_values(&core.vars)
             && self.offsets == core.offsets
-            && self.ahead == core.ahead
+            && self.lookahead == core.lookahead
             && self.modal_calls == core.modal_calls
             && self.names == core.names
-            && (self.outputs, self.clocks, self.idle) == (core.outputs, core.clocks, core.idle)
-            && (self.switches, self.parts) == (core.switches, core.parts)
-            && self.output_open == core.printed.open
+            && (self.outputs, self.clocks, self.idle) == (core.outputs, core.clocks, core.idle_seconds)
+            && (self.switches, self.part_counters) == (core.control_switches, core.part_counters)
+            && self.is_output_open == core.printed.is_open
             && (&self.settings, &self.parameters) == (&core.settings, &core.parameters)
             // M99 of the main program counts only where the count ends the run.
-            && (core.settings.cycles.is_none() || self.cycles == core.cycles)
+            && (core.settings.main_program_cycles.is_none() || self.cycles == core.cycles)
     }
 }

@@ -1,23 +1,23 @@
 //! What the M codes of a block do, each at its time, and a new S.
 use super::Executor;
-use super::eval::Checked;
+use super::evaluation::ExecResult;
 use super::notes::Note;
 use super::plan::{BlockFlow, BlockPlan};
 use super::words::BlockWords;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{EventKind, SpindleDirection, StopKind};
-use gcode_lang::program::m_codes::{self, MEffect};
+use gcode_lang::program::m_codes::{self, MCodeEffect};
 use gcode_lang::units::Rpm;
 
 impl Executor {
     /// 2., 5. and 6. What M codes do, each at its time.
-    pub(super) fn m_codes(&self, given: &BlockWords, plan: &mut BlockPlan) -> Checked<()> {
-        plan.notes.extend(given.lost_m.iter().map(|code| Note::MCodeLost { code: *code }));
-        for (code, span) in given.m[..given.m_count].iter().flatten().copied() {
+    pub(super) fn plan_m_codes(&self, given: &BlockWords, plan: &mut BlockPlan) -> ExecResult<()> {
+        plan.notes.extend(given.replaced_m_codes.iter().map(|code| Note::MCodeLost { code: *code }));
+        for (code, span) in given.m_codes[..given.m_code_count].iter().flatten().copied() {
             plan.state.codes.m = code;
             let speed = Rpm(plan.state.codes.s);
             let Some(effect) = m_codes::find(code, self.settings.codes) else {
-                plan.passed_on.push(code);
+                plan.auxiliary_codes.push(code);
                 plan.push_event(EventKind::Auxiliary { code });
                 if code > 9999 {
                     plan.notes.push(Note::LongMCode { code });
@@ -25,55 +25,57 @@ impl Executor {
                 continue;
             };
             match effect {
-                MEffect::Stop => plan.stops.push(StopKind::M00),
-                MEffect::OptionalStop if self.settings.optional_stop => plan.stops.push(StopKind::M01),
-                MEffect::OptionalStop | MEffect::NoEffect => {}
-                MEffect::End => plan.flow = BlockFlow::End,
-                MEffect::SpindleForward => self.turn(plan, SpindleDirection::Clockwise, speed),
-                MEffect::SpindleReverse => self.turn(plan, SpindleDirection::Counterclockwise, speed),
-                MEffect::SpindleStop | MEffect::Orient => {
-                    if effect == MEffect::Orient {
-                        given.accept(b"PR");
+                MCodeEffect::Stop => plan.stops.push(StopKind::M00),
+                MCodeEffect::OptionalStop if self.settings.stops_at_m01 => plan.stops.push(StopKind::M01),
+                MCodeEffect::OptionalStop | MCodeEffect::NoEffect => {}
+                MCodeEffect::End => plan.flow = BlockFlow::End,
+                MCodeEffect::SpindleForward => self.set_spindle(plan, SpindleDirection::Clockwise, speed),
+                MCodeEffect::SpindleReverse => {
+                    self.set_spindle(plan, SpindleDirection::Counterclockwise, speed)
+                }
+                MCodeEffect::SpindleStop | MCodeEffect::Orient => {
+                    if effect == MCodeEffect::Orient {
+                        given.mark_read(b"PR");
                     }
                     plan.state.spindle = SpindleDirection::Off;
                     plan.events_after_motion
-                        .push((EventKind::Spindle { turning: SpindleDirection::Off, speed }, 0.0));
+                        .push((EventKind::Spindle { direction: SpindleDirection::Off, speed }, 0.0));
                 }
-                MEffect::ToolChange => {
-                    let stops = self.settings.unsure.tool_change_stops_spindle;
+                MCodeEffect::ToolChange => {
+                    let stops = self.settings.undocumented.tool_change_stops_spindle;
                     if stops && plan.state.spindle != SpindleDirection::Off {
-                        self.turn(plan, SpindleDirection::Off, speed);
+                        self.set_spindle(plan, SpindleDirection::Off, speed);
                     }
                     plan.state.tool = plan.state.codes.t;
                     plan.push_event(EventKind::ToolChange { number: plan.state.codes.t });
                 }
-                MEffect::CoolantOn => {
-                    plan.state.coolant = true;
-                    plan.push_event(EventKind::Coolant { on: true, code });
+                MCodeEffect::CoolantOn => {
+                    plan.state.is_coolant_on = true;
+                    plan.push_event(EventKind::Coolant { is_on: true, code });
                 }
-                MEffect::CoolantOff => {
-                    plan.state.coolant = false;
-                    plan.events_after_motion.push((EventKind::Coolant { on: false, code }, 0.0));
+                MCodeEffect::CoolantOff => {
+                    plan.state.is_coolant_on = false;
+                    plan.events_after_motion.push((EventKind::Coolant { is_on: false, code }, 0.0));
                 }
-                MEffect::InterruptOn => {
-                    given.accept(b"P");
-                    plan.notes.push(Note::InterruptNeverComes);
+                MCodeEffect::InterruptOn => {
+                    given.mark_read(b"P");
+                    plan.notes.push(Note::InterruptNotSimulated);
                 }
-                MEffect::InterruptOff => {}
-                MEffect::Call | MEffect::NotSimulated => {
-                    return Err(Alarm::NotSimulated { what: format!("M{code:02} here") }.at(span));
+                MCodeEffect::InterruptOff => {}
+                MCodeEffect::Call | MCodeEffect::NotSimulated => {
+                    return Err(Alarm::NotSimulated { what: format!("M{code:02} here") }.located_at(span));
                 }
             }
         }
         let told = || plan.events.iter().any(|(kind, _)| matches!(kind, EventKind::Spindle { .. }));
         if given.has(b'S') && plan.state.spindle != SpindleDirection::Off && !told() {
-            self.turn(plan, plan.state.spindle, Rpm(plan.state.codes.s));
+            self.set_spindle(plan, plan.state.spindle, Rpm(plan.state.codes.s));
         }
         Ok(())
     }
 
-    fn turn(&self, plan: &mut BlockPlan, turning: SpindleDirection, speed: Rpm) {
+    fn set_spindle(&self, plan: &mut BlockPlan, turning: SpindleDirection, speed: Rpm) {
         plan.state.spindle = turning;
-        plan.push_event(EventKind::Spindle { turning, speed });
+        plan.push_event(EventKind::Spindle { direction: turning, speed });
     }
 }

@@ -1,12 +1,12 @@
 //! The G codes of a block put in force, and what else than a move uses its axis words.
 use super::Executor;
-use super::eval::{Checked, at};
+use super::evaluation::{ExecResult, locate};
 use super::plan::BlockPlan;
 use super::state::{CycleState, PolarPoint};
 use super::transform_order;
 use super::words::BlockWords;
 use gcode_lang::alarm::Alarm;
-use gcode_lang::program::codes::{Effect, GCodeRow, OneShot, spelled};
+use gcode_lang::program::g_codes::{Effect, GCodeRow, OneShot, spelled};
 use gcode_lang::program::modes::{CutterSide, Mirror, Polar, Rotation, Scaling};
 use gcode_lang::source::Span;
 
@@ -25,14 +25,14 @@ pub(super) enum AxisWordUse {
 impl Executor {
     /// 1. Modal G codes in the order they stand in; the answer is what uses the axis words instead of a move.
     #[inline]
-    pub(super) fn modal_codes(
+    pub(super) fn apply_modal_codes(
         &self,
         given: &BlockWords,
         plan: &mut BlockPlan,
         span: Span,
-    ) -> Checked<Option<AxisWordUse>> {
+    ) -> ExecResult<Option<AxisWordUse>> {
         if given.has_non_motion_words() {
-            return self.codes_in_force(given, plan, span);
+            return self.apply_all_codes(given, plan, span);
         }
         if let Some(motion) = given.motion {
             plan.state.set_motion_mode(motion);
@@ -42,12 +42,12 @@ impl Executor {
 
     /// As [`Executor::modal_codes`], of a block with other codes than those of group 01.
     #[inline(never)]
-    fn codes_in_force(
+    fn apply_all_codes(
         &self,
         given: &BlockWords,
         plan: &mut BlockPlan,
         span: Span,
-    ) -> Checked<Option<AxisWordUse>> {
+    ) -> ExecResult<Option<AxisWordUse>> {
         let state = &mut plan.state;
         let before = state.modal;
         let mut act = None;
@@ -58,32 +58,32 @@ impl Executor {
                 latched = false;
                 continue;
             }
-            let new = at(act_of(row, given, state.modal.cutter), span)?;
+            let new = locate(axis_use_of(row, given, state.modal.cutter), span)?;
             if new.is_some() && act.is_some() && new != act {
                 let what = "several one-shot G codes in one block".into();
-                return Err(Alarm::NotSimulated { what }.at(span));
+                return Err(Alarm::NotSimulated { what }.located_at(span));
             }
             act = new.or(act);
             state.modal.apply(row);
             if row.effect == Effect::Cycle(None) {
-                state.drilling = CycleState::default();
+                state.cycle = CycleState::default();
                 latched = false;
             }
         }
         let modal = state.modal;
-        if modal.plane != before.plane && self.ahead.is_offset() {
-            return Err(Alarm::PlaneInCompensation.at(span));
+        if modal.plane != before.plane && self.lookahead.is_offset() {
+            return Err(Alarm::PlaneInCompensation.located_at(span));
         }
         if modal.plane != before.plane && state.transform.rotation.is_some() {
-            return Err(Alarm::PlaneInRotation.at(span));
+            return Err(Alarm::PlaneInRotation.located_at(span));
         }
         if before.scaling == Scaling::On
             && modal.scaling == Scaling::On
             && let Some(row) = given.g_codes().find(|row| row.effect.needs_plain_coordinates())
         {
-            return Err(Alarm::CodeInScaling { code: spelled(row.code) }.at(span));
+            return Err(Alarm::CodeInScaling { code: spelled(row.code) }.located_at(span));
         }
-        at(transform_order::check(given, &before, state, self.names_axis(given)), span)?;
+        locate(transform_order::check(given, &before, state, self.names_axis(given)), span)?;
         if modal.scaling == Scaling::Off {
             state.transform.scaling = None;
         }
@@ -95,39 +95,39 @@ impl Executor {
             state.polar = PolarPoint::default();
         }
         if modal.work != before.work {
-            state.ended = None;
-            self.recompute(state);
+            state.last_end_point = None;
+            self.recompute_position(state);
         } else if state.transform != self.state.transform {
-            self.transform_changed(state);
+            self.apply_transform_change(state);
         }
         if modal.cycle.is_some() && !latched {
-            let axis = at(self.drilling_axis(given, state), span)?;
-            state.drilling.axis = Some(axis);
-            state.drilling.initial = state.programmed[axis];
-            state.drilling.initial_unplaced = state.work_zero_unknown >> axis & 1 == 1;
+            let axis = locate(self.drilling_axis(given, state), span)?;
+            state.cycle.axis = Some(axis);
+            state.cycle.initial = state.programmed[axis];
+            state.cycle.is_initial_unknown = state.work_zero_unknown >> axis & 1 == 1;
         }
         // G54 P is G54.1 P.
         let additional = given.has(b'P')
             && act.is_none()
             && modal.cycle.is_none()
-            && given.has_code_beyond_moves(|effect| effect == Effect::Work(1));
+            && given.has_non_motion_code(|effect| effect == Effect::Work(1));
         Ok(if additional { Some(AxisWordUse::AdditionalWork) } else { act })
     }
 }
 
 /// What uses the axis words because of a code, if anything.
-fn act_of(row: &GCodeRow, given: &BlockWords, cutter: CutterSide) -> Result<Option<AxisWordUse>, Alarm> {
+fn axis_use_of(row: &GCodeRow, given: &BlockWords, cutter: CutterSide) -> Result<Option<AxisWordUse>, Alarm> {
     Ok(match row.effect {
         Effect::NotSimulated if (450..=480).contains(&row.code) && cutter != CutterSide::Off => {
             return Err(Alarm::ToolOffsetInCompensation);
         }
         Effect::NotSimulated | Effect::Call => return Err(not_simulated(row.code, row.help)),
         Effect::NoEffect => {
-            given.accept(b"IPQR");
+            given.mark_read(b"IPQR");
             None
         }
         Effect::Smoothness => {
-            given.accept(b"EP");
+            given.mark_read(b"EP");
             None
         }
         Effect::OneShot(one) => Some(AxisWordUse::OneShot(one)),

@@ -1,6 +1,6 @@
 //! What a control does without a word and a programmer hardly means: told once for each kind, with its first block.
 use super::Control;
-use gcode_lang::program::codes::spelled;
+use gcode_lang::program::g_codes::spelled;
 use gcode_lang::source::Span;
 
 /// A thing worth telling that is no alarm on a control.
@@ -13,9 +13,9 @@ pub enum Note {
     /// P or Q in cycle mode, in a block that names no axis and no R: it drills nothing and stores nothing.
     CycleDataLost,
     /// M96 lets a signal call a macro, and no signal comes in a run.
-    InterruptNeverComes,
+    InterruptNotSimulated,
     /// G31, and nothing gives a skip signal: no part to touch and no place where it comes.
-    NoSignal,
+    NoSkipSignal,
     /// A word beside an M code of the machine builder that nothing else in the block reads.
     WordsPassedOn { code: u32, letter: char },
     /// `,R` or `,C` in a block that is no cutting move is ignored.
@@ -32,7 +32,7 @@ pub enum Note {
     /// G68 without R: it turns by nothing, or by 5410 where that is set.
     NoAngle,
     /// GOTO or M99 P found one of several blocks with this number.
-    DoubledNumber { number: u32 },
+    DuplicateNumber { number: u32 },
     /// A jump into a loop, whose END will have no DO.
     JumpIntoLoop { number: u8 },
     /// TAN of 90 degrees answers a large number.
@@ -60,7 +60,7 @@ pub enum Note {
     /// A drilling cycle goes along Z while G18 or G19 has another plane's normal, as FXY 5101#0 = 0 has it.
     DrillsAlongZ { code: u32 },
     /// `#3000=n` with a number beyond those that the manual names.
-    LargeAlarm { number: u16, most: u16 },
+    LargeAlarmNumber { number: u16, max: u16 },
 }
 
 impl Note {
@@ -83,11 +83,11 @@ impl Note {
                 let message = "P or Q is not stored: the block drills nothing".to_owned();
                 ("cycle-data-lost", message, "write P and Q in the block of a hole")
             }
-            Self::InterruptNeverComes => {
+            Self::InterruptNotSimulated => {
                 let message = "the macro of M96 is never called: a run has no UINT signal".to_owned();
                 ("no-interrupt", message, "call the macro with G65 to simulate it")
             }
-            Self::NoSignal => {
+            Self::NoSkipSignal => {
                 let message = "no skip signal is simulated: G31 moves to its end point".to_owned();
                 (
                     "no-signal",
@@ -123,7 +123,7 @@ impl Note {
                 let message = "G68 without R rotates by 0; a control may have an angle in 5410".to_owned();
                 ("no-angle", message, "write R")
             }
-            Self::DoubledNumber { number } => {
+            Self::DuplicateNumber { number } => {
                 let message = format!(
                     "N{number} is defined more than once: the control decides which one a jump takes"
                 );
@@ -213,7 +213,7 @@ impl Note {
                 );
                 ("drill-plane", message, "write G17, or set FXY=1 if the control drills along the normal")
             }
-            Self::LargeAlarm { number, most } => {
+            Self::LargeAlarmNumber { number, max: most } => {
                 let message = format!("#3000={number}: the manuals give numbers up to {most}");
                 ("large-alarm-number", message, "use a smaller number")
             }
@@ -224,6 +224,6 @@ impl Note {
 impl Control {
     /// Each note with the first block it is about.
     pub fn notes(&self) -> impl Iterator<Item = (Note, Span)> + '_ {
-        self.core.notes.iter().map(|(note, block)| (*note, *block))
+        self.executor.notes.iter().map(|(note, block)| (*note, *block))
     }
 }

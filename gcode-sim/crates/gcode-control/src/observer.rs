@@ -61,8 +61,8 @@ impl<W: Observer> Observer for Option<W> {
 impl Control {
     /// The block that a step would do now; `None` where the program has no more.
     pub fn next_block(&mut self) -> Option<Span> {
-        let Frame { program, next, .. } = self.core.frame;
-        self.memory.ready(program, next).map(|op| op.span)
+        let Frame { program, next, .. } = self.executor.frame;
+        self.memory.lower_block(program, next).map(|op| op.span)
     }
 
     /// The variables that [`Control::next_block`] will assign as things stand; those whose numbers are computed as well.
@@ -70,7 +70,7 @@ impl Control {
         let mut numbers = Vec::new();
         self.inspect_next(|core, op| {
             if !core.is_skipped(op) {
-                core.targets(op.kind(), &mut numbers);
+                core.collect_targets(op.kind(), &mut numbers);
             }
         });
         numbers
@@ -78,24 +78,24 @@ impl Control {
 
     /// What `look` sees in the operation of [`Control::next_block`]; `None` where there is none that is ready.
     pub(super) fn inspect_next<T>(&self, look: impl FnOnce(&Executor, &Op) -> T) -> Option<T> {
-        let Frame { program, next, .. } = self.core.frame;
+        let Frame { program, next, .. } = self.executor.frame;
         let op = self.memory.get(program).op(next)?;
-        Some(self.core.without_side_effects(|core| look(core, op)))
+        Some(self.executor.without_side_effects(|core| look(core, op)))
     }
 }
 
 impl Executor {
     /// Does what is no part of the run: what it leaves behind is forgotten.
     pub(super) fn without_side_effects<T>(&self, look: impl FnOnce(&Self) -> T) -> T {
-        let clock_read = self.clock_read.get();
-        let seen = self.aftermath.without_effects(|| look(self));
-        self.clock_read.set(clock_read);
+        let clock_read = self.has_read_clock.get();
+        let seen = self.block_effects.without_effects(|| look(self));
+        self.has_read_clock.set(clock_read);
         seen
     }
 
     /// Whether the switch of a block skip before a block is on.
     pub(super) fn is_skipped(&self, op: &Op) -> bool {
-        op.skip().is_some_and(|switch| self.skips(switch))
+        op.skip().is_some_and(|switch| self.is_skip_on(switch))
     }
 
     /// What stands behind an IF that holds; else the operation itself.
@@ -106,26 +106,28 @@ impl Executor {
         }
     }
 
-    fn targets(&self, kind: &OpKind, numbers: &mut Vec<u32>) {
+    fn collect_targets(&self, kind: &OpKind, numbers: &mut Vec<u32>) {
         match kind {
             OpKind::If { condition, then } if self.evaluate_condition(condition).unwrap_or(false) => {
-                self.targets(then, numbers);
+                self.collect_targets(then, numbers);
             }
-            OpKind::Compute(Assign { place, .. }) => numbers.push(u32::from(*place)),
-            OpKind::Statement(statement) => self.targets_of(statement, numbers),
+            OpKind::AssignFree(Assign { variable: place, .. }) => numbers.push(u32::from(*place)),
+            OpKind::Statement(statement) => self.collect_statement_targets(statement, numbers),
             OpKind::Empty | OpKind::Words(_) | OpKind::If { .. } | OpKind::Alarm(_) => {}
         }
     }
 
-    fn targets_of(&self, statement: &Statement, numbers: &mut Vec<u32>) {
+    fn collect_statement_targets(&self, statement: &Statement, numbers: &mut Vec<u32>) {
         match statement {
-            Statement::Compute(Assign { place, .. }) => numbers.push(u32::from(*place)),
+            Statement::AssignFree(Assign { variable: place, .. }) => numbers.push(u32::from(*place)),
             Statement::Assign { target, .. } => {
-                numbers.extend(self.target(target).map(Slot::number));
+                numbers.extend(self.resolve_target(target).map(Slot::number));
             }
-            Statement::Several(all) => all.iter().for_each(|one| self.targets_of(one, numbers)),
+            Statement::Assignments(all) => {
+                all.iter().for_each(|one| self.collect_statement_targets(one, numbers))
+            }
             Statement::IfThen { condition, then } if self.evaluate_condition(condition).unwrap_or(false) => {
-                self.targets_of(then, numbers);
+                self.collect_statement_targets(then, numbers);
             }
             _ => {}
         }
@@ -153,7 +155,7 @@ pub(super) fn seen_before<T: Clone>(block: &str, look: fn(&Control) -> T) -> T {
     memory.load("O1.nc", format!("O1\n{block}\nM30\n").into_bytes());
     let mut control = Control::new(memory, gcode_lang::control::Settings::default());
     let mut watcher = Seen(look, Vec::new());
-    control.run_watched(super::Limits::default(), &mut NoLibrary, &mut (), &mut watcher);
+    control.run_observed(super::Limits::default(), &mut NoLibrary, &mut (), &mut watcher);
     // Behind it stands M30.
     watcher.1[watcher.1.len() - 2].clone()
 }
@@ -187,7 +189,7 @@ mod tests {
         memory.load("O1.nc", text.as_bytes().to_vec());
         let mut control = Control::new(memory, gcode_lang::control::Settings::default());
         let mut watcher = Assigned::default();
-        control.run_watched(Limits::default(), &mut NoLibrary, &mut (), &mut watcher);
+        control.run_observed(Limits::default(), &mut NoLibrary, &mut (), &mut watcher);
         watcher.seen
     }
 

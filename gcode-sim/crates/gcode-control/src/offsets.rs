@@ -5,8 +5,8 @@ use super::state::{EndPoint, State};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{AxisIndex, MAX_AXES, Position};
 use gcode_lang::program::modes::{Length, Unit, WorkSystem};
-use gcode_lang::units::nearest;
 use gcode_lang::units::round;
+use gcode_lang::units::round_scaled;
 
 /// Tool offset memory C: H and D, geometry and wear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,10 +84,10 @@ impl Offsets {
 
     /// The zero of a work coordinate system in machine coordinates.
     fn zero(&self, system: &Position, state: &State, axis: AxisIndex) -> f64 {
-        self.external[axis] + system[axis] + state.local[axis] + state.shift[axis]
+        self.external[axis] + system[axis] + state.local_offset[axis] + state.coordinate_shift[axis]
     }
 
-    fn system(&self, work: WorkSystem) -> &Position {
+    fn work_system(&self, work: WorkSystem) -> &Position {
         match work {
             WorkSystem::Standard(number) => &self.standard[usize::from(number) - 1],
             WorkSystem::Additional(number) => &self.additional[usize::from(number) - 1],
@@ -98,12 +98,12 @@ impl Offsets {
 impl Executor {
     /// The zero of the active work coordinate system in machine coordinates.
     pub(super) fn zero(&self, state: &State, axis: AxisIndex) -> f64 {
-        self.offsets.zero(self.offsets.system(state.modal.work), state, axis)
+        self.offsets.zero(self.offsets.work_system(state.modal.work), state, axis)
     }
 
     /// As [`Executor::zero`], of all axes.
     pub(super) fn zeros(&self, state: &State) -> Position {
-        let system = self.offsets.system(state.modal.work);
+        let system = self.offsets.work_system(state.modal.work);
         let mut zeros = Position::default();
         for axis in 0..MAX_AXES {
             zeros[axis] = self.offsets.zero(system, state, axis);
@@ -117,12 +117,12 @@ impl Executor {
         let zero = self.zeros(state);
         let mut machine = Position::default();
         for axis in 0..MAX_AXES {
-            machine[axis] = self.on_machine(work[axis], zero[axis], state.length[axis]);
+            machine[axis] = self.on_machine(work[axis], zero[axis], state.length_offset[axis]);
         }
-        for axis in self.settings.rolling() {
+        for axis in self.settings.rollover_axes() {
             // From where the axis stands, the shorter way: turns already made stay made.
-            let from = state.machine[axis] - self.zero(state, axis) - state.length[axis];
-            machine[axis] = self.clean(state.machine[axis] + shortest_rotation(from, work[axis]));
+            let from = state.machine[axis] - self.zero(state, axis) - state.length_offset[axis];
+            machine[axis] = self.remove_residue(state.machine[axis] + shortest_rotation(from, work[axis]));
         }
         machine
     }
@@ -130,13 +130,13 @@ impl Executor {
     /// A work coordinate in machine coordinates. Which of them is computed may depend on the block, the result must not.
     #[inline(always)]
     pub(super) fn on_machine(&self, work: f64, zero: f64, length: f64) -> f64 {
-        self.clean(work + zero + length)
+        self.remove_residue(work + zero + length)
     }
 
     /// Whether every axis stands where the programmed point is on the machine, so that one which isn't named stays there.
-    pub(super) fn is_placed(&self) -> bool {
+    pub(super) fn is_at_programmed_point(&self) -> bool {
         self.state.transform.is_none()
-            && self.settings.rolling().next().is_none()
+            && self.settings.rollover_axes().next().is_none()
             && self.to_machine(&self.state, &self.state.programmed).0.map(f64::to_bits)
                 == self.state.machine.0.map(f64::to_bits)
     }
@@ -145,80 +145,84 @@ impl Executor {
     fn work_point(&self, state: &State) -> Position {
         let mut work = Position::default();
         for axis in 0..self.settings.axes.len() {
-            let at = state.machine[axis] - self.zero(state, axis) - state.length[axis];
-            work[axis] = self.rolled(axis, self.clean(at));
+            let at = state.machine[axis] - self.zero(state, axis) - state.length_offset[axis];
+            work[axis] = self.wrap_angle(axis, self.remove_residue(at));
         }
         work
     }
 
     /// Mirror, scaling or rotation were switched: the program stands elsewhere in its coordinates, and #5001… go on
     /// showing where its last move was programmed to end.
-    pub(super) fn transform_changed(&self, state: &mut State) {
+    pub(super) fn apply_transform_change(&self, state: &mut State) {
         let (programmed, work) = (self.move_end(state), self.work_point(state));
-        self.recompute(state);
-        state.ended = (state.programmed != programmed).then_some(EndPoint { programmed, work });
+        self.recompute_position(state);
+        state.last_end_point = (state.programmed != programmed).then_some(EndPoint { programmed, work });
     }
 
     /// The end of the last move as it was programmed.
     pub(super) fn move_end(&self, state: &State) -> Position {
-        let Some(EndPoint { mut programmed, work }) = state.ended else { return state.programmed };
+        let Some(EndPoint { mut programmed, work }) = state.last_end_point else { return state.programmed };
         let now = self.work_point(state);
         for axis in 0..self.settings.axes.len() {
-            programmed[axis] = self.clean(programmed[axis] + now[axis] - work[axis]);
+            programmed[axis] = self.remove_residue(programmed[axis] + now[axis] - work[axis]);
         }
         programmed
     }
 
     /// Where the program stands after something other than a move changed its coordinates.
-    pub(super) fn recompute(&self, state: &mut State) {
+    pub(super) fn recompute_position(&self, state: &mut State) {
         let work = self.work_point(state);
         state.programmed = state.transform.backward(work);
         if !state.transform.is_none() {
             for axis in 0..MAX_AXES {
-                state.programmed[axis] = self.clean(state.programmed[axis]);
+                state.programmed[axis] = self.remove_residue(state.programmed[axis]);
             }
         }
     }
 
     /// A coordinate without the residues of adding: a hundredth of the increment carries both mm and inches exactly.
     #[inline]
-    pub(super) fn clean(&self, value: f64) -> f64 {
+    pub(super) fn remove_residue(&self, value: f64) -> f64 {
         let grid = self.settings.increment.per_unit() * 100.0;
         round(value * grid) / grid
     }
 
     /// A work coordinate from 0 to 360 on an axis that rolls over.
-    pub(super) fn rolled(&self, axis: AxisIndex, value: f64) -> f64 {
-        if self.settings.roll_over[axis] { self.clean(value.rem_euclid(360.0)) } else { value }
+    pub(super) fn wrap_angle(&self, axis: AxisIndex, value: f64) -> f64 {
+        if self.settings.rolls_over[axis] { self.remove_residue(value.rem_euclid(360.0)) } else { value }
     }
 
     /// Where an axis ends that is sent to machine coordinates: one that rolls over goes there by the shorter way and
     /// unwinds no turns.
-    pub(super) fn turned_to(&self, axis: AxisIndex, from: f64, to: f64) -> f64 {
-        if self.settings.roll_over[axis] { self.clean(from + shortest_rotation(from, to)) } else { to }
+    pub(super) fn rollover_target(&self, axis: AxisIndex, from: f64, to: f64) -> f64 {
+        if self.settings.rolls_over[axis] {
+            self.remove_residue(from + shortest_rotation(from, to))
+        } else {
+            to
+        }
     }
 
     /// What is stored of an offset that is written in the unit in force: mm, a multiple of the increment.
-    pub(super) fn stored(&self, state: &State, axis: Option<AxisIndex>, value: f64) -> f64 {
+    pub(super) fn to_stored(&self, state: &State, axis: Option<AxisIndex>, value: f64) -> f64 {
         let turns = axis.is_some_and(|axis| self.settings.axes.is_rotary(axis));
         let increment = self.settings.increment;
         match state.modal.unit {
             Unit::Inch if !turns => {
                 let tenths = increment.per_unit() * 10.0;
-                self.clean(nearest(value, tenths) / tenths * 25.4)
+                self.remove_residue(round_scaled(value, tenths) / tenths * 25.4)
             }
             Unit::Inch | Unit::Metric => increment.round(value),
         }
     }
 
     /// An offset has as many digits as a position.
-    pub(super) fn offset_in_range(&self, value: f64) -> Result<f64, Alarm> {
+    pub(super) fn check_offset_range(&self, value: f64) -> Result<f64, Alarm> {
         let fits = value.abs() * self.settings.increment.per_unit() <= 999_999_999.0;
         if fits { Ok(value) } else { Err(Alarm::OffsetValue { value }) }
     }
 
     /// A length in mm as a program reads it: in the unit in force.
-    pub(super) fn shown(&self, state: &State, axis: Option<AxisIndex>, value: f64) -> f64 {
+    pub(super) fn to_program_unit(&self, state: &State, axis: Option<AxisIndex>, value: f64) -> f64 {
         let turns = axis.is_some_and(|axis| self.settings.axes.is_rotary(axis));
         if state.modal.unit == Unit::Inch && !turns { value / 25.4 } else { value }
     }

@@ -24,7 +24,7 @@ pub struct Progress {
     /// Blocks executed, now and then.
     pub blocks: AtomicU64,
     /// Set from outside: the run ends as by its limit, and what is known so far stays.
-    pub stop: AtomicBool,
+    pub cancel: AtomicBool,
 }
 
 /// How a run ended.
@@ -44,7 +44,7 @@ pub struct AlarmStop {
     /// The part of the block it is about.
     pub span: Span,
     /// The block, and the calls that led to it.
-    pub place: Backtrace,
+    pub backtrace: Backtrace,
 }
 
 /// An operator stop.
@@ -53,5 +53,5 @@ pub struct OperatorStop {
     pub kind: StopKind,
     pub text: String,
     /// The variables that the text names, with their values.
-    pub named: Vec<(u32, f64)>,
+    pub variables: Vec<(u32, f64)>,
 }

@@ -1,6 +1,6 @@
 //! Parameters in a program: PRM reads them, the blocks between G10 L52 and G11 write them.
 use super::Executor;
-use super::eval::{Checked, integer};
+use super::evaluation::{ExecResult, integer};
 use super::notes::Note;
 use super::plan::{BlockPlan, TableWrite};
 use super::words::{BlockWords, WordNumber};
@@ -8,30 +8,37 @@ use gcode_lang::alarm::Alarm;
 use gcode_lang::control::{ParameterError, ParameterId, Settings, is_without_effect};
 use gcode_lang::motion::AxisIndex;
 use gcode_lang::program::Words;
-use gcode_lang::program::codes::{Effect, OneShot};
+use gcode_lang::program::g_codes::{Effect, OneShot};
 use gcode_lang::source::Span;
 
 impl Executor {
     /// `PRM[n]`, `PRM[n,bit]`, `PRM[n]/[axis]`, `PRM[n,bit]/[axis]`.
-    pub(super) fn parameter(&self, number: f64, bit: Option<f64>, axis: Option<f64>) -> Result<f64, Alarm> {
+    pub(super) fn read_parameter(
+        &self,
+        number: f64,
+        bit: Option<f64>,
+        axis: Option<f64>,
+    ) -> Result<f64, Alarm> {
         let format = || Alarm::ArgumentFormat { function: "PRM".into() };
         let known = integer(number)?;
         let unknown = || Alarm::NotSimulated { what: format!("PRM[{known}]") };
         let place = ParameterId {
             number: u16::try_from(known).map_err(|_| unknown())?,
-            bit: bit.map(|bit| self.bit(bit).ok_or_else(format)).transpose()?,
+            bit: bit.map(|bit| self.parameter_bit(bit).ok_or_else(format)).transpose()?,
             axis: axis.map(|axis| self.axis_of(axis).map_err(|_| format())).transpose()?,
         };
         if let Some(written) = self.parameters.get(&place) {
             return Ok(*written);
         }
         self.settings.parameter(place).map_err(|error| match error {
-            ParameterError::AxisWanted | ParameterError::NoAxis | ParameterError::NoBit => format(),
+            ParameterError::MissingAxis | ParameterError::UnexpectedAxis | ParameterError::UnexpectedBit => {
+                format()
+            }
             _ => unknown(),
         })
     }
 
-    fn bit(&self, bit: f64) -> Option<u8> {
+    fn parameter_bit(&self, bit: f64) -> Option<u8> {
         (0.0..=7.0).contains(&bit.round()).then_some(bit.round() as u8)
     }
 
@@ -43,29 +50,29 @@ impl Executor {
     }
 
     /// A block between G10 L52 and G11: `N_ R_`, with P for an axis and Q for a bit.
-    pub(super) fn prepare_parameter(
+    pub(super) fn plan_parameter(
         &self,
         (words, number): (&Words, Option<u32>),
         given: &mut BlockWords,
         plan: &mut BlockPlan,
         span: Span,
-    ) -> Checked<()> {
-        plan.begin(&self.state);
-        let wrong = |what: &str| Alarm::ParameterFormat { what: what.to_owned() }.at(span);
-        self.collect(words, None, given)?;
+    ) -> ExecResult<()> {
+        plan.reset(&self.state);
+        let wrong = |what: &str| Alarm::ParameterFormat { what: what.to_owned() }.located_at(span);
+        self.evaluate_words(words, None, given)?;
         let mut codes = given.g_codes();
         match (codes.next(), codes.next()) {
             (None, _) => {}
             (Some(code), None) if code.effect == Effect::OneShot(OneShot::DataInputEnd) => {
-                plan.state.parameter_input = false;
-                return match given.unread() {
+                plan.state.is_in_parameter_input = false;
+                return match given.first_unread() {
                     None if words.call().is_none() => Ok(()),
                     _ => Err(wrong("words in a block with G11")),
                 };
             }
             _ => return Err(wrong("another G code before G11")),
         }
-        if given.m_count > 0 || words.call().is_some() {
+        if given.m_code_count > 0 || words.call().is_some() {
             return Err(wrong("an M code before G11"));
         }
         let number = number.and_then(|number| u16::try_from(number).ok());
@@ -77,9 +84,9 @@ impl Executor {
         };
         let bit = match given.count(b'Q')? {
             None => None,
-            Some(bit) => Some(self.bit(f64::from(bit)).ok_or_else(|| wrong("Q is not 0 to 7"))?),
+            Some(bit) => Some(self.parameter_bit(f64::from(bit)).ok_or_else(|| wrong("Q is not 0 to 7"))?),
         };
-        if given.unread().is_some() {
+        if given.first_unread().is_some() {
             return Err(wrong("other words than N P Q R"));
         }
         let place = ParameterId { number, bit, axis };
@@ -89,7 +96,7 @@ impl Executor {
             && Settings::is_length_parameter(place)
         {
             let what = format!("R without a decimal point for parameter {number}, a length");
-            return Err(Alarm::NotSimulated { what }.at(given.span(b'R')));
+            return Err(Alarm::NotSimulated { what }.located_at(given.span(b'R')));
         }
         let value = match raw {
             WordNumber::Literal(literal) => literal.value(),
@@ -100,20 +107,22 @@ impl Executor {
         match known {
             Ok(()) => {}
             Err(_) if kept => plan.notes.push(Note::ParameterWithoutEffect { number }),
-            Err(ParameterError::AxisWanted) => return Err(wrong("P, the axis, is missing")),
-            Err(ParameterError::NoAxis) => return Err(wrong("the parameter has no axis P")),
-            Err(ParameterError::NoBit) => return Err(wrong("the parameter has no bit Q")),
-            Err(ParameterError::Value) => return Err(wrong("the value is not allowed for this parameter")),
-            Err(ParameterError::BitWanted) => {
-                let what = format!("parameter {number} without Q, as a whole byte");
-                return Err(Alarm::NotSimulated { what }.at(span));
+            Err(ParameterError::MissingAxis) => return Err(wrong("P, the axis, is missing")),
+            Err(ParameterError::UnexpectedAxis) => return Err(wrong("the parameter has no axis P")),
+            Err(ParameterError::UnexpectedBit) => return Err(wrong("the parameter has no bit Q")),
+            Err(ParameterError::InvalidValue) => {
+                return Err(wrong("the value is not allowed for this parameter"));
             }
-            Err(ParameterError::Unknown | ParameterError::Fixed) => {
+            Err(ParameterError::MissingBit) => {
+                let what = format!("parameter {number} without Q, as a whole byte");
+                return Err(Alarm::NotSimulated { what }.located_at(span));
+            }
+            Err(ParameterError::Unknown | ParameterError::ReadOnly) => {
                 let what = format!("a change of parameter {number}");
-                return Err(Alarm::NotSimulated { what }.at(span));
+                return Err(Alarm::NotSimulated { what }.located_at(span));
             }
         }
-        plan.writes.push(TableWrite::Parameter { place, value, kept });
+        plan.writes.push(TableWrite::Parameter { id: place, value, has_no_effect: kept });
         Ok(())
     }
 

@@ -1,6 +1,6 @@
 //! The pecks of G73 and G83: all of Q, or becoming shorter by I, J and K.
 use super::Executor;
-use super::eval::Checked;
+use super::evaluation::ExecResult;
 use super::plan::BlockPlan;
 use super::state::{CycleState, PeckSchedule};
 use super::words::BlockWords;
@@ -8,47 +8,53 @@ use gcode_lang::alarm::Alarm;
 use gcode_lang::source::Span;
 
 /// A block with more pecks than this alarms: nobody drills so, and a run must end.
-const PECKS: f64 = 1e6;
+const MAX_PECKS: f64 = 1e6;
 
 impl Executor {
     /// G73 and G83 of a Haas: the first peck is I, each next one J less, none less than K.
-    pub(super) fn shrinking_pecks(
+    pub(super) fn read_peck_schedule(
         &self,
         plan: &mut BlockPlan,
         given: &BlockWords,
         span: Span,
-    ) -> Checked<()> {
+    ) -> ExecResult<()> {
         let state = &plan.state;
         let first = self.dimension(given, b'I', state)?;
         let less = self.dimension(given, b'J', state)?;
         let least = self.dimension(given, b'K', state)?;
         let pecks = match (first, less, least) {
             (None, None, None) => return Ok(()),
-            (Some(first), None, None) => PeckSchedule { first, less: 0.0, least: first },
-            (Some(first), Some(less), Some(least)) => PeckSchedule { first, less, least },
+            (Some(first), None, None) => PeckSchedule { first, decrement: 0.0, minimum: first },
+            (Some(first), Some(less), Some(least)) => PeckSchedule { first, decrement: less, minimum: least },
             _ => {
                 let what = "I, J and K of G73 and G83 in part, or K with Q".into();
-                return Err(Alarm::NotSimulated { what }.at(span));
+                return Err(Alarm::NotSimulated { what }.located_at(span));
             }
         };
         if given.has(b'Q') {
-            return Err(Alarm::NotSimulated { what: "G73 and G83 with I and Q".into() }.at(span));
+            return Err(Alarm::NotSimulated { what: "G73 and G83 with I and Q".into() }.located_at(span));
         }
-        if pecks.first <= 0.0 || pecks.less < 0.0 || pecks.least <= 0.0 || pecks.least > pecks.first {
-            return Err(Alarm::NoPeckDepth.at(span));
+        if pecks.first <= 0.0 || pecks.decrement < 0.0 || pecks.minimum <= 0.0 || pecks.minimum > pecks.first
+        {
+            return Err(Alarm::NoPeckDepth.located_at(span));
         }
-        plan.state.drilling.pecks = Some(pecks);
+        plan.state.cycle.pecks = Some(pecks);
         Ok(())
     }
 
     /// From R peck by peck until Z; the last peck is what is left.
-    pub(super) fn peck(&self, (r, z): (f64, f64), data: &CycleState, mut each: impl FnMut(f64, f64, bool)) {
-        let pecks = pecks(r, z, data);
+    pub(super) fn for_each_peck(
+        &self,
+        (r, z): (f64, f64),
+        data: &CycleState,
+        mut each: impl FnMut(f64, f64, bool),
+    ) {
+        let pecks = peck_count(r, z, data);
         let mut last = r;
         let mut count = 1.0;
         while count <= pecks {
             let done = count == pecks;
-            let next = if done { z } else { r + depth(data, count).copysign(z - r) };
+            let next = if done { z } else { r + peck_depth(data, count).copysign(z - r) };
             each(last, next, done);
             last = next;
             count += 1.0;
@@ -57,8 +63,8 @@ impl Executor {
 }
 
 /// How deep below R so many pecks lead.
-fn depth(data: &CycleState, count: f64) -> f64 {
-    let Some(PeckSchedule { first, less, least }) = data.pecks else {
+fn peck_depth(data: &CycleState, count: f64) -> f64 {
+    let Some(PeckSchedule { first, decrement: less, minimum: least }) = data.pecks else {
         return count * data.q.unwrap_or(0.0).abs();
     };
     // As many pecks as are longer than the shortest, then all as short as that.
@@ -68,7 +74,7 @@ fn depth(data: &CycleState, count: f64) -> f64 {
 }
 
 /// How many pecks a hole from R to Z takes.
-fn pecks(r: f64, z: f64, data: &CycleState) -> f64 {
+fn peck_count(r: f64, z: f64, data: &CycleState) -> f64 {
     let deep = (z - r).abs();
     if data.pecks.is_none() {
         return match data.q {
@@ -77,13 +83,13 @@ fn pecks(r: f64, z: f64, data: &CycleState) -> f64 {
         };
     }
     let mut count = 1.0;
-    while depth(data, count) < deep - 1e-9 && count <= PECKS {
+    while peck_depth(data, count) < deep - 1e-9 && count <= MAX_PECKS {
         count += 1.0;
     }
     count
 }
 
 /// Whether a block with so many holes has more pecks than anybody drills.
-pub(super) fn are_too_many(data: &CycleState, holes: u32) -> bool {
-    pecks(data.r_level(), data.z_level(), data) * f64::from(holes.max(1)) > PECKS
+pub(super) fn has_too_many_pecks(data: &CycleState, holes: u32) -> bool {
+    peck_count(data.r_level(), data.z_level(), data) * f64::from(holes.max(1)) > MAX_PECKS
 }

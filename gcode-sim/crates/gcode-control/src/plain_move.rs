@@ -4,10 +4,10 @@ use std::hint::cold_path;
 
 use super::Executor;
 use super::linear_motion::{CoordinateBasis, SquaredTravel};
-use super::vars::Value;
+use super::variables::Value;
 use super::words::G_CODES;
 use gcode_lang::motion::{AxisIndex, EventKind, EventSink, MAX_AXES, Position};
-use gcode_lang::program::codes::Effect;
+use gcode_lang::program::g_codes::Effect;
 use gcode_lang::program::modes::{CutterSide, Motion, Polar};
 use gcode_lang::program::{LoweredWord, Op, Slot, WordOperand, Words};
 use gcode_lang::units::MmPerMin;
@@ -18,25 +18,25 @@ struct AxisSet {
     /// As bits, axis 1 the lowest.
     axes: u8,
     /// Behind the last of them.
-    next: AxisIndex,
+    end: AxisIndex,
     /// They stand in their order.
-    ascend: bool,
+    is_ascending: bool,
 }
 
 impl AxisSet {
-    const NONE: Self = Self { axes: 0, next: 0, ascend: true };
+    const NONE: Self = Self { axes: 0, end: 0, is_ascending: true };
 
     /// Notes an axis; `None` where it is named twice.
     #[inline(always)]
     fn add(&mut self, axis: AxisIndex) -> Option<()> {
-        if axis < self.next {
+        if axis < self.end {
             cold_path();
             if self.axes >> axis & 1 == 1 {
                 return None;
             }
-            self.ascend = false;
+            self.is_ascending = false;
         } else {
-            self.next = axis + 1;
+            self.end = axis + 1;
         }
         self.axes |= 1 << axis;
         Some(())
@@ -53,7 +53,7 @@ struct PlainMove {
     /// F, where it is commanded.
     f: Option<f64>,
     named: AxisSet,
-    way: SquaredTravel,
+    travel: SquaredTravel,
 }
 
 /// Where they lead the axes that they name. It stands apart, so that the compiler keeps the rest in registers.
@@ -68,7 +68,7 @@ impl Executor {
     /// the steps of a block know where and why.
     #[inline(never)]
     pub(super) fn plain_move<S: EventSink>(&mut self, op: &Op, words: &Words, sink: &mut S) -> Option<()> {
-        let counting = self.plain.as_ref()?;
+        let counting = self.plain_basis.as_ref()?;
         if !words.is_plain() || words.list.len() > G_CODES || !self.modal_calls.is_empty() {
             return None;
         }
@@ -78,19 +78,19 @@ impl Executor {
             motion: state.modal.motion,
             f: None,
             named: AxisSet::NONE,
-            way: SquaredTravel::default(),
+            travel: SquaredTravel::default(),
         };
         self.resolve_plain(words, counting, &mut led, &mut ends)?;
-        if !led.named.ascend {
+        if !led.named.is_ascending {
             // A sum depends on its order, a way must not on that of the words.
-            led.way = self.way(led.named.iter(), &state.machine, &ends.machine);
+            led.travel = self.squared_travel(led.named.iter(), &state.machine, &ends.machine);
         }
         let f = led.f.unwrap_or(state.codes.f);
         let (rate, seconds) = match led.motion {
             Motion::Rapid => {
                 (MmPerMin::ZERO, self.rapid_seconds_of(led.named.iter(), &state.machine, &ends.machine))
             }
-            Motion::Linear => self.time_of(state, f, led.way, led.f.is_some()).ok()?,
+            Motion::Linear => self.travel_time(state, f, led.travel, led.f.is_some()).ok()?,
             _ => return None,
         };
 
@@ -100,10 +100,10 @@ impl Executor {
         }
         (state.modal.motion, state.codes.f) = (led.motion, f);
         state.codes.n = op.number.unwrap_or(state.codes.n);
-        self.note_work(self.state.modal.work, true);
+        self.record_work_use(self.state.modal.work, true);
         let to = &self.state.machine;
         match led.motion {
-            _ if !led.way.is_some() => {}
+            _ if !led.travel.is_some() => {}
             _ if !sink.is_active() => self.count_move(seconds),
             Motion::Rapid => self.emit(&EventKind::Rapid { to: *to }, seconds, sink),
             _ => self.emit(&EventKind::Feed { to: *to, rate }, seconds, sink),
@@ -127,47 +127,49 @@ impl Executor {
             }
             let Some(axis) = self.settings.axes.find(word.letter) else {
                 match &word.value {
-                    WordOperand::G(_, found) => match found.on(self.settings.codes)?.effect {
+                    WordOperand::G(_, found) => match found.row_for(self.settings.codes)?.effect {
                         Effect::Motion(code) => led.motion = code,
                         _ => return None,
                     },
                     _ if word.letter != b'F' || led.f.is_some() => return None,
-                    _ => led.f = self.led_feed(words, word)?,
+                    _ => led.f = self.evaluate_feed(words, word)?,
                 }
                 continue;
             };
             let value = match &word.value {
-                WordOperand::Literal(number) => self.written(number, word.letter, &counting.measure)?,
+                WordOperand::Literal(number) => {
+                    self.literal_dimension(number, word.letter, &counting.measure)?
+                }
                 value => {
                     let value = match value {
-                        WordOperand::Variable { slot: Slot::Free(place), .. } => self.vars.free(*place),
-                        value => self.led_value(words, value)?,
+                        WordOperand::Variable { slot: Slot::Free(place), .. } => self.vars.get_free(*place),
+                        value => self.evaluate_axis_value(words, value)?,
                     };
                     let Value::Number(value) = value else { continue };
-                    self.rounded(value, word.letter, &counting.measure)?
+                    self.computed_dimension(value, word.letter, &counting.measure)?
                 }
             };
             led.named.add(axis)?;
             let to = &mut ends.machine[axis];
-            (ends.programmed[axis], *to) = self.end_of(axis, value, state, counting);
-            if to.abs() > counting.most {
+            (ends.programmed[axis], *to) = self.axis_end(axis, value, state, counting);
+            if to.abs() > counting.max_coordinate {
                 return None;
             }
-            led.way.add(*to - state.machine[axis], self.settings.axes.is_rotary(axis));
+            led.travel.add(*to - state.machine[axis], self.settings.axes.is_rotary(axis));
         }
         (led.named.axes != 0).then_some(())
     }
 
     /// What is behind the address of an axis that is neither a literal nor any control's variable; `None` where it alarms.
     #[inline(never)]
-    fn led_value(&self, words: &Words, value: &WordOperand) -> Option<Value> {
-        self.computed(words, value).ok()
+    fn evaluate_axis_value(&self, words: &Words, value: &WordOperand) -> Option<Value> {
+        self.evaluate_operand(words, value).ok()
     }
 
     /// F, if it isn't vacant; `None` where it alarms.
     #[inline(never)]
-    fn led_feed(&self, words: &Words, word: &LoweredWord) -> Option<Option<f64>> {
-        match self.raw(words, word).ok()? {
+    fn evaluate_feed(&self, words: &Words, word: &LoweredWord) -> Option<Option<f64>> {
+        match self.evaluate_word(words, word).ok()? {
             Some(raw) => self.feed_of(&raw, &self.state).ok().map(Some),
             None => Some(None),
         }
@@ -176,22 +178,22 @@ impl Executor {
     /// Finds out, behind everything that could change it, whether the next block can be a plain move, and what its axes
     /// count from.
     pub(super) fn update_is_plain(&mut self) {
-        self.plain = self.is_plain().then(|| self.counting(&self.state));
+        self.plain_basis = self.is_plain().then(|| self.coordinate_basis(&self.state));
     }
 
     /// Whether nothing is in force between two blocks that could make more of axis words than a move of those axes.
     fn is_plain(&self) -> bool {
         let modal = &self.state.modal;
         modal.cycle.is_none()
-            && !self.state.parameter_input
+            && !self.state.is_in_parameter_input
             && self.state.work_zero_unknown == 0
             && modal.cutter == CutterSide::Off
             && modal.polar == Polar::Off
-            && self.state.ended.is_none()
-            && self.ahead.is_idle()
+            && self.state.last_end_point.is_none()
+            && self.lookahead.is_idle()
             && self.settings.code_calls.is_empty()
-            && self.settings.stroke.is_none()
-            && self.is_placed()
+            && self.settings.stroke_limits.is_none()
+            && self.is_at_programmed_point()
     }
 }
 
@@ -220,20 +222,20 @@ mod tests {
         let mut control = Control::new(memory, settings);
         let mut told = Told(Vec::new());
         let outcome = control.run(Limits { blocks: 500 }, &mut NoLibrary, &mut told);
-        told.0.push(format!("{outcome:?} {:?} {:?}", control.core.state, control.core.notes));
-        (told.0, control.core.plain.is_some())
+        told.0.push(format!("{outcome:?} {:?} {:?}", control.executor.state, control.executor.notes));
+        (told.0, control.executor.plain_basis.is_some())
     }
 
     fn settings() -> Settings {
         let mut settings = Settings::default();
-        settings.roll_over[4] = false;
+        settings.rolls_over[4] = false;
         settings
     }
 
     /// A control that looks at strokes without an end, for which no move is plain.
     fn never_plain() -> Settings {
         let no = [None; MAX_AXES];
-        Settings { stroke: Some(StrokeLimits { max: no, min: no }), ..settings() }
+        Settings { stroke_limits: Some(StrokeLimits { max: no, min: no }), ..settings() }
     }
 
     fn block() -> impl Strategy<Value = String> {

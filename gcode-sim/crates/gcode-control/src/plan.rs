@@ -1,11 +1,11 @@
 //! What a block is going to do: made without touching the control, carried out afterwards without failing.
-use super::drill::CyclePlan;
+use super::cycle_expansion::CyclePlan;
 use super::frames::CallOrigins;
 use super::lookahead::Lookahead;
 use super::notes::Note;
 use super::offsets::Register;
 use super::state::State;
-use super::vars::{Locals, Value};
+use super::variables::{Locals, Value};
 use crate::contour::Blend;
 use gcode_lang::control::ParameterId;
 use gcode_lang::motion::{EventKind, Position, StopKind};
@@ -20,23 +20,23 @@ pub(super) struct BlockPlan {
     /// What the machine is told, with the seconds it takes.
     pub(super) events: Vec<(EventKind, f64)>,
     /// G31: its motion is planned to the end and may stop before.
-    pub(super) probing: Option<SkipPlan>,
+    pub(super) skip_plan: Option<SkipPlan>,
     /// Told after the motion: spindle and coolant off.
     pub(super) events_after_motion: Vec<(EventKind, f64)>,
     /// A drilling cycle is expanded while it is told: its length has no bound.
-    pub(super) drill: Option<CyclePlan>,
+    pub(super) cycle_plan: Option<CyclePlan>,
     pub(super) writes: Vec<TableWrite>,
     /// The word `,R` or `,C` of a cutting move.
     pub(super) corner: Option<Blend>,
     /// The block goes by way of what is read ahead, which will be this.
-    pub(super) reads_ahead: bool,
-    pub(super) ahead: Lookahead,
+    pub(super) uses_lookahead: bool,
+    pub(super) lookahead: Lookahead,
     /// Axes were commanded: what a modal macro call waits for.
     pub(super) commands_axes: bool,
     /// In the order of their M codes.
     pub(super) stops: Vec<StopKind>,
     /// M codes for the machine builder's logic.
-    pub(super) passed_on: Vec<u32>,
+    pub(super) auxiliary_codes: Vec<u32>,
     pub(super) notes: Vec<Note>,
     pub(super) flow: BlockFlow,
 }
@@ -57,9 +57,9 @@ pub(super) enum TableWrite {
     },
     /// G10 L52; `kept` where it has no effect.
     Parameter {
-        place: ParameterId,
+        id: ParameterId,
         value: f64,
-        kept: bool,
+        has_no_effect: bool,
     },
     /// The number of a code that calls a subprogram, or G10 L85.
     Variable {
@@ -100,17 +100,17 @@ pub(super) enum BlockFlow {
 #[derive(Clone, Debug)]
 pub(super) struct CallPlan {
     pub(super) kind: CallKind,
-    pub(super) target: Target,
+    pub(super) target: ProgramRef,
     pub(super) repeats: u32,
     /// `M98 P Q`: the sequence number to start at.
     pub(super) start: Option<u32>,
     pub(super) locals: Locals,
     /// G66.1: its own words are arguments at once. Other calls always are.
-    pub(super) calls_now: bool,
+    pub(super) is_immediate: bool,
     /// The kind of code that calls, where it is no G65, G66 or M98.
-    pub(super) by_code: CallOrigins,
+    pub(super) origins: CallOrigins,
     /// M198.
-    pub(super) external: bool,
+    pub(super) is_external: bool,
     pub(super) span: Span,
 }
 
@@ -125,29 +125,29 @@ pub(super) enum CallKind {
 }
 
 #[derive(Clone, Debug)]
-pub(super) enum Target {
+pub(super) enum ProgramRef {
     Number(u32),
     Name(String),
     /// Found in memory.
-    Found(ProgramId, OpIndex),
+    Resolved(ProgramId, OpIndex),
 }
 
 impl BlockPlan {
-    pub(super) fn begin(&mut self, state: &State) {
+    pub(super) fn reset(&mut self, state: &State) {
         let Self {
             state: own,
             events,
-            probing,
+            skip_plan: probing,
             events_after_motion: after,
-            drill,
+            cycle_plan: drill,
             writes,
             corner,
-            reads_ahead,
+            uses_lookahead: reads_ahead,
             // Taken from the control where it is read.
-            ahead: _,
+            lookahead: _,
             commands_axes: moved,
             stops,
-            passed_on,
+            auxiliary_codes: passed_on,
             notes,
             flow,
         } = self;

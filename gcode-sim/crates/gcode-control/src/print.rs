@@ -1,36 +1,36 @@
 //! POPEN, DPRNT, BPRNT and PCLOS: lines that a program sends to the control's output device.
 use super::Executor;
-use super::eval::Checked;
+use super::evaluation::ExecResult;
 use super::notes::Note;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::Settings;
 use gcode_lang::program::PrintPart;
 use gcode_lang::source::Span;
 use gcode_lang::syntax::ast::PrintKind;
-use gcode_lang::units::nearest;
+use gcode_lang::units::round_scaled;
 
 /// What a run may print before it is stopped: a loop that prints must not fill the memory.
-const MOST_BYTES: usize = 64 << 20;
+const MAX_PRINTED_BYTES: usize = 64 << 20;
 
 /// Lines printed so far, without their ends.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Printed {
+pub(super) struct PrintedLines {
     pub(super) lines: Vec<Vec<u8>>,
     bytes: usize,
     /// Between POPEN and PCLOS.
-    pub(super) open: bool,
+    pub(super) is_open: bool,
 }
 
 impl Executor {
-    pub(super) fn open_output(&mut self, open: bool) {
-        self.printed.open = open;
+    pub(super) fn set_output_open(&mut self, open: bool) {
+        self.printed.is_open = open;
     }
 
     /// DPRNT and BPRNT: one line.
-    pub(super) fn print(&mut self, kind: PrintKind, parts: &[PrintPart], span: Span) -> Checked<()> {
-        if self.settings.print_needs_open && !self.printed.open {
+    pub(super) fn print(&mut self, kind: PrintKind, parts: &[PrintPart], span: Span) -> ExecResult<()> {
+        if self.settings.print_needs_open && !self.printed.is_open {
             let what = "DPRNT without POPEN before it".into();
-            return Err(Alarm::MacroFormat { what }.at(span));
+            return Err(Alarm::MacroFormat { what }.located_at(span));
         }
         let mut line = Vec::new();
         for part in parts {
@@ -45,15 +45,15 @@ impl Executor {
                         PrintKind::Decimal => decimal(number, *whole, *decimals, &self.settings, &mut line),
                         PrintKind::Binary => binary(number, *decimals, &mut line).map(|()| true),
                     };
-                    if !printed.map_err(|alarm| alarm.at(span))? {
-                        self.aftermath.record_note(Note::DigitsLost);
+                    if !printed.map_err(|alarm| alarm.located_at(span))? {
+                        self.block_effects.record_note(Note::DigitsLost);
                     }
                 }
             }
         }
         self.printed.bytes += line.len() + 1;
-        if self.printed.bytes > MOST_BYTES {
-            return Err(Alarm::NotSimulated { what: "more than 64 MB of output".into() }.at(span));
+        if self.printed.bytes > MAX_PRINTED_BYTES {
+            return Err(Alarm::NotSimulated { what: "more than 64 MB of output".into() }.located_at(span));
         }
         self.printed.lines.push(line);
         Ok(())
@@ -75,7 +75,7 @@ fn decimal(
         return Err(Alarm::PrintFormat);
     }
     let scale = 10_f64.powi(i32::from(decimals));
-    let scaled = nearest(number.abs(), scale);
+    let scaled = round_scaled(number.abs(), scale);
     if scaled > 1e15 {
         return Err(Alarm::IntegerOverflow);
     }
@@ -90,10 +90,10 @@ fn decimal(
     let negative = number < 0.0 && scaled > 0;
     if negative {
         line.push(b'-');
-    } else if !settings.print_without_blanks {
+    } else if !settings.omits_print_blanks {
         line.push(b' ');
     }
-    if !settings.print_without_blanks {
+    if !settings.omits_print_blanks {
         line.extend(std::iter::repeat_n(b' ', width.saturating_sub(before.len())));
     }
     line.extend(before.bytes());
@@ -107,7 +107,7 @@ fn decimal(
 
 /// `#n[d]`: the value × 10^d as two words, the highest byte first.
 fn binary(number: f64, decimals: u8, line: &mut Vec<u8>) -> Result<(), Alarm> {
-    let scaled = nearest(number, 10_f64.powi(i32::from(decimals)));
+    let scaled = round_scaled(number, 10_f64.powi(i32::from(decimals)));
     if !(-2_147_483_648.0..=2_147_483_647.0).contains(&scaled) {
         return Err(Alarm::IntegerOverflow);
     }
@@ -142,7 +142,7 @@ mod tests {
         assert_eq!(printed(128.47398, 5, 3, &settings), "   128.474");
         assert_eq!(printed(-91.2, 5, 3, &settings), "-   91.200");
         assert_eq!(printed(123.456, 2, 0, &settings), " 23");
-        settings.print_without_blanks = true;
+        settings.omits_print_blanks = true;
         assert_eq!(printed(128.47398, 5, 3, &settings), "128.474");
         assert_eq!(printed(-91.2, 5, 3, &settings), "-91.200");
     }

@@ -1,6 +1,6 @@
 //! G31 and the machine's answer to it: where the skip signal comes, and where the axes stand then.
 use super::Executor;
-use super::eval::{Checked, at};
+use super::evaluation::{ExecResult, locate};
 use super::modal_codes::not_simulated;
 use super::notes::Note;
 use super::plan::{BlockPlan, SkipPlan};
@@ -14,85 +14,87 @@ use gcode_lang::units::Seconds;
 impl Executor {
     /// G31: a straight cut that ends where the skip signal comes. It is planned to its end; whether the signal comes
     /// is asked when everything is known to be in order.
-    pub(super) fn skip(&self, given: &BlockWords, plan: &mut BlockPlan, span: Span) -> Checked<()> {
-        if plan.state.modal.cutter != CutterSide::Off || self.ahead.is_offset() {
-            return Err(Alarm::SkipInCompensation.at(span));
+    pub(super) fn plan_skip(&self, given: &BlockWords, plan: &mut BlockPlan, span: Span) -> ExecResult<()> {
+        if plan.state.modal.cutter != CutterSide::Off || self.lookahead.is_offset() {
+            return Err(Alarm::SkipInCompensation.located_at(span));
         }
-        self.skip_signals(given, b'P')?;
+        self.check_skip_signal_set(given, b'P')?;
         if given.count(b'Q')?.is_some_and(|torque| !(1..=99).contains(&torque)) {
-            return Err(Alarm::SkipTorque.at(given.span(b'Q')));
+            return Err(Alarm::SkipTorque.located_at(given.span(b'Q')));
         }
         if given.has_any(b"PQ") {
-            return Err(not_simulated(310, "multi-step and torque limit skip").at(span));
+            return Err(not_simulated(310, "multi-step and torque limit skip").located_at(span));
         }
-        let goal = self.goal(given, &mut plan.state)?;
+        let goal = self.resolve_endpoint(given, &mut plan.state)?;
         let (from, to) = (plan.state.machine, goal.machine);
-        let (rate, seconds) = at(self.feed_seconds(&plan.state, &from, &to, given.has(b'F')), span)?;
-        plan.probing = Some(SkipPlan { event: plan.events.len(), from, to, rate, seconds, span });
-        plan.events.push((EventKind::Skip { to, rate, touched: false }, seconds));
+        let (rate, seconds) = locate(self.feed_seconds(&plan.state, &from, &to, given.has(b'F')), span)?;
+        plan.skip_plan = Some(SkipPlan { event: plan.events.len(), from, to, rate, seconds, span });
+        plan.events.push((EventKind::Skip { to, rate, has_signal: false }, seconds));
         plan.state.machine = to;
-        plan.state.skip = to;
+        plan.state.skip_position = to;
         plan.state.programmed = goal.programmed;
         plan.commands_axes = true;
         Ok(())
     }
 
     /// G31 P and G04 Q name a set of skip signals.
-    pub(super) fn skip_signals(&self, given: &BlockWords, letter: u8) -> Checked<()> {
+    pub(super) fn check_skip_signal_set(&self, given: &BlockWords, letter: u8) -> ExecResult<()> {
         match given.count(letter)? {
             Some(set) if !(1..=4).contains(&set) => {
-                Err(Alarm::SkipSignals { letter: char::from(letter) }.at(given.span(letter)))
+                Err(Alarm::SkipSignals { letter: char::from(letter) }.located_at(given.span(letter)))
             }
             _ => Ok(()),
         }
     }
 
     /// Asks where the signal comes and ends the planned motion there. The alarm, if any, is raised after the motion.
-    pub(super) fn ask_for_signal<S: EventSink>(
+    pub(super) fn resolve_skip_signal<S: EventSink>(
         &self,
         plan: &mut BlockPlan,
         sink: &mut S,
     ) -> Option<LocatedAlarm> {
-        let probing = plan.probing.take()?;
+        let probing = plan.skip_plan.take()?;
         let SkipPlan { from, to, rate, seconds, span, .. } = probing;
         let signal = match self.settings.skip_signal {
-            Some(part) => SkipSignal::At { latched: part, stopped: part },
+            Some(part) => SkipSignal::Received { latched: part, stop_fraction: part },
             None => {
                 match sink.skip_signal(&SkipMove { from: &from, to: &to, rate, seconds: Seconds(seconds) }) {
                     Some(signal) => {
                         // The next touch may come elsewhere, so a loop round this block may end.
-                        self.clock_read.set(true);
+                        self.has_read_clock.set(true);
                         signal
                     }
                     None => {
-                        plan.notes.push(Note::NoSignal);
+                        plan.notes.push(Note::NoSkipSignal);
                         SkipSignal::Missed
                     }
                 }
             }
         };
         let (noted, stopped, alarm) = match signal {
-            SkipSignal::At { latched: noted, stopped } => (noted, stopped, None),
+            SkipSignal::Received { latched: noted, stop_fraction: stopped } => (noted, stopped, None),
             SkipSignal::Missed => {
-                return self.settings.missed_skip_alarms.then(|| Alarm::SkipMissed.at(span));
+                return self.settings.missed_skip_alarms.then(|| Alarm::SkipMissed.located_at(span));
             }
-            SkipSignal::Broken { stopped, pushed, give } => {
-                (stopped, stopped, Some(Alarm::StylusBroken { pushed, give }.at(span)))
-            }
+            SkipSignal::StylusBroken { stopped, deflection: pushed, overtravel_limit: give } => (
+                stopped,
+                stopped,
+                Some(Alarm::StylusBroken { deflection: pushed, overtravel_limit: give }.located_at(span)),
+            ),
         };
         let after = |part: f64| {
             let mut place = Position::default();
             for axis in 0..MAX_AXES {
-                place[axis] = self.clean(from[axis] + part * (to[axis] - from[axis]));
+                place[axis] = self.remove_residue(from[axis] + part * (to[axis] - from[axis]));
             }
             place
         };
         let end = after(stopped);
-        plan.events[probing.event] = (EventKind::Skip { to: end, rate, touched: true }, stopped * seconds);
-        plan.state.skip = after(noted);
+        plan.events[probing.event] = (EventKind::Skip { to: end, rate, has_signal: true }, stopped * seconds);
+        plan.state.skip_position = after(noted);
         plan.state.machine = end;
-        if !self.settings.unsure.skip_keeps_end {
-            self.recompute(&mut plan.state);
+        if !self.settings.undocumented.skip_keeps_end {
+            self.recompute_position(&mut plan.state);
         }
         alarm
     }

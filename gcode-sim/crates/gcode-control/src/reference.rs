@@ -1,6 +1,6 @@
 //! The reference position: G27 checks it, G28 and G30 go there, G29 comes back.
 use super::Executor;
-use super::eval::Checked;
+use super::evaluation::ExecResult;
 use super::notes::Note;
 use super::plan::BlockPlan;
 use super::words::BlockWords;
@@ -10,18 +10,18 @@ use gcode_lang::program::modes::Length;
 use gcode_lang::source::Span;
 
 impl Executor {
-    pub(super) fn check_reference(
+    pub(super) fn plan_reference_check(
         &self,
         given: &BlockWords,
         plan: &mut BlockPlan,
         span: Span,
-    ) -> Checked<()> {
-        let goal = self.goal(given, &mut plan.state)?;
-        self.rapid(plan, &goal.machine);
+    ) -> ExecResult<()> {
+        let goal = self.resolve_endpoint(given, &mut plan.state)?;
+        self.push_rapid(plan, &goal.machine);
         plan.state.programmed = goal.programmed;
         for (axis, letter) in self.settings.axes.iter() {
-            if given.has(letter as u8) && self.rolled(axis, plan.state.machine[axis]) != 0.0 {
-                return Err(Alarm::NotAtReference { letter }.at(span));
+            if given.has(letter as u8) && self.wrap_angle(axis, plan.state.machine[axis]) != 0.0 {
+                return Err(Alarm::NotAtReference { letter }.located_at(span));
             }
         }
         plan.commands_axes = true;
@@ -29,18 +29,18 @@ impl Executor {
     }
 
     /// G28 and G30: by rapid over the intermediate point to the reference position, the named axes only.
-    pub(super) fn reference(
+    pub(super) fn plan_reference_return(
         &self,
         given: &BlockWords,
         plan: &mut BlockPlan,
         reference: Position,
-    ) -> Checked<()> {
+    ) -> ExecResult<()> {
         if !self.names_axis(given) {
             let code = given.g_codes().find(|row| row.code == 300).map_or(280, |row| row.code);
             plan.notes.push(Note::NoAxis { code });
         }
-        let goal = self.goal(given, &mut plan.state)?;
-        self.rapid(plan, &goal.machine);
+        let goal = self.resolve_endpoint(given, &mut plan.state)?;
+        self.push_rapid(plan, &goal.machine);
         let mut home = plan.state.machine;
         let mut named = 0;
         for (axis, letter) in self.settings.axes.iter() {
@@ -48,56 +48,59 @@ impl Executor {
                 named |= 1 << axis;
                 plan.state.intermediate[axis] = goal.machine[axis] - self.zero(&plan.state, axis);
                 plan.state.has_intermediate |= 1 << axis;
-                home[axis] = self.turned_to(axis, home[axis], reference[axis]);
+                home[axis] = self.rollover_target(axis, home[axis], reference[axis]);
             }
         }
-        self.leave_work(plan, named);
-        self.rapid(plan, &home);
+        self.note_unknown_work_zero(plan, named);
+        self.push_rapid(plan, &home);
         // The length offset is cancelled where its axis reaches the reference position.
         let z = self.settings.axes.find(b'Z');
         if z.is_some() && given.has(b'Z') && plan.state.modal.length != Length::Off {
-            end_length(plan);
+            cancel_length(plan);
         }
-        self.recompute(&mut plan.state);
+        self.recompute_position(&mut plan.state);
         plan.commands_axes = true;
         Ok(())
     }
 
     /// G28 of a Haas without an axis: all of them straight home, and no length offset any more.
-    pub(super) fn home_all(&self, plan: &mut BlockPlan) {
+    pub(super) fn plan_home_all(&self, plan: &mut BlockPlan) {
         let mut home = plan.state.machine;
         for (axis, _) in self.settings.axes.iter() {
-            home[axis] = self.turned_to(axis, home[axis], 0.0);
+            home[axis] = self.rollover_target(axis, home[axis], 0.0);
         }
-        self.leave_work(plan, self.settings.axes.iter().fold(0, |axes, (axis, _)| axes | 1 << axis));
-        self.rapid(plan, &home);
-        end_length(plan);
-        self.recompute(&mut plan.state);
+        self.note_unknown_work_zero(
+            plan,
+            self.settings.axes.iter().fold(0, |axes, (axis, _)| axes | 1 << axis),
+        );
+        self.push_rapid(plan, &home);
+        cancel_length(plan);
+        self.recompute_position(&mut plan.state);
         plan.commands_axes = true;
     }
 
     /// G29: over the intermediate point of the last G28 to the given point.
-    pub(super) fn leave_reference(
+    pub(super) fn plan_return_from_reference(
         &self,
         given: &BlockWords,
         plan: &mut BlockPlan,
         span: Span,
-    ) -> Checked<()> {
+    ) -> ExecResult<()> {
         let mut over = plan.state.machine;
         for (axis, letter) in self.settings.axes.iter() {
             if !given.has(letter as u8) {
                 continue;
             }
             if plan.state.has_intermediate >> axis & 1 == 0 {
-                return Err(Alarm::NoIntermediatePoint.at(span));
+                return Err(Alarm::NoIntermediatePoint.located_at(span));
             }
-            over[axis] = self.clean(plan.state.intermediate[axis] + self.zero(&plan.state, axis));
+            over[axis] = self.remove_residue(plan.state.intermediate[axis] + self.zero(&plan.state, axis));
             plan.state.work_zero_unknown &= !(1 << axis);
         }
-        self.rapid(plan, &over);
-        self.recompute(&mut plan.state);
-        let goal = self.goal(given, &mut plan.state)?;
-        self.rapid(plan, &goal.machine);
+        self.push_rapid(plan, &over);
+        self.recompute_position(&mut plan.state);
+        let goal = self.resolve_endpoint(given, &mut plan.state)?;
+        self.push_rapid(plan, &goal.machine);
         plan.state.programmed = goal.programmed;
         plan.commands_axes = true;
         Ok(())
@@ -105,10 +108,13 @@ impl Executor {
 }
 
 /// No tool length offset any more, nor G43 or G44.
-fn end_length(plan: &mut BlockPlan) {
+fn cancel_length(plan: &mut BlockPlan) {
     if plan.state.modal.length != Length::Off {
-        plan.push_event(EventKind::ToolLength { offset: Position::default(), by: LengthCompensation::Off });
+        plan.push_event(EventKind::ToolLength {
+            offset: Position::default(),
+            compensation: LengthCompensation::Off,
+        });
     }
-    plan.state.length = Position::default();
+    plan.state.length_offset = Position::default();
     plan.state.modal.length = Length::Off;
 }

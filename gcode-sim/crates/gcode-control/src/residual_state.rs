@@ -37,18 +37,19 @@ pub fn mode_name(group: u32) -> String {
 impl Control {
     /// All that isn't vacant or 0; modes always.
     pub fn residual_values(&self) -> Vec<ResidualValue> {
-        let core = &self.core;
+        let core = &self.executor;
         let mut all = Vec::new();
         let mut leave = |kind, name: String, value: f64| all.push(ResidualValue { kind, name, value });
         for (number, value) in self.variables().filter(|(number, _)| *number >= 100) {
             leave(ResidualKind::Variable, format!("#{number}"), value);
         }
         for group in 1..=22 {
-            if let Ok(value) = core.read(4000 + group) {
+            if let Ok(value) = core.read_variable(4000 + group) {
                 leave(ResidualKind::Mode, mode_name(group), value.number());
             }
         }
-        let shifts = [("G52".to_owned(), &core.state.local), ("G92".to_owned(), &core.state.shift)];
+        let shifts =
+            [("G52".to_owned(), &core.state.local_offset), ("G92".to_owned(), &core.state.coordinate_shift)];
         for (system, values) in core.offsets.systems().chain(shifts) {
             for (axis, letter) in core.settings.axes.iter().filter(|(axis, _)| values[*axis] != 0.0) {
                 leave(ResidualKind::WorkOffset, format!("{system} {letter}"), values[axis]);
@@ -65,7 +66,7 @@ impl Control {
         if core.outputs != 0 {
             leave(ResidualKind::Output, "#1132".to_owned(), f64::from(core.outputs));
         }
-        for (number, value) in [3901, 3902].into_iter().zip(core.parts) {
+        for (number, value) in [3901, 3902].into_iter().zip(core.part_counters) {
             leave(ResidualKind::Counter, format!("#{number}"), value);
         }
         all

@@ -1,6 +1,6 @@
 //! What one block can change besides variables and offset tables: small enough to copy, so that a block that alarms
 //! leaves no trace.
-use super::modal::Modal;
+use super::modal_state::Modal;
 use super::transform::Transform;
 use gcode_lang::motion::{AxisIndex, LengthCompensation, Position, SpindleDirection};
 use gcode_lang::program::modes::{Length, Motion};
@@ -13,15 +13,15 @@ pub struct State {
     /// tool length.
     pub programmed: Position,
     /// Until the next move after G51.1, G51, G68 or their end: what #5001… show.
-    pub ended: Option<EndPoint>,
+    pub last_end_point: Option<EndPoint>,
     /// The same in machine coordinates, tool length included.
     pub machine: Position,
     /// G52.
-    pub local: Position,
+    pub local_offset: Position,
     /// G92.
-    pub shift: Position,
+    pub coordinate_shift: Position,
     /// The tool length offset in effect on each axis.
-    pub length: Position,
+    pub length_offset: Position,
     /// G28: the intermediate point for G29, from the work coordinate system's zero, tool length included; and the axes
     /// that have one.
     pub intermediate: Position,
@@ -29,24 +29,24 @@ pub struct State {
     /// The axes that stand where machine coordinates have sent them while nothing had set the work offset in effect.
     pub work_zero_unknown: u8,
     /// #5061…: where the last G31 ended, in machine coordinates.
-    pub skip: Position,
+    pub skip_position: Position,
     /// The radius of cutter compensation, as D or G41, G42 have found it; negative where it swaps sides.
-    pub radius: f64,
+    pub cutter_radius: f64,
     pub transform: Transform,
-    pub drilling: CycleState,
+    pub cycle: CycleState,
     pub codes: Codes,
     pub polar: PolarPoint,
     pub spindle: SpindleDirection,
-    pub coolant: bool,
+    pub is_coolant_on: bool,
     /// Between G10 L52 and G11.
-    pub parameter_input: bool,
+    pub is_in_parameter_input: bool,
     /// The tool in the spindle.
     pub tool: u32,
 }
 
 impl State {
     /// Notes whether the place of an axis on the part is known.
-    pub(super) fn set_unplaced(&mut self, axis: AxisIndex, unplaced: bool) {
+    pub(super) fn set_work_zero_unknown(&mut self, axis: AxisIndex, unplaced: bool) {
         self.work_zero_unknown = self.work_zero_unknown & !(1 << axis) | u8::from(unplaced) << axis;
     }
 
@@ -55,12 +55,12 @@ impl State {
     pub(super) fn set_motion_mode(&mut self, motion: Motion) {
         self.modal.motion = motion;
         if self.modal.cycle.take().is_some() {
-            self.drilling = CycleState::default();
+            self.cycle = CycleState::default();
         }
     }
 
     /// What the tool length offset comes of.
-    pub fn lengthening(&self) -> LengthCompensation {
+    pub fn length_compensation(&self) -> LengthCompensation {
         match self.modal.length {
             Length::Off => LengthCompensation::Off,
             Length::Plus => LengthCompensation::Plus(self.codes.h),
@@ -112,7 +112,7 @@ pub struct CycleState {
     /// Where that axis stood when the cycle began.
     pub initial: f64,
     /// There it stood in machine coordinates, as in [`State::work_zero_unknown`].
-    pub initial_unplaced: bool,
+    pub is_initial_unknown: bool,
     pub r: CycleLevel,
     pub z: CycleLevel,
     pub p: f64,
@@ -125,17 +125,17 @@ pub struct CycleState {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PeckSchedule {
     pub first: f64,
-    pub less: f64,
-    pub least: f64,
+    pub decrement: f64,
+    pub minimum: f64,
 }
 
 /// A level as commanded: G91 counts R from the initial level and Z from R.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CycleLevel {
     pub value: f64,
-    pub incremental: bool,
+    pub is_incremental: bool,
     /// It was, in this cycle.
-    pub commanded: bool,
+    pub is_commanded: bool,
 }
 
 impl CycleState {
@@ -143,21 +143,21 @@ impl CycleState {
     pub(super) fn unscaled(self, stretch: f64) -> Self {
         let pecks = self.pecks.map(|pecks| PeckSchedule {
             first: pecks.first / stretch,
-            less: pecks.less / stretch,
-            least: pecks.least / stretch,
+            decrement: pecks.decrement / stretch,
+            minimum: pecks.minimum / stretch,
         });
         Self { q: self.q.map(|q| q / stretch), pecks, ..self }
     }
 
-    pub(super) fn r_unplaced(&self) -> bool {
-        self.r.incremental && self.initial_unplaced
+    pub(super) fn is_r_unknown(&self) -> bool {
+        self.r.is_incremental && self.is_initial_unknown
     }
 
     pub(super) fn r_level(&self) -> f64 {
-        if self.r.incremental { self.initial + self.r.value } else { self.r.value }
+        if self.r.is_incremental { self.initial + self.r.value } else { self.r.value }
     }
 
     pub(super) fn z_level(&self) -> f64 {
-        if self.z.incremental { self.r_level() + self.z.value } else { self.z.value }
+        if self.z.is_incremental { self.r_level() + self.z.value } else { self.z.value }
     }
 }

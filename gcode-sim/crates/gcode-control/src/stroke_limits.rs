@@ -1,6 +1,6 @@
 //! Stored stroke check 1: no move of a block may lead an axis beyond its limits (parameters 1320 and 1321).
 use super::Executor;
-use super::eval::{Checked, at};
+use super::evaluation::{ExecResult, locate};
 use super::lookahead::Lookahead;
 use super::plan::BlockPlan;
 use gcode_lang::alarm::Alarm;
@@ -11,55 +11,55 @@ use gcode_lang::units::Deg;
 
 impl Executor {
     /// Looks at every move of a block before it happens. A real control stops on the way; here nothing has moved.
-    pub(super) fn check_stroke(&self, stroke: &StrokeLimits, plan: &BlockPlan, span: Span) -> Checked<()> {
+    pub(super) fn check_stroke(&self, stroke: &StrokeLimits, plan: &BlockPlan, span: Span) -> ExecResult<()> {
         for (kind, _) in &plan.events {
-            at(self.within(stroke, kind), span)?;
+            locate(self.check_event(stroke, kind), span)?;
         }
-        if plan.reads_ahead {
-            self.check_ready_moves(&plan.ahead)?;
+        if plan.uses_lookahead {
+            self.check_ready_moves(&plan.lookahead)?;
         }
         let mut beyond = Ok(());
-        if let Some(drill) = &plan.drill {
+        if let Some(drill) = &plan.cycle_plan {
             self.expand_cycle(drill, &mut |kind, _| {
                 if beyond.is_ok() {
-                    beyond = self.within(stroke, &kind);
+                    beyond = self.check_event(stroke, &kind);
                 }
             });
         }
-        at(beyond, span)
+        locate(beyond, span)
     }
 
     /// What no longer waits: each with its own block.
-    pub(super) fn check_ready_moves(&self, ahead: &Lookahead) -> Checked<()> {
-        ahead.told().try_for_each(|(kind, place)| at(self.within_stroke(kind), place.block))
+    pub(super) fn check_ready_moves(&self, ahead: &Lookahead) -> ExecResult<()> {
+        ahead.ready_events().try_for_each(|(kind, place)| locate(self.check_move(kind), place.block))
     }
 
     /// Whether a move stays within the stroke, if the control has limits.
-    pub(super) fn within_stroke(&self, kind: &EventKind) -> Result<(), Alarm> {
-        self.settings.stroke.as_ref().map_or(Ok(()), |stroke| self.within(stroke, kind))
+    pub(super) fn check_move(&self, kind: &EventKind) -> Result<(), Alarm> {
+        self.settings.stroke_limits.as_ref().map_or(Ok(()), |stroke| self.check_event(stroke, kind))
     }
 
-    fn within(&self, stroke: &StrokeLimits, kind: &EventKind) -> Result<(), Alarm> {
+    fn check_event(&self, stroke: &StrokeLimits, kind: &EventKind) -> Result<(), Alarm> {
         let Some(to) = kind.end() else { return Ok(()) };
-        self.point_within(stroke, to)?;
+        self.check_point(stroke, to)?;
         if let EventKind::Arc { arc, .. } = kind {
-            extremes(arc, to).iter().flatten().try_for_each(|point| self.point_within(stroke, point))?;
+            extremes(arc, to).iter().flatten().try_for_each(|point| self.check_point(stroke, point))?;
         }
         Ok(())
     }
 
-    fn point_within(&self, stroke: &StrokeLimits, point: &Position) -> Result<(), Alarm> {
+    fn check_point(&self, stroke: &StrokeLimits, point: &Position) -> Result<(), Alarm> {
         for (axis, letter) in self.settings.axes.iter() {
             // An axis that rolls over has no end.
-            if self.settings.roll_over[axis] {
+            if self.settings.rolls_over[axis] {
                 continue;
             }
             let value = point[axis];
             if let Some(limit) = stroke.max[axis].filter(|limit| value > *limit) {
-                return Err(Alarm::Overtravel { letter, plus: true, value, limit });
+                return Err(Alarm::Overtravel { letter, is_plus: true, value, limit });
             }
             if let Some(limit) = stroke.min[axis].filter(|limit| value < *limit) {
-                return Err(Alarm::Overtravel { letter, plus: false, value, limit });
+                return Err(Alarm::Overtravel { letter, is_plus: false, value, limit });
             }
         }
         Ok(())

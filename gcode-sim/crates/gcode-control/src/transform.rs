@@ -6,8 +6,8 @@ use gcode_lang::units::Deg;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Transform {
     /// The axes that are mirrored, as bits, and where.
-    pub mirrored: u8,
-    pub mirror: Position,
+    pub mirrored_axes: u8,
+    pub mirror_position: Position,
     pub scaling: Option<Scale>,
     pub rotation: Option<Rotation>,
     pub tilt: Option<Tilt>,
@@ -92,7 +92,7 @@ impl Rotation {
 impl Transform {
     #[inline]
     pub fn is_none(&self) -> bool {
-        self.mirrored == 0 && self.scaling.is_none() && self.rotation.is_none() && self.tilt.is_none()
+        self.mirrored_axes == 0 && self.scaling.is_none() && self.rotation.is_none() && self.tilt.is_none()
     }
 
     pub(super) fn forward(&self, mut point: Position) -> Position {
@@ -134,14 +134,14 @@ impl Transform {
     }
 
     fn reflect(&self, point: &mut Position) {
-        for axis in (0..MAX_AXES).filter(|axis| self.mirrored >> axis & 1 == 1) {
-            point[axis] = 2.0 * self.mirror[axis] - point[axis];
+        for axis in (0..MAX_AXES).filter(|axis| self.mirrored_axes >> axis & 1 == 1) {
+            point[axis] = 2.0 * self.mirror_position[axis] - point[axis];
         }
     }
 
     /// Whether arcs in this plane change their sense, and whether they stay circles.
-    pub(super) fn on_arcs(&self, plane: (AxisIndex, AxisIndex)) -> (bool, bool) {
-        let bit = |axis: AxisIndex| self.mirrored >> axis & 1 == 1;
+    pub(super) fn arc_effect(&self, plane: (AxisIndex, AxisIndex)) -> (bool, bool) {
+        let bit = |axis: AxisIndex| self.mirrored_axes >> axis & 1 == 1;
         let factor = |axis: AxisIndex| self.scaling.as_ref().map_or(1.0, |s| s.factor[axis]);
         let (a, b) = (factor(plane.0), factor(plane.1));
         let turned = bit(plane.0) ^ bit(plane.1) ^ (a < 0.0) ^ (b < 0.0);

@@ -1,6 +1,6 @@
 //! G68, G68.2, G51 and G51.1: their words to a [`super::transform::Transform`].
 use super::Executor;
-use super::eval::{Checked, at};
+use super::evaluation::{ExecResult, locate};
 use super::modal_codes::not_simulated;
 use super::notes::Note;
 use super::plan::BlockPlan;
@@ -13,9 +13,14 @@ use gcode_lang::source::Span;
 
 impl Executor {
     /// G68: the plane turns about a point.
-    pub(super) fn rotate(&self, given: &BlockWords, plan: &mut BlockPlan, span: Span) -> Checked<()> {
+    pub(super) fn plan_rotation(
+        &self,
+        given: &BlockWords,
+        plan: &mut BlockPlan,
+        span: Span,
+    ) -> ExecResult<()> {
         let state = &mut plan.state;
-        let plane = at(self.plane_axes(state.modal.plane), span)?;
+        let plane = locate(self.plane_axes(state.modal.plane), span)?;
         let letter = |axis| self.settings.axes.letter(axis) as u8;
         let first = self.dimension(given, letter(plane.0), state)?.unwrap_or(state.programmed[plane.0]);
         let second = self.dimension(given, letter(plane.1), state)?.unwrap_or(state.programmed[plane.1]);
@@ -28,33 +33,38 @@ impl Executor {
         let mut centre = state.programmed;
         (centre[plane.0], centre[plane.1]) = (first, second);
         let centre = Transform { rotation: None, tilt: None, ..state.transform }.forward(centre);
-        let (mirrored, _) = state.transform.on_arcs(plane);
+        let (mirrored, _) = state.transform.arc_effect(plane);
         let angle = if mirrored { -angle } else { angle };
         state.transform.rotation = Some(Rotation::new(plane, (centre[plane.0], centre[plane.1]), angle));
-        self.transform_changed(state);
+        self.apply_transform_change(state);
         Ok(())
     }
 
     /// G68.2 by Euler angles; its other forms have a P.
-    pub(super) fn tilt(&self, given: &BlockWords, plan: &mut BlockPlan, span: Span) -> Checked<()> {
+    pub(super) fn plan_tilt(&self, given: &BlockWords, plan: &mut BlockPlan, span: Span) -> ExecResult<()> {
         if given.has_any(b"PQR") {
-            return Err(not_simulated(682, "tilted plane other than by Euler angles").at(span));
+            return Err(not_simulated(682, "tilted plane other than by Euler angles").located_at(span));
         }
         let (mut axes, mut origin, mut angles) = ([0; 3], [0.0; 3], [0.0; 3]);
         for (place, (letter, angle)) in [(b'X', b'I'), (b'Y', b'J'), (b'Z', b'K')].into_iter().enumerate() {
             let missing = Alarm::ImproperAddress { letter: char::from(letter) };
-            axes[place] = at(self.settings.axes.find(letter).ok_or(missing), span)?;
+            axes[place] = locate(self.settings.axes.find(letter).ok_or(missing), span)?;
             origin[place] = self.dimension(given, letter, &plan.state)?.unwrap_or(0.0);
             angles[place] = self.angle(given, angle)?.unwrap_or(0.0);
         }
         plan.state.transform.tilt = Some(Tilt::new(axes, origin, angles));
-        self.transform_changed(&mut plan.state);
+        self.apply_transform_change(&mut plan.state);
         Ok(())
     }
 
     /// G51: by P, or by I J K for X Y Z, in 0.001 or 0.00001.
-    pub(super) fn scale(&self, given: &BlockWords, plan: &mut BlockPlan, span: Span) -> Checked<()> {
-        let unit = if self.settings.coarse_scaling { 1000.0 } else { 100_000.0 };
+    pub(super) fn plan_scaling(
+        &self,
+        given: &BlockWords,
+        plan: &mut BlockPlan,
+        span: Span,
+    ) -> ExecResult<()> {
+        let unit = if self.settings.has_coarse_scaling { 1000.0 } else { 100_000.0 };
         let mut scale = Scale { centre: plan.state.programmed, factor: Position([1.0; MAX_AXES]) };
         for (axis, letter) in self.settings.axes.iter() {
             if let Some(value) = self.dimension(given, letter as u8, &plan.state)? {
@@ -68,34 +78,34 @@ impl Executor {
             };
             let common = given.count(b'P')?.map(f64::from);
             let factor = own.or(common).ok_or_else(|| {
-                Alarm::NotSimulated { what: "G51 without P (parameter 5411)".into() }.at(span)
+                Alarm::NotSimulated { what: "G51 without P (parameter 5411)".into() }.located_at(span)
             })?;
             if factor == 0.0 || factor.abs() > 999_999_999.0 {
-                return Err(Alarm::ScaleRate { value: factor }.at(span));
+                return Err(Alarm::ScaleRate { value: factor }.located_at(span));
             }
             scale.factor[axis] = factor / unit;
         }
         plan.state.transform.scaling = Some(scale);
-        self.transform_changed(&mut plan.state);
+        self.apply_transform_change(&mut plan.state);
         Ok(())
     }
 
     /// G51.1 mirrors the named axes, G50.1 no longer; G50.1 alone ends all of it.
-    pub(super) fn mirror(&self, on: bool, given: &BlockWords, plan: &mut BlockPlan) -> Checked<()> {
+    pub(super) fn plan_mirror(&self, on: bool, given: &BlockWords, plan: &mut BlockPlan) -> ExecResult<()> {
         let state = &mut plan.state;
         if !on && !self.names_axis(given) {
-            state.transform.mirrored = 0;
+            state.transform.mirrored_axes = 0;
         }
         for (axis, letter) in self.settings.axes.iter() {
             let Some(value) = self.dimension(given, letter as u8, state)? else { continue };
-            state.transform.mirrored &= !(1 << axis);
+            state.transform.mirrored_axes &= !(1 << axis);
             if on {
-                state.transform.mirrored |= 1 << axis;
-                state.transform.mirror[axis] = value;
+                state.transform.mirrored_axes |= 1 << axis;
+                state.transform.mirror_position[axis] = value;
             }
         }
-        state.modal.mirror = if state.transform.mirrored == 0 { Mirror::Off } else { Mirror::On };
-        self.transform_changed(state);
+        state.modal.mirror = if state.transform.mirrored_axes == 0 { Mirror::Off } else { Mirror::On };
+        self.apply_transform_change(state);
         Ok(())
     }
 }

@@ -1,10 +1,10 @@
 //! What manuals rule out beside a mirror image, scaling or a rotation: reference returns, other coordinate systems, and
 //! switching them out of their order, which is mirror, scale, rotate, and back the other way.
-use super::modal::Modal;
+use super::modal_state::Modal;
 use super::state::State;
 use super::words::BlockWords;
 use gcode_lang::alarm::Alarm;
-use gcode_lang::program::codes::{Effect, OneShot, spelled};
+use gcode_lang::program::g_codes::{Effect, OneShot, spelled};
 use gcode_lang::program::modes::{Mirror, Rotation, Scaling};
 
 /// Holds a block's codes against what was in force before it; `state` has its modal codes, not yet its transform. G53

@@ -1,17 +1,17 @@
 //! What a block says that moves nothing in a run and means something on a machine: block skips, codes without effect here.
 use super::words::{computed_row, count};
 use super::{Control, Executor};
-use gcode_lang::program::codes::{Effect, OneShot, spelled};
-use gcode_lang::program::m_codes::{self, MEffect};
+use gcode_lang::program::g_codes::{Effect, OneShot, spelled};
+use gcode_lang::program::m_codes::{self, MCodeEffect};
 use gcode_lang::program::{OpKind, WordOperand, Words};
 
 /// Of a block that is about to be done.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct UnsimulatedCodes {
     /// `/`, `/3`: at its beginning or inside.
-    pub skips: Vec<String>,
+    pub block_skips: Vec<String>,
     /// How exactly corners are cut, and how far is read ahead: `G09`, `G05.1 Q1`.
-    pub path: Vec<String>,
+    pub path_codes: Vec<String>,
     /// Other G codes without effect here: `G25`.
     pub g_codes: Vec<String>,
     /// Other M codes without effect here: `M29`.
@@ -19,7 +19,7 @@ pub struct UnsimulatedCodes {
     /// It may change offsets, parameters, outputs or counters.
     pub writes: bool,
     /// M02 or M30, by its number.
-    pub ends: Option<u32>,
+    pub end_code: Option<u32>,
 }
 
 impl Control {
@@ -30,13 +30,13 @@ impl Control {
             if core.is_skipped(op) {
                 return;
             }
-            silent.skips.extend(op.skip().map(skip));
+            silent.block_skips.extend(op.skip().map(skip_text));
             match core.guarded_operation(op.kind()) {
-                OpKind::Words(words) => core.silent(words, &mut silent),
+                OpKind::Words(words) => core.collect_unsimulated(words, &mut silent),
                 OpKind::Statement(_) => {
                     silent.writes = self.next_assigned_variables().iter().any(|number| *number >= 1000);
                 }
-                OpKind::Empty | OpKind::Compute(_) | OpKind::If { .. } | OpKind::Alarm(_) => {}
+                OpKind::Empty | OpKind::AssignFree(_) | OpKind::If { .. } | OpKind::Alarm(_) => {}
             }
         });
         silent
@@ -44,31 +44,31 @@ impl Control {
 }
 
 /// The first switch needs no number.
-fn skip(switch: u8) -> String {
+fn skip_text(switch: u8) -> String {
     if switch <= 1 { "/".to_owned() } else { format!("/{switch}") }
 }
 
 impl Executor {
-    fn silent(&self, words: &Words, silent: &mut UnsimulatedCodes) {
-        silent.writes |= self.state.parameter_input;
-        let words = match words.short() {
-            Some((switch, short)) if self.skips(*switch) => short,
+    fn collect_unsimulated(&self, words: &Words, silent: &mut UnsimulatedCodes) {
+        silent.writes |= self.state.is_in_parameter_input;
+        let words = match words.skipped_form() {
+            Some((switch, short)) if self.is_skip_on(*switch) => short,
             Some((switch, _)) => {
-                silent.skips.push(skip(*switch));
+                silent.block_skips.push(skip_text(*switch));
                 words
             }
             None => words,
         };
         for word in words.list.iter().filter(|word| matches!(word.letter, b'G' | b'M')) {
-            let Ok(Some(raw)) = self.raw(words, word) else { continue };
+            let Ok(Some(raw)) = self.evaluate_word(words, word) else { continue };
             if word.letter == b'M' {
                 let Ok(code) = count(raw, b'M') else { continue };
                 match m_codes::find(code, self.settings.codes) {
-                    Some(MEffect::NoEffect) => silent.m_codes.push(format!("M{code:02}")),
-                    Some(MEffect::Orient) => {
+                    Some(MCodeEffect::NoEffect) => silent.m_codes.push(format!("M{code:02}")),
+                    Some(MCodeEffect::Orient) => {
                         silent.m_codes.push(self.with_words(words, format!("M{code:02}"), b"PR"));
                     }
-                    Some(MEffect::End) => silent.ends = Some(code),
+                    Some(MCodeEffect::End) => silent.end_code = Some(code),
                     _ => {}
                 }
                 continue;
@@ -76,13 +76,13 @@ impl Executor {
             let Ok(row) = computed_row(raw, self.settings.codes) else { continue };
             let text = || self.with_values(words, row.code);
             match row.effect {
-                Effect::NoEffect if [50, 51, 90].contains(&row.code) => silent.path.push(text()),
-                Effect::LookAhead | Effect::Smoothness => silent.path.push(text()),
+                Effect::NoEffect if [50, 51, 90].contains(&row.code) => silent.path_codes.push(text()),
+                Effect::LookAhead | Effect::Smoothness => silent.path_codes.push(text()),
                 Effect::NoEffect => silent.g_codes.push(text()),
                 Effect::OneShot(
                     OneShot::DataInput | OneShot::SetSystem | OneShot::PresetSystem | OneShot::LocalSystem,
                 ) => silent.writes = true,
-                Effect::OneShot(OneShot::OneSide) => silent.path.push("G60".to_owned()),
+                Effect::OneShot(OneShot::OneSide) => silent.path_codes.push("G60".to_owned()),
                 Effect::OneShot(OneShot::Reference | OneShot::CheckReference | OneShot::FromReference) => {
                     silent.g_codes.push(format!("G{}", spelled(row.code)));
                 }
@@ -108,7 +108,7 @@ impl Executor {
             if matches!(word.value, WordOperand::G(..)) {
                 return None;
             }
-            let value = self.raw(words, word).ok()??.value();
+            let value = self.evaluate_word(words, word).ok()??.value();
             Some(format!(" {}{value}", char::from(word.letter)))
         });
         name + &shown.collect::<String>()
@@ -131,18 +131,18 @@ mod tests {
 
     #[test]
     fn what_moves_nothing_is_seen() {
-        assert_eq!(said("/G1 X1. F100").skips, ["/"]);
-        assert_eq!(said("/3 M08").skips, ["/3"]);
-        assert_eq!(said("G1 X1. F100 /2 Y5.").skips, ["/2"]);
-        assert_eq!(said("G9 G1 X1. F100").path, ["G09"]);
-        assert_eq!(said("G5.1 Q1 R5").path, ["G05.1 Q1 R5"]);
-        assert_eq!(said("G8 P1").path, ["G08 P1"]);
+        assert_eq!(said("/G1 X1. F100").block_skips, ["/"]);
+        assert_eq!(said("/3 M08").block_skips, ["/3"]);
+        assert_eq!(said("G1 X1. F100 /2 Y5.").block_skips, ["/2"]);
+        assert_eq!(said("G9 G1 X1. F100").path_codes, ["G09"]);
+        assert_eq!(said("G5.1 Q1 R5").path_codes, ["G05.1 Q1 R5"]);
+        assert_eq!(said("G8 P1").path_codes, ["G08 P1"]);
         assert_eq!(said("G25").g_codes, ["G25"]);
         assert_eq!(said("M29 S500").m_codes, ["M29"]);
         assert_eq!(said("M19 R90.").m_codes, ["M19 R90"]);
         assert_eq!(said("G91 G28 Z0").g_codes, ["G28"]);
         assert_eq!(said("G30 P3 Z0").g_codes, ["G30 P3"]);
-        assert_eq!(said("G60 X5.").path, ["G60"]);
+        assert_eq!(said("G60 X5.").path_codes, ["G60"]);
         // The spindle stops, and stands at an angle.
         assert_eq!(said("M19").m_codes, ["M19"]);
     }

@@ -4,11 +4,11 @@ use std::cell::Cell;
 
 use super::Executor;
 use super::code_calls::CallingWord;
-use super::eval::{Checked, RoundingTarget, at, integer};
-use super::vars::Value;
+use super::evaluation::{ExecResult, RoundingTarget, integer, locate};
+use super::variables::Value;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::{CodeSet, Settings};
-use gcode_lang::program::codes::{self, Effect, GCodeRow};
+use gcode_lang::program::g_codes::{self, Effect, GCodeRow};
 use gcode_lang::program::m_codes;
 use gcode_lang::program::modes::Motion;
 use gcode_lang::program::{LoweredWord, WordOperand, Words};
@@ -49,41 +49,41 @@ const M_CODES: usize = 3;
 /// The words of a block by letter. Kept between blocks and cleared by its mask, so that it costs nothing.
 #[derive(Clone, Debug)]
 pub(super) struct BlockWords {
-    present: u32,
+    present_letters: u32,
     /// The letters whose value somebody has asked for.
-    read: Cell<u32>,
+    read_letters: Cell<u32>,
     values: [(WordNumber, Span); 26],
-    g: [Option<&'static GCodeRow>; G_CODES],
+    g_rows: [Option<&'static GCodeRow>; G_CODES],
     g_count: usize,
     /// The last code of group 01.
     pub(super) motion: Option<Motion>,
     /// A G code stands in the block that is not of group 01.
     has_other_g_codes: bool,
-    pub(super) m: [Option<(u32, Span)>; M_CODES],
-    pub(super) m_count: usize,
+    pub(super) m_codes: [Option<(u32, Span)>; M_CODES],
+    pub(super) m_code_count: usize,
     /// `,R` or `,C`.
     pub(super) corner: Option<(u8, WordNumber, Span)>,
     /// M codes that a later one of the block has replaced.
-    pub(super) lost_m: Vec<u32>,
+    pub(super) replaced_m_codes: Vec<u32>,
     /// The value in the comment of `G10 L85`.
-    pub(super) punched: Option<u64>,
+    pub(super) punched_value: Option<u64>,
 }
 
 impl Default for BlockWords {
     fn default() -> Self {
         Self {
-            present: 0,
-            read: Cell::new(0),
+            present_letters: 0,
+            read_letters: Cell::new(0),
             values: [(WordNumber::Computed(0.0), Span::default()); 26],
-            g: [None; G_CODES],
+            g_rows: [None; G_CODES],
             g_count: 0,
             motion: None,
             has_other_g_codes: false,
-            m: [None; M_CODES],
-            m_count: 0,
+            m_codes: [None; M_CODES],
+            m_code_count: 0,
             corner: None,
-            lost_m: Vec::new(),
-            punched: None,
+            replaced_m_codes: Vec::new(),
+            punched_value: None,
         }
     }
 }
@@ -91,15 +91,15 @@ impl Default for BlockWords {
 impl BlockWords {
     /// As before the first block.
     fn clear(&mut self) {
-        self.present = 0;
-        self.read.set(0);
+        self.present_letters = 0;
+        self.read_letters.set(0);
         self.g_count = 0;
         self.motion = None;
         self.has_other_g_codes = false;
-        self.m_count = 0;
+        self.m_code_count = 0;
         self.corner = None;
-        self.lost_m.clear();
-        self.punched = None;
+        self.replaced_m_codes.clear();
+        self.punched_value = None;
     }
 
     /// `,R` or `,C`.
@@ -118,7 +118,7 @@ impl BlockWords {
         if self.g_count == G_CODES {
             return Err(Alarm::MacroFormat { what: "too many G codes in one block".into() });
         }
-        self.g[self.g_count] = Some(row);
+        self.g_rows[self.g_count] = Some(row);
         self.g_count += 1;
         match row.effect {
             Effect::Motion(motion) => self.motion = Some(motion),
@@ -129,38 +129,38 @@ impl BlockWords {
 
     /// Without M3B the last M code of a block counts; a stop or an end isn't lost in silence.
     fn put_m(&mut self, code: u32, span: Span, settings: &Settings) -> Result<(), Alarm> {
-        let most = if settings.three_m_codes { M_CODES } else { 1 };
-        let place = self.m_count.min(most - 1);
-        if self.m_count == most
-            && let Some((first, _)) = self.m[place]
+        let most = if settings.allows_three_m_codes { M_CODES } else { 1 };
+        let place = self.m_code_count.min(most - 1);
+        if self.m_code_count == most
+            && let Some((first, _)) = self.m_codes[place]
         {
             if m_codes::ends_or_stops(first) || settings.plural_m_alarms {
                 return Err(Alarm::PluralM { first, second: code });
             }
-            self.lost_m.push(first);
+            self.replaced_m_codes.push(first);
         }
-        self.m[place] = Some((code, span));
-        self.m_count = place + 1;
+        self.m_codes[place] = Some((code, span));
+        self.m_code_count = place + 1;
         Ok(())
     }
 
     pub(super) fn has(&self, letter: u8) -> bool {
-        self.present >> (letter - b'A') & 1 == 1
+        self.present_letters >> (letter - b'A') & 1 == 1
     }
 
     /// Whether it has one of some [`letters`].
-    pub(super) fn has_of(&self, letters: u32) -> bool {
-        self.present & letters != 0
+    pub(super) fn has_letters(&self, letters: u32) -> bool {
+        self.present_letters & letters != 0
     }
 
     #[inline]
     pub(super) fn has_any(&self, some: &[u8]) -> bool {
-        self.has_of(letters(some))
+        self.has_letters(letters(some))
     }
 
     /// The first of some [`letters`], in the order of the alphabet, that it has.
-    pub(super) fn first_of(&self, letters: u32) -> Option<u8> {
-        let some = self.present & letters;
+    pub(super) fn first_letter_of(&self, letters: u32) -> Option<u8> {
+        let some = self.present_letters & letters;
         (some != 0).then(|| b'A' + some.trailing_zeros() as u8)
     }
 
@@ -171,20 +171,20 @@ impl BlockWords {
 
     /// The value of a word, which is asked for with this.
     pub(super) fn get(&self, letter: u8) -> Option<(WordNumber, Span)> {
-        self.read.set(self.read.get() | 1 << (letter - b'A'));
+        self.read_letters.set(self.read_letters.get() | 1 << (letter - b'A'));
         self.has(letter).then(|| self.values[usize::from(letter - b'A')])
     }
 
     /// Words that the block may have and that change nothing here.
-    pub(super) fn accept(&self, letters: &[u8]) {
+    pub(super) fn mark_read(&self, letters: &[u8]) {
         for letter in letters {
             self.get(*letter);
         }
     }
 
     /// The first word, by its letter, that nothing in the block had a use for.
-    pub(super) fn unread(&self) -> Option<(char, Span)> {
-        let letter = self.first_of(!self.read.get())?;
+    pub(super) fn first_unread(&self) -> Option<(char, Span)> {
+        let letter = self.first_letter_of(!self.read_letters.get())?;
         Some((char::from(letter), self.span(letter)))
     }
 
@@ -198,19 +198,19 @@ impl BlockWords {
     }
 
     pub(super) fn g_codes(&self) -> impl Iterator<Item = &'static GCodeRow> + '_ {
-        self.g[..self.g_count].iter().flatten().copied()
+        self.g_rows[..self.g_count].iter().flatten().copied()
     }
 
     /// Whether the block has a G code of an effect; those of group 01 are not asked.
     #[inline(always)]
-    pub(super) fn has_code_beyond_moves(&self, is_it: impl Fn(Effect) -> bool) -> bool {
+    pub(super) fn has_non_motion_code(&self, is_it: impl Fn(Effect) -> bool) -> bool {
         self.has_other_g_codes && self.g_codes().any(|row| is_it(row.effect))
     }
 
     /// A count or a number: no point, no minus; a computed value is rounded.
-    pub(super) fn count(&self, letter: u8) -> Checked<Option<u32>> {
+    pub(super) fn count(&self, letter: u8) -> ExecResult<Option<u32>> {
         let Some((raw, span)) = self.get(letter) else { return Ok(None) };
-        at(count(raw, letter), span).map(Some)
+        locate(count(raw, letter), span).map(Some)
     }
 }
 
@@ -237,35 +237,36 @@ pub(super) fn count(raw: WordNumber, letter: u8) -> Result<u32, Alarm> {
 
 impl Executor {
     /// Evaluates every word of a block into `given`, but for those that belong to a call.
-    pub(super) fn collect(
+    pub(super) fn evaluate_words(
         &self,
         words: &Words,
         calling: Option<&CallingWord>,
         given: &mut BlockWords,
-    ) -> Checked<()> {
+    ) -> ExecResult<()> {
         given.clear();
-        given.punched = words.punched();
+        given.punched_value = words.punched_value();
         match calling {
-            None => words.list.iter().try_for_each(|word| self.take(words, word, given)),
+            None => words.list.iter().try_for_each(|word| self.evaluate_into(words, word, given)),
             Some(calling) => {
                 let mut others =
-                    words.list.iter().enumerate().filter(|(place, word)| !calling.takes(*place, word));
-                others.try_for_each(|(_, word)| self.take(words, word, given))
+                    words.list.iter().enumerate().filter(|(place, word)| !calling.contains(*place, word));
+                others.try_for_each(|(_, word)| self.evaluate_into(words, word, given))
             }
         }
     }
 
     /// Evaluates a word and puts it to those of its block.
     #[inline(always)]
-    fn take(&self, words: &Words, word: &LoweredWord, given: &mut BlockWords) -> Checked<()> {
+    fn evaluate_into(&self, words: &Words, word: &LoweredWord, given: &mut BlockWords) -> ExecResult<()> {
         let raw = match &word.value {
             WordOperand::Literal(number) => WordNumber::Literal(*number),
             WordOperand::G(code, found) if !word.comma => {
-                let row = found.on(self.settings.codes);
-                let improper = || Alarm::ImproperGCode { code: codes::spelled(*code) }.at(word.span);
-                return at(given.put_g(row.ok_or_else(improper)?), word.span);
+                let row = found.row_for(self.settings.codes);
+                let improper =
+                    || Alarm::ImproperGCode { code: g_codes::spelled(*code) }.located_at(word.span);
+                return locate(given.put_g(row.ok_or_else(improper)?), word.span);
             }
-            value => match self.computed(words, value)? {
+            value => match self.evaluate_operand(words, value)? {
                 Value::Number(value) => WordNumber::Computed(value),
                 Value::Vacant => return Ok(()),
             },
@@ -278,52 +279,58 @@ impl Executor {
 
     /// Puts a word that is more than a value at an address to those of its block.
     #[inline(never)]
-    fn put(&self, words: &Words, word: &LoweredWord, raw: WordNumber, given: &mut BlockWords) -> Checked<()> {
+    fn put(
+        &self,
+        words: &Words,
+        word: &LoweredWord,
+        raw: WordNumber,
+        given: &mut BlockWords,
+    ) -> ExecResult<()> {
         if word.comma {
-            return at(given.put_corner(word, raw), word.span);
+            return locate(given.put_corner(word, raw), word.span);
         }
         let letter = match word.axis.and_then(|place| words.axis(place)) {
             Some(axis) => {
                 let number = self.operand(axis)?.number();
-                self.settings.axes.letter(at(self.axis_of(number), word.span)?) as u8
+                self.settings.axes.letter(locate(self.axis_of(number), word.span)?) as u8
             }
             None => word.letter,
         };
         match letter {
             b'G' => {
-                let row = at(computed_row(raw, self.settings.codes), word.span)?;
-                at(given.put_g(row), word.span)
+                let row = locate(computed_row(raw, self.settings.codes), word.span)?;
+                locate(given.put_g(row), word.span)
             }
             b'M' => {
-                let code = at(count(raw, b'M'), word.span)?;
-                at(given.put_m(code, word.span, &self.settings), word.span)
+                let code = locate(count(raw, b'M'), word.span)?;
+                locate(given.put_m(code, word.span, &self.settings), word.span)
             }
             letter => self.put_value(letter, word.span, raw, given),
         }
     }
 
     #[inline(always)]
-    fn put_value(&self, letter: u8, span: Span, raw: WordNumber, given: &mut BlockWords) -> Checked<()> {
-        if self.settings.no_repeated_address && given.has(letter) {
-            return Err(Alarm::RepeatedAddress { letter: char::from(letter) }.at(span));
+    fn put_value(&self, letter: u8, span: Span, raw: WordNumber, given: &mut BlockWords) -> ExecResult<()> {
+        if self.settings.alarms_on_repeated_address && given.has(letter) {
+            return Err(Alarm::RepeatedAddress { letter: char::from(letter) }.located_at(span));
         }
-        given.present |= 1 << (letter - b'A');
+        given.present_letters |= 1 << (letter - b'A');
         given.values[usize::from(letter - b'A')] = (raw, span);
         Ok(())
     }
 
     /// The value of a word, or `None` where it is vacant and the word therefore not there.
     #[inline]
-    pub(super) fn raw(&self, words: &Words, word: &LoweredWord) -> Checked<Option<WordNumber>> {
+    pub(super) fn evaluate_word(&self, words: &Words, word: &LoweredWord) -> ExecResult<Option<WordNumber>> {
         match &word.value {
             WordOperand::Literal(number) => Ok(Some(WordNumber::Literal(*number))),
-            value => Ok(self.computed(words, value)?.as_number().map(WordNumber::Computed)),
+            value => Ok(self.evaluate_operand(words, value)?.as_number().map(WordNumber::Computed)),
         }
     }
 
     /// What a value behind an address is that is more than a literal.
     #[inline(always)]
-    pub(super) fn computed(&self, words: &Words, value: &WordOperand) -> Checked<Value> {
+    pub(super) fn evaluate_operand(&self, words: &Words, value: &WordOperand) -> ExecResult<Value> {
         match value {
             WordOperand::Variable { slot, span } => self.load(*slot, span),
             WordOperand::Code(place) => self.run_code(words.code(*place), RoundingTarget::Increment),
@@ -346,5 +353,5 @@ pub(super) fn computed_row(raw: WordNumber, set: CodeSet) -> Result<&'static GCo
         return Err(Alarm::ImproperGCode { code: value.to_string() });
     }
     let code = tenths as u32;
-    codes::find(code).on(set).ok_or_else(|| Alarm::ImproperGCode { code: codes::spelled(code) })
+    g_codes::find(code).row_for(set).ok_or_else(|| Alarm::ImproperGCode { code: g_codes::spelled(code) })
 }

@@ -10,45 +10,45 @@ use gcode_lang::program::modes::WorkSystem;
 #[derive(Clone, Debug, Default)]
 pub(super) struct WorkOffsetUse {
     /// Set before the run, by G10 or by their variables.
-    set: BTreeSet<usize>,
+    set_systems: BTreeSet<usize>,
     /// Where the one in effect was selected.
     selected: Backtrace,
     /// Moved in while nothing had set them, with where each was selected.
-    unset: Vec<(WorkSystem, Backtrace)>,
+    unset_uses: Vec<(WorkSystem, Backtrace)>,
 }
 
 impl Executor {
     /// Axes are about to go where machine coordinates say. What the machine's zero is to the part, the work offset in effect
     /// says, if anything has set it.
-    pub(super) fn leave_work(&self, plan: &mut BlockPlan, axes: u8) {
-        if axes == 0 || self.work_use.set.contains(&number(plan.state.modal.work)) {
+    pub(super) fn note_unknown_work_zero(&self, plan: &mut BlockPlan, axes: u8) {
+        if axes == 0 || self.work_offset_use.set_systems.contains(&number(plan.state.modal.work)) {
             return;
         }
         plan.state.work_zero_unknown |= axes;
         plan.push_event(EventKind::WorkZeroUnknown { axes: plan.state.work_zero_unknown });
     }
 
-    pub(super) fn note_set(&mut self, system: usize) {
-        self.work_use.set.insert(system);
+    pub(super) fn record_system_set(&mut self, system: usize) {
+        self.work_offset_use.set_systems.insert(system);
     }
 
     /// A block has been carried out. G54 is what counts where nothing is selected: its zero is the part's.
     #[inline]
-    pub(super) fn note_work(&mut self, before: WorkSystem, moved: bool) {
+    pub(super) fn record_work_use(&mut self, before: WorkSystem, moved: bool) {
         let work = self.state.modal.work;
         if work != WorkSystem::default() {
-            self.note_other_work(work, before, moved);
+            self.record_other_work(work, before, moved);
         }
     }
 
     #[inline(never)]
-    fn note_other_work(&mut self, work: WorkSystem, before: WorkSystem, moved: bool) {
+    fn record_other_work(&mut self, work: WorkSystem, before: WorkSystem, moved: bool) {
         if work != before {
-            self.work_use.selected = Backtrace { block: self.block, calls: self.frame.calls.clone() };
+            self.work_offset_use.selected = Backtrace { block: self.block, calls: self.frame.calls.clone() };
         }
-        let known = self.work_use.unset.iter().any(|(other, _)| *other == work);
-        if moved && !known && !self.work_use.set.contains(&number(work)) {
-            self.work_use.unset.push((work, self.work_use.selected.clone()));
+        let known = self.work_offset_use.unset_uses.iter().any(|(other, _)| *other == work);
+        if moved && !known && !self.work_offset_use.set_systems.contains(&number(work)) {
+            self.work_offset_use.unset_uses.push((work, self.work_offset_use.selected.clone()));
         }
     }
 }
@@ -57,7 +57,7 @@ impl Control {
     /// Work coordinate systems other than G54 that the run has moved in while nothing had set them, each with the block that
     /// first selected it.
     pub fn unset_work_systems(&self) -> &[(WorkSystem, Backtrace)] {
-        &self.core.work_use.unset
+        &self.executor.work_offset_use.unset_uses
     }
 }
 

@@ -30,12 +30,12 @@ impl Severity {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Site {
     pub pass: Option<usize>,
-    pub at: [f64; 3],
+    pub point: [f64; 3],
 }
 
 impl Site {
     pub fn new(pass: Option<usize>, at: impl Into<[f64; 3]>) -> Self {
-        Self { pass, at: at.into() }
+        Self { pass, point: at.into() }
     }
 }
 
@@ -47,7 +47,7 @@ pub struct Diagnostic {
     pub severity: Severity,
     pub message: String,
     /// The block it is about, and the calls that led to it.
-    pub place: Option<Backtrace>,
+    pub backtrace: Option<Backtrace>,
     /// The exact part of the block, where known.
     pub span: Option<Span>,
     /// Where that is on the part, the worst first.
@@ -65,7 +65,7 @@ impl Diagnostic {
             code: code.into(),
             severity,
             message: message.into(),
-            place: None,
+            backtrace: None,
             span: None,
             sites: Vec::new(),
             labels: Vec::new(),
@@ -83,13 +83,13 @@ impl Diagnostic {
     }
 
     #[must_use]
-    pub fn at(mut self, place: Backtrace) -> Self {
-        self.place = Some(place);
+    pub fn with_backtrace(mut self, place: Backtrace) -> Self {
+        self.backtrace = Some(place);
         self
     }
 
     #[must_use]
-    pub fn on(mut self, sites: impl IntoIterator<Item = Site>) -> Self {
+    pub fn with_sites(mut self, sites: impl IntoIterator<Item = Site>) -> Self {
         self.sites.extend(sites);
         self
     }

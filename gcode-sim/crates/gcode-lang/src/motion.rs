@@ -17,39 +17,39 @@ pub struct Axes {
     letters: [u8; MAX_AXES],
     count: usize,
     /// The axis of each letter, [`Axes::NONE`] where it is none's.
-    places: [u8; 256],
+    axis_of_letter: [u8; 256],
     /// The letters as bits, A the lowest.
-    mask: u32,
+    letter_bits: u32,
     /// The axes that turn as bits, axis 1 the lowest.
-    rotary: u32,
+    rotary_bits: u32,
 }
 
 impl Axes {
-    const NONE: u8 = MAX_AXES as u8;
+    const NO_AXIS: u8 = MAX_AXES as u8;
 
     /// At most [`MAX_AXES`] letters; more are an error of the machine file and refused there.
     pub fn new(letters: &str) -> Option<Self> {
         let bytes = letters.as_bytes();
         let fits = bytes.len() <= MAX_AXES && bytes.iter().all(|b| b"XYZABCUVW".contains(b));
         let once = bytes.iter().enumerate().all(|(i, b)| !bytes[..i].contains(b));
-        (fits && once).then(|| Self::of(bytes))
+        (fits && once).then(|| Self::from_letters(bytes))
     }
 
-    fn of(some: &[u8]) -> Self {
-        let (mut letters, mut places, mut mask, mut rotary) = ([0; MAX_AXES], [Self::NONE; 256], 0, 0);
+    fn from_letters(some: &[u8]) -> Self {
+        let (mut letters, mut places, mut mask, mut rotary) = ([0; MAX_AXES], [Self::NO_AXIS; 256], 0, 0);
         for (axis, letter) in some.iter().enumerate() {
             letters[axis] = *letter;
             places[usize::from(*letter)] = axis as u8;
             mask |= 1 << (letter - b'A');
             rotary |= u32::from(matches!(letter, b'A' | b'B' | b'C')) << axis;
         }
-        Self { letters, count: some.len(), places, mask, rotary }
+        Self { letters, count: some.len(), axis_of_letter: places, letter_bits: mask, rotary_bits: rotary }
     }
 
     /// The axis of an address.
     #[inline]
     pub fn find(&self, letter: u8) -> Option<AxisIndex> {
-        let axis = usize::from(self.places[usize::from(letter)]);
+        let axis = usize::from(self.axis_of_letter[usize::from(letter)]);
         (axis < MAX_AXES).then_some(axis)
     }
 
@@ -59,7 +59,7 @@ impl Axes {
 
     /// A B C turn; all others slide.
     pub fn is_rotary(&self, axis: AxisIndex) -> bool {
-        axis < MAX_AXES && self.rotary >> axis & 1 == 1
+        axis < MAX_AXES && self.rotary_bits >> axis & 1 == 1
     }
 
     pub fn len(&self) -> usize {
@@ -71,8 +71,8 @@ impl Axes {
     }
 
     /// The letters as bits, A the lowest.
-    pub fn mask(&self) -> u32 {
-        self.mask
+    pub fn letter_bits(&self) -> u32 {
+        self.letter_bits
     }
 
     pub fn iter(&self) -> impl Iterator<Item = (AxisIndex, char)> + '_ {
@@ -88,7 +88,7 @@ impl Axes {
 impl Default for Axes {
     /// X Y Z A B C: axis 1 to 6 of the default control.
     fn default() -> Self {
-        Self::of(b"XYZABC")
+        Self::from_letters(b"XYZABC")
     }
 }
 
@@ -121,8 +121,8 @@ impl std::ops::IndexMut<AxisIndex> for Position {
 #[derive(Debug, PartialEq)]
 pub struct Call {
     /// The calling block (`G65 P8101 …`).
-    pub from: Span,
-    pub outer: CallChain,
+    pub calling_block: Span,
+    pub outer_calls: CallChain,
 }
 
 /// The chain of calls that led to a block, innermost first; `None` in the main program.
@@ -146,7 +146,7 @@ pub struct Event<'a> {
 }
 
 impl Event<'_> {
-    pub fn place(&self) -> Backtrace {
+    pub fn backtrace(&self) -> Backtrace {
         Backtrace { block: self.block, calls: self.calls.clone() }
     }
 }
@@ -172,7 +172,7 @@ pub enum EventKind {
     Skip {
         to: Position,
         rate: MmPerMin,
-        touched: bool,
+        has_signal: bool,
     },
     Dwell {
         time: Seconds,
@@ -185,7 +185,7 @@ pub enum EventKind {
     /// nothing itself.
     ToolLength {
         offset: Position,
-        by: LengthCompensation,
+        compensation: LengthCompensation,
     },
     /// From the next move's end on these axes stand where G28, G30 or G53 sends them, as bits, axis 1 the lowest, while
     /// nothing has set the work offset in effect: where that is on the part isn't known. Moves nothing itself.
@@ -193,12 +193,12 @@ pub enum EventKind {
         axes: u8,
     },
     Spindle {
-        turning: SpindleDirection,
+        direction: SpindleDirection,
         speed: Rpm,
     },
     /// M07 and M08 switch it on, M09 off.
     Coolant {
-        on: bool,
+        is_on: bool,
         code: u32,
     },
     /// An M code for the machine builder's logic: what it does isn't simulated.
@@ -209,7 +209,7 @@ pub enum EventKind {
     Stop {
         kind: StopKind,
         text: String,
-        named: Vec<(u32, f64)>,
+        variables: Vec<(u32, f64)>,
     },
 }
 
@@ -295,14 +295,14 @@ pub struct SkipMove<'a> {
 pub enum SkipSignal {
     /// The motion goes to its end.
     Missed,
-    At {
+    Received {
         /// Where the control notes the position.
         latched: f64,
         /// Where the axes stand still: there, or farther on.
-        stopped: f64,
+        stop_fraction: f64,
     },
     /// The probe is pushed farther than it gives, in mm.
-    Broken { stopped: f64, pushed: f64, give: f64 },
+    StylusBroken { stopped: f64, deflection: f64, overtravel_limit: f64 },
 }
 
 /// Who is told what the machine does: of each event once, in order.

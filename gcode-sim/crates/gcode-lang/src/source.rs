@@ -78,13 +78,13 @@ impl Source {
         Self { name, bytes, lines: OnceLock::new() }
     }
 
-    fn starts(&self) -> &[u32] {
+    fn cached_line_starts(&self) -> &[u32] {
         self.lines.get_or_init(|| line_starts(&self.bytes))
     }
 
     /// The lines without their ends, bytes that aren't UTF-8 replaced.
     pub fn lines(&self) -> impl Iterator<Item = String> + '_ {
-        let starts = self.starts();
+        let starts = self.cached_line_starts();
         let ends = starts.iter().skip(1).map(|end| *end as usize).chain([self.bytes.len()]);
         starts.iter().zip(ends).map(|(start, end)| {
             let line = &self.bytes[*start as usize..end];
@@ -94,8 +94,8 @@ impl Source {
     }
 
     /// The line and column of the byte at `offset`.
-    pub fn place(&self, offset: u32) -> LineColumn {
-        let lines = self.starts();
+    pub fn line_column(&self, offset: u32) -> LineColumn {
+        let lines = self.cached_line_starts();
         let index = lines.partition_point(|start| *start <= offset).saturating_sub(1);
         let start = lines.get(index).copied().unwrap_or(0);
         LineColumn { line: index as u32 + 1, column: offset - start + 1 }
@@ -146,7 +146,7 @@ pub fn line_length(text: &[u8]) -> usize {
 }
 
 /// No sender puts more CRs than this around a LF; the limit keeps reading linear in a file of nothing but CRs.
-const MOST_RETURNS: usize = 4;
+const MAX_CARRIAGE_RETURNS: usize = 4;
 
 /// The length of the end of line that `rest` begins with: CRs with at most one LF among them, 0 if none.
 #[inline]
@@ -154,21 +154,21 @@ pub fn end_of_line(rest: &[u8]) -> usize {
     match rest {
         // The commonest of all.
         [b'\n', behind, ..] if *behind != b'\r' => 1,
-        _ => returns_and_feed(rest),
+        _ => mixed_line_end_length(rest),
     }
 }
 
-fn returns_and_feed(rest: &[u8]) -> usize {
-    let before = rest.iter().take(MOST_RETURNS).take_while(|b| **b == b'\r').count();
+fn mixed_line_end_length(rest: &[u8]) -> usize {
+    let before = rest.iter().take(MAX_CARRIAGE_RETURNS).take_while(|b| **b == b'\r').count();
     match rest.get(before) {
-        Some(b'\n') => before + 1 + stray_returns(&rest[before + 1..]),
+        Some(b'\n') => before + 1 + trailing_return_count(&rest[before + 1..]),
         _ => usize::from(before > 0),
     }
 }
 
 /// CRs after a LF that don't begin the next CR LF.
-fn stray_returns(rest: &[u8]) -> usize {
-    let count = rest.iter().take(MOST_RETURNS).take_while(|b| **b == b'\r').count();
+fn trailing_return_count(rest: &[u8]) -> usize {
+    let count = rest.iter().take(MAX_CARRIAGE_RETURNS).take_while(|b| **b == b'\r').count();
     if rest.get(count) == Some(&b'\n') { 0 } else { count }
 }
 
@@ -193,8 +193,8 @@ impl Sources {
         &self.0[id.0 as usize]
     }
 
-    pub fn place(&self, span: Span) -> LineColumn {
-        self.get(span.source).place(span.start)
+    pub fn line_column(&self, span: Span) -> LineColumn {
+        self.get(span.source).line_column(span.start)
     }
 
     /// What stands at `span`, bytes that aren't UTF-8 replaced.
@@ -236,6 +236,6 @@ mod tests {
     fn places_count_from_one() {
         let mut sources = Sources::default();
         let id = sources.add("O1", *b"%\r\nO1\r\nG0 X1.\r\n");
-        assert_eq!(sources.get(id).place(10), LineColumn { line: 3, column: 4 });
+        assert_eq!(sources.get(id).line_column(10), LineColumn { line: 3, column: 4 });
     }
 }

@@ -7,20 +7,20 @@ use serde::{Deserialize, Serialize};
 
 /// `value` × `scale` as the nearest whole number, halves away from 0. What binary numbers miss of a half counts as one:
 /// 0.5005 × 1000 is 500.49999999999994 to a double, and 501 to everybody who reads it.
-pub fn nearest(value: f64, scale: f64) -> f64 {
-    round(value * scale * NUDGE)
+pub fn round_scaled(value: f64, scale: f64) -> f64 {
+    round(value * scale * HALF_CORRECTION)
 }
 
 /// As [`nearest`], up to a largest size; `None` beyond it.
 #[inline]
-pub fn nearest_within(value: f64, scale: f64, most: f64) -> Option<f64> {
-    debug_assert!(most < WHOLE, "{most} has no room for a fraction");
-    let rounded = round_small(value * scale * NUDGE);
+pub fn round_scaled_within(value: f64, scale: f64, most: f64) -> Option<f64> {
+    debug_assert!(most < FRACTION_LIMIT, "{most} has no room for a fraction");
+    let rounded = round_small(value * scale * HALF_CORRECTION);
     (rounded.abs() <= most).then_some(rounded)
 }
 
 /// What lifts a half that binary numbers miss.
-const NUDGE: f64 = 1.0 + 4.0 * f64::EPSILON;
+const HALF_CORRECTION: f64 = 1.0 + 4.0 * f64::EPSILON;
 
 macro_rules! unit {
     ($(#[$doc:meta])* $name:ident, $suffix:literal) => {
@@ -125,12 +125,12 @@ impl Deg {
 }
 
 /// Beyond it a double has no fraction.
-const WHOLE: f64 = 4_503_599_627_370_496.0;
+const FRACTION_LIMIT: f64 = 4_503_599_627_370_496.0;
 
 /// Half away from 0: `f64::round` without a branch, so that several numbers can be rounded at once.
 #[inline]
 pub fn round(value: f64) -> f64 {
-    if value.abs() < WHOLE { round_small(value) } else { value }
+    if value.abs() < FRACTION_LIMIT { round_small(value) } else { value }
 }
 
 /// The same of numbers that have room for a fraction; the others are only near to what they were.
@@ -138,7 +138,7 @@ pub fn round(value: f64) -> f64 {
 fn round_small(value: f64) -> f64 {
     let size = value.abs();
     // In the sum there is no room for a fraction: it is the nearest whole number, of two the even one.
-    let even = (size + WHOLE) - WHOLE;
+    let even = (size + FRACTION_LIMIT) - FRACTION_LIMIT;
     let up = if size - even == 0.5 { 1.0 } else { 0.0 };
     (even + up).copysign(value)
 }
@@ -168,8 +168,8 @@ mod tests {
         fn what_is_nearest_is_the_same_within_a_size(value in any::<f64>(), near in -2e6..2e6, tenths in 0_i32..5) {
             let (scale, most) = (10_f64.powi(tenths), 999_999_999.0);
             for value in [value, near, near * 1e4, (near * 2.0).round() / 2.0 / scale] {
-                let wanted = Some(nearest(value, scale)).filter(|number| number.abs() <= most);
-                prop_assert_eq!(nearest_within(value, scale, most).map(f64::to_bits), wanted.map(f64::to_bits));
+                let wanted = Some(round_scaled(value, scale)).filter(|number| number.abs() <= most);
+                prop_assert_eq!(round_scaled_within(value, scale, most).map(f64::to_bits), wanted.map(f64::to_bits));
             }
         }
     }
@@ -178,18 +178,32 @@ mod tests {
     fn what_is_beyond_a_size_is_not_rounded() {
         for value in [1e9, 4e15, 1e300, f64::MAX, f64::INFINITY, f64::NAN] {
             assert_eq!(
-                [nearest_within(value, 1.0, 999_999_999.0), nearest_within(-value, 1.0, 999_999_999.0)],
+                [
+                    round_scaled_within(value, 1.0, 999_999_999.0),
+                    round_scaled_within(-value, 1.0, 999_999_999.0)
+                ],
                 [None; 2]
             );
         }
-        assert_eq!(nearest_within(999_999.999_4, 1000.0, 999_999_999.0), Some(999_999_999.0));
-        assert_eq!(nearest_within(-0.5005, 1000.0, 999_999_999.0), Some(-501.0));
+        assert_eq!(round_scaled_within(999_999.999_4, 1000.0, 999_999_999.0), Some(999_999_999.0));
+        assert_eq!(round_scaled_within(-0.5005, 1000.0, 999_999_999.0), Some(-501.0));
     }
 
     #[test]
     fn rounding_is_that_of_the_standard_library_bit_for_bit() {
-        let near =
-            [0.0, 0.5, 1.0, 1.5, 2.5, 1e9 + 0.5, WHOLE / 2.0 - 0.5, WHOLE, 1e300, f64::INFINITY, f64::MAX];
+        let near = [
+            0.0,
+            0.5,
+            1.0,
+            1.5,
+            2.5,
+            1e9 + 0.5,
+            FRACTION_LIMIT / 2.0 - 0.5,
+            FRACTION_LIMIT,
+            1e300,
+            f64::INFINITY,
+            f64::MAX,
+        ];
         let values = near.into_iter().flat_map(|value| [value.next_down(), value, value.next_up()]);
         for value in values.chain([f64::MIN_POSITIVE, 0.3, 123_456.789]).flat_map(|value| [value, -value]) {
             assert_eq!(round(value).to_bits(), value.round().to_bits(), "{value:?}");

@@ -2,7 +2,7 @@
 use gcode_lang::syntax::ast::{Block, Condition, Expr, Item, PrintPart, Statement, WordValue};
 
 /// The outermost ones, in the order they stand in.
-pub(super) fn of_block(block: &Block) -> Vec<&Expr> {
+pub(super) fn block_expressions(block: &Block) -> Vec<&Expr> {
     let mut found = Vec::new();
     for item in &block.items {
         match item {
@@ -12,27 +12,27 @@ pub(super) fn of_block(block: &Block) -> Vec<&Expr> {
                     found.push(expr);
                 }
             }
-            Item::Statement(statement) => of_statement(&statement.node, &mut found),
+            Item::Statement(statement) => collect_from_statement(&statement.node, &mut found),
             Item::Skip(_) | Item::Unreadable(_) => {}
         }
     }
     found
 }
 
-fn of_statement<'a>(statement: &'a Statement, found: &mut Vec<&'a Expr>) {
+fn collect_from_statement<'a>(statement: &'a Statement, found: &mut Vec<&'a Expr>) {
     match statement {
         Statement::Assign { target, value } => found.extend([target, value]),
         Statement::Goto(to) => found.push(to),
         Statement::IfGoto { condition, to } => {
-            of_condition(condition, found);
+            collect_from_condition(condition, found);
             found.push(to);
         }
         Statement::IfThen { condition, then } => {
-            of_condition(condition, found);
-            of_statement(then, found);
+            collect_from_condition(condition, found);
+            collect_from_statement(then, found);
         }
         Statement::While { condition, .. } | Statement::If { condition, .. } => {
-            of_condition(condition, found)
+            collect_from_condition(condition, found)
         }
         Statement::Print { parts, .. } => {
             found.extend(parts.iter().filter_map(|part| match part {
@@ -45,13 +45,13 @@ fn of_statement<'a>(statement: &'a Statement, found: &mut Vec<&'a Expr>) {
     }
 }
 
-fn of_condition<'a>(condition: &'a Condition, found: &mut Vec<&'a Expr>) {
+fn collect_from_condition<'a>(condition: &'a Condition, found: &mut Vec<&'a Expr>) {
     match condition {
         Condition::Compare { left, right, .. } => found.extend([left, right]),
         Condition::Logic(_, _, one, other) => {
-            of_condition(one, found);
-            of_condition(other, found);
+            collect_from_condition(one, found);
+            collect_from_condition(other, found);
         }
-        Condition::Bracket(inner) => of_condition(inner, found),
+        Condition::Bracket(inner) => collect_from_condition(inner, found),
     }
 }

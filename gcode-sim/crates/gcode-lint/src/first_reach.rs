@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use gcode_lang::program::OpIndex;
 
 use super::components::strongly_connected_components;
-use super::subject::ProgramUnit;
+use super::context::ProgramUnit;
 use super::vacancy::{Locals, States, UNSET, steps};
 use super::variables;
 
@@ -13,11 +13,11 @@ use super::variables;
 pub(super) struct FirstReach<'a> {
     unit: &'a ProgramUnit<'a>,
     states: &'a States,
-    circle: Vec<usize>,
+    component: Vec<usize>,
     /// For each circle the places outside that lead into it.
     entries: BTreeMap<usize, Vec<OpIndex>>,
     /// Blocks with locals of theirs that may be set when the block is reached for the first time.
-    set: BTreeSet<(OpIndex, u32)>,
+    set_reads: BTreeSet<(OpIndex, u32)>,
 }
 
 impl<'a> FirstReach<'a> {
@@ -30,25 +30,25 @@ impl<'a> FirstReach<'a> {
                 entries.entry(circle[to]).or_default().push(place);
             }
         }
-        let mut first = Self { unit, states, circle, entries, set: BTreeSet::new() };
-        first.set = first.set_before();
+        let mut first = Self { unit, states, component: circle, entries, set_reads: BTreeSet::new() };
+        first.set_reads = first.find_set_reads();
         first
     }
 
     /// Most reads in a circle are told by following each local round it once, with all blocks that read it as ends: what
     /// one of them finds set there is set on a way that passes none of them before.
-    fn set_before(&self) -> BTreeSet<(OpIndex, u32)> {
+    fn find_set_reads(&self) -> BTreeSet<(OpIndex, u32)> {
         let mut readers: BTreeMap<(usize, u32), BTreeSet<OpIndex>> = BTreeMap::new();
         for (block, written) in self.unit.blocks.iter().enumerate() {
-            for number in variables::of_block(written).reads.iter().map(|read| read.number) {
+            for number in variables::block_uses(written).reads.iter().map(|read| read.number) {
                 if (1..=33).contains(&number) && is_unclear(self.bits(block, number)) {
-                    readers.entry((self.circle[block], number)).or_default().insert(block);
+                    readers.entry((self.component[block], number)).or_default().insert(block);
                 }
             }
         }
         let mut set = BTreeSet::new();
         for ((circle, local), blocks) in readers {
-            let known = self.follow(circle, local, &blocks);
+            let known = self.trace(circle, local, &blocks);
             let found =
                 blocks.into_iter().filter(|block| known.get(block).is_some_and(|bits| *bits != UNSET));
             set.extend(found.map(|block| (block, local)));
@@ -63,40 +63,44 @@ impl<'a> FirstReach<'a> {
         if !is_unclear(here) {
             return here == UNSET;
         }
-        let alone = || self.follow(self.circle[block], local, &BTreeSet::from([block]));
-        !self.set.contains(&(block, local)) && alone().get(&block) == Some(&UNSET)
+        let alone = || self.trace(self.component[block], local, &BTreeSet::from([block]));
+        !self.set_reads.contains(&(block, local)) && alone().get(&block) == Some(&UNSET)
     }
 
     /// Follows a local once more round a circle, with some blocks as ends: what it may be at each place that is reached.
-    fn follow(&self, circle: usize, local: u32, ends: &BTreeSet<OpIndex>) -> BTreeMap<OpIndex, u8> {
-        let mut around =
-            ComponentState { circle: &self.circle, of: circle, known: BTreeMap::new(), open: Vec::new() };
-        for start in self.unit.starts.iter().filter(|start| self.circle[**start] == circle) {
+    fn trace(&self, circle: usize, local: u32, ends: &BTreeSet<OpIndex>) -> BTreeMap<OpIndex, u8> {
+        let mut around = ComponentState {
+            components: &self.component,
+            component: circle,
+            known: BTreeMap::new(),
+            pending: Vec::new(),
+        };
+        for start in self.unit.entry_blocks.iter().filter(|start| self.component[**start] == circle) {
             around.join(*start, self.bits(*start, local));
         }
         for entry in self.entries.get(&circle).into_iter().flatten() {
             let Some(state) = &self.states[*entry] else { continue };
-            self.lead(*entry, state, local, &mut around);
+            self.propagate(*entry, state, local, &mut around);
         }
-        while let Some(at) = around.open.pop() {
+        while let Some(at) = around.pending.pop() {
             if ends.contains(&at) {
                 continue;
             }
             let Some(mut state) = self.states[at] else { continue };
             state.0[local as usize] = around.known[&at];
-            self.lead(at, &state, local, &mut around);
+            self.propagate(at, &state, local, &mut around);
         }
         around.known
     }
 
-    fn lead(&self, from: OpIndex, state: &Locals, local: u32, around: &mut ComponentState<'_>) {
+    fn propagate(&self, from: OpIndex, state: &Locals, local: u32, around: &mut ComponentState<'_>) {
         for (to, after) in steps(self.unit, from, state) {
-            around.join(to, after.of(local));
+            around.join(to, after.bits_of(local));
         }
     }
 
     fn bits(&self, place: OpIndex, local: u32) -> u8 {
-        self.states[place].map_or(0, |state| state.of(local))
+        self.states[place].map_or(0, |state| state.bits_of(local))
     }
 }
 
@@ -107,22 +111,22 @@ fn is_unclear(bits: u8) -> bool {
 
 /// What the local may be at the places of one circle.
 struct ComponentState<'a> {
-    circle: &'a [usize],
-    of: usize,
+    components: &'a [usize],
+    component: usize,
     known: BTreeMap<OpIndex, u8>,
     /// Places where it has become known to be more.
-    open: Vec<OpIndex>,
+    pending: Vec<OpIndex>,
 }
 
 impl ComponentState<'_> {
     fn join(&mut self, place: OpIndex, bits: u8) {
-        if self.circle.get(place) != Some(&self.of) {
+        if self.components.get(place) != Some(&self.component) {
             return;
         }
         let known = self.known.entry(place).or_default();
         if *known | bits != *known {
             *known |= bits;
-            self.open.push(place);
+            self.pending.push(place);
         }
     }
 }

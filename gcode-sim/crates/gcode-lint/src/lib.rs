@@ -6,32 +6,32 @@
 //! `(CHECK-OFF NAME)` on a block, or at the head of a program for all of it, silences a rule there (`silence`).
 mod calls;
 mod components;
+mod context;
+mod control_flow;
 mod expressions;
 mod first_reach;
-mod flow;
 mod literal;
 mod parameters;
 pub mod rules;
-mod subject;
 mod suppression;
-mod unset;
+mod unset_reads;
 mod vacancy;
 mod variables;
 
 use std::collections::BTreeSet;
 
-pub use calls::{CalledAs, targets as called};
+pub use calls::{CalledProgramName, called_programs as called};
 
+use context::CheckContext;
 use gcode_lang::control::Settings;
 use gcode_lang::diag::{Diagnostic, Severity};
 use gcode_lang::program::{Library, Memory, Program, ProgramId};
 use gcode_lang::source::{Bytes, Span};
-use subject::CheckContext;
 pub use variables::variables_read;
 
 /// What was found, and the texts it was found in.
 #[derive(Debug)]
-pub struct Checked {
+pub struct CheckResult {
     pub memory: Memory,
     /// How many programs were looked at: those of the file, and those they call.
     pub programs: usize,
@@ -46,31 +46,35 @@ pub fn check(
     bytes: impl Into<Bytes>,
     settings: &Settings,
     library: &mut impl Library,
-) -> Checked {
+) -> CheckResult {
     let mut memory = Memory::default();
     memory.load(name, bytes);
     check_loaded(memory, settings, library)
 }
 
 /// As [`check`], of programs that have been loaded.
-pub fn check_loaded(mut memory: Memory, settings: &Settings, library: &mut impl Library) -> Checked {
-    let programs = gather(&mut memory, settings, library);
+pub fn check_loaded(mut memory: Memory, settings: &Settings, library: &mut impl Library) -> CheckResult {
+    let programs = load_called_programs(&mut memory, settings, library);
     let subject = CheckContext::new(&memory, settings, &programs, rules::names());
     let findings = rules::findings(&subject);
-    Checked { programs: programs.len(), memory, findings }
+    CheckResult { programs: programs.len(), memory, findings }
 }
 
 /// The programs in memory, then those that they call, as far as they can be found.
-fn gather(memory: &mut Memory, settings: &Settings, library: &mut impl Library) -> Vec<ProgramId> {
+fn load_called_programs(
+    memory: &mut Memory,
+    settings: &Settings,
+    library: &mut impl Library,
+) -> Vec<ProgramId> {
     let mut found: Vec<_> = memory.ids().collect();
     let mut known: BTreeSet<_> = found.iter().copied().collect();
     let mut next = 0;
     while let Some(id) = found.get(next) {
-        for target in calls::targets(memory.lowered(*id), settings) {
+        for target in calls::called_programs(memory.lower_program(*id), settings) {
             let called = match target {
-                CalledAs::Number(number) => memory.fetch(number, library),
-                CalledAs::Name(name) => memory.fetch_name(&name, library),
-                CalledAs::Computed | CalledAs::Nothing => None,
+                CalledProgramName::Number(number) => memory.fetch(number, library),
+                CalledProgramName::Name(name) => memory.fetch_name(&name, library),
+                CalledProgramName::Computed | CalledProgramName::Missing => None,
             };
             found.extend(called.filter(|called| known.insert(*called)));
         }
@@ -79,7 +83,7 @@ fn gather(memory: &mut Memory, settings: &Settings, library: &mut impl Library) 
     found
 }
 
-impl Checked {
+impl CheckResult {
     /// Whether something stands against the program; notes don't.
     pub fn has_findings(&self) -> bool {
         self.count(Severity::Warning) + self.count(Severity::Error) > 0

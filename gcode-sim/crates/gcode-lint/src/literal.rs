@@ -3,7 +3,7 @@ use gcode_lang::program::{LoweredWord, Operand, WordOperand, names};
 use gcode_lang::syntax::ast::{BinaryOp, Decimal, Expr, ExprKind, Name};
 
 /// The number a word writes out, point or not; `None` where it is computed.
-pub(super) fn of_word(word: &LoweredWord) -> Option<f64> {
+pub(super) fn word_number(word: &LoweredWord) -> Option<f64> {
     match word.value {
         WordOperand::Literal(number) => Some(number.value()),
         WordOperand::Number(number) => Some(number),
@@ -13,11 +13,11 @@ pub(super) fn of_word(word: &LoweredWord) -> Option<f64> {
 }
 
 /// The whole number a word writes out.
-pub(super) fn count(word: &LoweredWord) -> Option<u32> {
-    of_word(word).and_then(whole)
+pub(super) fn word_count(word: &LoweredWord) -> Option<u32> {
+    word_number(word).and_then(to_whole)
 }
 
-pub(super) fn of_operand(operand: &Operand) -> Option<f64> {
+pub(super) fn operand_number(operand: &Operand) -> Option<f64> {
     match operand {
         Operand::Number(number) => Some(*number),
         Operand::Variable { .. } | Operand::Code(_) => None,
@@ -25,7 +25,7 @@ pub(super) fn of_operand(operand: &Operand) -> Option<f64> {
 }
 
 /// As a control makes an index or a sequence number of it.
-pub(super) fn whole(value: f64) -> Option<u32> {
+pub(super) fn to_whole(value: f64) -> Option<u32> {
     let rounded = value.round();
     (0.0..=999_999_999.0).contains(&rounded).then_some(rounded as u32)
 }
@@ -67,7 +67,7 @@ pub(super) fn arithmetic(op: BinaryOp, left: f64, right: f64) -> Option<f64> {
 /// The number of a variable, `#5` or `#[100+1]`.
 pub(super) fn variable(expr: &Expr) -> Option<u32> {
     match &expr.kind {
-        ExprKind::Variable(index) => constant(index).and_then(whole),
+        ExprKind::Variable(index) => constant(index).and_then(to_whole),
         ExprKind::Named(name) => named(name),
         ExprKind::Bracket(inner) => variable(inner),
         _ => None,
@@ -80,7 +80,7 @@ fn named(name: &Name) -> Option<u32> {
     match (&name.index, row.suffix) {
         (None, None) => Some(row.number),
         (Some(index), Some((lowest, _))) => {
-            let suffix = constant(index).and_then(whole)?;
+            let suffix = constant(index).and_then(to_whole)?;
             Some(row.number + suffix.checked_sub(lowest)?)
         }
         _ => None,

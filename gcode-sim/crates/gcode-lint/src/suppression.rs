@@ -3,16 +3,16 @@
 use gcode_lang::program::OpKind;
 use gcode_lang::source::Span;
 
-use super::subject::{ProgramUnit, RuleFinding};
+use super::context::{ProgramUnit, RuleFinding};
 
 /// The word that begins such a comment.
-const WORD: &str = "CHECK-OFF";
+const KEYWORD: &str = "CHECK-OFF";
 
 /// What a program's comments silence.
 #[derive(Debug)]
 pub(super) struct Suppressions {
     /// The block's index, or `None` for all of the program; the rule's name in upper case.
-    off: Vec<(Option<usize>, String, Span)>,
+    entries: Vec<(Option<usize>, String, Span)>,
 }
 
 impl Suppressions {
@@ -23,7 +23,7 @@ impl Suppressions {
             head &= matches!(op.kind(), OpKind::Empty) && op.number.is_none();
             for comment in &block.comments {
                 let text = String::from_utf8_lossy(&comment.text).to_ascii_uppercase();
-                let Some(names) = text.trim().strip_prefix(WORD) else { continue };
+                let Some(names) = text.trim().strip_prefix(KEYWORD) else { continue };
                 let place = (!head).then_some(index);
                 let mut names: Vec<&str> =
                     names.split([' ', ',', '\t']).filter(|name| !name.is_empty()).collect();
@@ -33,11 +33,11 @@ impl Suppressions {
                 off.extend(names.into_iter().map(|name| (place, name.to_owned(), comment.span)));
             }
         }
-        Self { off }
+        Self { entries: off }
     }
 
-    pub(super) fn silences(&self, finding: &RuleFinding) -> bool {
-        self.off.iter().any(|(place, name, _)| {
+    pub(super) fn suppresses(&self, finding: &RuleFinding) -> bool {
+        self.entries.iter().any(|(place, name, _)| {
             place.is_none_or(|block| block == finding.block)
                 && name.eq_ignore_ascii_case(&finding.diagnostic.code)
         })
@@ -45,6 +45,6 @@ impl Suppressions {
 
     /// The names in all the comments, in upper case, with the comments they stand in.
     pub(super) fn names(&self) -> impl Iterator<Item = (&str, Span)> {
-        self.off.iter().map(|(_, name, span)| (name.as_str(), *span))
+        self.entries.iter().map(|(_, name, span)| (name.as_str(), *span))
     }
 }

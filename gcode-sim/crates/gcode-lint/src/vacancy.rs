@@ -6,14 +6,14 @@
 use gcode_lang::program::{OpIndex, OpKind};
 use gcode_lang::syntax::ast::{BinaryOp, CallForm, Condition, Expr, ExprKind, Function, Relation, Statement};
 
-use super::subject::ProgramUnit;
+use super::context::ProgramUnit;
 use super::{literal, variables};
 
 /// What a local may be, as bits.
 pub(crate) const UNSET: u8 = 1;
-pub(crate) const EMPTY: u8 = 2;
+pub(crate) const VACANT: u8 = 2;
 pub(crate) const NUMBER: u8 = 4;
-pub(crate) const ANYTHING: u8 = EMPTY | NUMBER;
+pub(crate) const ANY_VALUE: u8 = VACANT | NUMBER;
 
 /// The locals #1 to #33; place 0 is not used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -21,14 +21,14 @@ pub(crate) struct Locals(pub [u8; 34]);
 
 impl Locals {
     pub(crate) const UNSET: Self = Self([UNSET; 34]);
-    pub(crate) const ANYTHING: Self = Self([ANYTHING; 34]);
+    pub(crate) const ANYTHING: Self = Self([ANY_VALUE; 34]);
 
-    pub(super) fn of(&self, number: u32) -> u8 {
+    pub(super) fn bits_of(&self, number: u32) -> u8 {
         match number {
             // [#_EMPTY] is #3100.
-            0 | 3100 => EMPTY,
+            0 | 3100 => VACANT,
             1..=33 => self.0[number as usize],
-            _ => ANYTHING,
+            _ => ANY_VALUE,
         }
     }
 
@@ -38,7 +38,7 @@ impl Locals {
         *self != before
     }
 
-    fn may_be(&mut self, bits: u8) {
+    fn add_bits(&mut self, bits: u8) {
         self.0.iter_mut().for_each(|local| *local |= bits);
     }
 }
@@ -49,9 +49,9 @@ pub(crate) type States = Vec<Option<Locals>>;
 /// Follows a program from its first block with what its locals are there.
 pub(crate) fn states(unit: &ProgramUnit<'_>, entry: Locals) -> States {
     let mut states: States = vec![None; unit.flow.block_count()];
-    let mut open = unit.starts.clone();
+    let mut open = unit.entry_blocks.clone();
     // A call that starts elsewhere brings its own locals.
-    for (place, start) in unit.starts.iter().enumerate() {
+    for (place, start) in unit.entry_blocks.iter().enumerate() {
         states[*start] = Some(if place == 0 { entry } else { Locals::ANYTHING });
     }
     while let Some(block) = open.pop() {
@@ -90,7 +90,7 @@ pub(super) fn steps(unit: &ProgramUnit<'_>, block: OpIndex, state: &Locals) -> V
             let split = |to: OpIndex| {
                 // IF jumps when it is true, WHILE when it is not.
                 let taken = (to == block + 1) != jumping;
-                let sure = to != block + 1 || !unit.flow.ways[block].jumps.contains(&to);
+                let sure = to != block + 1 || !unit.flow.block_successors[block].jumps.contains(&to);
                 if sure && on_true == Some(!taken) {
                     return None;
                 }
@@ -108,11 +108,14 @@ pub(super) fn steps(unit: &ProgramUnit<'_>, block: OpIndex, state: &Locals) -> V
             let answer = truth(condition, state);
             let mut steps = Vec::new();
             if answer != Some(false) {
-                match variables::assigned(then) {
+                match variables::statement_assignment(then) {
                     Some((target, value)) => assign(target, value, &mut when_true),
-                    None => steps.extend(unit.flow.ways[block].jumps.iter().map(|to| (*to, when_true))),
+                    None => steps
+                        .extend(unit.flow.block_successors[block].jumps.iter().map(|to| (*to, when_true))),
                 }
-                if !super::flow::raises(op.kind()) && variables::assigned(then).is_some() {
+                if !super::control_flow::raises_alarm(op.kind())
+                    && variables::statement_assignment(then).is_some()
+                {
                     steps.push((block + 1, when_true));
                 }
             }
@@ -121,25 +124,25 @@ pub(super) fn steps(unit: &ProgramUnit<'_>, block: OpIndex, state: &Locals) -> V
             }
             steps
         }
-        (OpKind::Statement(gcode_lang::program::Statement::Several(_)), _) => {
-            for (target, value) in unit.blocks[block].items.iter().filter_map(variables::assigned_by) {
+        (OpKind::Statement(gcode_lang::program::Statement::Assignments(_)), _) => {
+            for (target, value) in unit.blocks[block].items.iter().filter_map(variables::item_assignment) {
                 assign(target, value, &mut after);
             }
             both(after)
         }
-        (OpKind::Statement(_) | OpKind::Compute(_), Some(Statement::Assign { target, value })) => {
+        (OpKind::Statement(_) | OpKind::AssignFree(_), Some(Statement::Assign { target, value })) => {
             assign(target, value, &mut after);
             both(after)
         }
         (OpKind::If { .. }, _) => {
             // What stands behind the condition may have written any of them, or none.
-            after.may_be(ANYTHING);
+            after.add_bits(ANY_VALUE);
             both(after)
         }
         (OpKind::Words(_), _) => {
             // A subprogram works on the same locals.
-            if unit.call_in(block).is_some_and(|call| !call.own_locals) {
-                after.may_be(ANYTHING);
+            if unit.call_in(block).is_some_and(|call| !call.has_own_locals) {
+                after.add_bits(ANY_VALUE);
             }
             both(after)
         }
@@ -153,21 +156,21 @@ pub(super) fn steps(unit: &ProgramUnit<'_>, block: OpIndex, state: &Locals) -> V
 
 fn assign(target: &Expr, value: &Expr, state: &mut Locals) {
     let bits = match value_of(value, state) {
-        Value::Vacant => EMPTY,
-        Value::Number(_) | Value::Some => NUMBER,
-        Value::Unknown => ANYTHING,
+        KnownValue::Vacant => VACANT,
+        KnownValue::Number(_) | KnownValue::Some => NUMBER,
+        KnownValue::Unknown => ANY_VALUE,
     };
     match literal::variable(target) {
         Some(number @ 1..=33) => state.0[number as usize] = bits,
         Some(_) => {}
         // Any local could be meant.
-        None => state.may_be(ANYTHING),
+        None => state.add_bits(ANY_VALUE),
     }
 }
 
 /// What is known of a value.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Value {
+enum KnownValue {
     Vacant,
     Number(f64),
     /// A number, but not which.
@@ -175,50 +178,50 @@ enum Value {
     Unknown,
 }
 
-fn value_of(expr: &Expr, state: &Locals) -> Value {
+fn value_of(expr: &Expr, state: &Locals) -> KnownValue {
     match &expr.kind {
-        ExprKind::Literal(number) => Value::Number(number.value()),
+        ExprKind::Literal(number) => KnownValue::Number(number.value()),
         ExprKind::Variable(_) | ExprKind::Named(_) => {
-            match literal::variable(expr).map(|number| state.of(number)) {
-                Some(bits) if bits & NUMBER == 0 => Value::Vacant,
-                Some(NUMBER) => Value::Some,
-                _ => Value::Unknown,
+            match literal::variable(expr).map(|number| state.bits_of(number)) {
+                Some(bits) if bits & NUMBER == 0 => KnownValue::Vacant,
+                Some(NUMBER) => KnownValue::Some,
+                _ => KnownValue::Unknown,
             }
         }
         ExprKind::Bracket(inner) | ExprKind::Plus(inner) => value_of(inner, state),
         ExprKind::Negate(inner) => match value_of(inner, state) {
-            Value::Number(value) => Value::Number(-value),
+            KnownValue::Number(value) => KnownValue::Number(-value),
             // Whether a minus keeps vacancy is a setting.
-            _ => Value::Unknown,
+            _ => KnownValue::Unknown,
         },
         ExprKind::Binary(op, left, right) => {
-            let sides = number(value_of(left, state)).zip(number(value_of(right, state)));
+            let sides = known_number(value_of(left, state)).zip(known_number(value_of(right, state)));
             let value = sides.and_then(|(left, right)| literal::arithmetic(*op, left, right));
             match value {
-                Some(value) => Value::Number(value),
+                Some(value) => KnownValue::Number(value),
                 // A product with a vacant factor is 0 whatever the other one is.
                 None if *op == BinaryOp::Mul
-                    && [left, right].iter().any(|e| number(value_of(e, state)) == Some(0.0)) =>
+                    && [left, right].iter().any(|e| known_number(value_of(e, state)) == Some(0.0)) =>
                 {
-                    Value::Number(0.0)
+                    KnownValue::Number(0.0)
                 }
-                None => Value::Some,
+                None => KnownValue::Some,
             }
         }
-        ExprKind::Call(Function::Abs, CallForm::One(inner)) => match number(value_of(inner, state)) {
-            Some(value) => Value::Number(value.abs()),
-            None => Value::Some,
+        ExprKind::Call(Function::Abs, CallForm::One(inner)) => match known_number(value_of(inner, state)) {
+            Some(value) => KnownValue::Number(value.abs()),
+            None => KnownValue::Some,
         },
-        ExprKind::Call(..) | ExprKind::Parameter { .. } | ExprKind::AxisNumber(_) => Value::Some,
+        ExprKind::Call(..) | ExprKind::Parameter { .. } | ExprKind::AxisNumber(_) => KnownValue::Some,
     }
 }
 
 /// The number a value counts as where it is reckoned with.
-fn number(value: Value) -> Option<f64> {
+fn known_number(value: KnownValue) -> Option<f64> {
     match value {
-        Value::Vacant => Some(0.0),
-        Value::Number(value) => Some(value),
-        Value::Some | Value::Unknown => None,
+        KnownValue::Vacant => Some(0.0),
+        KnownValue::Number(value) => Some(value),
+        KnownValue::Some | KnownValue::Unknown => None,
     }
 }
 
@@ -240,8 +243,8 @@ pub(crate) fn truth(condition: &Condition, state: &Locals) -> Option<bool> {
     }
 }
 
-fn compare(left: Value, relation: Relation, right: Value) -> Option<bool> {
-    use Value::{Number, Some as Any, Vacant};
+fn compare(left: KnownValue, relation: Relation, right: KnownValue) -> Option<bool> {
+    use KnownValue::{Number, Some as Any, Vacant};
     // EQ and NE tell vacant from 0, the others don't.
     if matches!(relation, Relation::Eq | Relation::Ne) {
         let equal = match (left, right) {
@@ -252,7 +255,7 @@ fn compare(left: Value, relation: Relation, right: Value) -> Option<bool> {
         };
         return Some(equal == (relation == Relation::Eq));
     }
-    let (left, right) = (number(left)?, number(right)?);
+    let (left, right) = (known_number(left)?, known_number(right)?);
     Some(match relation {
         Relation::Gt => left > right,
         Relation::Ge => left >= right,
@@ -264,9 +267,9 @@ fn compare(left: Value, relation: Relation, right: Value) -> Option<bool> {
 
 /// Whether a condition is only true where something has set the local, as `#9 NE #0` is.
 pub(crate) fn guards(condition: &Condition, local: u32) -> bool {
-    let mut state = Locals([UNSET | ANYTHING; 34]);
+    let mut state = Locals([UNSET | ANY_VALUE; 34]);
     refine(condition, true, &mut state);
-    state.of(local) & UNSET == 0
+    state.bits_of(local) & UNSET == 0
 }
 
 /// What a condition tells where it is known to be `answer`.
@@ -279,7 +282,7 @@ fn refine(condition: &Condition, answer: bool, state: &mut Locals) {
             };
             let vacant = (*relation == Relation::Eq) == answer;
             if let Some(bits) = state.0.get_mut(tested as usize).filter(|_| tested > 0) {
-                let left = *bits & if vacant { UNSET | EMPTY } else { NUMBER };
+                let left = *bits & if vacant { UNSET | VACANT } else { NUMBER };
                 // A way that can't be gone is not looked at any closer.
                 if left != 0 {
                     *bits = left;

@@ -9,13 +9,13 @@ use super::literal;
 
 /// What is done with the value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Use {
+pub(crate) enum VariableUse {
     /// Held against `#0`: asks whether it is vacant.
-    Tested,
+    VacancyTest,
     /// Stands in another comparison.
-    Compared,
+    Comparison,
     /// `#1=#2`, `G65 … A#2`: passed on as it is, vacancy included.
-    Passed,
+    PassedOn,
     /// The value of a word, which disappears with a vacant one.
     Word,
     /// Anything else, where vacant counts as 0.
@@ -23,30 +23,30 @@ pub(crate) enum Use {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Read {
+pub(crate) struct VariableRead {
     pub number: u32,
-    pub usage: Use,
+    pub usage: VariableUse,
     pub span: Span,
 }
 
 /// What a block does with variables.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Uses {
-    pub reads: Vec<Read>,
+pub(crate) struct VariableUses {
+    pub reads: Vec<VariableRead>,
     /// A variable is read whose number is computed.
-    pub reads_any: bool,
+    pub reads_computed: bool,
 }
 
 /// The variables that a block reads.
-pub(super) fn of_block(block: &Block) -> Uses {
-    let mut uses = Uses::default();
+pub(super) fn block_uses(block: &Block) -> VariableUses {
+    let mut uses = VariableUses::default();
     let call = block.items.iter().any(is_macro_call);
     for item in &block.items {
         match item {
             Item::Word(word) => {
-                word.axis.iter().for_each(|axis| uses.expr(axis, Use::Computed));
+                word.axis.iter().for_each(|axis| uses.expr(axis, VariableUse::Computed));
                 if let WordValue::Expr(expr) = &word.value {
-                    uses.expr(expr, if call { Use::Passed } else { Use::Word });
+                    uses.expr(expr, if call { VariableUse::PassedOn } else { VariableUse::Word });
                 }
             }
             Item::Statement(statement) => uses.statement(&statement.node),
@@ -59,7 +59,7 @@ pub(super) fn of_block(block: &Block) -> Uses {
 /// The numbers of the variables that a block reads by number or by name, each once.
 pub fn variables_read(block: &Block) -> Vec<u32> {
     let mut numbers = Vec::new();
-    for read in of_block(block).reads {
+    for read in block_uses(block).reads {
         if !numbers.contains(&read.number) {
             numbers.push(read.number);
         }
@@ -80,23 +80,23 @@ fn is_macro_call(item: &Item) -> bool {
 }
 
 /// The variables that stand in a condition.
-pub(super) fn of_condition(condition: &Condition) -> Uses {
-    let mut uses = Uses::default();
+pub(super) fn condition_uses(condition: &Condition) -> VariableUses {
+    let mut uses = VariableUses::default();
     uses.condition(condition);
     uses
 }
 
-impl Uses {
+impl VariableUses {
     fn statement(&mut self, statement: &Statement) {
         match statement {
             Statement::Assign { target, value } => {
-                self.index_of(target);
-                self.expr(value, Use::Passed);
+                self.record_index_reads(target);
+                self.expr(value, VariableUse::PassedOn);
             }
-            Statement::Goto(to) => self.expr(to, Use::Computed),
+            Statement::Goto(to) => self.expr(to, VariableUse::Computed),
             Statement::IfGoto { condition, to } => {
                 self.condition(condition);
-                self.expr(to, Use::Computed);
+                self.expr(to, VariableUse::Computed);
             }
             Statement::IfThen { condition, then } => {
                 self.condition(condition);
@@ -106,11 +106,11 @@ impl Uses {
             Statement::Print { parts, .. } => {
                 for part in parts {
                     if let PrintPart::Value { variable, .. } = part {
-                        self.expr(variable, Use::Computed);
+                        self.expr(variable, VariableUse::Computed);
                     }
                 }
             }
-            Statement::SetNames { first, .. } => self.expr(first, Use::Computed),
+            Statement::SetNames { first, .. } => self.expr(first, VariableUse::Computed),
             Statement::Do(_) | Statement::End(_) | Statement::OpenOutput | Statement::CloseOutput => {}
         }
     }
@@ -119,8 +119,8 @@ impl Uses {
         match condition {
             Condition::Compare { left, right, .. } => {
                 let usage = |other: &Expr| match literal::variable(other) {
-                    Some(0 | 3100) => Use::Tested,
-                    _ => Use::Compared,
+                    Some(0 | 3100) => VariableUse::VacancyTest,
+                    _ => VariableUse::Comparison,
                 };
                 self.expr(left, usage(right));
                 self.expr(right, usage(left));
@@ -133,27 +133,31 @@ impl Uses {
         }
     }
 
-    fn expr(&mut self, expr: &Expr, usage: Use) {
+    fn expr(&mut self, expr: &Expr, usage: VariableUse) {
         // What is computed inside a comparison is still part of the comparison.
-        let inside = if matches!(usage, Use::Tested | Use::Compared) { Use::Compared } else { Use::Computed };
+        let inside = if matches!(usage, VariableUse::VacancyTest | VariableUse::Comparison) {
+            VariableUse::Comparison
+        } else {
+            VariableUse::Computed
+        };
         match &expr.kind {
             ExprKind::Literal(_) => {}
             ExprKind::Variable(_) => {
                 match literal::variable(expr) {
                     Some(0) => {}
-                    Some(number) => self.reads.push(Read { number, usage, span: expr.span }),
-                    None => self.reads_any = true,
+                    Some(number) => self.reads.push(VariableRead { number, usage, span: expr.span }),
+                    None => self.reads_computed = true,
                 }
-                self.index_of(expr);
+                self.record_index_reads(expr);
             }
             ExprKind::Named(name) => {
                 match literal::variable(expr) {
-                    Some(number) => self.reads.push(Read { number, usage, span: expr.span }),
-                    None => self.reads_any = true,
+                    Some(number) => self.reads.push(VariableRead { number, usage, span: expr.span }),
+                    None => self.reads_computed = true,
                 }
-                name.index.iter().for_each(|index| self.expr(index, Use::Computed));
+                name.index.iter().for_each(|index| self.expr(index, VariableUse::Computed));
             }
-            ExprKind::Negate(inner) if usage == Use::Word => self.expr(inner, usage),
+            ExprKind::Negate(inner) if usage == VariableUse::Word => self.expr(inner, usage),
             ExprKind::Bracket(inner) | ExprKind::Plus(inner) => self.expr(inner, usage),
             ExprKind::Negate(inner) => self.expr(inner, inside),
             ExprKind::Binary(_, left, right) => {
@@ -166,7 +170,7 @@ impl Uses {
                 self.expr(right, inside);
             }
             ExprKind::Parameter { number, bit, axis } => {
-                self.reads_any = true;
+                self.reads_computed = true;
                 self.expr(number, inside);
                 bit.iter().chain(axis).for_each(|part| self.expr(part, inside));
             }
@@ -175,30 +179,30 @@ impl Uses {
     }
 
     /// The number of a variable, where it is computed from others.
-    fn index_of(&mut self, variable: &Expr) {
+    fn record_index_reads(&mut self, variable: &Expr) {
         if let ExprKind::Variable(index) = &variable.kind {
-            self.expr(index, Use::Computed);
+            self.expr(index, VariableUse::Computed);
         }
     }
 }
 
 /// What a block assigns, alone or behind IF … THEN.
 pub(super) fn assignment(block: &Block) -> Option<(&Expr, &Expr)> {
-    block.items.iter().find_map(assigned_by)
+    block.items.iter().find_map(item_assignment)
 }
 
 /// What a part of a block assigns.
-pub(super) fn assigned_by(item: &Item) -> Option<(&Expr, &Expr)> {
+pub(super) fn item_assignment(item: &Item) -> Option<(&Expr, &Expr)> {
     match item {
-        Item::Statement(statement) => assigned(&statement.node),
+        Item::Statement(statement) => statement_assignment(&statement.node),
         _ => None,
     }
 }
 
-pub(super) fn assigned(statement: &Statement) -> Option<(&Expr, &Expr)> {
+pub(super) fn statement_assignment(statement: &Statement) -> Option<(&Expr, &Expr)> {
     match statement {
         Statement::Assign { target, value } => Some((target, value)),
-        Statement::IfThen { then, .. } => assigned(then),
+        Statement::IfThen { then, .. } => statement_assignment(then),
         _ => None,
     }
 }

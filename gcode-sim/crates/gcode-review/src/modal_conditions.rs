@@ -3,7 +3,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use gcode_control::State;
-use gcode_lang::program::cycles::{Cycle, Step as CycleStep};
+use gcode_lang::program::cycles::{Cycle, CycleStep};
 use gcode_lang::program::modes::WorkSystem;
 
 /// One of the things that are in force.
@@ -66,7 +66,7 @@ impl ModalAspect {
             true => group(number),
             false => format!("{} {letter}{value}", group(number)),
         };
-        match (self, modal.cycle, state.drilling.q) {
+        match (self, modal.cycle, state.cycle.q) {
             (Self::System, ..) => match modal.work {
                 WorkSystem::Standard(_) => group(self.group()),
                 WorkSystem::Additional(number) => format!("G54.1 P{number}"),

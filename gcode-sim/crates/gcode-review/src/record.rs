@@ -303,8 +303,8 @@ impl BlockLocation {
             let (program, line) = run.locate(span);
             Self { program, line, block: sources.text(span).trim().to_owned(), calls: Vec::new() }
         };
-        let chain = std::iter::successors(place.calls.as_deref(), |call| call.outer.as_deref());
-        let calls = chain.map(|call| at(call.from)).collect();
+        let chain = std::iter::successors(place.calls.as_deref(), |call| call.outer_calls.as_deref());
+        let calls = chain.map(|call| at(call.calling_block)).collect();
         Self { calls, ..at(place.block) }
     }
 }
@@ -327,11 +327,11 @@ fn ending(
         }
         Outcome::Alarm(stopped) => {
             let row = stopped.alarm.row();
-            let place = BlockLocation::of(run, &stopped.place);
+            let place = BlockLocation::of(run, &stopped.backtrace);
             ("alarm", format!("alarm {} {}", row.code, row.message), Some(place))
         }
         Outcome::Limit => {
-            let block = run.control.endless_loop().map_or(run.control.place().block, |(_, back)| back);
+            let block = run.control.endless_loop().map_or(run.control.backtrace().block, |(_, back)| back);
             let place = Backtrace { block, calls: CallChain::default() };
             (
                 "limit",

@@ -125,7 +125,7 @@ impl Recorder {
             if control.is_next_unconditional() {
                 self.done.insert((block.source, block.start));
             }
-            let place = Backtrace { block, ..control.place() };
+            let place = Backtrace { block, ..control.backtrace() };
             self.begin(control.next_commands(), &place);
             PendingBlock { place, before: (self.at, self.length), silent, assigned, tables }
         });
@@ -133,7 +133,7 @@ impl Recorder {
 
     /// A block is about to command this.
     fn begin(&mut self, commanded: BlockCommands, place: &Backtrace) {
-        let BlockCommands { modes, axes, offsets, values } = commanded;
+        let BlockCommands { modes, axes, offsets, valued_letters: values } = commanded;
         for letter in values {
             let number = self.place(place.clone());
             self.said.insert(letter, (place.block, number));
@@ -156,7 +156,14 @@ impl Recorder {
         let Some(PendingBlock { place, before, silent, assigned, tables }) = self.block.take() else {
             return;
         };
-        let UnsimulatedCodes { skips, path, g_codes, m_codes, writes, ends } = silent;
+        let UnsimulatedCodes {
+            block_skips: skips,
+            path_codes: path,
+            g_codes,
+            m_codes,
+            writes,
+            end_code: ends,
+        } = silent;
         self.note_called(control, &place, before);
         self.last = Some(place.clone());
         self.end = ends.map_or(EndCause::Return, EndCause::Code);
@@ -237,9 +244,9 @@ impl Recorder {
     fn resolve_conditions(&mut self, control: &Control) {
         let state = control.state();
         let now =
-            ConditionInputs { modal: state.modal, h: state.codes.h, d: state.codes.d, q: state.drilling.q };
+            ConditionInputs { modal: state.modal, h: state.codes.h, d: state.codes.d, q: state.cycle.q };
         if self.seen != Some(now) {
-            let place = self.place(control.place());
+            let place = self.place(control.backtrace());
             let before = self.seen.map_or_else(Modal::default, |seen| seen.modal);
             for group in (1..=22).filter(|group| before.code(*group) != now.modal.code(*group)) {
                 self.set.insert(group, place);
@@ -293,7 +300,7 @@ impl Recorder {
         self.moves += usize::from(from != to || matches!(kind, StepKind::Arc(..)));
         // A move to where the axes stand does nothing; a full circle ends where it begins.
         if from != to || matches!(kind, StepKind::Arc(..)) {
-            self.push(kind, from, event.place());
+            self.push(kind, from, event.backtrace());
         }
     }
 }
@@ -325,7 +332,7 @@ impl Recorder {
     fn forget_standstill(&mut self, change: &Event<'_>) {
         let is_of_change = |step: &Step| {
             let is_off = step.kind == StepKind::Spindle(SpindleDirection::Off, 0.0);
-            is_off && is_same_place(&self.places[step.place], &change.place())
+            is_off && is_same_place(&self.places[step.place], &change.backtrace())
         };
         if self.steps.last().is_some_and(is_of_change) {
             self.steps.pop();
@@ -339,28 +346,28 @@ impl Recorder {
             EventKind::Feed { to, rate } => self.go(StepKind::Feed(rate.0), *to, event),
             EventKind::Arc { to, arc, rate } => self.go(StepKind::Arc(*arc, rate.0), *to, event),
             EventKind::Skip { to, rate, .. } => self.go(StepKind::Probe(rate.0), *to, event),
-            EventKind::Dwell { time } => self.push(StepKind::Dwell(time.0), here, event.place()),
+            EventKind::Dwell { time } => self.push(StepKind::Dwell(time.0), here, event.backtrace()),
             EventKind::ToolChange { number } => {
                 self.forget_standstill(event);
-                self.push(StepKind::Tool(*number), here, event.place());
+                self.push(StepKind::Tool(*number), here, event.backtrace());
             }
             EventKind::ToolLength { offset, .. } if *offset == self.length => {}
             EventKind::ToolLength { offset, .. } => {
                 self.length = *offset;
-                self.push(StepKind::Length(*offset), here, event.place());
+                self.push(StepKind::Length(*offset), here, event.backtrace());
             }
             EventKind::WorkZeroUnknown { .. } => {}
-            EventKind::Spindle { turning, speed } => {
+            EventKind::Spindle { direction: turning, speed } => {
                 // At a standstill the speed is what it will turn at later: that is told then.
                 let speed = if *turning == SpindleDirection::Off { 0.0 } else { speed.0 };
-                self.push(StepKind::Spindle(*turning, speed), here, event.place());
+                self.push(StepKind::Spindle(*turning, speed), here, event.backtrace());
             }
-            EventKind::Coolant { on, code } => {
-                self.push(StepKind::Coolant(*on, Some(*code)), here, event.place())
+            EventKind::Coolant { is_on: on, code } => {
+                self.push(StepKind::Coolant(*on, Some(*code)), here, event.backtrace())
             }
-            EventKind::Auxiliary { code } => self.push(StepKind::Auxiliary(*code), here, event.place()),
-            EventKind::Stop { kind, text, named } => {
-                self.push(StepKind::Stop(*kind, text.clone(), named.clone()), here, event.place());
+            EventKind::Auxiliary { code } => self.push(StepKind::Auxiliary(*code), here, event.backtrace()),
+            EventKind::Stop { kind, text, variables: named } => {
+                self.push(StepKind::Stop(*kind, text.clone(), named.clone()), here, event.backtrace());
             }
         }
     }

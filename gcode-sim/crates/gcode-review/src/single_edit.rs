@@ -106,7 +106,7 @@ fn programs(record: &Record) -> Option<BTreeMap<String, Vec<BlockLocation>>> {
             let name = program.name.label();
             let blocks = program.blocks.iter().map(|block| BlockLocation {
                 program: name.clone(),
-                line: sources.place(block.span).line,
+                line: sources.line_column(block.span).line,
                 block: sources.text(block.span).trim().to_owned(),
                 calls: Vec::new(),
             });

@@ -52,7 +52,7 @@ impl Request {
     pub fn new(name: impl Into<String>, bytes: impl Into<Bytes>, machine: Machine) -> Self {
         let mut settings =
             Settings { axes: machine.axes.clone(), increment: machine.increment, ..Settings::default() };
-        settings.become_dialect(machine.dialect);
+        settings.apply_dialect(machine.dialect);
         Self {
             name: name.into(),
             bytes: bytes.into(),
@@ -109,20 +109,20 @@ pub fn run_observed<S: EventSink>(
     if memory.programs().is_empty() {
         return Err(SessionError::NoProgram { name: request.name.clone() });
     }
-    if let Some(second) = memory.refused().next() {
-        let line = memory.sources().place(second.span).line;
+    if let Some(second) = memory.duplicates().next() {
+        let line = memory.sources().line_column(second.span).line;
         return Err(SessionError::Twice { name: request.name.clone(), line, program: second.label() });
     }
     let mut control = Control::new(memory, request.settings.clone());
     for (number, value) in
         presets(&request.machine, &request.settings).chain(request.variables.iter().copied())
     {
-        control.set(number, value).map_err(|alarm| SessionError::Variable { number, alarm })?;
+        control.set_variable(number, value).map_err(|alarm| SessionError::Variable { number, alarm })?;
     }
     if let Some(progress) = &request.progress {
-        control.show_progress(Arc::clone(progress));
+        control.set_progress(Arc::clone(progress));
     }
-    let outcome = control.run_watched(request.limits, library, sink, watcher);
+    let outcome = control.run_observed(request.limits, library, sink, watcher);
     Ok(Run { control, outcome })
 }
 
@@ -280,7 +280,9 @@ impl Run {
                     | Note::BlockSkip { .. }
             );
             let severity = if meant { Severity::Note } else { Severity::Warning };
-            Diagnostic::new(severity, code, message).at(Backtrace { block, calls: None }).help(help)
+            Diagnostic::new(severity, code, message)
+                .with_backtrace(Backtrace { block, calls: None })
+                .help(help)
         })
     }
 
@@ -291,7 +293,7 @@ impl Run {
             Outcome::Alarm(stopped) => {
                 let row = stopped.alarm.row();
                 let mut finding = Diagnostic::new(Severity::Alarm, row.code.to_string(), row.message);
-                finding.place = Some(stopped.place.clone());
+                finding.backtrace = Some(stopped.backtrace.clone());
                 finding.span = Some(stopped.span);
                 finding.help = remedy(&stopped.alarm, stopped.span, self.control.memory().sources()).or_else(
                     || match row.code {
@@ -311,11 +313,13 @@ impl Run {
             let (blocks, moves) = (self.control.blocks(), self.control.moves());
             if self.control.is_cancelled() {
                 let message = format!("the run was interrupted after {blocks} blocks and {moves} moves");
-                let finding = Diagnostic::new(Severity::Alarm, "limit", message).at(self.control.place());
+                let finding = Diagnostic::new(Severity::Alarm, "limit", message)
+                    .with_backtrace(self.control.backtrace());
                 return finding.help("results cover the blocks executed so far");
             }
             let message = format!("the program has not ended after {blocks} blocks and {moves} moves");
-            let finding = Diagnostic::new(Severity::Alarm, "limit", message).at(self.control.place());
+            let finding =
+                Diagnostic::new(Severity::Alarm, "limit", message).with_backtrace(self.control.backtrace());
             return finding.help("check for a loop that never ends; --max-blocks raises the limit");
         };
         let ((program, from), (other, to)) = (self.locate(first), self.locate(last));
@@ -323,7 +327,8 @@ impl Run {
         let message = format!(
             "the program never ends: the blocks from line {from} of {program} to {to} repeat without change"
         );
-        let finding = Diagnostic::new(Severity::Alarm, "limit", message).at(self.control.place());
+        let finding =
+            Diagnostic::new(Severity::Alarm, "limit", message).with_backtrace(self.control.backtrace());
         if let Some(why) = endless_cause::unchanged_counter(&self.control, first, last) {
             return finding
                 .note(why)

@@ -37,7 +37,7 @@ pub(super) fn other_offsets<'r>(
     made: &'r str,
 ) -> impl Iterator<Item = Diagnostic> + 'r {
     let unset = run.control.unset_work_systems().iter();
-    unset.map(move |(system, place)| finding(*system, machine, made).at(place.clone()))
+    unset.map(move |(system, place)| finding(*system, machine, made).with_backtrace(place.clone()))
 }
 
 fn finding(system: WorkSystem, machine: &Machine, made: &str) -> Diagnostic {

@@ -20,7 +20,7 @@ impl<'r> Places<'r> {
 
     pub(super) fn locate(&self, span: Span) -> (String, u32) {
         let memory = self.run.control.memory();
-        let line = memory.sources().place(span).line;
+        let line = memory.sources().line_column(span).line;
         let Some(program) = memory.program_at(span) else {
             return (memory.sources().get(span.source).name.clone(), line);
         };

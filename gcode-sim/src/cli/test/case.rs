@@ -147,7 +147,7 @@ impl Case {
 
 /// Where the run was when it had no end.
 fn cut_off(revision: &Revision) -> UsageError {
-    let place = revision.stopped().find_map(|finding| finding.place.as_ref());
+    let place = revision.stopped().find_map(|finding| finding.backtrace.as_ref());
     let place = place.map(|place| BlockLocation::of(&revision.simulation.run, place));
     let place =
         place.map(|BlockLocation { program, line, block, .. }| format!(" at {program}:{line} {block}"));
@@ -161,7 +161,7 @@ fn fails(answer: verify::Answer, findings: &[Diagnostic], run: &Run) -> Option<F
         return None;
     }
     let first = findings.iter().find(|finding| Severity::Error <= finding.severity);
-    let place = first.and_then(|first| Some(BlockLocation::of(run, first.place.as_ref()?)));
+    let place = first.and_then(|first| Some(BlockLocation::of(run, first.backtrace.as_ref()?)));
     let (code, message) = first
         .map_or(("verdict", "verification failed"), |first| (first.code.as_str(), first.message.as_str()));
     Some(FirstFailure { code: code.to_owned(), message: message.to_owned(), place })

@@ -5,7 +5,7 @@ use crate::cli::{UsageError, input};
 use gcode_lang::control::Settings;
 use gcode_lang::program::Memory;
 use gcode_lang::syntax::ast::ProgramName;
-use gcode_lint::{CalledAs, called};
+use gcode_lint::{CalledProgramName, called};
 
 /// `main.nc`, the only program, or the only one that no other calls: where a main program stands with its macros.
 pub(super) fn of(folder: &Path, programs: &[PathBuf]) -> Result<PathBuf, UsageError> {
@@ -36,15 +36,15 @@ fn uncalled(programs: &[PathBuf]) -> Result<Vec<&PathBuf>, UsageError> {
     for path in programs {
         let mut memory = Memory::default();
         memory.load(path.display().to_string(), input::bytes(path)?);
-        let calls: Vec<CalledAs> =
-            memory.ids().flat_map(|id| called(memory.lowered(id), &settings)).collect();
+        let calls: Vec<CalledProgramName> =
+            memory.ids().flat_map(|id| called(memory.lower_program(id), &settings)).collect();
         let names: Vec<ProgramName> = memory.programs().iter().map(|p| p.name.clone()).collect();
         files.push((path, names, calls));
     }
-    let is_called = |names: &[ProgramName], call: &CalledAs| match call {
-        CalledAs::Number(number) => names.contains(&ProgramName::Number(*number)),
-        CalledAs::Name(name) => names.contains(&ProgramName::of(name.clone())),
-        CalledAs::Computed | CalledAs::Nothing => false,
+    let is_called = |names: &[ProgramName], call: &CalledProgramName| match call {
+        CalledProgramName::Number(number) => names.contains(&ProgramName::Number(*number)),
+        CalledProgramName::Name(name) => names.contains(&ProgramName::of(name.clone())),
+        CalledProgramName::Computed | CalledProgramName::Missing => false,
     };
     let from_others = |path: &PathBuf, names: &[ProgramName]| {
         let others = files.iter().filter(|(other, ..)| *other != path);

@@ -51,7 +51,7 @@ impl Lines {
     }
 
     pub(super) fn of_span(&self, run: &Run, span: Span) -> String {
-        self.anchor(span.source, run.control.memory().sources().place(span).line)
+        self.anchor(span.source, run.control.memory().sources().line_column(span).line)
     }
 
     /// The line that a place means, and whose text holds the block: two files without an O number are both `MAIN`.

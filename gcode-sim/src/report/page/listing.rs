@@ -53,15 +53,16 @@ fn executed<'a>(page: &Page<'_>, side: &Side<'a>) -> ExecutedLines<'a> {
     let sources = run.control.memory().sources();
     let mut blocks: BTreeMap<(SourceId, u32), Vec<&Executed>> = BTreeMap::new();
     for executed in side.seen.trace.blocks() {
-        let line = sources.place(executed.block).line;
+        let line = sources.line_column(executed.block).line;
         blocks.entry((executed.block.source, line)).or_default().push(executed);
     }
     let holes = side.seen.revision.simulation.extracted.holes.iter().map(|hole| &hole.backtrace);
     let findings = &side.seen.revision.simulation.extracted.findings;
-    let places = holes.chain(findings.iter().filter_map(|finding| finding.place.as_ref()));
-    let spans = places
-        .flat_map(|place| std::iter::once(place.block).chain(place.calls.as_ref().map(|call| call.from)));
-    let mut wanted: BTreeSet<_> = spans.map(|span| (span.source, sources.place(span).line)).collect();
+    let places = holes.chain(findings.iter().filter_map(|finding| finding.backtrace.as_ref()));
+    let spans = places.flat_map(|place| {
+        std::iter::once(place.block).chain(place.calls.as_ref().map(|call| call.calling_block))
+    });
+    let mut wanted: BTreeSet<_> = spans.map(|span| (span.source, sources.line_column(span).line)).collect();
     let mut marked: BTreeMap<(SourceId, u32), (&str, u64)> = BTreeMap::new();
     for stop in stops(page, side) {
         if let (Some(mark), Some(line)) = (stop.mark, side.lines.of_place(stop.place)) {

@@ -46,7 +46,7 @@ fn findings(side: &Side<'_>, sides: &[Side<'_>]) -> Markup {
     let all = findings_of(side);
     let other = sides.iter().find(|other| other.word != side.word);
     let key = |side: &Side<'_>, finding: &Diagnostic| {
-        let place = finding.place.as_ref();
+        let place = finding.backtrace.as_ref();
         let block = place.map(|place| BlockLocation::of(&side.seen.revision.simulation.run, place).block);
         (finding.code.clone(), finding.message.clone(), block)
     };
@@ -61,7 +61,7 @@ fn findings(side: &Side<'_>, sides: &[Side<'_>]) -> Markup {
     let one = |finding: &Diagnostic| {
         html! {
             (shown(&finding.message)) (mark(finding))
-            @if let Some(place) = &finding.place {
+            @if let Some(place) = &finding.backtrace {
                 div.place { (chain(&BlockLocation::of(&side.seen.revision.simulation.run, place), side.lines)) }
             }
         }
@@ -122,7 +122,7 @@ fn listed(side: &Side<'_>, known: &[Stop<'_>]) -> Markup {
                         }
                     }
                     " " (shown(&stop.text))
-                    @for (number, number_value) in &stop.named { ", #" (number) " = " (value(*number_value)) }
+                    @for (number, number_value) in &stop.variables { ", #" (number) " = " (value(*number_value)) }
                     @if let Some(stop) = known.get(number) {
                         @if let Some(mark) = stop.mark { " " strong.mark { (mark) } }
                         div.place { (chain(stop.place, side.lines)) }

@@ -81,7 +81,7 @@ pub(super) struct HoleTableRow {
 fn made_by(side: &Side<'_>, found: &DrilledHole) -> Cell {
     let run = &side.seen.revision.simulation.run;
     let mut links = Vec::new();
-    let calls = found.backtrace.calls.as_ref().map(|call| call.from);
+    let calls = found.backtrace.calls.as_ref().map(|call| call.calling_block);
     for span in std::iter::once(found.backtrace.block).chain(calls) {
         let (program, line) = run.locate(span);
         links.push((side.lines.of_span(run, span), format!("{}:{line}", shown(&program))));

@@ -1,6 +1,6 @@
 //! The way of the tool's centre round a corner: from the parallel of one segment to the parallel of the next.
-use super::crossing::{Curve, nearest};
-use super::{Point, SAME_DIRECTION, Segment, cross, left};
+use super::crossing::{Curve, nearest_crossing};
+use super::{Point, SAME_DIRECTION, Segment, cross, left_normal};
 
 /// Inside a corner the two parallels don't meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -8,7 +8,7 @@ pub(crate) struct NoCrossing;
 
 /// Whether the tool goes round the outside of a corner, at a distance to the left.
 pub(crate) fn is_outside(a: &Segment, b: &Segment, distance: f64) -> bool {
-    let (before, after) = (a.arrives(), b.leaves());
+    let (before, after) = (a.end_direction(), b.start_direction());
     let turn = cross(before, after);
     if turn.abs() < SAME_DIRECTION { before.dot(after) < 0.0 } else { turn * distance <= 0.0 }
 }
@@ -19,18 +19,23 @@ pub(crate) fn is_outside(a: &Segment, b: &Segment, distance: f64) -> bool {
 /// Outside, straight lines are drawn on to where they meet; where the corner is sharper than 90° they go on by the
 /// radius and a straight line joins them (operator's manual, tool movement in the offset mode: at arcs the tangent
 /// takes the place of the line). Inside, the parallels meet.
-pub(crate) fn corner(a: &Segment, b: &Segment, before: f64, after: f64) -> Result<Vec<Point>, NoCrossing> {
+pub(crate) fn corner_points(
+    a: &Segment,
+    b: &Segment,
+    before: f64,
+    after: f64,
+) -> Result<Vec<Point>, NoCrossing> {
     if before * after < 0.0 {
-        return Ok(other_side(a, b, before, after));
+        return Ok(side_change_points(a, b, before, after));
     }
-    let (arriving, leaving) = (a.arrives(), b.leaves());
-    let (end, start) = (a.beside_end(before), b.beside_start(after));
+    let (arriving, leaving) = (a.end_direction(), b.start_direction());
+    let (end, start) = (a.parallel_end(before), b.parallel_start(after));
     let same = cross(arriving, leaving).abs() < SAME_DIRECTION && arriving.dot(leaving) > 0.0;
     if same {
         return Ok(vec![end]);
     }
     if !is_outside(a, b, before) {
-        let found = nearest(a.curve_at_end(before), b.curve_at_start(after), a.to());
+        let found = nearest_crossing(a.curve_at_end(before), b.curve_at_start(after), a.end());
         return found.map(|point| vec![point]).ok_or(NoCrossing);
     }
     let mut points = Vec::with_capacity(4);
@@ -39,7 +44,7 @@ pub(crate) fn corner(a: &Segment, b: &Segment, before: f64, after: f64) -> Resul
     }
     let cosine = arriving.dot(leaving);
     if cosine >= 0.0 {
-        points.push(a.to() + left(arriving + leaving) * (before / (1.0 + cosine)));
+        points.push(a.end() + left_normal(arriving + leaving) * (before / (1.0 + cosine)));
     } else {
         let radius = before.abs();
         points.push(end + arriving * radius);
@@ -53,11 +58,11 @@ pub(crate) fn corner(a: &Segment, b: &Segment, before: f64, after: f64) -> Resul
 
 /// The tool changes sides: by way of where the parallels meet, straight lines drawn on, unless that would reverse a
 /// segment or lengthen an arc; then from beside the end of one to beside the start of the other.
-fn other_side(a: &Segment, b: &Segment, before: f64, after: f64) -> Vec<Point> {
-    let (end, start) = (a.beside_end(before), b.beside_start(after));
-    let meets = nearest(a.curve_at_end(before), b.curve_at_start(after), a.to()).filter(|point| {
-        let runs = !a.is_reversed(a.beside_start(before), *point, before)
-            && !b.is_reversed(*point, b.beside_end(after), after);
+fn side_change_points(a: &Segment, b: &Segment, before: f64, after: f64) -> Vec<Point> {
+    let (end, start) = (a.parallel_end(before), b.parallel_start(after));
+    let meets = nearest_crossing(a.curve_at_end(before), b.curve_at_start(after), a.end()).filter(|point| {
+        let runs = !a.is_reversed(a.parallel_start(before), *point, before)
+            && !b.is_reversed(*point, b.parallel_end(after), after);
         let on_arcs = (!a.is_arc() || !a.is_reversed(*point, end, before))
             && (!b.is_arc() || !b.is_reversed(start, *point, after));
         runs && on_arcs
@@ -66,10 +71,10 @@ fn other_side(a: &Segment, b: &Segment, before: f64, after: f64) -> Vec<Point> {
 }
 
 /// Where `a`'s parallel meets the parallel of a straight line from `a`'s end in a direction: G40 with I J K.
-pub(crate) fn towards(a: &Segment, direction: Point, distance: f64) -> Point {
+pub(crate) fn wall_corner(a: &Segment, direction: Point, distance: f64) -> Point {
     let direction = direction.normalize();
-    let along = Curve::Line { point: a.to() + left(direction) * distance, direction };
-    nearest(a.curve_at_end(distance), along, a.to()).unwrap_or_else(|| a.beside_end(distance))
+    let along = Curve::Line { point: a.end() + left_normal(direction) * distance, direction };
+    nearest_crossing(a.curve_at_end(distance), along, a.end()).unwrap_or_else(|| a.parallel_end(distance))
 }
 
 #[cfg(test)]
@@ -91,8 +96,8 @@ mod tests {
     #[test]
     fn a_right_angle_has_one_point_on_either_side() {
         let (east, north) = (line((0.0, 0.0), (20.0, 0.0)), line((20.0, 0.0), (20.0, 20.0)));
-        close(&corner(&east, &north, 5.0, 5.0).unwrap(), &[(15.0, 5.0)]);
-        close(&corner(&east, &north, -5.0, -5.0).unwrap(), &[(25.0, -5.0)]);
+        close(&corner_points(&east, &north, 5.0, 5.0).unwrap(), &[(15.0, 5.0)]);
+        close(&corner_points(&east, &north, -5.0, -5.0).unwrap(), &[(25.0, -5.0)]);
     }
 
     #[test]
@@ -101,7 +106,7 @@ mod tests {
         let (east, back) = (line((0.0, 0.0), (20.0, 0.0)), line((20.0, 0.0), (0.0, 20.0)));
         let half = 0.5_f64.sqrt();
         let start = (20.0 + 5.0 * half + 5.0 * half, 5.0 * half - 5.0 * half);
-        close(&corner(&east, &back, -5.0, -5.0).unwrap(), &[(25.0, -5.0), start]);
+        close(&corner_points(&east, &back, -5.0, -5.0).unwrap(), &[(25.0, -5.0), start]);
     }
 
     #[test]
@@ -110,7 +115,7 @@ mod tests {
         let east = line((0.0, 0.0), (20.0, 0.0));
         let (from, to, centre) = (Point::new(20.0, 0.0), Point::new(10.0, 10.0), Point::new(10.0, 0.0));
         let quarter = Segment::Arc { from, to, centre, sweep: Deg(90.0) };
-        close(&corner(&east, &quarter, -5.0, -5.0).unwrap(), &[(25.0, -5.0), (25.0, 0.0)]);
+        close(&corner_points(&east, &quarter, -5.0, -5.0).unwrap(), &[(25.0, -5.0), (25.0, 0.0)]);
     }
 
     #[test]
@@ -119,21 +124,21 @@ mod tests {
         let east = line((0.0, 0.0), (20.0, 0.0));
         let (from, centre) = (Point::new(20.0, 0.0), Point::new(18.0, 0.0));
         let half = Segment::Arc { from, to: Point::new(16.0, 0.0), centre, sweep: Deg(180.0) };
-        assert_eq!(corner(&east, &half, 1.9, 1.9), Err(NoCrossing));
-        assert!(corner(&east, &half, 0.5, 0.5).is_ok());
+        assert_eq!(corner_points(&east, &half, 1.9, 1.9), Err(NoCrossing));
+        assert!(corner_points(&east, &half, 0.5, 0.5).is_ok());
     }
 
     #[test]
     fn the_side_changes_where_the_parallels_meet_or_across_the_path() {
         let (east, on) = (line((0.0, 0.0), (20.0, 0.0)), line((20.0, 0.0), (40.0, 0.0)));
-        close(&corner(&east, &on, 5.0, -5.0).unwrap(), &[(20.0, 5.0), (20.0, -5.0)]);
+        close(&corner_points(&east, &on, 5.0, -5.0).unwrap(), &[(20.0, 5.0), (20.0, -5.0)]);
         // North after east, from the left to the right: the parallels y = 5 and x = 25.
         let north = line((20.0, 0.0), (20.0, 20.0));
-        close(&corner(&east, &north, 5.0, -5.0).unwrap(), &[(25.0, 5.0)]);
+        close(&corner_points(&east, &north, 5.0, -5.0).unwrap(), &[(25.0, 5.0)]);
         // Drawn back to there a line of 4 would be reversed.
         let south = line((20.0, 0.0), (20.0, -20.0));
         let short = line((16.0, 0.0), (20.0, 0.0));
-        close(&corner(&east, &south, 5.0, -5.0).unwrap(), &[(15.0, 5.0)]);
-        close(&corner(&short, &south, 5.0, -5.0).unwrap(), &[(20.0, 5.0), (15.0, 0.0)]);
+        close(&corner_points(&east, &south, 5.0, -5.0).unwrap(), &[(15.0, 5.0)]);
+        close(&corner_points(&short, &south, 5.0, -5.0).unwrap(), &[(20.0, 5.0), (15.0, 0.0)]);
     }
 }

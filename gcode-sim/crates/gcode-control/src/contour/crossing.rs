@@ -1,5 +1,5 @@
 //! Where lines and circles cross.
-use super::{Point, cross, left};
+use super::{Point, cross, left_normal};
 
 /// A whole line or a whole circle.
 #[derive(Clone, Copy, Debug)]
@@ -16,10 +16,10 @@ pub(super) enum Curve {
 }
 
 /// What is missing to a crossing and is still taken for rounding: the two only touch.
-const TOUCHES: f64 = 1e-9;
+const TOUCH_TOLERANCE: f64 = 1e-9;
 
 /// The crossing nearest to a point, if there is one.
-pub(super) fn nearest(a: Curve, b: Curve, to: Point) -> Option<Point> {
+pub(super) fn nearest_crossing(a: Curve, b: Curve, to: Point) -> Option<Point> {
     let all = crossings(a, b);
     let distance = |p: &Point| (*p - to).norm();
     all.into_iter().flatten().min_by(|p, q| distance(p).total_cmp(&distance(q)))
@@ -37,25 +37,25 @@ fn crossings(a: Curve, b: Curve) -> [Option<Point>; 2] {
         (Curve::Line { point, direction }, Curve::Circle { centre, radius })
         | (Curve::Circle { centre, radius }, Curve::Line { point, direction }) => {
             let foot = point + direction * direction.dot(centre - point);
-            beside(foot, direction, radius, (foot - centre).norm())
+            chord_points(foot, direction, radius, (foot - centre).norm())
         }
         (Curve::Circle { centre, radius }, Curve::Circle { centre: other, radius: second }) => {
             let way = other - centre;
             let apart = way.norm();
-            if apart < TOUCHES {
+            if apart < TOUCH_TOLERANCE {
                 return [None, None];
             }
             let axis = way / apart;
             // The line through both crossings is this far from the first centre.
             let along = (apart * apart + radius * radius - second * second) / (2.0 * apart);
-            beside(centre + axis * along, left(axis), radius, along.abs())
+            chord_points(centre + axis * along, left_normal(axis), radius, along.abs())
         }
     }
 }
 
 /// The points of a circle on a line at `height` from its centre, `foot` being the centre's foot on the line.
-fn beside(foot: Point, direction: Point, radius: f64, height: f64) -> [Option<Point>; 2] {
-    if height > radius + TOUCHES {
+fn chord_points(foot: Point, direction: Point, radius: f64, height: f64) -> [Option<Point>; 2] {
+    if height > radius + TOUCH_TOLERANCE {
         return [None, None];
     }
     let half = ((radius - height) * (radius + height)).max(0.0).sqrt();
@@ -74,10 +74,10 @@ mod tests {
     fn three_four_five() {
         let circle = Curve::Circle { centre: point(0.0, 0.0), radius: 5.0 };
         let line = Curve::Line { point: point(3.0, -9.0), direction: point(0.0, 1.0) };
-        assert_eq!(nearest(circle, line, point(0.0, 9.0)), Some(point(3.0, 4.0)));
-        assert_eq!(nearest(line, circle, point(0.0, -9.0)), Some(point(3.0, -4.0)));
+        assert_eq!(nearest_crossing(circle, line, point(0.0, 9.0)), Some(point(3.0, 4.0)));
+        assert_eq!(nearest_crossing(line, circle, point(0.0, -9.0)), Some(point(3.0, -4.0)));
         let other = Curve::Circle { centre: point(6.0, 0.0), radius: 5.0 };
-        assert_eq!(nearest(circle, other, point(0.0, 9.0)), Some(point(3.0, 4.0)));
+        assert_eq!(nearest_crossing(circle, other, point(0.0, 9.0)), Some(point(3.0, 4.0)));
     }
 
     #[test]
@@ -85,7 +85,7 @@ mod tests {
         let circle = Curve::Circle { centre: point(0.0, 0.0), radius: 1.0 };
         let line = Curve::Line { point: point(2.0, 0.0), direction: point(0.0, 1.0) };
         let parallel = Curve::Line { point: point(3.0, 0.0), direction: point(0.0, -1.0) };
-        assert_eq!(nearest(circle, line, point(0.0, 0.0)), None);
-        assert_eq!(nearest(line, parallel, point(0.0, 0.0)), None);
+        assert_eq!(nearest_crossing(circle, line, point(0.0, 0.0)), None);
+        assert_eq!(nearest_crossing(line, parallel, point(0.0, 0.0)), None);
     }
 }

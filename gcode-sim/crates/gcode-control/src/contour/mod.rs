@@ -10,13 +10,13 @@ mod point;
 mod segment;
 
 pub(crate) use blend::Blend;
-pub(crate) use corner::{corner, is_outside, towards};
+pub(crate) use corner::{corner_points, is_outside, wall_corner};
 pub(crate) use segment::Segment;
 
 pub(crate) use point::Point;
 
 /// A quarter turn counterclockwise.
-fn left(direction: Point) -> Point {
+fn left_normal(direction: Point) -> Point {
     Point::new(-direction.y, direction.x)
 }
 

@@ -1,10 +1,10 @@
 //! Straight lines and arcs, and the points beside them.
 use super::crossing::Curve;
-use super::{Point, cross, left};
+use super::{Point, cross, left_normal};
 use gcode_lang::units::Deg;
 
 /// Less than this is no length.
-const NOTHING: f64 = 1e-9;
+const MIN_LENGTH: f64 = 1e-9;
 
 /// A piece of a contour. An arc's end may be a little off its radius, as an arc's end may be on a control.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,13 +23,13 @@ pub(crate) enum Segment {
 }
 
 impl Segment {
-    pub(crate) fn from(&self) -> Point {
+    pub(crate) fn start(&self) -> Point {
         match *self {
             Self::Line { from, .. } | Self::Arc { from, .. } => from,
         }
     }
 
-    pub(crate) fn to(&self) -> Point {
+    pub(crate) fn end(&self) -> Point {
         match *self {
             Self::Line { to, .. } | Self::Arc { to, .. } => to,
         }
@@ -40,40 +40,40 @@ impl Segment {
     }
 
     /// The direction in which it begins, of length 1.
-    pub(crate) fn leaves(&self) -> Point {
-        self.direction(self.from())
+    pub(crate) fn start_direction(&self) -> Point {
+        self.direction(self.start())
     }
 
     /// The direction in which it ends.
-    pub(crate) fn arrives(&self) -> Point {
-        self.direction(self.to())
+    pub(crate) fn end_direction(&self) -> Point {
+        self.direction(self.end())
     }
 
     fn direction(&self, at: Point) -> Point {
         match *self {
             Self::Line { from, to } => (to - from).normalize(),
-            Self::Arc { centre, sweep, .. } => left(at - centre).normalize() * sweep.0.signum(),
+            Self::Arc { centre, sweep, .. } => left_normal(at - centre).normalize() * sweep.0.signum(),
         }
     }
 
     /// The point at a distance to the left of where it begins.
-    pub(crate) fn beside_start(&self, distance: f64) -> Point {
-        self.from() + left(self.leaves()) * distance
+    pub(crate) fn parallel_start(&self, distance: f64) -> Point {
+        self.start() + left_normal(self.start_direction()) * distance
     }
 
     /// The point at a distance to the left of where it ends.
-    pub(crate) fn beside_end(&self, distance: f64) -> Point {
-        self.to() + left(self.arrives()) * distance
+    pub(crate) fn parallel_end(&self, distance: f64) -> Point {
+        self.end() + left_normal(self.end_direction()) * distance
     }
 
     /// Whether the arc is too small for a parallel at this distance.
     pub(crate) fn is_too_small(&self, distance: f64) -> bool {
         let Self::Arc { from, to, centre, sweep } = *self else { return false };
-        [from, to].into_iter().any(|at| parallel_radius(centre, sweep, at, distance) < -NOTHING)
+        [from, to].into_iter().any(|at| parallel_radius(centre, sweep, at, distance) < -MIN_LENGTH)
     }
 
     /// Whether a point lies on the parallel of an arc where the arc begins; all points do for a line.
-    pub(crate) fn parallel_begins_at(&self, point: Point, distance: f64) -> bool {
+    pub(crate) fn is_parallel_start(&self, point: Point, distance: f64) -> bool {
         match *self {
             Self::Line { .. } => true,
             Self::Arc { centre, from, sweep, .. } => {
@@ -85,18 +85,18 @@ impl Segment {
 
     /// The whole line or circle that the parallel is a part of, where the segment begins.
     pub(super) fn curve_at_start(&self, distance: f64) -> Curve {
-        self.curve(self.from(), distance)
+        self.curve(self.start(), distance)
     }
 
     pub(super) fn curve_at_end(&self, distance: f64) -> Curve {
-        self.curve(self.to(), distance)
+        self.curve(self.end(), distance)
     }
 
     fn curve(&self, at: Point, distance: f64) -> Curve {
         match *self {
             Self::Line { .. } => {
-                let direction = self.leaves();
-                Curve::Line { point: at + left(direction) * distance, direction }
+                let direction = self.start_direction();
+                Curve::Line { point: at + left_normal(direction) * distance, direction }
             }
             // No arc that is followed is smaller than that by more than rounding: see [`Segment::is_too_small`].
             Self::Arc { centre, sweep, .. } => {
@@ -109,7 +109,7 @@ impl Segment {
     /// Whether the way from `start` to `end` runs against the segment, of which it is to be the parallel.
     pub(crate) fn is_reversed(&self, start: Point, end: Point, distance: f64) -> bool {
         match *self {
-            Self::Line { .. } => self.leaves().dot(end - start) < -NOTHING,
+            Self::Line { .. } => self.start_direction().dot(end - start) < -MIN_LENGTH,
             Self::Arc { sweep, .. } => self.sweep_between(start, end, distance).0 * sweep.0.signum() < -1e-7,
         }
     }
@@ -119,7 +119,7 @@ impl Segment {
         let Self::Arc { centre, sweep, from, to } = *self else { return Deg::ZERO };
         let lost = |own: Point, new: Point| {
             // A parallel that is a point turns through the angle of its arc.
-            if parallel_radius(centre, sweep, own, distance) < NOTHING {
+            if parallel_radius(centre, sweep, own, distance) < MIN_LENGTH {
                 return 0.0;
             }
             let (own, new) = (own - centre, new - centre);
@@ -134,8 +134,8 @@ impl Segment {
     pub(super) fn ending_at(&self, end: Point) -> Option<Self> {
         match *self {
             Self::Line { from, to } => {
-                let along = self.leaves().dot(end - from);
-                (-NOTHING..=(to - from).norm() + NOTHING)
+                let along = self.start_direction().dot(end - from);
+                (-MIN_LENGTH..=(to - from).norm() + MIN_LENGTH)
                     .contains(&along)
                     .then_some(Self::Line { from, to: end })
             }
@@ -148,10 +148,10 @@ impl Segment {
 
     /// The segment from a point on it.
     pub(super) fn beginning_at(&self, start: Point) -> Option<Self> {
-        self.turned_round().ending_at(start).map(|segment| segment.turned_round())
+        self.reversed().ending_at(start).map(|segment| segment.reversed())
     }
 
-    fn turned_round(&self) -> Self {
+    fn reversed(&self) -> Self {
         match *self {
             Self::Line { from, to } => Self::Line { from: to, to: from },
             Self::Arc { from, to, centre, sweep } => Self::Arc { from: to, to: from, centre, sweep: -sweep },
@@ -161,8 +161,10 @@ impl Segment {
     /// Whether it leads anywhere.
     pub(crate) fn has_length(&self) -> bool {
         match *self {
-            Self::Line { from, to } => (to - from).norm() > NOTHING,
-            Self::Arc { from, centre, sweep, .. } => (from - centre).norm() * sweep.abs().to_rad() > NOTHING,
+            Self::Line { from, to } => (to - from).norm() > MIN_LENGTH,
+            Self::Arc { from, centre, sweep, .. } => {
+                (from - centre).norm() * sweep.abs().to_rad() > MIN_LENGTH
+            }
         }
     }
 }
@@ -184,10 +186,10 @@ mod tests {
 
     #[test]
     fn left_of_a_counterclockwise_arc_is_inside() {
-        assert!((quarter(90.0).beside_start(3.0) - Point::new(7.0, 0.0)).norm() < 1e-12);
-        assert!((quarter(90.0).beside_end(3.0) - Point::new(0.0, 7.0)).norm() < 1e-12);
-        assert!((quarter(-90.0).beside_start(3.0) - Point::new(13.0, 0.0)).norm() < 1e-12);
-        assert!((quarter(-90.0).beside_end(-3.0) - Point::new(0.0, -7.0)).norm() < 1e-12);
+        assert!((quarter(90.0).parallel_start(3.0) - Point::new(7.0, 0.0)).norm() < 1e-12);
+        assert!((quarter(90.0).parallel_end(3.0) - Point::new(0.0, 7.0)).norm() < 1e-12);
+        assert!((quarter(-90.0).parallel_start(3.0) - Point::new(13.0, 0.0)).norm() < 1e-12);
+        assert!((quarter(-90.0).parallel_end(-3.0) - Point::new(0.0, -7.0)).norm() < 1e-12);
     }
 
     #[test]
@@ -210,7 +212,7 @@ mod tests {
     fn a_whole_circle_stays_whole() {
         let (from, centre) = (Point::new(10.0, 0.0), Point::zeros());
         let circle = Segment::Arc { from, to: from, centre, sweep: Deg(-360.0) };
-        let at = circle.beside_start(-4.0);
+        let at = circle.parallel_start(-4.0);
         assert!((circle.sweep_between(at, at, -4.0).0 + 360.0).abs() < 1e-9);
     }
 }

@@ -7,7 +7,7 @@ use super::path_move::PendingItem;
 use super::{Lookahead, LookaheadRequest, PathMove};
 use crate::Executor;
 use crate::contour::{self, Point, Segment};
-use crate::eval::Checked;
+use crate::evaluation::ExecResult;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{Backtrace, EventKind, PlanarArc};
 use gcode_lang::units::{Deg, MmPerMin};
@@ -15,19 +15,19 @@ use gcode_lang::units::{Deg, MmPerMin};
 /// A move whose end isn't known yet.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct PendingMove {
-    pub(super) piece: PathMove,
+    pub(super) path_move: PathMove,
     segment: Segment,
     /// The points it begins with: where the centre stands, and the rest of the way round the corner.
-    starts: Vec<Point>,
+    start_points: Vec<Point>,
     /// Of the centre to the left of the path.
     distance: f64,
-    start_up: bool,
+    is_start_up: bool,
 }
 
 /// G39 without a direction: an arc at the corner, up to beside the next move.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct PendingCornerArc {
-    place: Backtrace,
+    backtrace: Backtrace,
     rate: MmPerMin,
     distance: f64,
 }
@@ -35,118 +35,131 @@ pub(super) struct PendingCornerArc {
 /// G39: its direction, if it has one, and its feed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct CornerArc {
-    pub(super) towards: Option<Point>,
+    pub(super) direction: Option<Point>,
     pub(super) rate: MmPerMin,
 }
 
 impl PendingMove {
     fn beside_end(&self) -> Point {
-        self.segment.beside_end(self.distance)
+        self.segment.parallel_end(self.distance)
     }
 }
 
 impl Lookahead {
     /// Takes the next move of the shaped path.
-    pub(super) fn drive(
+    pub(super) fn compensate(
         &mut self,
         core: &Executor,
         piece: PathMove,
         order: &LookaheadRequest,
-    ) -> Checked<()> {
+    ) -> ExecResult<()> {
         let Some(segment) = piece.segment else {
-            self.hold_behind(core, PendingItem::Move(piece));
+            self.defer_behind_move(core, PendingItem::Move(piece));
             return Ok(());
         };
-        let restated = std::mem::take(&mut self.restated) || order.restated;
+        let restated = std::mem::take(&mut self.is_restated) || order.is_restated;
         self.blocks_without_move = 0;
-        let block = piece.place.block;
-        if segment.is_arc() && (self.on != order.distance.is_some() || !self.on && self.is_offset()) {
-            return Err(Alarm::ArcAtStartOrEnd.at(block));
+        let block = piece.backtrace.block;
+        if segment.is_arc()
+            && (self.is_compensating != order.distance.is_some() || !self.is_compensating && self.is_offset())
+        {
+            return Err(Alarm::ArcAtStartOrEnd.located_at(block));
         }
         let Some(distance) = order.distance else {
-            return self.run_out(core, &piece, segment, order);
+            return self.cancel_compensation(core, &piece, segment, order);
         };
         if segment.is_too_small(distance) {
-            return Err(Alarm::Interference.at(block));
+            return Err(Alarm::Interference.located_at(block));
         }
-        let start_up = !std::mem::replace(&mut self.on, true);
-        let near = self.open.as_ref().map_or(distance, |open| open.distance.abs().copysign(distance));
-        let mut starts = match self.open.take() {
-            None => vec![self.point(&self.centre)],
+        let start_up = !std::mem::replace(&mut self.is_compensating, true);
+        let near = self.pending_move.as_ref().map_or(distance, |open| open.distance.abs().copysign(distance));
+        let mut starts = match self.pending_move.take() {
+            None => vec![self.plane_point(&self.tool_centre)],
             Some(open) => {
                 let ends = if restated {
                     vec![open.beside_end()]
-                } else if open.start_up && !(core.settings.start_up_b && outside(&open, &segment)) {
-                    vec![segment.beside_start(near)]
+                } else if open.is_start_up
+                    && !(core.settings.starts_up_by_type_b && is_outside_corner(&open, &segment))
+                {
+                    vec![segment.parallel_start(near)]
                 } else {
-                    let met = contour::corner(&open.segment, &segment, open.distance, near);
-                    met.map_err(|_| Alarm::NoIntersection.at(block))?
+                    let met = contour::corner_points(&open.segment, &segment, open.distance, near);
+                    met.map_err(|_| Alarm::NoIntersection.located_at(block))?
                 };
-                self.close(core, open, &ends)?
+                self.close_move(core, open, &ends)?
             }
         };
-        if let Some(rounding) = self.rounding.take() {
-            let end = segment.beside_start(distance);
-            self.tell_rounding(core, &rounding, segment.from(), end)?;
+        if let Some(rounding) = self.pending_corner_arc.take() {
+            let end = segment.parallel_start(distance);
+            self.emit_corner_arc(core, &rounding, segment.start(), end)?;
             starts = vec![end];
         }
-        let begins = starts.last().is_some_and(|start| segment.parallel_begins_at(*start, distance));
+        let begins = starts.last().is_some_and(|start| segment.is_parallel_start(*start, distance));
         if !begins {
             let what = "an arc that begins off its own parallel (a new D or G41, or blocks without a move)";
-            return Err(Alarm::NotSimulated { what: what.into() }.at(block));
+            return Err(Alarm::NotSimulated { what: what.into() }.located_at(block));
         }
-        self.set_offset(segment.beside_end(distance) - segment.to());
-        self.open = Some(PendingMove { piece, segment, starts, distance, start_up });
+        self.set_offset(segment.parallel_end(distance) - segment.end());
+        self.pending_move = Some(PendingMove {
+            path_move: piece,
+            segment,
+            start_points: starts,
+            distance,
+            is_start_up: start_up,
+        });
         Ok(())
     }
 
     /// A move without compensation: the one that cancels it, that takes up the vector of G40 alone, or any other.
-    fn run_out(
+    fn cancel_compensation(
         &mut self,
         core: &Executor,
         piece: &PathMove,
         segment: Segment,
         order: &LookaheadRequest,
-    ) -> Checked<()> {
-        if let Some(open) = self.open.take() {
-            let ends = match order.towards {
-                Some(direction) => vec![contour::towards(&open.segment, direction, open.distance)],
-                None if core.settings.start_up_b && !open.start_up && outside(&open, &segment) => {
-                    let met = contour::corner(&open.segment, &segment, open.distance, open.distance);
-                    met.map_err(|_| Alarm::NoIntersection.at(piece.place.block))?
+    ) -> ExecResult<()> {
+        if let Some(open) = self.pending_move.take() {
+            let ends = match order.wall_direction {
+                Some(direction) => vec![contour::wall_corner(&open.segment, direction, open.distance)],
+                None if core.settings.starts_up_by_type_b
+                    && !open.is_start_up
+                    && is_outside_corner(&open, &segment) =>
+                {
+                    let met = contour::corner_points(&open.segment, &segment, open.distance, open.distance);
+                    met.map_err(|_| Alarm::NoIntersection.located_at(piece.backtrace.block))?
                 }
                 None => vec![open.beside_end()],
             };
-            let rest = self.close(core, open, &ends)?;
-            self.tell_corner(core, piece, &rest);
+            let rest = self.close_move(core, open, &ends)?;
+            self.emit_corner(core, piece, &rest);
         }
-        if let Some(rounding) = self.rounding.take() {
+        if let Some(rounding) = self.pending_corner_arc.take() {
             let what = "G39 followed by the end of cutter compensation".into();
-            return Err(Alarm::NotSimulated { what }.at(rounding.place.block));
+            return Err(Alarm::NotSimulated { what }.located_at(rounding.backtrace.block));
         }
-        self.on = false;
+        self.is_compensating = false;
         self.set_offset(Point::zeros());
-        self.tell_along(core, piece, segment.to(), 0.0);
+        self.emit_along(core, piece, segment.end(), 0.0);
         Ok(())
     }
 
     /// A move of G28, G53 and the like: in the plane it takes the vector away, and the next move starts up anew.
-    pub(super) fn leave(&mut self, core: &Executor, piece: &PathMove) {
+    pub(super) fn suspend(&mut self, core: &Executor, piece: &PathMove) {
         if piece.segment.is_none() {
-            return self.tell_held(core, PendingItem::Move(piece.clone()));
+            return self.emit_pending(core, PendingItem::Move(piece.clone()));
         }
-        self.on = false;
+        self.is_compensating = false;
         self.set_offset(Point::zeros());
-        self.tell_straight(core, piece, piece.to());
+        self.emit_straight(core, piece, piece.end_position());
     }
 
     /// Ends the open move with the centre beside its end, as where nothing follows.
-    pub(super) fn settle(&mut self, core: &Executor) -> Checked<()> {
+    pub(super) fn close_pending_move(&mut self, core: &Executor) -> ExecResult<()> {
         self.blocks_without_move = 0;
-        if let Some(open) = self.open.take() {
+        if let Some(open) = self.pending_move.take() {
             let end = open.beside_end();
-            self.set_offset(end - open.segment.to());
-            self.close(core, open, &[end])?;
+            self.set_offset(end - open.segment.end());
+            self.close_move(core, open, &[end])?;
         }
         Ok(())
     }
@@ -154,88 +167,89 @@ impl Lookahead {
     /// Tells the open move, now that the points at its end are known, and what waited behind it. The answer is where
     /// the next move begins. A way against the programmed one would cut into the part (operator's manual,
     /// interference check).
-    fn close(&mut self, core: &Executor, open: PendingMove, ends: &[Point]) -> Checked<Vec<Point>> {
-        if let (Some(start), Some(end)) = (open.starts.last(), ends.first()) {
-            if !open.start_up && open.segment.is_reversed(*start, *end, open.distance) {
-                return Err(Alarm::Interference.at(open.piece.place.block));
+    fn close_move(&mut self, core: &Executor, open: PendingMove, ends: &[Point]) -> ExecResult<Vec<Point>> {
+        if let (Some(start), Some(end)) = (open.start_points.last(), ends.first()) {
+            if !open.is_start_up && open.segment.is_reversed(*start, *end, open.distance) {
+                return Err(Alarm::Interference.located_at(open.path_move.backtrace.block));
             }
-            self.tell_corner(core, &open.piece, &open.starts);
-            self.tell_along(core, &open.piece, *end, open.distance);
+            self.emit_corner(core, &open.path_move, &open.start_points);
+            self.emit_along(core, &open.path_move, *end, open.distance);
         }
-        for held in std::mem::take(&mut self.behind) {
-            self.tell_held(core, held);
+        for held in std::mem::take(&mut self.pending_items) {
+            self.emit_pending(core, held);
         }
         Ok(ends.to_vec())
     }
 
     /// The moves from point to point of a corner; the first is where the centre stands.
-    fn tell_corner(&mut self, core: &Executor, piece: &PathMove, points: &[Point]) {
+    fn emit_corner(&mut self, core: &Executor, piece: &PathMove, points: &[Point]) {
         for point in points.iter().skip(1) {
-            let to = self.with(self.centre, *point);
-            self.tell_straight(core, piece, to);
+            let to = self.with_plane_point(self.tool_centre, *point);
+            self.emit_straight(core, piece, to);
         }
     }
 
-    fn hold_behind(&mut self, core: &Executor, held: PendingItem) {
-        if self.open.is_some() {
-            self.behind.push(held);
+    fn defer_behind_move(&mut self, core: &Executor, held: PendingItem) {
+        if self.pending_move.is_some() {
+            self.pending_items.push(held);
         } else {
-            self.tell_held(core, held);
+            self.emit_pending(core, held);
         }
     }
 
     /// G39: round the corner to beside a direction at once, or to beside the next move when that is read.
-    pub(super) fn round(
+    pub(super) fn start_corner_arc(
         &mut self,
         core: &Executor,
         arc: &CornerArc,
         order: &LookaheadRequest,
-    ) -> Checked<()> {
-        self.settle(core)?;
+    ) -> ExecResult<()> {
+        self.close_pending_move(core)?;
         let Some(distance) = order.distance else {
             let what = "G39 without an offset of the cutter (D0)".into();
-            return Err(Alarm::NotSimulated { what }.at(order.place.block));
+            return Err(Alarm::NotSimulated { what }.located_at(order.backtrace.block));
         };
-        let rounding = PendingCornerArc { place: order.place.clone(), rate: arc.rate, distance };
-        let Some(direction) = arc.towards else {
-            self.rounding = Some(rounding);
+        let rounding = PendingCornerArc { backtrace: order.backtrace.clone(), rate: arc.rate, distance };
+        let Some(direction) = arc.direction else {
+            self.pending_corner_arc = Some(rounding);
             return Ok(());
         };
-        let corner = self.point(&self.at);
-        let end = Segment::Line { from: corner, to: corner + direction }.beside_start(distance);
-        self.tell_rounding(core, &rounding, corner, end)?;
+        let corner = self.plane_point(&self.programmed_position);
+        let end = Segment::Line { from: corner, to: corner + direction }.parallel_start(distance);
+        self.emit_corner_arc(core, &rounding, corner, end)?;
         self.set_offset(end - corner);
         Ok(())
     }
 
-    fn tell_rounding(
+    fn emit_corner_arc(
         &mut self,
         core: &Executor,
         rounding: &PendingCornerArc,
         corner: Point,
         end: Point,
-    ) -> Checked<()> {
-        let (from, to) = (self.point(&self.centre) - corner, end - corner);
+    ) -> ExecResult<()> {
+        let (from, to) = (self.plane_point(&self.tool_centre) - corner, end - corner);
         let turn = Deg::atan2(from.x * to.y - from.y * to.x, from.dot(to));
         // Round the outside of a corner the tool turns to the side that it isn't on.
         let outside = -rounding.distance.signum();
         let sweep = if turn.abs().0 > 180.0 - 1e-6 { Deg(180.0 * outside) } else { turn };
         if sweep.0 * outside < -1e-6 {
-            return Err(Alarm::Interference.at(rounding.place.block));
+            return Err(Alarm::Interference.located_at(rounding.backtrace.block));
         }
-        let to = self.with(self.centre, end);
+        let to = self.with_plane_point(self.tool_centre, end);
         let arc = PlanarArc { plane: self.plane, centre: (corner.x, corner.y), sweep };
-        let segment = Segment::Arc { from: self.point(&self.centre), to: end, centre: corner, sweep };
+        let segment =
+            Segment::Arc { from: self.plane_point(&self.tool_centre), to: end, centre: corner, sweep };
         let piece = PathMove {
             kind: EventKind::Arc { to, arc, rate: rounding.rate },
             segment: Some(segment),
-            place: rounding.place.clone(),
+            backtrace: rounding.backtrace.clone(),
         };
-        self.tell_along(core, &piece, end, 0.0);
+        self.emit_along(core, &piece, end, 0.0);
         Ok(())
     }
 }
 
-fn outside(open: &PendingMove, next: &Segment) -> bool {
+fn is_outside_corner(open: &PendingMove, next: &Segment) -> bool {
     contour::is_outside(&open.segment, next, open.distance)
 }

@@ -16,7 +16,7 @@ pub(super) use request::LookaheadRequest;
 use self::corner_words::PendingCorner;
 use self::cutter_compensation::{PendingCornerArc, PendingMove};
 use super::Executor;
-use super::eval::Checked;
+use super::evaluation::ExecResult;
 use crate::contour::Point;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{AxisIndex, Backtrace, EventKind, Position};
@@ -26,40 +26,40 @@ use gcode_lang::source::Span;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Lookahead {
     /// Where the programmed path has come to, in machine coordinates.
-    at: Position,
+    programmed_position: Position,
     /// Where the tool's centre has come to by what was told.
-    centre: Position,
+    tool_centre: Position,
     /// What the centre is beside the path after all that was read, as if nothing followed.
     offset: Position,
     plane: (AxisIndex, AxisIndex),
     /// The offset mode: a start-up move was read.
-    on: bool,
+    is_compensating: bool,
     /// G41 or G42 stood again in a block without a move: the centre goes to beside the end of the block before.
-    restated: bool,
+    is_restated: bool,
     /// Blocks without a move in the plane since the last one with such a move.
     blocks_without_move: usize,
-    corner: Option<PendingCorner>,
-    open: Option<PendingMove>,
+    pending_corner: Option<PendingCorner>,
+    pending_move: Option<PendingMove>,
     /// What waits behind the open move.
-    behind: Vec<PendingItem>,
-    rounding: Option<PendingCornerArc>,
+    pending_items: Vec<PendingItem>,
+    pending_corner_arc: Option<PendingCornerArc>,
     ready: Vec<ReadyEvent>,
 }
 
 impl Lookahead {
     /// Whether nothing waits and the tool's centre is on the path.
     pub(super) fn is_idle(&self) -> bool {
-        !self.on && self.corner.is_none() && !self.is_offset()
+        !self.is_compensating && self.pending_corner.is_none() && !self.is_offset()
     }
 
     /// The offset mode, or a vector that G40 alone has left.
     pub(super) fn is_offset(&self) -> bool {
-        self.on || self.offset != Position::default()
+        self.is_compensating || self.offset != Position::default()
     }
 
     /// The offset mode, in which corners are looked at.
     pub(super) fn is_on(&self) -> bool {
-        self.on
+        self.is_compensating
     }
 
     /// What the centre is beside the path, on an axis.
@@ -68,176 +68,176 @@ impl Lookahead {
     }
 
     /// Whether a move waits for the next.
-    pub(super) fn waits(&self) -> bool {
-        self.open.is_some() || self.corner.is_some()
+    pub(super) fn has_pending_move(&self) -> bool {
+        self.pending_move.is_some() || self.pending_corner.is_some()
     }
 
     /// What is to be told, and where it comes from.
-    pub(super) fn told(&self) -> impl Iterator<Item = (&EventKind, &Backtrace)> + '_ {
+    pub(super) fn ready_events(&self) -> impl Iterator<Item = (&EventKind, &Backtrace)> + '_ {
         self.ready.iter().map(|(kind, _, place)| (kind, place))
     }
 
     /// Lets something wait behind the move that waits.
-    pub(super) fn wait_behind(&mut self, kind: EventKind, place: Backtrace) {
+    pub(super) fn push_pending(&mut self, kind: EventKind, place: Backtrace) {
         let held = PendingItem::Other(kind, 0.0, place);
-        match &mut self.corner {
-            Some(corner) => corner.behind.push(held),
-            None => self.behind.push(held),
+        match &mut self.pending_corner {
+            Some(corner) => corner.pending_items.push(held),
+            None => self.pending_items.push(held),
         }
     }
 
     /// Begins where the tool stands, if nothing has been read ahead.
-    fn begin(&mut self, at: Position) {
+    fn start_at(&mut self, at: Position) {
         if self.is_idle() {
-            (self.at, self.centre) = (at, at);
+            (self.programmed_position, self.tool_centre) = (at, at);
         }
     }
 
     /// Takes a block's events, on the programmed path, and holds back what waits for the next move.
-    fn block(
+    fn process_block(
         &mut self,
         core: &Executor,
         order: &LookaheadRequest,
         events: &[(EventKind, f64)],
-    ) -> Checked<()> {
+    ) -> ExecResult<()> {
         self.plane = order.plane;
         if order.suspends_compensation {
-            self.no_corner(order)?;
-            self.settle(core)?;
+            self.check_no_corner(order)?;
+            self.close_pending_move(core)?;
         }
         if let Some(arc) = &order.corner_arc {
-            self.no_corner(order)?;
-            self.round(core, arc, order)?;
+            self.check_no_corner(order)?;
+            self.start_corner_arc(core, arc, order)?;
         }
         let mut moved = false;
         for (kind, seconds) in events {
-            let Some(piece) = PathMove::new(kind, self.at, order) else {
-                self.defer(core, PendingItem::Other(kind.clone(), *seconds, order.place.clone()));
+            let Some(piece) = PathMove::new(kind, self.programmed_position, order) else {
+                self.defer(core, PendingItem::Other(kind.clone(), *seconds, order.backtrace.clone()));
                 continue;
             };
-            self.at = piece.to();
+            self.programmed_position = piece.end_position();
             moved |= piece.segment.is_some();
             if order.suspends_compensation {
-                self.leave(core, &piece);
+                self.suspend(core, &piece);
             } else {
-                self.shape(core, piece, order)?;
+                self.process_corner(core, piece, order)?;
             }
         }
-        if order.blend.is_some() && self.corner.is_none() {
-            return Err(Alarm::CornerTooLarge.at(order.place.block));
+        if order.blend.is_some() && self.pending_corner.is_none() {
+            return Err(Alarm::CornerTooLarge.located_at(order.backtrace.block));
         }
         if !moved {
-            self.without_move(core, order)?;
+            self.process_block_without_move(core, order)?;
         }
         if order.blocks_lookahead {
-            self.no_corner(order)?;
-            self.settle(core)?;
+            self.check_no_corner(order)?;
+            self.close_pending_move(core)?;
         }
         Ok(())
     }
 
     /// A block that doesn't move in the plane is read over; several of them, one with a move of length 0, and the end
     /// of the offset mode leave the centre beside the end of the last move.
-    fn without_move(&mut self, core: &Executor, order: &LookaheadRequest) -> Checked<()> {
-        match &mut self.corner {
-            Some(corner) if order.dwells && !corner.dwelt => corner.dwelt = true,
-            Some(_) if order.counts => self.no_corner(order)?,
+    fn process_block_without_move(&mut self, core: &Executor, order: &LookaheadRequest) -> ExecResult<()> {
+        match &mut self.pending_corner {
+            Some(corner) if order.is_dwell && !corner.has_dwell => corner.has_dwell = true,
+            Some(_) if order.counts_as_block => self.check_no_corner(order)?,
             _ => {}
         }
-        self.restated |= self.on && order.restated;
-        if self.on && order.distance.is_none() {
-            if order.towards.is_some() {
+        self.is_restated |= self.is_compensating && order.is_restated;
+        if self.is_compensating && order.distance.is_none() {
+            if order.wall_direction.is_some() {
                 let what = "G40 with I, J, K and without a move".into();
-                return Err(Alarm::NotSimulated { what }.at(order.place.block));
+                return Err(Alarm::NotSimulated { what }.located_at(order.backtrace.block));
             }
-            self.settle(core)?;
-            self.on = false;
+            self.close_pending_move(core)?;
+            self.is_compensating = false;
         }
-        if order.counts && !order.suspends_compensation {
-            self.count(core, order)?;
+        if order.counts_as_block && !order.suspends_compensation {
+            self.count_block(core, order)?;
         }
         Ok(())
     }
 
     /// Counts a block without a move.
-    fn count(&mut self, core: &Executor, order: &LookaheadRequest) -> Checked<()> {
+    fn count_block(&mut self, core: &Executor, order: &LookaheadRequest) -> ExecResult<()> {
         self.blocks_without_move += 1;
-        if order.no_length || self.blocks_without_move + 2 > core.settings.blocks_read {
-            self.settle(core)?;
+        if order.has_zero_length || self.blocks_without_move + 2 > core.settings.lookahead_blocks {
+            self.close_pending_move(core)?;
         }
         Ok(())
     }
 
     /// A block that has only a sequence number.
-    pub(super) fn count_number(&mut self, core: &Executor, block: Span) -> Checked<()> {
-        if let Some(corner) = &self.corner {
-            return Err(corner.no_move().at(block));
+    pub(super) fn count_number(&mut self, core: &Executor, block: Span) -> ExecResult<()> {
+        if let Some(corner) = &self.pending_corner {
+            return Err(corner.no_move_alarm().located_at(block));
         }
         self.blocks_without_move += 1;
-        if self.blocks_without_move + 2 > core.settings.blocks_read {
-            self.settle(core)?;
+        if self.blocks_without_move + 2 > core.settings.lookahead_blocks {
+            self.close_pending_move(core)?;
         }
         Ok(())
     }
 
     /// Nothing but a dwell may stand between a corner word and the next move.
-    fn no_corner(&self, order: &LookaheadRequest) -> Checked<()> {
-        match &self.corner {
-            Some(corner) => Err(corner.no_move().at(order.place.block)),
+    fn check_no_corner(&self, order: &LookaheadRequest) -> ExecResult<()> {
+        match &self.pending_corner {
+            Some(corner) => Err(corner.no_move_alarm().located_at(order.backtrace.block)),
             None => Ok(()),
         }
     }
 
     /// The program ends: what waits is done, if nothing is against it.
-    fn end(&mut self, core: &Executor, block: Span) -> Checked<()> {
-        if let Some(corner) = &self.corner {
-            return Err(corner.no_move().at(block));
+    fn finish(&mut self, core: &Executor, block: Span) -> ExecResult<()> {
+        if let Some(corner) = &self.pending_corner {
+            return Err(corner.no_move_alarm().located_at(block));
         }
-        self.settle(core)
+        self.close_pending_move(core)
     }
 
     /// Does all that waits before the run ends by an alarm. A move that would cut into the part, or go beyond the
     /// stroke, isn't begun.
-    fn complete(&mut self, core: &Executor, refused: Option<Span>) {
-        let stands = self.centre;
-        if let Some(corner) = self.corner.take()
-            && refused != Some(corner.piece.place.block)
+    fn finish_before_alarm(&mut self, core: &Executor, refused: Option<Span>) {
+        let stands = self.tool_centre;
+        if let Some(corner) = self.pending_corner.take()
+            && refused != Some(corner.path_move.backtrace.block)
         {
             let before = self.clone();
-            match self.drive(core, corner.piece, &corner.order) {
-                Ok(()) => corner.behind.into_iter().for_each(|held| self.defer(core, held)),
+            match self.compensate(core, corner.path_move, &corner.request) {
+                Ok(()) => corner.pending_items.into_iter().for_each(|held| self.defer(core, held)),
                 // What can't be joined is left out: the run is over.
                 Err(_) => *self = before,
             }
         }
-        if self.open.as_ref().is_some_and(|open| refused == Some(open.piece.place.block)) {
-            self.open = None;
+        if self.pending_move.as_ref().is_some_and(|open| refused == Some(open.path_move.backtrace.block)) {
+            self.pending_move = None;
         }
-        if self.settle(core).is_err() {
-            self.behind.clear();
+        if self.close_pending_move(core).is_err() {
+            self.pending_items.clear();
         }
-        if let Some(beyond) = self.ready.iter().position(|(kind, ..)| core.within_stroke(kind).is_err()) {
+        if let Some(beyond) = self.ready.iter().position(|(kind, ..)| core.check_move(kind).is_err()) {
             self.ready.truncate(beyond);
-            self.centre =
+            self.tool_centre =
                 self.ready.iter().rev().find_map(|(kind, ..)| kind.end().copied()).unwrap_or(stands);
         }
         for axis in 0..core.settings.axes.len() {
-            self.offset[axis] = self.centre[axis] - self.at[axis];
+            self.offset[axis] = self.tool_centre[axis] - self.programmed_position[axis];
         }
     }
 
     /// The point of a position in the plane.
-    fn point(&self, position: &Position) -> Point {
+    fn plane_point(&self, position: &Position) -> Point {
         Point::new(position[self.plane.0], position[self.plane.1])
     }
 
     /// A position with another point in the plane.
-    fn with(&self, mut position: Position, point: Point) -> Position {
+    fn with_plane_point(&self, mut position: Position, point: Point) -> Position {
         (position[self.plane.0], position[self.plane.1]) = (point.x, point.y);
         position
     }
 
     fn set_offset(&mut self, offset: Point) {
-        self.offset = self.with(Position::default(), offset);
+        self.offset = self.with_plane_point(Position::default(), offset);
     }
 }

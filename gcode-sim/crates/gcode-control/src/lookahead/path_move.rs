@@ -5,7 +5,7 @@ use crate::contour::{Point, Segment};
 use gcode_lang::motion::{Backtrace, EventKind, MAX_AXES, PlanarArc, Position};
 
 /// Moves shorter than this, mm and degrees, are rounding and aren't told.
-const NOTHING: f64 = 1e-9;
+const MIN_LENGTH: f64 = 1e-9;
 
 /// A move of one block.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,7 +13,7 @@ pub(super) struct PathMove {
     pub(super) kind: EventKind,
     /// What it does in the plane, if it moves there.
     pub(super) segment: Option<Segment>,
-    pub(super) place: Backtrace,
+    pub(super) backtrace: Backtrace,
 }
 
 /// What waits behind a move.
@@ -43,11 +43,11 @@ impl PathMove {
             _ => Segment::Line { from: point(&from), to },
         };
         let segment = segment.has_length().then_some(segment);
-        Some(Self { kind: kind.clone(), segment, place: order.place.clone() })
+        Some(Self { kind: kind.clone(), segment, backtrace: order.backtrace.clone() })
     }
 
     /// Where it ends on the programmed path.
-    pub(super) fn to(&self) -> Position {
+    pub(super) fn end_position(&self) -> Position {
         self.kind.end().copied().unwrap_or_default()
     }
 }
@@ -55,40 +55,40 @@ impl PathMove {
 impl Lookahead {
     /// Tells something, or lets it wait behind the move that waits.
     pub(super) fn defer(&mut self, core: &Executor, held: PendingItem) {
-        if let Some(corner) = &mut self.corner {
-            corner.behind.push(held);
-        } else if self.open.is_some() {
-            self.behind.push(held);
+        if let Some(corner) = &mut self.pending_corner {
+            corner.pending_items.push(held);
+        } else if self.pending_move.is_some() {
+            self.pending_items.push(held);
         } else {
-            self.tell_held(core, held);
+            self.emit_pending(core, held);
         }
     }
 
     /// Moves of other axes go on where the centre stands in the plane.
-    pub(super) fn tell_held(&mut self, core: &Executor, held: PendingItem) {
+    pub(super) fn emit_pending(&mut self, core: &Executor, held: PendingItem) {
         match held {
             PendingItem::Move(piece) => {
-                let to = self.with(piece.to(), self.point(&self.centre));
-                self.tell_straight(core, &piece, to);
+                let to = self.with_plane_point(piece.end_position(), self.plane_point(&self.tool_centre));
+                self.emit_straight(core, &piece, to);
             }
             PendingItem::Other(kind, seconds, place) => self.ready.push((kind, seconds, place)),
         }
     }
 
     /// Tells a straight move of a piece's block.
-    pub(super) fn tell_straight(&mut self, core: &Executor, piece: &PathMove, to: Position) {
-        let from = std::mem::replace(&mut self.centre, to);
+    pub(super) fn emit_straight(&mut self, core: &Executor, piece: &PathMove, to: Position) {
+        let from = std::mem::replace(&mut self.tool_centre, to);
         let squares: f64 = (0..MAX_AXES).map(|axis| (to[axis] - from[axis]) * (to[axis] - from[axis])).sum();
         let length = squares.sqrt();
-        if length < NOTHING {
+        if length < MIN_LENGTH {
             return;
         }
         let (kind, seconds) = match piece.kind {
             EventKind::Feed { rate, .. } | EventKind::Arc { rate, .. } => {
                 (EventKind::Feed { to, rate }, length / rate.0 * 60.0)
             }
-            EventKind::Skip { rate, touched, .. } => {
-                (EventKind::Skip { to, rate, touched }, length / rate.0 * 60.0)
+            EventKind::Skip { rate, has_signal: touched, .. } => {
+                (EventKind::Skip { to, rate, has_signal: touched }, length / rate.0 * 60.0)
             }
             EventKind::Rapid { .. }
             | EventKind::Dwell { .. }
@@ -100,26 +100,26 @@ impl Lookahead {
             | EventKind::Auxiliary { .. }
             | EventKind::Stop { .. } => (EventKind::Rapid { to }, core.rapid_seconds(&from, &to)),
         };
-        self.ready.push((kind, seconds, piece.place.clone()));
+        self.ready.push((kind, seconds, piece.backtrace.clone()));
     }
 
     /// Tells the move itself, to a point in the plane; an arc at `distance` to its left.
-    pub(super) fn tell_along(&mut self, core: &Executor, piece: &PathMove, end: Point, distance: f64) {
-        let to = self.with(piece.to(), end);
+    pub(super) fn emit_along(&mut self, core: &Executor, piece: &PathMove, end: Point, distance: f64) {
+        let to = self.with_plane_point(piece.end_position(), end);
         let (EventKind::Arc { arc, rate, .. }, Some(segment)) = (&piece.kind, &piece.segment) else {
-            return self.tell_straight(core, piece, to);
+            return self.emit_straight(core, piece, to);
         };
-        let start = self.point(&self.centre);
+        let start = self.plane_point(&self.tool_centre);
         let middle = Point::new(arc.centre.0, arc.centre.1);
         let radius = ((start - middle).norm() + (end - middle).norm()) / 2.0;
         let sweep = segment.sweep_between(start, end, distance);
         let length = radius * sweep.abs().to_rad();
-        if length < NOTHING {
-            return self.tell_straight(core, piece, to);
+        if length < MIN_LENGTH {
+            return self.emit_straight(core, piece, to);
         }
         let arc = PlanarArc { sweep, ..*arc };
-        self.centre = to;
+        self.tool_centre = to;
         let kind = EventKind::Arc { to, arc, rate: *rate };
-        self.ready.push((kind, length / rate.0 * 60.0, piece.place.clone()));
+        self.ready.push((kind, length / rate.0 * 60.0, piece.backtrace.clone()));
     }
 }

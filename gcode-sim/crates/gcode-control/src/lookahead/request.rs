@@ -3,7 +3,7 @@ use super::cutter_compensation::CornerArc;
 use super::{Lookahead, ReadyEvent};
 use crate::Executor;
 use crate::contour::{Blend, Point};
-use crate::eval::{Checked, at};
+use crate::evaluation::{ExecResult, locate};
 use crate::modal_codes::AxisWordUse;
 use crate::notes::Note;
 use crate::plan::{BlockFlow, BlockPlan};
@@ -11,7 +11,7 @@ use crate::state::State;
 use crate::words::BlockWords;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{AxisIndex, Backtrace, Event, EventSink};
-use gcode_lang::program::codes::{Effect, OneShot};
+use gcode_lang::program::g_codes::{Effect, OneShot};
 use gcode_lang::program::modes::{CutterSide, Motion, Plane};
 use gcode_lang::source::{Span, Spanned};
 use gcode_lang::units::Seconds;
@@ -23,53 +23,53 @@ pub(crate) struct LookaheadRequest {
     /// Of the centre to the left of the path; `None` without compensation, be it by G40 or by D0.
     pub(super) distance: Option<f64>,
     /// G40 with I J K: the direction of a wall that the tool comes to.
-    pub(super) towards: Option<Point>,
+    pub(super) wall_direction: Option<Point>,
     /// G41 or G42 stands in the block and was in force before.
-    pub(super) restated: bool,
+    pub(super) is_restated: bool,
     /// G28, G53, a drilling cycle…: without compensation, and nothing is read before it.
     pub(super) suspends_compensation: bool,
     /// M00, M01, M02, M30: nothing is read before it is done.
     pub(super) blocks_lookahead: bool,
     /// It counts as a block without a move if it has none: calls and returns don't.
-    pub(super) counts: bool,
+    pub(super) counts_as_block: bool,
     /// An axis of the plane is named: without a move, a move of length 0.
-    pub(super) no_length: bool,
-    pub(super) dwells: bool,
+    pub(super) has_zero_length: bool,
+    pub(super) is_dwell: bool,
     /// G01, G02, G03.
-    pub(super) cuts: bool,
+    pub(super) is_cut: bool,
     pub(super) blend: Option<Blend>,
     pub(super) corner_arc: Option<CornerArc>,
-    pub(super) place: Backtrace,
+    pub(super) backtrace: Backtrace,
 }
 
 impl Executor {
     /// Whether compensation, a corner word or a move that waits could concern a block.
     #[inline(always)]
-    pub(crate) fn reads_ahead(&self, given: &BlockWords, state: &State) -> bool {
+    pub(crate) fn needs_lookahead(&self, given: &BlockWords, state: &State) -> bool {
         let commanded = state.modal.cutter != CutterSide::Off || given.has_corner();
-        commanded || given.has_any(b"IJK") || !self.ahead.is_idle()
+        commanded || given.has_any(b"IJK") || !self.lookahead.is_idle()
     }
 
     /// Lets a block's plan go by way of what is read ahead, where compensation or a corner word is in use.
-    pub(crate) fn look_ahead(
+    pub(crate) fn plan_lookahead(
         &self,
         act: Option<AxisWordUse>,
         given: &BlockWords,
         plan: &mut BlockPlan,
         span: Span,
-    ) -> Checked<()> {
+    ) -> ExecResult<()> {
         if given.has_corner() && plan.corner.is_none() {
             plan.notes.push(Note::CornerIgnored);
         }
         let cancels = given.g_codes().any(|row| row.effect == Effect::Cutter(CutterSide::Off));
-        let towards = if cancels { self.vector(given, &plan.state, span)? } else { None };
-        let distance = at(self.distance(&plan.state), span)?;
-        if self.ahead.is_idle() && distance.is_none() && plan.corner.is_none() {
+        let towards = if cancels { self.plane_vector(given, &plan.state, span)? } else { None };
+        let distance = locate(self.cutter_distance(&plan.state), span)?;
+        if self.lookahead.is_idle() && distance.is_none() && plan.corner.is_none() {
             return Ok(());
         }
         if plan.state.transform.tilt.is_some() && distance.is_some_and(|d| d != 0.0) {
             let what = "cutter compensation in a tilted plane".into();
-            return Err(Alarm::NotSimulated { what }.at(span));
+            return Err(Alarm::NotSimulated { what }.located_at(span));
         }
         let motion = plan.state.modal.motion;
         let alone = match act {
@@ -78,11 +78,13 @@ impl Executor {
             _ => None,
         };
         if let Some(code) = alone
-            && (distance.is_some() || self.ahead.is_offset())
+            && (distance.is_some() || self.lookahead.is_offset())
         {
-            return Err(Alarm::NotSimulated { what: format!("{code} in cutter compensation") }.at(span));
+            return Err(
+                Alarm::NotSimulated { what: format!("{code} in cutter compensation") }.located_at(span)
+            );
         }
-        let plane = at(self.plane_axes(plan.state.modal.plane), span)?;
+        let plane = locate(self.plane_axes(plan.state.modal.plane), span)?;
         let named = |axis| given.has(self.settings.axes.letter(axis) as u8);
         let sides = given.g_codes().any(|row| {
             matches!(row.effect, Effect::Cutter(side) if side != CutterSide::Off)
@@ -95,38 +97,39 @@ impl Executor {
         let order = LookaheadRequest {
             plane,
             distance,
-            towards,
-            restated: sides,
-            suspends_compensation: plan.drill.is_some()
-                || leaves(act)
+            wall_direction: towards,
+            is_restated: sides,
+            suspends_compensation: plan.cycle_plan.is_some()
+                || suspends_compensation(act)
                 || plan.commands_axes && plan.state.modal.cycle.is_some(),
             blocks_lookahead: !plan.stops.is_empty() || matches!(plan.flow, BlockFlow::End),
-            counts: matches!(plan.flow, BlockFlow::Next | BlockFlow::End) && corner_arc.is_none(),
-            no_length: act.is_none() && (named(plane.0) || named(plane.1)),
-            cuts: act.is_none()
+            counts_as_block: matches!(plan.flow, BlockFlow::Next | BlockFlow::End) && corner_arc.is_none(),
+            has_zero_length: act.is_none() && (named(plane.0) || named(plane.1)),
+            is_cut: act.is_none()
                 && matches!(motion, Motion::Linear | Motion::Clockwise | Motion::Counterclockwise),
-            dwells: act == Some(AxisWordUse::OneShot(OneShot::Dwell)),
+            is_dwell: act == Some(AxisWordUse::OneShot(OneShot::Dwell)),
             blend: plan.corner,
             corner_arc,
-            place: Backtrace { block: span, calls: self.frame.calls.clone() },
+            backtrace: Backtrace { block: span, calls: self.frame.calls.clone() },
         };
-        plan.ahead.clone_from(&self.ahead);
-        plan.ahead.begin(self.state.machine);
-        if plan.drill.is_none() {
+        plan.lookahead.clone_from(&self.lookahead);
+        plan.lookahead.start_at(self.state.machine);
+        if plan.cycle_plan.is_none() {
             plan.events.append(&mut plan.events_after_motion);
         }
-        plan.ahead.block(self, &order, &plan.events)?;
+        plan.lookahead.process_block(self, &order, &plan.events)?;
         plan.events.clear();
-        plan.reads_ahead = true;
-        if let Some(drill) = &mut plan.drill {
-            drill.begins_at(plan.ahead.centre);
-            plan.ahead = Lookahead { ready: std::mem::take(&mut plan.ahead.ready), ..Lookahead::default() };
+        plan.uses_lookahead = true;
+        if let Some(drill) = &mut plan.cycle_plan {
+            drill.set_start(plan.lookahead.tool_centre);
+            plan.lookahead =
+                Lookahead { ready: std::mem::take(&mut plan.lookahead.ready), ..Lookahead::default() };
         }
         Ok(())
     }
 
     /// How far the tool's centre is to be to the left of the path.
-    fn distance(&self, state: &State) -> Result<Option<f64>, Alarm> {
+    fn cutter_distance(&self, state: &State) -> Result<Option<f64>, Alarm> {
         let side = match state.modal.cutter {
             CutterSide::Off => return Ok(None),
             CutterSide::Left => 1.0,
@@ -135,12 +138,12 @@ impl Executor {
         if state.codes.d == 0 {
             return Ok(None);
         }
-        let (mirrored, _) = state.transform.on_arcs(self.plane_axes(state.modal.plane)?);
-        Ok(Some(if mirrored { -side } else { side } * state.radius))
+        let (mirrored, _) = state.transform.arc_effect(self.plane_axes(state.modal.plane)?);
+        Ok(Some(if mirrored { -side } else { side } * state.cutter_radius))
     }
 
     /// I, J, K of the plane as a direction in machine coordinates.
-    fn vector(&self, given: &BlockWords, state: &State, span: Span) -> Checked<Option<Point>> {
+    fn plane_vector(&self, given: &BlockWords, state: &State, span: Span) -> ExecResult<Option<Point>> {
         let letters = match state.modal.plane {
             Plane::Xy => (b'I', b'J'),
             Plane::Zx => (b'K', b'I'),
@@ -148,7 +151,7 @@ impl Executor {
         };
         let first = self.dimension(given, letters.0, state)?.unwrap_or(0.0);
         let second = self.dimension(given, letters.1, state)?.unwrap_or(0.0);
-        let plane = at(self.plane_axes(state.modal.plane), span)?;
+        let plane = locate(self.plane_axes(state.modal.plane), span)?;
         if first == 0.0 && second == 0.0 {
             return Ok(None);
         }
@@ -160,69 +163,69 @@ impl Executor {
     }
 
     /// G39: a cutting feed round the corner.
-    fn corner_arc(&self, given: &BlockWords, plan: &BlockPlan, span: Span) -> Checked<CornerArc> {
-        let timed = self.time_along(&plan.state, 1.0, given.has(b'F'));
-        let (rate, _) = timed.map_err(|_| Alarm::ArcFeedZero.at(span))?;
-        Ok(CornerArc { towards: self.vector(given, &plan.state, span)?, rate })
+    fn corner_arc(&self, given: &BlockWords, plan: &BlockPlan, span: Span) -> ExecResult<CornerArc> {
+        let timed = self.path_time(&plan.state, 1.0, given.has(b'F'));
+        let (rate, _) = timed.map_err(|_| Alarm::ArcFeedZero.located_at(span))?;
+        Ok(CornerArc { direction: self.plane_vector(given, &plan.state, span)?, rate })
     }
 
     /// Takes over what a plan has read ahead, and tells the machine what no longer waits.
-    pub(crate) fn advance<S: EventSink>(&mut self, ahead: &mut Lookahead, sink: &mut S) {
-        std::mem::swap(&mut self.ahead, ahead);
-        self.release(sink);
+    pub(crate) fn take_lookahead<S: EventSink>(&mut self, ahead: &mut Lookahead, sink: &mut S) {
+        std::mem::swap(&mut self.lookahead, ahead);
+        self.emit_ready(sink);
     }
 
     /// A block with nothing but a sequence number.
-    pub(crate) fn pass_number<S: EventSink>(&mut self, block: Span, sink: &mut S) -> Checked<()> {
-        if self.ahead.is_idle() {
+    pub(crate) fn process_number_block<S: EventSink>(&mut self, block: Span, sink: &mut S) -> ExecResult<()> {
+        if self.lookahead.is_idle() {
             return Ok(());
         }
-        let mut ahead = self.ahead.clone();
+        let mut ahead = self.lookahead.clone();
         ahead.count_number(self, block)?;
         self.check_ready_moves(&ahead)?;
-        self.advance(&mut ahead, sink);
+        self.take_lookahead(&mut ahead, sink);
         Ok(())
     }
 
     /// Does what waits at the end of a program that has no M30.
-    pub(crate) fn end_ahead<S: EventSink>(&mut self, sink: &mut S) -> Checked<()> {
-        if self.ahead.is_idle() {
+    pub(crate) fn finish_lookahead<S: EventSink>(&mut self, sink: &mut S) -> ExecResult<()> {
+        if self.lookahead.is_idle() {
             return Ok(());
         }
-        let mut ahead = self.ahead.clone();
-        ahead.end(self, self.block)?;
+        let mut ahead = self.lookahead.clone();
+        ahead.finish(self, self.block)?;
         self.check_ready_moves(&ahead)?;
-        self.advance(&mut ahead, sink);
+        self.take_lookahead(&mut ahead, sink);
         Ok(())
     }
 
     /// Does what waits before an alarm ends the run.
-    pub(crate) fn complete<S: EventSink>(&mut self, alarm: &Spanned<Alarm>, sink: &mut S) {
-        if self.ahead.is_idle() {
+    pub(crate) fn finish_before_alarm<S: EventSink>(&mut self, alarm: &Spanned<Alarm>, sink: &mut S) {
+        if self.lookahead.is_idle() {
             return;
         }
         let refused = matches!(alarm.node, Alarm::Interference | Alarm::Overtravel { .. });
         let refused = refused.then_some(alarm.span);
-        let mut ahead = std::mem::take(&mut self.ahead);
-        ahead.complete(self, refused);
-        self.advance(&mut ahead, sink);
+        let mut ahead = std::mem::take(&mut self.lookahead);
+        ahead.finish_before_alarm(self, refused);
+        self.take_lookahead(&mut ahead, sink);
     }
 
-    fn release<S: EventSink>(&mut self, sink: &mut S) {
-        let told: Vec<ReadyEvent> = std::mem::take(&mut self.ahead.ready);
+    fn emit_ready<S: EventSink>(&mut self, sink: &mut S) {
+        let told: Vec<ReadyEvent> = std::mem::take(&mut self.lookahead.ready);
         for (kind, seconds, place) in told {
-            self.count(&kind, seconds);
+            self.count_event(&kind, seconds);
             let (seconds, block) = (Seconds(seconds), place.block);
             sink.event(&Event { kind: &kind, seconds, block, calls: &place.calls });
         }
-        if self.ahead.is_idle() {
-            self.ahead = Lookahead::default();
+        if self.lookahead.is_idle() {
+            self.lookahead = Lookahead::default();
         }
     }
 }
 
 /// What goes somewhere without compensation.
-fn leaves(act: Option<AxisWordUse>) -> bool {
+fn suspends_compensation(act: Option<AxisWordUse>) -> bool {
     use OneShot::{CheckReference, FromReference, MachineSystem, Reference, SecondReference, Skip};
     matches!(
         act,

@@ -173,7 +173,7 @@ impl<'m> FluteTracker<'m> {
         let finding = finding.help(
             "check for a loop that never ends or rotates the burr continuously; otherwise split the program",
         );
-        self.result.findings.push(finding.at(event.place()));
+        self.result.findings.push(finding.with_backtrace(event.backtrace()));
     }
 
     fn motion(&mut self, event: &Event<'_>, rapid: bool, to: &Position, arc: Option<&PlanarArc>) {
@@ -219,7 +219,7 @@ impl<'m> FluteTracker<'m> {
                 true => MotionMode::Rapid { passes_before: turns },
                 false => MotionMode::Feed { seconds: event.seconds.0 },
             };
-            self.collisions.check_motion(&self.flutes, event.place(), by, self.moved_axes, &path);
+            self.collisions.check_motion(&self.flutes, event.backtrace(), by, self.moved_axes, &path);
             return;
         }
         self.kept_points = self.max_kept_points.min(self.kept_points + path.len());
@@ -227,7 +227,7 @@ impl<'m> FluteTracker<'m> {
         let head = self.wheel.angle(&from).zip(self.wheel.angle(to));
         let pass = self.current_pass.get_or_insert_with(|| GrindingPass {
             trace: Trace::default(),
-            backtrace: event.place(),
+            backtrace: event.backtrace(),
             moves: 0,
             head_range: None,
             stopped_wheel: None,
@@ -235,8 +235,8 @@ impl<'m> FluteTracker<'m> {
             speeds: Vec::new(),
         });
         pass.moves += 1;
-        pass.trace.append(&self.flutes, &path, event.seconds.0, event.place());
-        self.wheel_state.record(pass, || FirstOccurrence { backtrace: event.place(), point: path[0] });
+        pass.trace.append(&self.flutes, &path, event.seconds.0, event.backtrace());
+        self.wheel_state.record(pass, || FirstOccurrence { backtrace: event.backtrace(), point: path[0] });
         if let Some((one, other)) = head {
             let (low, high) = if one < other { (one, other) } else { (other, one) };
             let (least, most) = pass.head_range.unwrap_or((low, high));
@@ -253,7 +253,7 @@ impl<'m> FluteTracker<'m> {
             let end = self.machine.contact(&self.wheel, to);
             self.collisions.check_motion(
                 &self.flutes,
-                event.place(),
+                event.backtrace(),
                 MotionMode::Rapid { passes_before: None },
                 self.moved_axes,
                 &[end, end],

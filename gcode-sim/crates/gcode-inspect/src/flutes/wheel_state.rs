@@ -32,7 +32,7 @@ impl WheelState {
     pub(super) fn apply_event(&mut self, kind: &EventKind) {
         match kind {
             // At S0 it stands.
-            EventKind::Spindle { speed, turning } => {
+            EventKind::Spindle { speed, direction: turning } => {
                 self.direction = if *speed == Rpm(0.0) { SpindleDirection::Off } else { *turning };
                 self.speed = *speed;
                 self.builder_code = None;

@@ -34,13 +34,13 @@ impl HoleExtractor<'_> {
         let Clamp { on, off } = clamp;
         match self.clamp_state {
             ClampState::Released => {}
-            ClampState::Clamped => self.findings.add("turns-clamped", &event.place(), 0, || {
+            ClampState::Clamped => self.findings.add("turns-clamped", &event.backtrace(), 0, || {
                 Diagnostic::error("turns-clamped", format!("{letter} rotates while clamped by M{on:02}"))
                     .note("the control raises an alarm, or the drive works against the clamp")
                     .help(format!("command M{off:02} before {letter} rotates"))
             }),
             ClampState::Unknown => {
-                self.findings.add("turns-clamped", &event.place(), 1, || {
+                self.findings.add("turns-clamped", &event.backtrace(), 1, || {
                     Diagnostic::warning(
                         "turns-clamped",
                         format!("{letter} rotates before any M{off:02} releases it"),

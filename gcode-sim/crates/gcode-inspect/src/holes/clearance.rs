@@ -64,7 +64,7 @@ impl CloseMotions {
             CloseMotionKind::LowRetract { .. } => 3,
         };
         let passing = || CloseMotion {
-            backtrace: event.place(),
+            backtrace: event.backtrace(),
             kind: way,
             tip_clearance: tip,
             edge_clearance: edge,

@@ -13,7 +13,8 @@ pub(crate) struct EventScript {
 impl EventScript {
     /// A run with the spindle turning.
     pub(crate) fn new() -> Self {
-        Self::default().with(EventKind::Spindle { turning: SpindleDirection::Clockwise, speed: Rpm(1500.0) })
+        Self::default()
+            .with(EventKind::Spindle { direction: SpindleDirection::Clockwise, speed: Rpm(1500.0) })
     }
 
     pub(crate) fn with(mut self, event: EventKind) -> Self {
@@ -47,7 +48,7 @@ impl EventScript {
     /// The operator is asked to set the head to this angle.
     pub(crate) fn head(self, angle: f64) -> Self {
         let text = "SET HEAD TO #140".to_owned();
-        self.with(EventKind::Stop { kind: StopKind::Message, text, named: vec![(140, angle)] })
+        self.with(EventKind::Stop { kind: StopKind::Message, text, variables: vec![(140, angle)] })
     }
 
     pub(crate) fn emit_to(&self, sink: &mut impl EventSink) {

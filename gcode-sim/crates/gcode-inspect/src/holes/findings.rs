@@ -16,7 +16,7 @@ impl Findings {
         detail: u32,
         make: impl FnOnce() -> Diagnostic,
     ) {
-        self.0.count(place.block, (code, detail), || make().at(place.clone()));
+        self.0.count(place.block, (code, detail), || make().with_backtrace(place.clone()));
     }
 
     pub(super) fn finish(self) -> Vec<Diagnostic> {

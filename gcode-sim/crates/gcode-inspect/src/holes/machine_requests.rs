@@ -10,7 +10,7 @@ impl HoleExtractor<'_> {
     pub(super) fn check_idle_axes(&mut self, event: &Event<'_>, from: &Position, to: &Position) {
         for (axis, letter) in self.machine.axes.iter() {
             if from[axis] != to[axis] && !self.machine.carries(axis) {
-                self.findings.add("axis-carries-nothing", &event.place(), axis as u32, || {
+                self.findings.add("axis-carries-nothing", &event.backtrace(), axis as u32, || {
                     Diagnostic::warning(
                         "axis-carries-nothing",
                         format!("{letter} moves to {}; the machine has nothing on that axis", to[axis]),
@@ -26,7 +26,7 @@ impl HoleExtractor<'_> {
     /// A tool that the machine file has no row for.
     pub(super) fn check_tool_known(&mut self, event: &Event<'_>, number: u32) {
         if number != 0 && !self.machine.tools.is_empty() && self.machine.find_tool(number).is_none() {
-            self.findings.add("tool-unknown", &event.place(), number, || {
+            self.findings.add("tool-unknown", &event.backtrace(), number, || {
                 let known: Vec<_> =
                     self.machine.tools.iter().map(|tool| format!("T{}", tool.number)).collect();
                 Diagnostic::warning(
@@ -56,7 +56,7 @@ impl HoleExtractor<'_> {
             return None;
         }
         if !self.machine.head.is_set_by_hand() {
-            self.findings.add("head-not-manual", &event.place(), 0, || {
+            self.findings.add("head-not-manual", &event.backtrace(), 0, || {
                 Diagnostic::warning(
                     "head-not-manual",
                     format!("the message ({text}) calls for a head set by hand; the machine's head is not"),
@@ -68,7 +68,7 @@ impl HoleExtractor<'_> {
         match message {
             HeadMessage::Angle(angle) => Some(angle),
             HeadMessage::Other | HeadMessage::Unclear => {
-                self.findings.add("head-message-unclear", &event.place(), 0, || unclear_head(text));
+                self.findings.add("head-message-unclear", &event.backtrace(), 0, || unclear_head(text));
                 None
             }
         }

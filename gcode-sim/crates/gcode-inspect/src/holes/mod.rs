@@ -167,7 +167,7 @@ impl<'m> HoleExtractor<'m> {
         findings.extend(self.first_excess_pass.map(|place| {
             let message =
                 format!("more than {MAX_PASSES} feeds into the part: nothing after this is checked");
-            let finding = Diagnostic::new(Severity::Alarm, "limit", message).at(place);
+            let finding = Diagnostic::new(Severity::Alarm, "limit", message).with_backtrace(place);
             finding.help("check for a loop that never ends; otherwise split the program")
         }));
         let holes = group::group_holes(&self.passes, self.machine);
@@ -250,7 +250,7 @@ impl<'m> HoleExtractor<'m> {
                         if line.depth_of(&from) < line.depth_of(&tip) {
                             self.record_line_feed(event, &mut line);
                         }
-                        line.feed_to(&tip, event.place(), &self.axis_position)
+                        line.feed_to(&tip, event.backtrace(), &self.axis_position)
                     }
                     MotionKind::Rapid | MotionKind::Probe => {
                         let (again, uncut) = line.rapid_to(&tip);
@@ -278,7 +278,7 @@ impl<'m> HoleExtractor<'m> {
 
     fn start_line(&mut self, event: &Event<'_>, start: Point3<f64>) {
         let rounding = self.machine.increment.size() / 2.0;
-        let line = CuttingLine::begin(start, self.pose.tip, event.place(), self.axis_position, rounding);
+        let line = CuttingLine::begin(start, self.pose.tip, event.backtrace(), self.axis_position, rounding);
         self.current_line = line.map(|line| {
             let mut line = Box::new(line);
             line.tool_axis = self.pose.axis;
@@ -355,12 +355,12 @@ impl EventSink for HoleExtractor<'_> {
                 self.check_tool_known(event, *number);
                 self.update_setup(|setup| setup.tool = Some(*number));
             }
-            EventKind::ToolLength { offset, by } => {
+            EventKind::ToolLength { offset, compensation: by } => {
                 self.update_setup(|setup| setup.offset = *offset);
                 self.cutting_state.compensation = *by;
             }
             EventKind::WorkZeroUnknown { axes } => self.work_zero.apply_event(self.machine, *axes),
-            EventKind::Spindle { turning, speed } => {
+            EventKind::Spindle { direction: turning, speed } => {
                 // At S0 it stands.
                 let before = self.cutting_state.spindle_direction;
                 self.cutting_state.spindle_direction =
@@ -369,7 +369,7 @@ impl EventSink for HoleExtractor<'_> {
                 self.update_spindle_in_hole(before);
                 self.builder_code = None;
             }
-            EventKind::Stop { kind: StopKind::Message, text, named } => {
+            EventKind::Stop { kind: StopKind::Message, text, variables: named } => {
                 if let Some(angle) = self.operator_head_angle(event, text, named) {
                     self.update_setup(|setup| setup.head_angle = Some(angle));
                 }

@@ -29,7 +29,7 @@ impl HoleExtractor<'_> {
         if inside.is_some_and(|depth| depth <= TOUCH_DEPTH) {
             return;
         }
-        self.findings.add("rapid-beyond-cut", &event.place(), 0, || {
+        self.findings.add("rapid-beyond-cut", &event.backtrace(), 0, || {
             let message = format!(
                 "rapid along the hole beyond the drilled depth, to {:.3} mm from the start of the feed",
                 line.cut_depth()
@@ -52,7 +52,7 @@ impl HoleExtractor<'_> {
         if outwards {
             return;
         }
-        self.findings.add("rapid-beyond-cut", &event.place(), 0, || {
+        self.findings.add("rapid-beyond-cut", &event.backtrace(), 0, || {
             Diagnostic::warning(
                 "rapid-beyond-cut",
                 format!(
@@ -77,7 +77,7 @@ impl HoleExtractor<'_> {
         if depth <= TOUCH_DEPTH {
             self.record_close_rapid(event, &surface, from, to);
         } else {
-            self.findings.add("rapid-into-part", &event.place(), 0, || {
+            self.findings.add("rapid-into-part", &event.backtrace(), 0, || {
                 Diagnostic::error(
                     "rapid-into-part",
                     format!(
@@ -106,7 +106,7 @@ impl HoleExtractor<'_> {
         }
         // Without work offsets machine zero is only taken for the work zero: nothing stands there.
         let known = !self.machine.offsets.is_empty();
-        self.findings.add("rapid-into-part", &event.place(), 0, || {
+        self.findings.add("rapid-into-part", &event.backtrace(), 0, || {
             let message = format!("the rapid ends {depth:.3} mm below the surface, at {}", format_point(to));
             let finding = match known {
                 true => Diagnostic::error("rapid-into-part", message),
@@ -129,16 +129,18 @@ impl HoleExtractor<'_> {
         };
         let in_part = deepest > 2.0 * TOUCH_DEPTH;
         match kind {
-            CurvedMotion::Rapid if in_part => self.findings.add("rapid-into-part", &event.place(), 0, || {
-                Diagnostic::error(
-                    "rapid-into-part",
-                    format!(
-                        "rapid through the part while an axis rotates, {deepest:.3} mm below the surface"
-                    ),
-                )
-                .help("retract until the tool is outside the part before the table or the head rotates")
-            }),
-            CurvedMotion::Feed if in_part => self.findings.add("feed-no-hole", &event.place(), 0, || {
+            CurvedMotion::Rapid if in_part => {
+                self.findings.add("rapid-into-part", &event.backtrace(), 0, || {
+                    Diagnostic::error(
+                        "rapid-into-part",
+                        format!(
+                            "rapid through the part while an axis rotates, {deepest:.3} mm below the surface"
+                        ),
+                    )
+                    .help("retract until the tool is outside the part before the table or the head rotates")
+                })
+            }
+            CurvedMotion::Feed if in_part => self.findings.add("feed-no-hole", &event.backtrace(), 0, || {
                 Diagnostic::error(
                     "feed-no-hole",
                     format!("a curved feed cuts {deepest:.3} mm into the part: not a hole"),
@@ -151,7 +153,7 @@ impl HoleExtractor<'_> {
                 }
             }
             CurvedMotion::Feed if self.surface.is_none() => {
-                self.findings.add("feed-no-hole", &event.place(), 0, || {
+                self.findings.add("feed-no-hole", &event.backtrace(), 0, || {
                     Diagnostic::warning("feed-no-hole", "a curved feed on the part: not counted as a hole")
                         .help("feed holes along a straight line, with the table stationary")
                 })

@@ -236,7 +236,8 @@ fn a_head_nobody_has_set_is_an_error() {
 fn a_message_about_something_else_sets_no_head() {
     let named = vec![(140, 30.0)];
     let ask = |text: &str| {
-        let stop = EventKind::Stop { kind: StopKind::Message, text: text.to_owned(), named: named.clone() };
+        let stop =
+            EventKind::Stop { kind: StopKind::Message, text: text.to_owned(), variables: named.clone() };
         told(&extract(
             &Machine::default(),
             None,
@@ -251,7 +252,7 @@ fn a_message_about_something_else_sets_no_head() {
 #[test]
 fn a_message_that_names_no_angle_leaves_the_head_as_it_is() {
     use gcode_lang::motion::{EventKind, StopKind};
-    let message = EventKind::Stop { kind: StopKind::Message, text: "SET HEAD".into(), named: vec![] };
+    let message = EventKind::Stop { kind: StopKind::Message, text: "SET HEAD".into(), variables: vec![] };
     check(&EventScript::new().with(message), "head-message-unclear");
 }
 

@@ -50,7 +50,7 @@ impl WorkZeroTracker {
     }
 
     pub(crate) fn note_rapid(&mut self, event: &Event<'_>, axes: u8) {
-        let (_, all, times) = self.rapids.get_or_insert_with(|| (event.place(), 0, 0));
+        let (_, all, times) = self.rapids.get_or_insert_with(|| (event.backtrace(), 0, 0));
         *all |= axes;
         *times += 1;
     }
@@ -128,7 +128,7 @@ impl HoleExtractor<'_> {
         if depth <= TOUCH_DEPTH {
             return;
         }
-        self.findings.add("rapid-into-part", &event.place(), 0, || {
+        self.findings.add("rapid-into-part", &event.backtrace(), 0, || {
             let message = format!(
                 "the rapid ends {depth:.3} mm below the surface, at {}",
                 super::rapids::format_point(to)

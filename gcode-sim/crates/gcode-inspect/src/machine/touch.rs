@@ -33,10 +33,14 @@ impl Machine {
         let tip = self.forward(&travel.position(stopped), setup).tip;
         let pushed = probe.radius - surface.nearest(&tip).distance;
         if pushed > probe.give {
-            return SkipSignal::Broken { stopped, pushed, give: probe.give };
+            return SkipSignal::StylusBroken { stopped, deflection: pushed, overtravel_limit: probe.give };
         }
         // A signal that comes when the block has ended already skips nothing.
-        if noted > 1.0 { SkipSignal::Missed } else { SkipSignal::At { latched: noted, stopped } }
+        if noted > 1.0 {
+            SkipSignal::Missed
+        } else {
+            SkipSignal::Received { latched: noted, stop_fraction: stopped }
+        }
     }
 
     /// The part of a motion, 0 to 1, after which a ball round the tool's tip touches the surface; 0 where it is pushed in
@@ -187,11 +191,14 @@ mod tests {
     fn a_delay_notes_the_position_late_and_an_overrun_stops_later_still() {
         let mut probe = Probe::new(3.0);
         (probe.delay, probe.overrun) = (Seconds(0.02), Seconds(0.05));
-        let SkipSignal::At { latched: noted, stopped } = probed(&probe, 0) else { panic!("it touches") };
+        let SkipSignal::Received { latched: noted, stop_fraction: stopped } = probed(&probe, 0) else {
+            panic!("it touches")
+        };
         // 0.2 and 0.5 mm on from the contact after 47 mm.
         assert!((noted - 0.472).abs() < 1e-9 && (stopped - 0.477).abs() < 1e-9, "{noted} {stopped}");
         probe.give = 0.6;
-        let SkipSignal::Broken { pushed, give, .. } = probed(&probe, 0) else {
+        let SkipSignal::StylusBroken { deflection: pushed, overtravel_limit: give, .. } = probed(&probe, 0)
+        else {
             panic!("0.7 is more than 0.6")
         };
         assert!((pushed - 0.7).abs() < 1e-9 && give == 0.6);
@@ -205,7 +212,7 @@ mod tests {
         let mut probe = Probe::new(3.0);
         probe.noise = Distribution::Uniform(0.01);
         let noted = |touches: u64| match probed(&probe, touches) {
-            SkipSignal::At { latched: noted, .. } => noted,
+            SkipSignal::Received { latched: noted, .. } => noted,
             other => panic!("{other:?}"),
         };
         let (first, second) = (noted(0), noted(1));

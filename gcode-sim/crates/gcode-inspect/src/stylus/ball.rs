@@ -44,7 +44,9 @@ impl Ball {
             EventKind::Arc { to, arc, .. } => self.go(to, Some(arc), BallMove::Feed),
             EventKind::ToolChange { number } => self.change(Setup { tool: Some(*number), ..self.setup }),
             EventKind::ToolLength { offset, .. } => self.change(Setup { offset: *offset, ..self.setup }),
-            EventKind::Stop { kind: StopKind::Message, text, named } if machine.head.is_set_by_hand() => {
+            EventKind::Stop { kind: StopKind::Message, text, variables: named }
+                if machine.head.is_set_by_hand() =>
+            {
                 match HeadMessage::of(text, named) {
                     HeadMessage::Angle(angle) => self.change(Setup { head_angle: Some(angle), ..self.setup }),
                     HeadMessage::Unclear => BallUpdate::Unclear(text),

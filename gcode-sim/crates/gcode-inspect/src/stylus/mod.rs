@@ -163,7 +163,7 @@ impl<'m> Stylus<'m> {
         }
         let mut pass = self.open.take().unwrap_or_default();
         let before = pass.readings.len();
-        pass.places.push(event.place());
+        pass.places.push(event.backtrace());
         let first = pass.readings.is_empty().then_some(0.0);
         for t in first.into_iter().chain(self.stations(travel)) {
             let reading = self.read(travel, t, &pass);
@@ -188,7 +188,7 @@ impl<'m> Stylus<'m> {
         } else {
             return;
         };
-        let finding = Diagnostic::new(Severity::Alarm, "limit", message).at(event.place());
+        let finding = Diagnostic::new(Severity::Alarm, "limit", message).with_backtrace(event.backtrace());
         let finding = finding.help("check for a loop that never ends; otherwise split the program");
         self.followed.findings.push(finding);
     }
@@ -233,7 +233,7 @@ impl<'m> Stylus<'m> {
             last = here;
         }
         self.looked_at += steps as usize;
-        Unread { place: event.place(), way, length, least, greatest }
+        Unread { place: event.backtrace(), way, length, least, greatest }
     }
 
     /// Where along a motion the ball is read: beyond 0, up to 1.
@@ -270,7 +270,7 @@ impl EventSink for Stylus<'_> {
             }
             BallUpdate::Changed => self.close(),
             BallUpdate::Unclear(text) => {
-                self.followed.findings.push(unclear_head(text).at(event.place()));
+                self.followed.findings.push(unclear_head(text).with_backtrace(event.backtrace()));
             }
             BallUpdate::Still => {}
         }

@@ -78,7 +78,7 @@ impl<'m> Rapids<'m> {
             let message = format!(
                 "rapid motion with the stylus ball {deepest:.3} mm in the part, which a probe does not detect"
             );
-            Diagnostic::error("rapid-into-part", message).at(event.place()).help(
+            Diagnostic::error("rapid-into-part", message).with_backtrace(event.backtrace()).help(
                 "begin the touch farther away and check the first touch: the part is farther out than the \
                  touch allows",
             )

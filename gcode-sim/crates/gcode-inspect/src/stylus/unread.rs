@@ -133,7 +133,7 @@ impl UnreadFeeds {
         let help = format!(
             "keep the ball within {REACH} mm of the surface, at less than 30° to it, to get readings"
         );
-        self.findings.push(finding.at(first.place.clone()).help(help));
+        self.findings.push(finding.with_backtrace(first.place.clone()).help(help));
     }
 }
 

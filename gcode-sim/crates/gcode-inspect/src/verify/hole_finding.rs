@@ -59,13 +59,13 @@ pub(super) fn folded_note(folded: usize) -> Option<String> {
 /// What concerns many holes alike is told at the call in the main program, which has the numbers; where it was drilled is
 /// a second place.
 pub(super) fn locate_at_call(finding: Diagnostic, place: &Backtrace) -> Diagnostic {
-    let calls = std::iter::successors(place.calls.as_deref(), |call: &&Call| call.outer.as_deref());
+    let calls = std::iter::successors(place.calls.as_deref(), |call: &&Call| call.outer_calls.as_deref());
     match calls.last() {
         Some(call) => {
-            let mut finding = finding.at(Backtrace { block: call.from, calls: None });
+            let mut finding = finding.with_backtrace(Backtrace { block: call.calling_block, calls: None });
             finding.labels.push((place.block, "drilled here".to_owned()));
             finding
         }
-        None => finding.at(place.clone()),
+        None => finding.with_backtrace(place.clone()),
     }
 }

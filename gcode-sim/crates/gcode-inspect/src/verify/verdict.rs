@@ -128,7 +128,7 @@ pub struct PartPoint {
 
 impl From<&Site> for PartPoint {
     fn from(site: &Site) -> Self {
-        Self { pass: site.pass.map(|pass| pass + 1), at: site.at }
+        Self { pass: site.pass.map(|pass| pass + 1), at: site.point }
     }
 }
 
@@ -195,7 +195,7 @@ pub(super) fn finding_of(
     from_motion: bool,
     locate: &dyn Fn(Span) -> (String, u32),
 ) -> Finding {
-    let origin = finding.place.as_ref().map(|place| locate(place.block));
+    let origin = finding.backtrace.as_ref().map(|place| locate(place.block));
     Finding {
         code: finding.code.clone(),
         severity: finding.severity.name(),
@@ -330,9 +330,9 @@ fn worst_from(hole: &HoleVerdict, shares: &[AxisRounding]) -> String {
 
 /// The chain of calls, one place each.
 fn calls(calls: &CallChain, locate: &dyn Fn(Span) -> (String, u32)) -> Vec<Origin> {
-    let chain = std::iter::successors(calls.as_deref(), |call| call.outer.as_deref());
+    let chain = std::iter::successors(calls.as_deref(), |call| call.outer_calls.as_deref());
     let place = |call: &Call| {
-        let (program, line) = locate(call.from);
+        let (program, line) = locate(call.calling_block);
         Origin { program, line, tool: None }
     };
     chain.map(place).collect()

@@ -81,12 +81,12 @@ pub enum Alarm {
     /// R of an arc against half the distance of its ends, mm.
     RadiusTooSmall {
         radius: f64,
-        half: f64,
+        half_chord: f64,
     },
     RadiusTolerance {
         start: f64,
         end: f64,
-        allowed: f64,
+        tolerance: f64,
     },
     PlaneSelect,
     NoRadiusOrCentre,
@@ -105,8 +105,8 @@ pub enum Alarm {
     SkipMissed,
     /// How far a probe is pushed, and how far it gives, in mm.
     StylusBroken {
-        pushed: f64,
-        give: f64,
+        deflection: f64,
+        overtravel_limit: f64,
     },
     /// G31 P or G04 Q other than 1 to 4.
     SkipSignals {
@@ -152,7 +152,7 @@ pub enum Alarm {
     FileNotFound {
         name: String,
         /// What couldn't be read while it was looked for.
-        unread: Option<String>,
+        read_error: Option<String>,
     },
     G10Format {
         what: String,
@@ -170,13 +170,13 @@ pub enum Alarm {
     ProgramNotFound {
         number: u32,
         /// What couldn't be read while it was looked for.
-        unread: Option<String>,
+        read_error: Option<String>,
     },
     /// M198 of a file that isn't there.
     DeviceFileNotFound {
         number: u32,
         /// What couldn't be read while it was looked for.
-        unread: Option<String>,
+        read_error: Option<String>,
     },
     /// M198 in a program that M198 called.
     DeviceCallInDeviceCall,
@@ -296,16 +296,16 @@ pub enum Alarm {
     /// A move beyond a stroke limit.
     Overtravel {
         letter: char,
-        plus: bool,
+        is_plus: bool,
         value: f64,
         limit: f64,
     },
     /// `#3000=n(TEXT)`: the program stops itself.
-    Raised {
+    UserAlarm {
         number: u16,
         text: String,
         /// MCA 6008#1: shown as MC n instead of MC 3000 + n.
-        plain: bool,
+        has_no_base: bool,
     },
     /// A code or function that a control may have and this simulator does not execute.
     NotSimulated {
@@ -331,7 +331,7 @@ impl Alarm {
     }
 
     #[cold]
-    pub fn at(self, span: Span) -> LocatedAlarm {
+    pub fn located_at(self, span: Span) -> LocatedAlarm {
         Box::new(Spanned::new(self, span))
     }
 }

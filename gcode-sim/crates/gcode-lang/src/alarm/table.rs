@@ -12,8 +12,8 @@ impl Alarm {
         use AlarmCode::{Mc, Ot, Ps, Sim};
         match self {
             Self::TooManyDigits => (Ps(3), "too many digits".into(), Some("write at most 9 digits; 12 in a macro expression")),
-            Self::Overtravel { letter, plus: true, value, limit } => (Ot(500), format!("{letter} would go to {value} of the machine, beyond its limit {limit} on the plus side"), Some("check the work offset, the tool length and the target")),
-            Self::Overtravel { letter, plus: false, value, limit } => (Ot(501), format!("{letter} would go to {value} of the machine, beyond its limit {limit} on the minus side"), Some("check the work offset, the tool length and the target")),
+            Self::Overtravel { letter, is_plus: true, value, limit } => (Ot(500), format!("{letter} would go to {value} of the machine, beyond its limit {limit} on the plus side"), Some("check the work offset, the tool length and the target")),
+            Self::Overtravel { letter, is_plus: false, value, limit } => (Ot(501), format!("{letter} would go to {value} of the machine, beyond its limit {limit} on the minus side"), Some("check the work offset, the tool length and the target")),
             Self::NotAWord { text } => (Ps(4), format!("'{text}' is not a word the control knows"), Some("write a letter followed by a number, \
                                                                                                           #variable or [expression]")),
             Self::LowerCase => (Ps(4), "letters in lower case".into(), Some("write capitals; comments may use both")),
@@ -31,9 +31,9 @@ impl Alarm {
             Self::ImproperGCode { code } => (Ps(10), format!("the control has no G{code}"), None),
             Self::FeedZero => (Ps(11), "cutting feed without a feed rate".into(), Some("command F before or in this block")),
             Self::NoSpeedForFeed => (Ps(11), "cutting feed per revolution (G95) while S is 0".into(), Some("command S before or in this block, or G94 for a feed per minute")),
-            Self::RadiusTooSmall { radius, half } => (Ps(20), format!("R is {radius} mm, less than half the \
+            Self::RadiusTooSmall { radius, half_chord: half } => (Ps(20), format!("R is {radius} mm, less than half the \
                                                                        distance from start to end, {half:.4} mm"), Some("write a larger R, or another end point")),
-            Self::RadiusTolerance { start, end, allowed } => (Ps(20), format!("the arc starts {start:.4} mm from its \
+            Self::RadiusTolerance { start, end, tolerance: allowed } => (Ps(20), format!("the arc starts {start:.4} mm from its \
                                                                                centre and ends {end:.4} mm from it \
                                                                                (tolerance {allowed})"), Some("correct I, J, K or the end point")),
             Self::PlaneSelect => (Ps(21), "the arc's centre is not in the plane".into(), Some("select the plane with G17, G18 or G19")),
@@ -64,7 +64,7 @@ impl Alarm {
             Self::ProgramNumber => (Ps(74), "a program number is 1 to 99999999".into(), None),
             Self::ProgramNotNamed => (Ps(76), "a call without a program number".into(), Some("write the program number after P")),
             Self::NoNameInCall => (Ps(311), "a call without a program number or name".into(), Some("write the program number after P")),
-            Self::ProgramNotFound { number, unread } => (Ps(76), not_here(format!("program O{number:04}"), unread), Some("give the folder that holds it with --lib")),
+            Self::ProgramNotFound { number, read_error: unread } => (Ps(76), not_here(format!("program O{number:04}"), unread), Some("give the folder that holds it with --lib")),
             Self::TooManyCalls { limit } => (Ps(77), format!("more than {limit} nested calls"), Some("check for a program that calls itself")),
             Self::SequenceNumberNotFound { number } => (Ps(78), format!("sequence number N{number}, the return \
                                                                          target, is not found"), None),
@@ -101,13 +101,13 @@ impl Alarm {
             Self::TNotAllowed => (Ps(245), "T is not allowed in a block with G04, G10 or G50".into(), Some("command T in a block of its own")),
             Self::CodeInScaling { code } => (Ps(300), format!("G{code} while scaling is on"), Some("command G50 first")),
             Self::NoIntermediatePoint => (Ps(305), "G29 without a preceding G28 with an intermediate point".into(), None),
-            Self::FileNotFound { name, unread } => (Ps(310), not_here(format!("program <{name}>"), unread), None),
+            Self::FileNotFound { name, read_error: unread } => (Ps(310), not_here(format!("program <{name}>"), unread), None),
             Self::PluralM { first, second } => (Ps(335), format!("M{second:02} after M{first:02} in one \
                                                                   block: only the last M code counts"), Some("write the other code in the preceding \
                                                                                                               block")),
             Self::SkipTorque => (Ps(369), "G31: Q, the torque limit, is 1 to 99".into(), None),
             Self::SkipSignals { letter } => (Ps(370), format!("{letter}, the set of skip signals, is 1 to 4"), None),
-            Self::DeviceFileNotFound { number, unread } => (Ps(1079), not_here(format!("file {number} of M198"), unread), Some("give the folder that holds it with --lib")),
+            Self::DeviceFileNotFound { number, read_error: unread } => (Ps(1079), not_here(format!("file {number} of M198"), unread), Some("give the folder that holds it with --lib")),
             Self::DeviceCallInDeviceCall => (Ps(1080), "M198 in a program that M198 called".into(), Some("call it with M98 from there")),
             Self::TwoSubprogramCalls => (Ps(1091), "two subprogram calls in one block".into(), None),
             Self::TwoMacroCalls => (Ps(1092), "two macro calls in one block".into(), None),
@@ -143,13 +143,13 @@ impl Alarm {
             Self::PositionOverflow { letter, value } => (Ps(1160), format!("{letter}{value} is beyond the range of positions"), None),
             Self::EndOfRecord => (Ps(5010), "the program ends without M02, M30 or M99".into(), None),
             Self::RepeatedAddress { letter } => (Ps(5074), format!("address {letter} is repeated in the block"), None),
-            Self::Raised { number, text, plain } if text.is_empty() => (Mc(if *plain { *number } else { 3000u16.saturating_add(*number) }), "the program raises an alarm without a text".into(), Some("write a text after the number: \
+            Self::UserAlarm { number, text, has_no_base: plain } if text.is_empty() => (Mc(if *plain { *number } else { 3000u16.saturating_add(*number) }), "the program raises an alarm without a text".into(), Some("write a text after the number: \
                                                                                                                                                                                                        #3000=1(TEXT)")),
-            Self::Raised { number, text, plain: true } => (Mc(*number), text.clone(), None),
-            Self::Raised { number, text, plain: false } => (Mc(3000u16.saturating_add(*number)), text.clone(), None),
+            Self::UserAlarm { number, text, has_no_base: true } => (Mc(*number), text.clone(), None),
+            Self::UserAlarm { number, text, has_no_base: false } => (Mc(3000u16.saturating_add(*number)), text.clone(), None),
             Self::SkipMissed => (Sim(2), "G31 ended without a skip signal".into(), Some("probe farther, or check the position of \
                                                                                          the part")),
-            Self::StylusBroken { pushed, give } => (Sim(3), format!("the stylus is deflected by {pushed:.3} \
+            Self::StylusBroken { deflection: pushed, overtravel_limit: give } => (Sim(3), format!("the stylus is deflected by {pushed:.3} \
                                                                      mm, limit {give:.3} mm"), Some("probe with a lower feed, and back off before the next touch")),
             Self::NotSimulated { what } => (Sim(1), format!("{what} is not simulated"), Some("avoid it, or check it on a control that \
                                                                                               has it: this simulator does not execute it")),

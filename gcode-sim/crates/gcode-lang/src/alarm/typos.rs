@@ -5,24 +5,24 @@ use crate::source::{Sources, Span};
 /// One thing to do about an alarm at a place: what its text suggests, else what the table says.
 pub fn remedy(alarm: &Alarm, span: Span, sources: &Sources) -> Option<String> {
     let source = sources.get(span.source);
-    let at = source.place(span.start);
+    let at = source.line_column(span.start);
     let from = (span.start + 1 - at.column) as usize;
     let line = source.bytes[from..].split(|byte| matches!(byte, b'\n' | b'\r')).next().unwrap_or_default();
     let (before, rest) = line.split_at((at.column as usize - 1).min(line.len()));
     let [before, rest] = [before, rest].map(|bytes| without_comments(&String::from_utf8_lossy(bytes)));
     let place = AlarmLine { before: &before, rest: rest.trim_matches(' '), text: &sources.text(span) };
     let rules = [
-        foreign,
+        foreign_character,
         letter_o,
         number_with_n,
-        comma,
+        misplaced_comma,
         exponent,
-        operator,
+        missing_operator,
         else_case,
         two_signs,
-        divisor,
-        radius,
-        dwell,
+        zero_divisor,
+        radius_without_point,
+        dwell_with_two_times,
     ];
     rules.into_iter().find_map(|rule| rule(alarm, &place)).or_else(|| alarm.row().help)
 }
@@ -47,7 +47,7 @@ fn without_comments(text: &str) -> String {
 }
 
 /// Whether the alarm is about how something is written.
-fn is_unread(alarm: &Alarm) -> bool {
+fn is_read_failure(alarm: &Alarm) -> bool {
     matches!(
         alarm,
         Alarm::NotAWord { .. }
@@ -63,8 +63,8 @@ fn is_unread(alarm: &Alarm) -> bool {
 }
 
 /// A character that looks like one of a control's and comes from a word processor, a PDF or another keyboard.
-fn foreign(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
-    let found = place.rest.chars().find(|c| !c.is_ascii()).filter(|_| is_unread(alarm))?;
+fn foreign_character(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
+    let found = place.rest.chars().find(|c| !c.is_ascii()).filter(|_| is_read_failure(alarm))?;
     let instead = match found {
         // Bytes of another encoding: nobody knows what they show.
         '\u{fffd}' => return None,
@@ -86,7 +86,7 @@ fn foreign(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
 
 /// `GO1`, `M3O`, `X1O.`: a letter O in a number.
 fn letter_o(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
-    if !is_unread(alarm) && !matches!(alarm, Alarm::ImproperGCode { .. }) {
+    if !is_read_failure(alarm) && !matches!(alarm, Alarm::ImproperGCode { .. }) {
         return None;
     }
     let line = format!("{}{}", place.before, place.rest);
@@ -120,9 +120,11 @@ fn number_with_n(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
 }
 
 /// `X10,5` and `X10., Y5.`.
-fn comma(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
-    let behind =
-        place.rest.strip_prefix(',').filter(|_| is_unread(alarm) || matches!(alarm, Alarm::CornerWords))?;
+fn misplaced_comma(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
+    let behind = place
+        .rest
+        .strip_prefix(',')
+        .filter(|_| is_read_failure(alarm) || matches!(alarm, Alarm::CornerWords))?;
     let whole: String = place.before.chars().rev().take_while(char::is_ascii_digit).collect();
     let whole: String = whole.chars().rev().collect();
     let part: String = behind.chars().take_while(char::is_ascii_digit).collect();
@@ -153,7 +155,7 @@ fn exponent(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
 }
 
 /// `#1=5#2`.
-fn operator(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
+fn missing_operator(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
     if *alarm != Alarm::MissingEquals {
         return None;
     }
@@ -183,14 +185,14 @@ fn two_signs(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
 }
 
 /// `10/0`.
-fn divisor(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
+fn zero_divisor(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
     let (_, divisor) = place.text.rsplit_once('/').filter(|_| *alarm == Alarm::DivideByZero)?;
     let is_zero = divisor.chars().all(|c| matches!(c, '0' | '.' | ' ')) && divisor.contains('0');
     is_zero.then(|| "correct the divisor: it is written as 0".to_owned())
 }
 
 /// `R5` where `R5.` was meant.
-fn radius(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
+fn radius_without_point(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
     let Alarm::RadiusTooSmall { radius, .. } = alarm else { return None };
     let number = place.text.strip_prefix('R')?.trim();
     let written: f64 = number.parse().ok().filter(|_| !number.contains('.'))?;
@@ -199,7 +201,7 @@ fn radius(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
 }
 
 /// `G04 X1.5 P500`.
-fn dwell(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
+fn dwell_with_two_times(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
     let Alarm::NotSimulated { what } = alarm else { return None };
     let line = format!("{}{}", place.before, place.rest);
     let is_dwell = line.split(|c: char| !c.is_ascii_alphanumeric()).any(|word| matches!(word, "G4" | "G04"));
@@ -288,7 +290,7 @@ mod tests {
         );
         assert_eq!(told(Alarm::DivideByZero, "#1=10/0", "10/0"), "correct the divisor: it is written as 0");
         assert!(told(Alarm::DivideByZero, "#1=10/#2", "10/#2").contains("vacant"));
-        let small = |radius: f64| Alarm::RadiusTooSmall { radius, half: 5.0 };
+        let small = |radius: f64| Alarm::RadiusTooSmall { radius, half_chord: 5.0 };
         assert_eq!(
             told(small(0.004), "G02 X10. R4", "R4"),
             "write R4.: R4 without a decimal point is 0.004 mm here"

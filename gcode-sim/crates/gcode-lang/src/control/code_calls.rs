@@ -44,14 +44,20 @@ impl SequentialCodes {
     }
 }
 
-const fn family(letter: u8, first: u16, last: u16, program: u32, kind: CodeCallKind) -> SequentialCodes {
+const fn sequential_codes(
+    letter: u8,
+    first: u16,
+    last: u16,
+    program: u32,
+    kind: CodeCallKind,
+) -> SequentialCodes {
     SequentialCodes { letter, first, last, program, kind }
 }
 
-pub const FAMILIES: [SequentialCodes; 3] = [
-    family(b'G', 6050, 6059, 9010, CodeCallKind::Macro),
-    family(b'M', 6071, 6079, 9001, CodeCallKind::Subprogram),
-    family(b'M', 6080, 6089, 9020, CodeCallKind::Macro),
+pub const SEQUENTIAL_CODES: [SequentialCodes; 3] = [
+    sequential_codes(b'G', 6050, 6059, 9010, CodeCallKind::Macro),
+    sequential_codes(b'M', 6071, 6079, 9001, CodeCallKind::Subprogram),
+    sequential_codes(b'M', 6080, 6089, 9020, CodeCallKind::Macro),
 ];
 
 /// Three parameters that make calls of a range of codes: the first code, its program, how many.
@@ -62,7 +68,7 @@ pub struct CodeRange {
     pub kind: CodeCallKind,
 }
 
-pub const RANGES: [CodeRange; 3] = [
+pub const CODE_RANGES: [CodeRange; 3] = [
     CodeRange { letter: b'G', first: 6038, kind: CodeCallKind::Macro },
     CodeRange { letter: b'M', first: 6044, kind: CodeCallKind::Subprogram },
     CodeRange { letter: b'M', first: 6047, kind: CodeCallKind::Macro },
@@ -76,19 +82,19 @@ pub struct AddressCall {
     pub variable: u32,
 }
 
-const BY_T: AddressCall = AddressCall { program: 9000, variable: 149 };
-const BY_S: AddressCall = AddressCall { program: 9029, variable: 147 };
-const BY_B: AddressCall = AddressCall { program: 9028, variable: 146 };
+const T_CALL: AddressCall = AddressCall { program: 9000, variable: 149 };
+const S_CALL: AddressCall = AddressCall { program: 9029, variable: 147 };
+const B_CALL: AddressCall = AddressCall { program: 9028, variable: 146 };
 /// 6090 and 6091, which hold the character code of an address.
-const BY_ADDRESS: [AddressCall; 2] =
+const ADDRESS_CALLS: [AddressCall; 2] =
     [AddressCall { program: 9004, variable: 146 }, AddressCall { program: 9005, variable: 147 }];
-const FIRST_ADDRESS: u16 = 6090;
+const FIRST_ADDRESS_PARAMETER: u16 = 6090;
 
 /// Addresses that 6090 and 6091 may name.
 pub const ADDRESSES: &[u8] = b"ABDFHIJKMPQRSTVXYZ";
 
 /// Codes that are calls or ends themselves.
-const TAKEN: [(u8, u32); 13] = [
+const RESERVED_CODES: [(u8, u32); 13] = [
     (b'G', 650),
     (b'G', 660),
     (b'G', 661),
@@ -111,7 +117,7 @@ struct CodeCall {
     letter: u8,
     /// × 10, as G codes are counted everywhere.
     code: u32,
-    called: CalledProgram,
+    target: CalledProgram,
 }
 
 /// Every code that calls. `Default` is none.
@@ -122,20 +128,29 @@ pub struct CodeCalls {
     ranges: [[i64; 3]; 3],
     addresses: [Option<u8>; 2],
     /// TCS 6001#5.
-    pub by_t: bool,
+    pub t_calls_program: bool,
     /// S calls O9029.
-    pub by_s: bool,
+    pub s_calls_program: bool,
     /// B, where it is no axis, calls O9028.
-    pub by_b: bool,
+    pub b_calls_program: bool,
     /// MGE 6007#3: a modal call by a G code is G66.1 instead of G66.
-    pub every_block: bool,
+    pub modal_is_every_block: bool,
     /// GMP 6008#6: G codes call in programs that other codes called, and the other way round.
-    pub inside_others: bool,
+    pub allows_nested_calls: bool,
 }
 
 impl CodeCalls {
     pub fn is_empty(&self) -> bool {
-        let Self { codes, ranges, addresses, by_t, by_s, by_b, every_block: _, inside_others: _ } = self;
+        let Self {
+            codes,
+            ranges,
+            addresses,
+            t_calls_program: by_t,
+            s_calls_program: by_s,
+            b_calls_program: by_b,
+            modal_is_every_block: _,
+            allows_nested_calls: _,
+        } = self;
         // Every block asks: one answer instead of nine.
         let [g, m, t] = ranges.map(|[.., count]| count);
         let [one, other] = addresses.map(|address| address.is_some());
@@ -144,18 +159,18 @@ impl CodeCalls {
 
     /// What a G or M code × 10 calls. A code of its own goes before a range, and of several parameters with the same
     /// code the first.
-    pub fn find(&self, letter: u8, code: u32) -> Option<CalledProgram> {
+    pub fn find_call(&self, letter: u8, code: u32) -> Option<CalledProgram> {
         let same = self.codes.iter().filter(|call| (call.letter, call.code) == (letter, code));
         let own = same.min_by_key(|call| call.parameter);
-        own.map(|call| call.called).or_else(|| self.in_range(letter, code))
+        own.map(|call| call.target).or_else(|| self.find_in_ranges(letter, code))
     }
 
-    fn in_range(&self, letter: u8, code: u32) -> Option<CalledProgram> {
+    fn find_in_ranges(&self, letter: u8, code: u32) -> Option<CalledProgram> {
         let number = code.is_multiple_of(10).then_some(i64::from(code / 10))?;
-        if TAKEN.contains(&(letter, code)) {
+        if RESERVED_CODES.contains(&(letter, code)) {
             return None;
         }
-        RANGES.iter().zip(&self.ranges).find_map(|(family, [first, program, count])| {
+        CODE_RANGES.iter().zip(&self.ranges).find_map(|(family, [first, program, count])| {
             let place = number - first.abs();
             if family.letter != letter || *first == 0 || !(0..*count).contains(&place) {
                 return None;
@@ -166,70 +181,76 @@ impl CodeCalls {
     }
 
     /// What an address calls whatever its number.
-    pub fn by_address(&self, letter: u8) -> Option<AddressCall> {
+    pub fn address_call(&self, letter: u8) -> Option<AddressCall> {
         let place = self.addresses.iter().position(|address| *address == Some(letter));
         match letter {
-            b'T' if self.by_t => Some(BY_T),
-            b'S' if self.by_s => Some(BY_S),
-            b'B' if self.by_b => Some(BY_B),
-            _ => place.map(|place| BY_ADDRESS[place]),
+            b'T' if self.t_calls_program => Some(T_CALL),
+            b'S' if self.s_calls_program => Some(S_CALL),
+            b'B' if self.b_calls_program => Some(B_CALL),
+            _ => place.map(|place| ADDRESS_CALLS[place]),
         }
     }
 
     /// The value of one of the parameters here; `None` for any other number.
     pub fn parameter(&self, number: u16) -> Option<i64> {
-        if family_of(number).is_some() {
+        if sequential_codes_of(number).is_some() {
             let own = self.codes.iter().rfind(|call| call.parameter == Some(number));
             return Some(own.map_or(0, |call| {
                 let code = i64::from(call.code / 10);
-                if call.called.kind == CodeCallKind::Modal { -code } else { code }
+                if call.target.kind == CodeCallKind::Modal { -code } else { code }
             }));
         }
-        if let Some((range, place)) = range_of(number) {
+        if let Some((range, place)) = range_parameter(number) {
             return Some(self.ranges[range][place]);
         }
-        let place = usize::from(number.checked_sub(FIRST_ADDRESS)?);
+        let place = usize::from(number.checked_sub(FIRST_ADDRESS_PARAMETER)?);
         self.addresses.get(place).map(|address| address.map_or(0, i64::from))
     }
 
     /// The codes of a letter that no parameter makes calls: they are calls or ends themselves.
-    pub fn taken(letter: u8) -> impl Iterator<Item = u32> {
-        TAKEN.iter().filter(move |(taken, _)| *taken == letter).map(|(_, code)| code / 10)
+    pub fn reserved_codes(letter: u8) -> impl Iterator<Item = u32> {
+        RESERVED_CODES.iter().filter(move |(taken, _)| *taken == letter).map(|(_, code)| code / 10)
     }
 
     /// The programs that an address may call, its own and those of 6090 and 6091.
-    pub fn programs_of(letter: u8) -> impl Iterator<Item = u32> {
-        let own =
-            [(b'T', BY_T), (b'S', BY_S), (b'B', BY_B)].into_iter().filter(move |(own, _)| *own == letter);
-        own.map(|(_, call)| call).chain(BY_ADDRESS).map(|call| call.program)
+    pub fn address_programs(letter: u8) -> impl Iterator<Item = u32> {
+        let own = [(b'T', T_CALL), (b'S', S_CALL), (b'B', B_CALL)]
+            .into_iter()
+            .filter(move |(own, _)| *own == letter);
+        own.map(|(_, call)| call).chain(ADDRESS_CALLS).map(|call| call.program)
     }
 
     /// Sets one of the parameters here; `None` where it is none of them, or can't have this value.
     pub fn set_parameter(&mut self, number: u16, value: i64) -> Option<()> {
-        if let Some(family) = family_of(number) {
+        if let Some(family) = sequential_codes_of(number) {
             if !family.codes().contains(&value) {
                 return None;
             }
             let kind = if value < 0 { CodeCallKind::Modal } else { family.kind };
             let code = u32::try_from(value.unsigned_abs()).ok()?.checked_mul(10)?;
-            if value != 0 && TAKEN.contains(&(family.letter, code)) {
+            if value != 0 && RESERVED_CODES.contains(&(family.letter, code)) {
                 return None;
             }
             self.codes.retain(|call| call.parameter != Some(number));
             if value != 0 {
                 let program = family.program + u32::from(number - family.first);
                 let called = CalledProgram { program, kind };
-                self.codes.push(CodeCall { parameter: Some(number), letter: family.letter, code, called });
+                self.codes.push(CodeCall {
+                    parameter: Some(number),
+                    letter: family.letter,
+                    code,
+                    target: called,
+                });
             }
             return Some(());
         }
-        if let Some((range, place)) = range_of(number) {
-            let least = if place == 0 && RANGES[range].letter == b'G' { -9999 } else { 0 };
+        if let Some((range, place)) = range_parameter(number) {
+            let least = if place == 0 && CODE_RANGES[range].letter == b'G' { -9999 } else { 0 };
             let kept = (least..=99_999_999).contains(&value).then_some(value)?;
             self.ranges[range][place] = kept;
             return Some(());
         }
-        let place = usize::from(number.checked_sub(FIRST_ADDRESS)?);
+        let place = usize::from(number.checked_sub(FIRST_ADDRESS_PARAMETER)?);
         let address = self.addresses.get_mut(place)?;
         let letter = u8::try_from(value).ok().filter(|letter| *letter == 0 || ADDRESSES.contains(letter))?;
         *address = (letter != 0).then_some(letter);
@@ -260,11 +281,11 @@ impl CodeCalls {
 
     fn set_address(&mut self, letter: u8, program: u32) -> Option<()> {
         match (letter, program) {
-            (b'T', 9000) => self.by_t = true,
-            (b'S', 9029) => self.by_s = true,
-            (b'B', 9028) => self.by_b = true,
+            (b'T', 9000) => self.t_calls_program = true,
+            (b'S', 9029) => self.s_calls_program = true,
+            (b'B', 9028) => self.b_calls_program = true,
             _ => {
-                let place = BY_ADDRESS.iter().position(|call| call.program == program)?;
+                let place = ADDRESS_CALLS.iter().position(|call| call.program == program)?;
                 self.addresses[place] = ADDRESSES.contains(&letter).then_some(Some(letter))?;
             }
         }
@@ -272,24 +293,24 @@ impl CodeCalls {
     }
 
     fn add(&mut self, letter: u8, code: u32, called: CalledProgram) -> Option<()> {
-        if TAKEN.contains(&(letter, code)) {
+        if RESERVED_CODES.contains(&(letter, code)) {
             return None;
         }
         self.codes.retain(|call| (call.letter, call.code) != (letter, code));
-        let parameter = FAMILIES.iter().find_map(|family| family.parameter(letter, called));
-        self.codes.push(CodeCall { parameter, letter, code, called });
+        let parameter = SEQUENTIAL_CODES.iter().find_map(|family| family.parameter(letter, called));
+        self.codes.push(CodeCall { parameter, letter, code, target: called });
         Some(())
     }
 }
 
 /// The family that a parameter belongs to.
-fn family_of(number: u16) -> Option<&'static SequentialCodes> {
-    FAMILIES.iter().find(|family| (family.first..=family.last).contains(&number))
+fn sequential_codes_of(number: u16) -> Option<&'static SequentialCodes> {
+    SEQUENTIAL_CODES.iter().find(|family| (family.first..=family.last).contains(&number))
 }
 
 /// The family of a range's parameter, and which of its three it is.
-fn range_of(number: u16) -> Option<(usize, usize)> {
-    RANGES.iter().enumerate().find_map(|(range, family)| {
+fn range_parameter(number: u16) -> Option<(usize, usize)> {
+    CODE_RANGES.iter().enumerate().find_map(|(range, family)| {
         let place = usize::from(number.checked_sub(family.first)?);
         (place < 3).then_some((range, place))
     })
@@ -310,15 +331,15 @@ mod tests {
             calls.set_parameter(parameter, code).unwrap();
             assert_eq!(calls.parameter(parameter), Some(code), "{parameter}");
         }
-        assert_eq!(calls.find(b'G', 2010), called(9010, CodeCallKind::Macro));
-        assert_eq!(calls.find(b'G', 810), called(9019, CodeCallKind::Modal));
-        assert_eq!(calls.find(b'M', 60), called(9001, CodeCallKind::Subprogram));
-        assert_eq!(calls.find(b'M', 600), called(9009, CodeCallKind::Subprogram));
-        assert_eq!(calls.find(b'M', 500), called(9020, CodeCallKind::Macro));
-        assert_eq!(calls.find(b'M', 590), called(9029, CodeCallKind::Macro));
-        assert_eq!((calls.find(b'G', 500), calls.parameter(6060)), (None, None));
+        assert_eq!(calls.find_call(b'G', 2010), called(9010, CodeCallKind::Macro));
+        assert_eq!(calls.find_call(b'G', 810), called(9019, CodeCallKind::Modal));
+        assert_eq!(calls.find_call(b'M', 60), called(9001, CodeCallKind::Subprogram));
+        assert_eq!(calls.find_call(b'M', 600), called(9009, CodeCallKind::Subprogram));
+        assert_eq!(calls.find_call(b'M', 500), called(9020, CodeCallKind::Macro));
+        assert_eq!(calls.find_call(b'M', 590), called(9029, CodeCallKind::Macro));
+        assert_eq!((calls.find_call(b'G', 500), calls.parameter(6060)), (None, None));
         calls.set_parameter(6050, 0).unwrap();
-        assert_eq!(calls.find(b'G', 2010), None, "0 calls nothing");
+        assert_eq!(calls.find_call(b'G', 2010), None, "0 calls nothing");
     }
 
     #[test]
@@ -327,11 +348,11 @@ mod tests {
         calls.set_parameter(6050, 201).unwrap();
         calls.set_parameter(6051, 201).unwrap();
         assert_eq!((calls.parameter(6050), calls.parameter(6051)), (Some(201), Some(201)));
-        assert_eq!(calls.find(b'G', 2010), called(9010, CodeCallKind::Macro));
+        assert_eq!(calls.find_call(b'G', 2010), called(9010, CodeCallKind::Macro));
         assert_eq!(calls.set_parameter(6050, 65), None, "G65 is a call itself");
         assert_eq!(calls.parameter(6050), Some(201), "what is refused changes nothing");
         calls.set_parameter(6050, 0).unwrap();
-        assert_eq!(calls.find(b'G', 2010), called(9011, CodeCallKind::Macro));
+        assert_eq!(calls.find_call(b'G', 2010), called(9011, CodeCallKind::Macro));
     }
 
     #[test]
@@ -342,13 +363,13 @@ mod tests {
             calls.set_parameter(parameter, value).unwrap();
         }
         for code in [1, 2, 30, 98, 99, 198] {
-            assert_eq!(calls.find(b'M', code * 10), None, "M{code}");
+            assert_eq!(calls.find_call(b'M', code * 10), None, "M{code}");
         }
-        assert_eq!(calls.find(b'M', 40), called(3003, CodeCallKind::Subprogram));
-        assert_eq!((calls.find(b'G', 650), calls.find(b'G', 660)), (None, None));
-        assert_eq!(calls.find(b'G', 640), called(4004, CodeCallKind::Macro));
+        assert_eq!(calls.find_call(b'M', 40), called(3003, CodeCallKind::Subprogram));
+        assert_eq!((calls.find_call(b'G', 650), calls.find_call(b'G', 660)), (None, None));
+        assert_eq!(calls.find_call(b'G', 640), called(4004, CodeCallKind::Macro));
         calls.set_parameter(6044, 0).unwrap();
-        assert_eq!(calls.find(b'M', 40), None, "a range from 0 on is none");
+        assert_eq!(calls.find_call(b'M', 40), None, "a range from 0 on is none");
     }
 
     #[test]
@@ -359,12 +380,12 @@ mod tests {
             calls.set_parameter(parameter, value).unwrap();
         }
         calls.set_code("G905", 9010).unwrap();
-        assert_eq!(calls.find(b'G', 9000), called(3000, CodeCallKind::Modal));
-        assert_eq!(calls.find(b'G', 9090), called(3009, CodeCallKind::Modal));
-        assert_eq!(calls.find(b'G', 9050), called(9010, CodeCallKind::Macro));
-        assert_eq!((calls.find(b'G', 9100), calls.find(b'G', 8990)), (None, None));
-        assert_eq!(calls.find(b'M', 2010), called(51, CodeCallKind::Macro));
-        assert_eq!(calls.find(b'M', 2020), None);
+        assert_eq!(calls.find_call(b'G', 9000), called(3000, CodeCallKind::Modal));
+        assert_eq!(calls.find_call(b'G', 9090), called(3009, CodeCallKind::Modal));
+        assert_eq!(calls.find_call(b'G', 9050), called(9010, CodeCallKind::Macro));
+        assert_eq!((calls.find_call(b'G', 9100), calls.find_call(b'G', 8990)), (None, None));
+        assert_eq!(calls.find_call(b'M', 2010), called(51, CodeCallKind::Macro));
+        assert_eq!(calls.find_call(b'M', 2020), None);
     }
 
     #[test]

@@ -7,9 +7,9 @@ pub struct DialectRow {
     pub dialect: Dialect,
     pub name: &'static str,
     /// The family it is like but for what it sets itself.
-    pub like: Option<Dialect>,
+    pub base: Option<Dialect>,
     /// Keys of [`super::ROWS`] with their values.
-    pub sets: &'static [(&'static str, &'static str)],
+    pub settings: &'static [(&'static str, &'static str)],
 }
 
 /// Settings not named here are those of every control of the class.
@@ -18,7 +18,7 @@ pub struct DialectRow {
 /// 96-8210 (its predecessor 96-8000 where that says nothing).
 #[rustfmt::skip]
 pub const DIALECTS: &[DialectRow] = &[
-    DialectRow { dialect: Dialect::Fanuc31i, name: "fanuc-31i", like: None, sets: &[
+    DialectRow { dialect: Dialect::Fanuc31i, name: "fanuc-31i", base: None, settings: &[
         ("CODES", "fanuc-31i"), ("MACRO-LEVELS", "5"), ("CALL-LEVELS", "15"), ("OFFSETS", "400"), ("WORK-SYSTEMS", "300"),
         ("MORE-COMMONS", "98000-98499"), ("ALIASED-COMMONS", "0"), ("VARIABLE-BITS", "0"), ("OFFSET-VARIABLES", "fanuc"),
         ("ALARM-BASE", "3000"), ("ALARM-MOST", "200"), ("PRINT-EXPANDS", "0"), ("PRINT-DIGITS", "8"),
@@ -28,12 +28,12 @@ pub const DIALECTS: &[DialectRow] = &[
         ("TAP-DWELL-R", "1"),
     ] },
     // Four axes move at once, so nothing for five; 48 additional work coordinate systems, 300 by option.
-    DialectRow { dialect: Dialect::Fanuc0iF, name: "fanuc-0i-f", like: Some(Dialect::Fanuc31i), sets: &[
+    DialectRow { dialect: Dialect::Fanuc0iF, name: "fanuc-0i-f", base: Some(Dialect::Fanuc31i), settings: &[
         ("CODES", "fanuc-0i-f"), ("WORK-SYSTEMS", "48"),
     ] },
     // Nine macro levels in all; offsets as #2001 and #2201 length and its wear, #2401 and #2601 diameter and its wear;
     // #3000=n shows 1000 + n; DPRNT prints all digits, seven at most are asked for; IF without THEN.
-    DialectRow { dialect: Dialect::HaasNgc, name: "haas-ngc", like: None, sets: &[
+    DialectRow { dialect: Dialect::HaasNgc, name: "haas-ngc", base: None, settings: &[
         ("CODES", "haas-ngc"), ("MACRO-LEVELS", "9"), ("CALL-LEVELS", "9"), ("OFFSETS", "200"), ("WORK-SYSTEMS", "99"),
         ("MORE-COMMONS", "10000-10999"), ("ALIASED-COMMONS", "1"), ("VARIABLE-BITS", "1"), ("OFFSET-VARIABLES", "haas"),
         ("ALARM-BASE", "1000"), ("ALARM-MOST", "999"), ("PRINT-EXPANDS", "1"), ("PRINT-DIGITS", "7"),
@@ -46,12 +46,12 @@ pub const DIALECTS: &[DialectRow] = &[
 
 impl Settings {
     /// Makes the control one of a family: sets all that the family's row names.
-    pub fn become_dialect(&mut self, dialect: Dialect) {
+    pub fn apply_dialect(&mut self, dialect: Dialect) {
         self.dialect = dialect;
         let row = |dialect: Dialect| DIALECTS.iter().find(|row| row.dialect == dialect);
         let own = row(dialect);
-        let like = own.and_then(|own| own.like).and_then(row);
-        for (key, value) in like.into_iter().chain(own).flat_map(|row| row.sets) {
+        let like = own.and_then(|own| own.base).and_then(row);
+        for (key, value) in like.into_iter().chain(own).flat_map(|row| row.settings) {
             // A test holds that every row can be set.
             let taken = self.set(key, value);
             debug_assert_eq!(taken, Ok(()));
@@ -71,8 +71,8 @@ mod tests {
         wanted.set("WORK-SYSTEMS", "48").unwrap();
         wanted.dialect = Dialect::Fanuc0iF;
         let mut settings = Settings::default();
-        settings.become_dialect(Dialect::HaasNgc);
-        settings.become_dialect(Dialect::Fanuc0iF);
+        settings.apply_dialect(Dialect::HaasNgc);
+        settings.apply_dialect(Dialect::Fanuc0iF);
         assert_eq!(settings, wanted);
     }
 
@@ -80,18 +80,18 @@ mod tests {
     fn every_row_can_be_set_and_the_first_is_the_default() {
         for row in DIALECTS {
             let mut settings = Settings::default();
-            for (key, value) in row.sets {
+            for (key, value) in row.settings {
                 settings.set(key, value).unwrap();
             }
-            let like = row.like.and_then(|like| DIALECTS.iter().find(|other| other.dialect == like));
+            let like = row.base.and_then(|like| DIALECTS.iter().find(|other| other.dialect == like));
             assert!(
-                like.is_none_or(|like| like.like.is_none()),
+                like.is_none_or(|like| like.base.is_none()),
                 "{}: like one that is like another",
                 row.name
             );
-            settings.become_dialect(row.dialect);
+            settings.apply_dialect(row.dialect);
             assert_eq!(settings.dialect, row.dialect);
-            settings.become_dialect(Dialect::default());
+            settings.apply_dialect(Dialect::default());
             assert_eq!(settings, Settings::default(), "{} leaves something behind", row.name);
         }
     }

@@ -6,9 +6,11 @@ mod table;
 mod undocumented;
 
 use crate::motion::{Axes, AxisIndex, MAX_AXES, Position};
-use crate::units::{MmPerMin, nearest};
+use crate::units::{MmPerMin, round_scaled};
 
-pub use code_calls::{ADDRESSES, AddressCall, CalledProgram, CodeCallKind, CodeCalls, FAMILIES, RANGES};
+pub use code_calls::{
+    ADDRESSES, AddressCall, CODE_RANGES, CalledProgram, CodeCallKind, CodeCalls, SEQUENTIAL_CODES,
+};
 pub use dialect::{DIALECTS, DialectRow};
 pub use parameters::{ParameterError, ParameterId, is_without_effect};
 pub use table::{ROWS, SettingError, SettingRow, SettingValues};
@@ -45,7 +47,7 @@ impl Increment {
 
     /// The multiple of the increment nearest to `value`, half away from zero.
     pub fn round(self, value: f64) -> f64 {
-        nearest(value, self.per_unit()) / self.per_unit()
+        round_scaled(value, self.per_unit()) / self.per_unit()
     }
 
     /// The increment itself in mm or degrees.
@@ -86,7 +88,7 @@ impl CodeSet {
         [("fanuc-31i", Self::Fanuc31i), ("fanuc-0i-f", Self::Fanuc0iF), ("haas-ngc", Self::Haas)];
 
     /// Groups for the rows of code tables.
-    pub const EVERY: &'static [Self] = &[Self::Fanuc31i, Self::Fanuc0iF, Self::Haas];
+    pub const ALL_CONTROLS: &'static [Self] = &[Self::Fanuc31i, Self::Fanuc0iF, Self::Haas];
     pub const FANUC: &'static [Self] = &[Self::Fanuc31i, Self::Fanuc0iF];
     pub const FIVE_AXES: &'static [Self] = &[Self::Fanuc31i];
     pub const HAAS: &'static [Self] = &[Self::Haas];
@@ -129,15 +131,15 @@ pub struct Settings {
     pub increment: Increment,
     pub axes: Axes,
     /// ROA 1008#0: the axes whose work coordinate runs from 0 to 360 and that turn the shorter way.
-    pub roll_over: [bool; MAX_AXES],
+    pub rolls_over: [bool; MAX_AXES],
     /// DPI 3401#0: a number without a point is mm, degrees, seconds instead of increments.
-    pub calculator_input: bool,
+    pub uses_calculator_input: bool,
     /// NAT 6004#0: ASIN and ATAN answer −90…90 and −180…180 instead of 270…90 and 0…360.
-    pub signed_angles: bool,
+    pub returns_signed_angles: bool,
     /// MFZ 6004#1: sines, cosines and tangents below 1e-8 become 0.
-    pub zero_residues: bool,
+    pub zeroes_residues: bool,
     /// IJK 6008#7: I J K in G65 are always specification I.
-    pub plain_ijk: bool,
+    pub reads_ijk_plainly: bool,
     /// CVA 6007#4: arguments of macro calls are converted when they are passed, so that ADP finds nothing to do.
     pub converts_arguments: bool,
     /// FXY 5101#0: cycles drill along the normal of the plane, or along the axis that their block names, instead of Z.
@@ -145,24 +147,24 @@ pub struct Settings {
     /// V15 6000#3: geometry and wear change places in the variables of tool offsets.
     pub series_15_offsets: bool,
     /// AD2 3403#6: an address twice in a block raises PS5074.
-    pub no_repeated_address: bool,
+    pub alarms_on_repeated_address: bool,
     /// More M codes in a block than it may have raise PS0335; otherwise the last counts.
     pub plural_m_alarms: bool,
     /// M3B 3404#7: up to three M codes in a block.
-    pub three_m_codes: bool,
+    pub allows_three_m_codes: bool,
     /// `#3000=n` shows MC with this number added; MCA 6008#1 makes it 0.
     pub macro_alarm_base: u16,
     /// The largest n that the manual names for `#3000=n`.
-    pub macro_alarm_most: u16,
+    pub macro_alarm_max: u16,
     /// `IF[…]` is followed by an assignment or by words without THEN.
-    pub plain_if: bool,
+    pub allows_plain_if: bool,
     /// `IF[…]THEN` takes words.
     pub then_takes_words: bool,
     /// Common variables beyond #999.
-    pub more_commons: Option<(u32, u32)>,
+    pub extra_commons: Option<(u32, u32)>,
     pub offset_variables: OffsetVariables,
     /// PRT 6001#1: DPRNT leaves the blanks before a number out.
-    pub print_without_blanks: bool,
+    pub omits_print_blanks: bool,
     /// A number with more digits than DPRNT's format is printed whole instead of its lower digits only.
     pub print_expands: bool,
     /// DPRNT and BPRNT alarm unless POPEN came before.
@@ -172,17 +174,17 @@ pub struct Settings {
     /// ODI 5004#2: the offsets of D are diameters.
     pub offsets_are_diameters: bool,
     /// EVR 5001#4: a changed offset of D counts from the next block on, not from the next D.
-    pub new_radius_at_once: bool,
+    pub applies_radius_at_once: bool,
     /// SUP 5003#0: cutter compensation starts and ends by type B.
-    pub start_up_b: bool,
+    pub starts_up_by_type_b: bool,
     /// 19625: blocks read in cutter compensation; two of them have to move.
-    pub blocks_read: usize,
+    pub lookahead_blocks: usize,
     /// SCR 5400#7: G51 counts its factors in 0.001 instead of 0.00001.
-    pub coarse_scaling: bool,
+    pub has_coarse_scaling: bool,
     /// Block-skip switches that are on, by number 1 to 9.
     pub skip_switches: [bool; 9],
     /// M01 stops.
-    pub optional_stop: bool,
+    pub stops_at_m01: bool,
     /// The inputs #1000 to #1031 that are 1, as bits.
     pub inputs: u32,
     /// The skip signal comes after this part of a G31 path; without it, never.
@@ -190,7 +192,7 @@ pub struct Settings {
     /// A G31 that ends without its signal alarms.
     pub missed_skip_alarms: bool,
     /// The main program's M99 of this number ends the run.
-    pub cycles: Option<u32>,
+    pub main_program_cycles: Option<u32>,
     /// Codes and addresses that call programs.
     pub code_calls: CodeCalls,
     /// 1420: rapid rate of the axes that slide.
@@ -200,41 +202,41 @@ pub struct Settings {
     /// 3410: how far an arc's end may be off its radius, mm.
     pub arc_tolerance: f64,
     /// 5440: the way that G60 leaves to its end, in the direction it comes from.
-    pub overrun: Position,
+    pub one_side_overrun: Position,
     /// M97 P calls the subprogram that begins at a sequence number of its own program.
-    pub local_calls: bool,
+    pub has_local_calls: bool,
     /// 5114: the retract of G73, mm.
     pub g73_retract: f64,
     /// 5115: the clearance of G83 above the last depth, mm.
     pub g83_clearance: f64,
     /// 1241 to 1243: the second, third and fourth reference position, in machine coordinates.
-    pub references: [Position; 3],
+    pub reference_positions: [Position; 3],
     /// 1320 and 1321: stroke limits; without any, axes have no ends.
-    pub stroke: Option<StrokeLimits>,
+    pub stroke_limits: Option<StrokeLimits>,
     /// Additional work coordinate systems: G54.1 P1…, G154 P1….
     pub work_systems: usize,
     /// `#10100` is `#100`, `#10500` to `#10999` are `#500` to `#999`.
-    pub aliased_commons: bool,
+    pub aliases_commons: bool,
     /// `#n.m` is bit m of #n.
-    pub bits_of_variables: bool,
+    pub has_variable_bits: bool,
     /// Programs and variables have names; PRM, AX and AXNUM are known.
-    pub new_words: bool,
+    pub has_named_variables: bool,
     /// FUP, LN, EXP, BIN, BCD, POW, ADP and ATAN with a comma are known.
-    pub more_functions: bool,
+    pub has_extended_functions: bool,
     /// G10 takes parameters, variables and tool life.
-    pub parameter_input: bool,
+    pub allows_parameter_input: bool,
     /// Five digits and more behind `M98 P` are repeats and a program.
-    pub repeats_in_p: bool,
+    pub reads_repeats_in_p: bool,
     /// The letter that repeats a drilling block, K or L.
-    pub cycle_repeats: u8,
+    pub cycle_repeat_letter: u8,
     /// G28 without an axis sends all of them home.
-    pub home_all: bool,
+    pub homes_all_axes: bool,
     /// P of a dwell with a point is seconds.
     pub dwell_in_seconds: bool,
     /// F without a point counts increments.
     pub feed_in_increments: bool,
     /// G73 and G83 take I, J and K for pecks that become smaller.
-    pub shrinking_pecks: bool,
+    pub has_shrinking_pecks: bool,
     /// How far above R G83 retracts, mm.
     pub g83_above_r: f64,
     /// Pairs of tool offsets.
@@ -247,7 +249,7 @@ pub struct Settings {
     pub date: u32,
     /// #3012 as hhmmss at the start of the run.
     pub time: u32,
-    pub unsure: UndocumentedChoices,
+    pub undocumented: UndocumentedChoices,
 }
 
 impl Default for Settings {
@@ -257,76 +259,76 @@ impl Default for Settings {
             codes: CodeSet::default(),
             increment: Increment::default(),
             axes: Axes::default(),
-            roll_over: [false; MAX_AXES],
-            calculator_input: false,
-            signed_angles: false,
-            zero_residues: false,
-            plain_ijk: false,
+            rolls_over: [false; MAX_AXES],
+            uses_calculator_input: false,
+            returns_signed_angles: false,
+            zeroes_residues: false,
+            reads_ijk_plainly: false,
             converts_arguments: false,
             drills_by_plane: false,
             series_15_offsets: false,
-            no_repeated_address: false,
+            alarms_on_repeated_address: false,
             plural_m_alarms: false,
-            three_m_codes: false,
+            allows_three_m_codes: false,
             macro_alarm_base: 3000,
-            macro_alarm_most: 200,
-            plain_if: false,
+            macro_alarm_max: 200,
+            allows_plain_if: false,
             then_takes_words: false,
-            more_commons: Some((98_000, 98_499)),
+            extra_commons: Some((98_000, 98_499)),
             offset_variables: OffsetVariables::default(),
-            print_without_blanks: false,
+            omits_print_blanks: false,
             print_expands: false,
             print_needs_open: false,
             print_digits: 8,
             offsets_are_diameters: false,
-            new_radius_at_once: false,
-            start_up_b: false,
-            blocks_read: 3,
-            coarse_scaling: true,
+            applies_radius_at_once: false,
+            starts_up_by_type_b: false,
+            lookahead_blocks: 3,
+            has_coarse_scaling: true,
             skip_switches: [false; 9],
-            optional_stop: true,
+            stops_at_m01: true,
             inputs: 0,
             skip_signal: None,
             missed_skip_alarms: false,
-            cycles: None,
+            main_program_cycles: None,
             code_calls: CodeCalls::default(),
             rapid: MmPerMin(24_000.0),
             rapid_rotary: 3_600.0,
             arc_tolerance: 0.02,
-            overrun: Position::default(),
-            local_calls: false,
+            one_side_overrun: Position::default(),
+            has_local_calls: false,
             g73_retract: 1.0,
             g83_clearance: 0.5,
-            references: [Position::default(); 3],
-            stroke: None,
+            reference_positions: [Position::default(); 3],
+            stroke_limits: None,
             work_systems: 300,
-            aliased_commons: false,
-            bits_of_variables: false,
-            new_words: true,
-            more_functions: true,
-            parameter_input: true,
-            repeats_in_p: true,
-            cycle_repeats: b'K',
-            home_all: false,
+            aliases_commons: false,
+            has_variable_bits: false,
+            has_named_variables: true,
+            has_extended_functions: true,
+            allows_parameter_input: true,
+            reads_repeats_in_p: true,
+            cycle_repeat_letter: b'K',
+            homes_all_axes: false,
             dwell_in_seconds: false,
             feed_in_increments: false,
-            shrinking_pecks: false,
+            has_shrinking_pecks: false,
             g83_above_r: 0.0,
             tool_offsets: 400,
             macro_levels: 5,
             call_levels: 15,
             date: 20_260_101,
             time: 120_000,
-            unsure: UndocumentedChoices::default(),
+            undocumented: UndocumentedChoices::default(),
         }
     }
 }
 
 impl Settings {
     /// The axes that roll over: mostly none.
-    pub fn rolling(&self) -> impl Iterator<Item = AxisIndex> + '_ {
-        let some = self.roll_over != [false; MAX_AXES];
-        (0..if some { self.axes.len() } else { 0 }).filter(|axis| self.roll_over[*axis])
+    pub fn rollover_axes(&self) -> impl Iterator<Item = AxisIndex> + '_ {
+        let some = self.rolls_over != [false; MAX_AXES];
+        (0..if some { self.axes.len() } else { 0 }).filter(|axis| self.rolls_over[*axis])
     }
 }
 

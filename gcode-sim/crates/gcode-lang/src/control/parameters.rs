@@ -8,17 +8,17 @@ pub enum ParameterError {
     /// Nothing here depends on it, or nothing is known of it.
     Unknown,
     /// It has one value for each axis.
-    AxisWanted,
+    MissingAxis,
     /// It has one value for all axes.
-    NoAxis,
+    UnexpectedAxis,
     /// It is a byte of which not every bit is known.
-    BitWanted,
+    MissingBit,
     /// It is a number.
-    NoBit,
+    UnexpectedBit,
     /// It can't have this value.
-    Value,
+    InvalidValue,
     /// Here it can't change in a run.
-    Fixed,
+    ReadOnly,
 }
 
 /// Which parameter: a bit of a byte or all of a number, of an axis or of all.
@@ -31,11 +31,11 @@ pub struct ParameterId {
 
 type SetAxis = fn(&mut Settings, AxisIndex, f64) -> Option<()>;
 
-enum Access {
+enum ParameterAccess {
     /// A setting by its key.
     Key(&'static str, fn(&Settings) -> f64),
     /// A value for each axis, and how it is set; without that, it is fixed.
-    Axes(fn(&Settings, AxisIndex) -> f64, Option<SetAxis>),
+    PerAxis(fn(&Settings, AxisIndex) -> f64, Option<SetAxis>),
     Fixed(fn(&Settings) -> f64),
 }
 
@@ -43,63 +43,63 @@ struct ParameterRow {
     number: u16,
     bit: Option<u8>,
     /// A length in mm, which a point has to say.
-    length: bool,
-    access: Access,
+    is_length: bool,
+    access: ParameterAccess,
 }
 
-const fn bit(number: u16, bit: u8, access: Access) -> ParameterRow {
-    ParameterRow { number, bit: Some(bit), length: false, access }
+const fn bit_row(number: u16, bit: u8, access: ParameterAccess) -> ParameterRow {
+    ParameterRow { number, bit: Some(bit), is_length: false, access }
 }
 
-const fn length(number: u16, access: Access) -> ParameterRow {
-    ParameterRow { number, bit: None, length: true, access }
+const fn length_row(number: u16, access: ParameterAccess) -> ParameterRow {
+    ParameterRow { number, bit: None, is_length: true, access }
 }
 
-const fn number(number: u16, access: Access) -> ParameterRow {
-    ParameterRow { number, bit: None, length: false, access }
+const fn number_row(number: u16, access: ParameterAccess) -> ParameterRow {
+    ParameterRow { number, bit: None, is_length: false, access }
 }
 
 /// What a stroke limit reads that isn't there, mm.
-const NO_END: f64 = 99_999.999;
+const NO_STROKE_LIMIT: f64 = 99_999.999;
 
 /// What the parameters are here, by number and bit. Those of calls by codes are in [`super::CodeCalls`].
 #[rustfmt::skip]
 const ROWS: &[ParameterRow] = &[
-    bit(1008, 0, Access::Axes(|s, axis| f64::from(s.roll_over[axis]), Some(set_roll_over))),
-    bit(1013, 0, Access::Axes(|s, _| f64::from(s.increment == Increment::IsA), None)),
-    bit(1013, 1, Access::Axes(|s, _| f64::from(s.increment == Increment::IsC), None)),
-    number(1020, Access::Axes(|s, axis| f64::from(s.axes.letter(axis) as u8), None)),
-    length(1240, Access::Axes(|_, _| 0.0, None)),
-    length(1241, Access::Axes(|s, axis| s.references[0][axis], Some(|s, axis, v| { s.references[0][axis] = v; Some(()) }))),
-    length(1242, Access::Axes(|s, axis| s.references[1][axis], Some(|s, axis, v| { s.references[1][axis] = v; Some(()) }))),
-    length(1243, Access::Axes(|s, axis| s.references[2][axis], Some(|s, axis, v| { s.references[2][axis] = v; Some(()) }))),
-    length(1320, Access::Axes(|s, axis| s.stroke.and_then(|l| l.max[axis]).unwrap_or(NO_END), Some(|s, axis, v| { s.stroke.get_or_insert_default().max[axis] = Some(v); Some(()) }))),
-    length(1321, Access::Axes(|s, axis| s.stroke.and_then(|l| l.min[axis]).unwrap_or(-NO_END), Some(|s, axis, v| { s.stroke.get_or_insert_default().min[axis] = Some(v); Some(()) }))),
-    bit(1401, 1, Access::Fixed(|_| 1.0)),
-    number(1420, Access::Axes(|s, axis| if s.axes.is_rotary(axis) { s.rapid_rotary } else { s.rapid.0 }, None)),
-    bit(3401, 0, Access::Key("DPI", |s| f64::from(s.calculator_input))),
-    bit(3403, 6, Access::Key("AD2", |s| f64::from(s.no_repeated_address))),
-    bit(3404, 7, Access::Key("M3B", |s| f64::from(s.three_m_codes))),
-    length(3410, Access::Key("3410", |s| s.arc_tolerance)),
-    bit(5001, 4, Access::Key("EVR", |s| f64::from(s.new_radius_at_once))),
-    bit(5003, 0, Access::Key("SUP", |s| f64::from(s.start_up_b))),
-    bit(5004, 2, Access::Key("ODI", |s| f64::from(s.offsets_are_diameters))),
-    bit(5101, 0, Access::Key("FXY", |s| f64::from(s.drills_by_plane))),
-    length(5114, Access::Key("5114", |s| s.g73_retract)),
-    length(5115, Access::Key("5115", |s| s.g83_clearance)),
-    bit(5400, 7, Access::Key("SCR", |s| f64::from(s.coarse_scaling))),
-    length(5440, Access::Axes(|s, axis| s.overrun[axis], Some(|s, axis, v| { s.overrun[axis] = v; Some(()) }))),
-    bit(6000, 3, Access::Key("V15", |s| f64::from(s.series_15_offsets))),
-    bit(6001, 1, Access::Key("PRT", |s| f64::from(s.print_without_blanks))),
-    bit(6001, 5, Access::Key("TCS", |s| f64::from(s.code_calls.by_t))),
-    bit(6004, 0, Access::Key("NAT", |s| f64::from(s.signed_angles))),
-    bit(6004, 1, Access::Key("MFZ", |s| f64::from(s.zero_residues))),
-    bit(6007, 3, Access::Key("MGE", |s| f64::from(s.code_calls.every_block))),
-    bit(6007, 4, Access::Key("CVA", |s| f64::from(s.converts_arguments))),
-    bit(6008, 1, Access::Key("MCA", |s| f64::from(s.macro_alarm_base == 0))),
-    bit(6008, 6, Access::Key("GMP", |s| f64::from(s.code_calls.inside_others))),
-    bit(6008, 7, Access::Key("IJK", |s| f64::from(s.plain_ijk))),
-    number(19625, Access::Key("19625", |s| s.blocks_read as f64)),
+    bit_row(1008, 0, ParameterAccess::PerAxis(|s, axis| f64::from(s.rolls_over[axis]), Some(set_roll_over))),
+    bit_row(1013, 0, ParameterAccess::PerAxis(|s, _| f64::from(s.increment == Increment::IsA), None)),
+    bit_row(1013, 1, ParameterAccess::PerAxis(|s, _| f64::from(s.increment == Increment::IsC), None)),
+    number_row(1020, ParameterAccess::PerAxis(|s, axis| f64::from(s.axes.letter(axis) as u8), None)),
+    length_row(1240, ParameterAccess::PerAxis(|_, _| 0.0, None)),
+    length_row(1241, ParameterAccess::PerAxis(|s, axis| s.reference_positions[0][axis], Some(|s, axis, v| { s.reference_positions[0][axis] = v; Some(()) }))),
+    length_row(1242, ParameterAccess::PerAxis(|s, axis| s.reference_positions[1][axis], Some(|s, axis, v| { s.reference_positions[1][axis] = v; Some(()) }))),
+    length_row(1243, ParameterAccess::PerAxis(|s, axis| s.reference_positions[2][axis], Some(|s, axis, v| { s.reference_positions[2][axis] = v; Some(()) }))),
+    length_row(1320, ParameterAccess::PerAxis(|s, axis| s.stroke_limits.and_then(|l| l.max[axis]).unwrap_or(NO_STROKE_LIMIT), Some(|s, axis, v| { s.stroke_limits.get_or_insert_default().max[axis] = Some(v); Some(()) }))),
+    length_row(1321, ParameterAccess::PerAxis(|s, axis| s.stroke_limits.and_then(|l| l.min[axis]).unwrap_or(-NO_STROKE_LIMIT), Some(|s, axis, v| { s.stroke_limits.get_or_insert_default().min[axis] = Some(v); Some(()) }))),
+    bit_row(1401, 1, ParameterAccess::Fixed(|_| 1.0)),
+    number_row(1420, ParameterAccess::PerAxis(|s, axis| if s.axes.is_rotary(axis) { s.rapid_rotary } else { s.rapid.0 }, None)),
+    bit_row(3401, 0, ParameterAccess::Key("DPI", |s| f64::from(s.uses_calculator_input))),
+    bit_row(3403, 6, ParameterAccess::Key("AD2", |s| f64::from(s.alarms_on_repeated_address))),
+    bit_row(3404, 7, ParameterAccess::Key("M3B", |s| f64::from(s.allows_three_m_codes))),
+    length_row(3410, ParameterAccess::Key("3410", |s| s.arc_tolerance)),
+    bit_row(5001, 4, ParameterAccess::Key("EVR", |s| f64::from(s.applies_radius_at_once))),
+    bit_row(5003, 0, ParameterAccess::Key("SUP", |s| f64::from(s.starts_up_by_type_b))),
+    bit_row(5004, 2, ParameterAccess::Key("ODI", |s| f64::from(s.offsets_are_diameters))),
+    bit_row(5101, 0, ParameterAccess::Key("FXY", |s| f64::from(s.drills_by_plane))),
+    length_row(5114, ParameterAccess::Key("5114", |s| s.g73_retract)),
+    length_row(5115, ParameterAccess::Key("5115", |s| s.g83_clearance)),
+    bit_row(5400, 7, ParameterAccess::Key("SCR", |s| f64::from(s.has_coarse_scaling))),
+    length_row(5440, ParameterAccess::PerAxis(|s, axis| s.one_side_overrun[axis], Some(|s, axis, v| { s.one_side_overrun[axis] = v; Some(()) }))),
+    bit_row(6000, 3, ParameterAccess::Key("V15", |s| f64::from(s.series_15_offsets))),
+    bit_row(6001, 1, ParameterAccess::Key("PRT", |s| f64::from(s.omits_print_blanks))),
+    bit_row(6001, 5, ParameterAccess::Key("TCS", |s| f64::from(s.code_calls.t_calls_program))),
+    bit_row(6004, 0, ParameterAccess::Key("NAT", |s| f64::from(s.returns_signed_angles))),
+    bit_row(6004, 1, ParameterAccess::Key("MFZ", |s| f64::from(s.zeroes_residues))),
+    bit_row(6007, 3, ParameterAccess::Key("MGE", |s| f64::from(s.code_calls.modal_is_every_block))),
+    bit_row(6007, 4, ParameterAccess::Key("CVA", |s| f64::from(s.converts_arguments))),
+    bit_row(6008, 1, ParameterAccess::Key("MCA", |s| f64::from(s.macro_alarm_base == 0))),
+    bit_row(6008, 6, ParameterAccess::Key("GMP", |s| f64::from(s.code_calls.allows_nested_calls))),
+    bit_row(6008, 7, ParameterAccess::Key("IJK", |s| f64::from(s.reads_ijk_plainly))),
+    number_row(19625, ParameterAccess::Key("19625", |s| s.lookahead_blocks as f64)),
 ];
 
 /// Parameters that nothing a run shows depends on: what is written to them can be read again. Only those that are
@@ -123,22 +123,24 @@ fn set_roll_over(settings: &mut Settings, axis: AxisIndex, value: f64) -> Option
     if !settings.axes.is_rotary(axis) {
         return None;
     }
-    settings.roll_over[axis] = value != 0.0;
+    settings.rolls_over[axis] = value != 0.0;
     Some(())
 }
 
-fn row(place: ParameterId) -> Result<&'static ParameterRow, ParameterError> {
+fn find_row(place: ParameterId) -> Result<&'static ParameterRow, ParameterError> {
     let mut of_number = ROWS.iter().filter(|row| row.number == place.number).peekable();
     let first = of_number.peek().ok_or(ParameterError::Unknown)?;
     match (place.bit, first.bit) {
-        (None, Some(_)) => return Err(ParameterError::BitWanted),
-        (Some(_), None) => return Err(ParameterError::NoBit),
+        (None, Some(_)) => return Err(ParameterError::MissingBit),
+        (Some(_), None) => return Err(ParameterError::UnexpectedBit),
         _ => {}
     }
     let row = of_number.find(|row| row.bit == place.bit).ok_or(ParameterError::Unknown)?;
     match (&row.access, place.axis) {
-        (Access::Axes(..), None) => Err(ParameterError::AxisWanted),
-        (Access::Key(..) | Access::Fixed(_), Some(_)) => Err(ParameterError::NoAxis),
+        (ParameterAccess::PerAxis(..), None) => Err(ParameterError::MissingAxis),
+        (ParameterAccess::Key(..) | ParameterAccess::Fixed(_), Some(_)) => {
+            Err(ParameterError::UnexpectedAxis)
+        }
         _ => Ok(row),
     }
 }
@@ -147,47 +149,49 @@ impl Settings {
     /// The value of a parameter; lengths in mm.
     pub fn parameter(&self, place: ParameterId) -> Result<f64, ParameterError> {
         if let Some(code) = self.code_calls.parameter(place.number) {
-            return code_call(place).map(|()| code as f64);
+            return check_code_call_id(place).map(|()| code as f64);
         }
-        let row = row(place)?;
+        let row = find_row(place)?;
         Ok(match (&row.access, place.axis) {
-            (Access::Axes(read, _), Some(axis)) => read(self, axis),
-            (Access::Key(_, read) | Access::Fixed(read), _) => read(self),
-            (Access::Axes(..), None) => return Err(ParameterError::AxisWanted),
+            (ParameterAccess::PerAxis(read, _), Some(axis)) => read(self, axis),
+            (ParameterAccess::Key(_, read) | ParameterAccess::Fixed(read), _) => read(self),
+            (ParameterAccess::PerAxis(..), None) => return Err(ParameterError::MissingAxis),
         })
     }
 
     /// Sets a parameter; a length in mm.
     pub fn set_parameter(&mut self, place: ParameterId, value: f64) -> Result<(), ParameterError> {
         if place.bit.is_some() && value != 0.0 && value != 1.0 {
-            return Err(ParameterError::Value);
+            return Err(ParameterError::InvalidValue);
         }
         if self.code_calls.parameter(place.number).is_some() {
-            code_call(place)?;
+            check_code_call_id(place)?;
             let whole = value.fract() == 0.0 && value.abs() < 1e9;
             let set = whole.then(|| self.code_calls.set_parameter(place.number, value as i64)).flatten();
-            return set.ok_or(ParameterError::Value);
+            return set.ok_or(ParameterError::InvalidValue);
         }
-        let set = match (&row(place)?.access, place.axis) {
-            (Access::Key(key, _), _) => self.set(key, &value.to_string()).ok(),
-            (Access::Axes(_, Some(set)), Some(axis)) => set(self, axis, value),
-            (Access::Axes(..) | Access::Fixed(_), _) => return Err(ParameterError::Fixed),
+        let set = match (&find_row(place)?.access, place.axis) {
+            (ParameterAccess::Key(key, _), _) => self.set(key, &value.to_string()).ok(),
+            (ParameterAccess::PerAxis(_, Some(set)), Some(axis)) => set(self, axis, value),
+            (ParameterAccess::PerAxis(..) | ParameterAccess::Fixed(_), _) => {
+                return Err(ParameterError::ReadOnly);
+            }
         };
-        set.ok_or(ParameterError::Value)
+        set.ok_or(ParameterError::InvalidValue)
     }
 
     /// Whether a parameter is a length, of which a point must say the unit.
     pub fn is_length_parameter(place: ParameterId) -> bool {
-        row(place).is_ok_and(|row| row.length)
+        find_row(place).is_ok_and(|row| row.is_length)
     }
 }
 
 /// The parameters of calls by codes are numbers for all axes.
-fn code_call(place: ParameterId) -> Result<(), ParameterError> {
+fn check_code_call_id(place: ParameterId) -> Result<(), ParameterError> {
     match (place.bit, place.axis) {
         (None, None) => Ok(()),
-        (Some(_), _) => Err(ParameterError::NoBit),
-        (None, Some(_)) => Err(ParameterError::NoAxis),
+        (Some(_), _) => Err(ParameterError::UnexpectedBit),
+        (None, Some(_)) => Err(ParameterError::UnexpectedAxis),
     }
 }
 
@@ -212,7 +216,7 @@ mod tests {
     #[test]
     fn each_row_reads_what_its_setting_says() {
         for row in ROWS {
-            let Access::Key(key, read) = row.access else { continue };
+            let ParameterAccess::Key(key, read) = row.access else { continue };
             let values = if key == "19625" { ["3", "8"] } else { ["0", "1"] };
             for value in values {
                 let mut settings = Settings::default();

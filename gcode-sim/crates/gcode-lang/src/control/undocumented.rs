@@ -8,9 +8,9 @@ pub struct UndocumentedChoices {
     /// `[#1]` with #1 vacant stays vacant instead of becoming 0.
     pub brackets_keep_vacancy: bool,
     /// A literal finer than the increment is rounded instead of cut off.
-    pub round_literals: bool,
+    pub rounds_literals: bool,
     /// GOTO takes the first of several equal N of the program instead of the next one downwards.
-    pub first_stored_number: bool,
+    pub goto_takes_first_number: bool,
     /// `IF[…]THEN GOTO n` is taken.
     pub then_takes_goto: bool,
     /// G65 … L sets the arguments anew for every pass.
@@ -28,9 +28,9 @@ pub struct UndocumentedChoices {
     /// #5001… under mirror, scaling and rotation are the coordinates after them instead of those programmed.
     pub shows_transformed: bool,
     /// POW, MOD and ATAN with a comma are known.
-    pub new_functions: bool,
+    pub has_new_functions: bool,
     /// `ATAN[0]/[0]` raises PS0119 instead of answering 0.
-    pub atan_of_nothing_alarms: bool,
+    pub atan_of_zeros_alarms: bool,
     /// `TAN[90]` raises PS0119 instead of answering a large number.
     pub tan_90_alarms: bool,
     /// G53 in G91 moves by the increment instead of not moving.
@@ -48,15 +48,15 @@ pub struct UndocumentedChoices {
     /// An arc whose R can't reach its end raises PS0020 instead of a half circle.
     pub small_radius_alarms: bool,
     /// Several assignments may stand in a block.
-    pub several_assignments: bool,
+    pub allows_several_assignments: bool,
     /// Conditions may be written with `=`, `<>`, `>`, `>=`, `<`, `<=`, `&` and `|`.
-    pub signs: bool,
+    pub allows_relation_signs: bool,
     /// Words of statements may be cut to two letters.
-    pub short_words: bool,
+    pub allows_short_words: bool,
     /// Lower case is read as capitals instead of raising PS0004.
-    pub lower_case: bool,
+    pub reads_lower_case: bool,
     /// `#3000=n` shows a number that is too large instead of raising PS0119.
-    pub large_alarm_numbers: bool,
+    pub shows_large_alarm_numbers: bool,
     /// M98 without P raises PS0311 instead of PS0076.
     pub missing_p_is_311: bool,
     /// M06 stops the spindle: the changer needs it to stand.
@@ -87,8 +87,8 @@ impl Default for UndocumentedChoices {
         Self {
             minus_keeps_vacancy: false,
             brackets_keep_vacancy: true,
-            round_literals: false,
-            first_stored_number: false,
+            rounds_literals: false,
+            goto_takes_first_number: false,
             then_takes_goto: false,
             repeats_reset_locals: false,
             every_block_calls_itself: true,
@@ -97,8 +97,8 @@ impl Default for UndocumentedChoices {
             missing_target_is_78: false,
             negative_bits_alarm: false,
             shows_transformed: false,
-            new_functions: true,
-            atan_of_nothing_alarms: false,
+            has_new_functions: true,
+            atan_of_zeros_alarms: false,
             tan_90_alarms: false,
             g53_moves_in_g91: false,
             k0_positions: false,
@@ -107,11 +107,11 @@ impl Default for UndocumentedChoices {
             tap_dwells_at_r: true,
             g67_alarms: true,
             small_radius_alarms: true,
-            several_assignments: false,
-            signs: false,
-            short_words: true,
-            lower_case: true,
-            large_alarm_numbers: true,
+            allows_several_assignments: false,
+            allows_relation_signs: false,
+            allows_short_words: true,
+            reads_lower_case: true,
+            shows_large_alarm_numbers: true,
             missing_p_is_311: false,
             tool_change_stops_spindle: true,
             argument_e: ArgumentScale::Whole,

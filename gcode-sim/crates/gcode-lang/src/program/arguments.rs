@@ -7,14 +7,14 @@ pub struct ArgumentLocals {
     /// IJK 6008#7: I J K are always specification I.
     plain_ijk: bool,
     /// G66.1, a call by every block: G, L, N and P are arguments too.
-    every: bool,
+    is_every_block: bool,
     set: usize,
     last: u8,
 }
 
 impl ArgumentLocals {
     pub fn new(plain_ijk: bool, every: bool) -> Self {
-        Self { plain_ijk, every, set: 0, last: 0 }
+        Self { plain_ijk, is_every_block: every, set: 0, last: 0 }
     }
 
     /// The local that the next letter sets; `None` for L and P, which set none.
@@ -31,10 +31,10 @@ impl ArgumentLocals {
                 }
                 Ok(Some(4 + 3 * self.set + usize::from(letter - b'I')))
             }
-            b'G' if self.every => Ok(Some(10)),
-            b'L' if self.every => Ok(Some(12)),
-            b'N' if self.every => Ok(Some(14)),
-            b'P' if self.every => Ok(Some(16)),
+            b'G' if self.is_every_block => Ok(Some(10)),
+            b'L' if self.is_every_block => Ok(Some(12)),
+            b'N' if self.is_every_block => Ok(Some(14)),
+            b'P' if self.is_every_block => Ok(Some(16)),
             b'L' | b'P' => Ok(None),
             letter => {
                 let local = plain_argument(letter);

@@ -3,26 +3,26 @@
 use std::collections::BTreeMap;
 
 use super::loops::Loops;
-use super::lower::{Lowering, lower_case};
+use super::lowering::{Lowering, lower_case};
 use super::{Op, OpBody, OpIndex, OpKind, Statement};
 use crate::alarm::Alarm;
 use crate::source::{Bytes, SourceId};
 use crate::syntax::{ast, block_at, sequence_number_at};
 
 /// As many operations are kept. Loops are shorter; some megabytes at most.
-const KEPT: usize = 8192;
+const KEPT_OPERATIONS: usize = 8192;
 
 /// The text that a program stands in.
 #[derive(Clone, Debug)]
-pub(super) struct Text {
+pub(super) struct ProgramText {
     pub(super) source: SourceId,
     pub(super) bytes: Bytes,
     /// How much of it is written on.
     pub(super) length: usize,
 }
 
-impl Text {
-    pub(super) fn written(&self) -> &[u8] {
+impl ProgramText {
+    pub(super) fn content(&self) -> &[u8] {
         &self.bytes[..self.length]
     }
 }
@@ -30,30 +30,37 @@ impl Text {
 /// All blocks of a program, and the operations of some.
 #[derive(Debug)]
 pub(super) struct Blocks {
-    text: Text,
+    text: ProgramText,
     /// Where each block begins.
     starts: Vec<u32>,
     /// The trees of blocks that don't begin their line.
-    apart: BTreeMap<u32, ast::Block>,
+    separate_trees: BTreeMap<u32, ast::Block>,
     /// Operations. A block has one place for its own, which it shares with those a multiple of [`KEPT`] away: the list of
     /// words of the one that was there is filled again.
     ops: Vec<Op>,
     /// A block's place for its operation is its own within these bits: all of them where every block is kept.
-    bits: usize,
+    index_mask: usize,
     lowering: Lowering,
 }
 
 impl Blocks {
-    pub(super) fn new(text: Text, starts: Vec<u32>, apart: BTreeMap<u32, ast::Block>) -> Self {
-        Self { text, starts, apart, ops: Vec::new(), bits: KEPT - 1, lowering: Lowering::default() }
+    pub(super) fn new(text: ProgramText, starts: Vec<u32>, apart: BTreeMap<u32, ast::Block>) -> Self {
+        Self {
+            text,
+            starts,
+            separate_trees: apart,
+            ops: Vec::new(),
+            index_mask: KEPT_OPERATIONS - 1,
+            lowering: Lowering::default(),
+        }
     }
 
     /// The tree of a block, read anew.
     pub(super) fn tree(&self, place: OpIndex) -> Option<ast::Block> {
         let start = *self.starts.get(place)?;
-        match self.apart.get(&(place as u32)) {
+        match self.separate_trees.get(&(place as u32)) {
             Some(block) => Some(block.clone()),
-            None => block_at(self.text.source, self.text.written(), start),
+            None => block_at(self.text.source, self.text.content(), start),
         }
     }
 
@@ -61,9 +68,9 @@ impl Blocks {
     pub(super) fn sequence_numbers(&self) -> Vec<(u32, u32)> {
         let mut numbers = Vec::new();
         for (place, start) in (0..).zip(&self.starts) {
-            let number = match self.apart.get(&place) {
+            let number = match self.separate_trees.get(&place) {
                 Some(block) => block.number.map(|number| number.node),
-                None => sequence_number_at(self.text.source, self.text.written(), *start),
+                None => sequence_number_at(self.text.source, self.text.content(), *start),
             };
             numbers.extend(number.map(|number| (number, place)));
         }
@@ -74,36 +81,36 @@ impl Blocks {
     /// The operation of a block, if it is lowered.
     #[inline(always)]
     pub(super) fn op(&self, place: OpIndex) -> Option<&Op> {
-        self.ops.get(place & self.bits).filter(|op| op.nth as usize == place + 1)
+        self.ops.get(place & self.index_mask).filter(|op| op.ordinal as usize == place + 1)
     }
 
     /// All operations; to ask before all are lowered, in order, is a mistake of ours.
-    pub(super) fn all(&self) -> &[Op] {
-        debug_assert_eq!(self.bits, usize::MAX, "all blocks are lowered");
-        if self.bits == usize::MAX { &self.ops } else { &[] }
+    pub(super) fn lowered_ops(&self) -> &[Op] {
+        debug_assert_eq!(self.index_mask, usize::MAX, "all blocks are lowered");
+        if self.index_mask == usize::MAX { &self.ops } else { &[] }
     }
 
     /// Lowers a block in the place of another; `None` behind the last block.
     #[inline(never)]
     pub(super) fn lower(&mut self, place: OpIndex, loops: &Loops) -> Option<()> {
         let start = *self.starts.get(place)?;
-        let at = place & self.bits;
+        let at = place & self.index_mask;
         if at >= self.ops.len() {
             self.ops.resize_with(at + 1, Op::default);
         }
-        let apart = self.apart.contains_key(&(place as u32));
-        if apart || !self.ops[at].refill(self.text.source, self.text.written(), start) {
+        let apart = self.separate_trees.contains_key(&(place as u32));
+        if apart || !self.ops[at].refill(self.text.source, self.text.content(), start) {
             let op = self.lower_tree(place, loops)?;
             self.ops[at] = op;
         }
-        self.ops[at].nth = place as u32 + 1;
+        self.ops[at].ordinal = place as u32 + 1;
         Some(())
     }
 
     /// Lowers all blocks, in order.
     pub(super) fn lower_all(&mut self, loops: &Loops) {
         self.ops.clear();
-        self.bits = usize::MAX;
+        self.index_mask = usize::MAX;
         for place in 0..self.starts.len() {
             self.lower(place, loops);
         }
@@ -114,18 +121,18 @@ impl Blocks {
     fn lower_tree(&mut self, place: OpIndex, loops: &Loops) -> Option<Op> {
         let tree = self.tree(place)?;
         let small = lower_case(&tree, &self.text.bytes);
-        let mut op = self.lowering.block(&tree, small);
-        join(&mut op, place, loops);
+        let mut op = self.lowering.lower_block(&tree, small);
+        link_loop(&mut op, place, loops);
         Some(op)
     }
 }
 
 /// Writes into a WHILE, DO or END where its partner stands. What has none becomes the alarm that a control raises when
 /// it gets there.
-fn join(op: &mut Op, place: OpIndex, loops: &Loops) {
-    let kind = match &mut op.act {
+fn link_loop(op: &mut Op, place: OpIndex, loops: &Loops) {
+    let kind = match &mut op.body {
         OpBody::Plain(kind) => kind,
-        OpBody::Asked(asked) => &mut asked.kind,
+        OpBody::Guarded(asked) => &mut asked.kind,
     };
     let OpKind::Statement(statement) = kind else { return };
     let alarm = match statement {
@@ -145,7 +152,7 @@ fn join(op: &mut Op, place: OpIndex, loops: &Loops) {
         },
         _ => return,
     };
-    *kind = OpKind::Alarm(alarm.at(op.span));
+    *kind = OpKind::Alarm(alarm.located_at(op.span));
 }
 
 #[cfg(test)]
@@ -160,16 +167,16 @@ mod tests {
 
     #[test]
     fn a_block_is_itself_whatever_was_asked_for_before() {
-        const LINES: usize = 3 * KEPT + 5;
+        const LINES: usize = 3 * KEPT_OPERATIONS + 5;
         let text: Vec<String> = (0..LINES).map(line).collect();
         let mut memory = Memory::default();
         memory.load("O1.nc", format!("O1\n{}", text.join("\n")).into_bytes());
         let id = memory.ids().next().unwrap();
-        let near = (0..2 * KEPT).map(|step| step * KEPT % (LINES - 3));
+        let near = (0..2 * KEPT_OPERATIONS).map(|step| step * KEPT_OPERATIONS % (LINES - 3));
         for place in (0..LINES).chain((0..2 * LINES).map(|step| step * 7919 % LINES)).chain(near) {
-            let op = memory.ready(id, place).unwrap();
+            let op = memory.lower_block(id, place).unwrap();
             let span = op.span;
-            if let OpKind::Compute(Assign { code, .. }) = op.kind() {
+            if let OpKind::AssignFree(Assign { code, .. }) = op.kind() {
                 let wanted = Operation::Add([OperandSource::Number(place as f64), OperandSource::Free(2)]);
                 assert_eq!(code[0].operation, wanted);
             } else {
@@ -178,17 +185,20 @@ mod tests {
             assert_eq!(memory.sources().text(span), line(place));
             assert_eq!(memory.get(id).op(place).map(|op| op.span), Some(span));
         }
-        assert!(memory.ready(id, LINES).is_none());
-        assert_eq!(memory.lowered(id).ops().len(), LINES);
-        assert_eq!(memory.ready(id, 2 * KEPT).unwrap().number, Some(2 * KEPT as u32));
+        assert!(memory.lower_block(id, LINES).is_none());
+        assert_eq!(memory.lower_program(id).ops().len(), LINES);
+        assert_eq!(
+            memory.lower_block(id, 2 * KEPT_OPERATIONS).unwrap().number,
+            Some(2 * KEPT_OPERATIONS as u32)
+        );
     }
 
     #[test]
     fn a_block_that_another_took_the_place_of_is_not_there() {
         let mut memory = Memory::default();
-        memory.load("O1.nc", format!("O1\n{}", "X1.\n".repeat(KEPT + 1)).into_bytes());
+        memory.load("O1.nc", format!("O1\n{}", "X1.\n".repeat(KEPT_OPERATIONS + 1)).into_bytes());
         let id = memory.ids().next().unwrap();
-        assert!(memory.ready(id, 0).is_some() && memory.get(id).op(0).is_some());
-        assert!(memory.ready(id, KEPT).is_some() && memory.get(id).op(0).is_none());
+        assert!(memory.lower_block(id, 0).is_some() && memory.get(id).op(0).is_some());
+        assert!(memory.lower_block(id, KEPT_OPERATIONS).is_some() && memory.get(id).op(0).is_none());
     }
 }

@@ -2,7 +2,7 @@
 
 /// What a cycle does at a hole after the tool has come to the R level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Step {
+pub enum CycleStep {
     /// Feed to the bottom.
     FeedToBottom,
     /// G83: feed by Q, rapid back to R, rapid down to the clearance above the last depth.
@@ -43,16 +43,16 @@ pub struct Cycle {
     pub starts_at_r: bool,
     /// G73 and G83 can't do without Q.
     pub needs_q: bool,
-    pub steps: &'static [Step],
+    pub steps: &'static [CycleStep],
     pub help: &'static str,
 }
 
-use Step::{
+use CycleStep::{
     Dwell, DwellAtR, FeedToBottom, FeedToR, ManualRetract, PeckFull, PeckShort, RapidBack, RapidToInitial,
     RapidToInitialAlways, RapidToR, Shift, ShiftBack, SpindleForward, SpindleReverse, SpindleStop,
 };
 
-const fn row(code: u32, steps: &'static [Step], help: &'static str) -> Cycle {
+const fn row(code: u32, steps: &'static [CycleStep], help: &'static str) -> Cycle {
     Cycle { code, starts_at_r: true, needs_q: false, steps, help }
 }
 

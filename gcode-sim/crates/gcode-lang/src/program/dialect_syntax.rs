@@ -3,7 +3,7 @@
 use crate::alarm::Alarm;
 use crate::control::Settings;
 
-use super::codes;
+use super::g_codes;
 
 /// One way of writing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,7 +13,7 @@ pub enum DialectSyntax {
     /// `WH[…]DO1`, `GO 5`.
     ShortWord,
     /// `=`, `<>`, `<`, `&` and the like in a condition.
-    Signs,
+    RelationSigns,
     /// `#1=1 #2=2`.
     SeveralAssignments,
     /// `IF[…]` before words or an assignment, without THEN.
@@ -29,28 +29,28 @@ pub enum DialectSyntax {
     /// `<NAME>`, SETVN, `[#NAME]`, PRM and the like.
     NewWord(&'static str),
     /// A G code × 10 that lowering takes for a call.
-    Code(u32),
+    GCodeCall(u32),
     /// `#30057.21`: a bit of a variable, or the variable of the nearest number.
-    Fraction,
+    FractionalNumber,
 }
 
 impl DialectSyntax {
     /// Whether a control takes it.
-    pub fn is_taken(self, settings: &Settings) -> bool {
-        let unsure = &settings.unsure;
+    pub fn is_accepted(self, settings: &Settings) -> bool {
+        let unsure = &settings.undocumented;
         match self {
-            Self::LowerCase => unsure.lower_case,
-            Self::ShortWord => unsure.short_words,
-            Self::Signs => unsure.signs,
-            Self::SeveralAssignments => unsure.several_assignments,
-            Self::PlainIf => settings.plain_if,
+            Self::LowerCase => unsure.reads_lower_case,
+            Self::ShortWord => unsure.allows_short_words,
+            Self::RelationSigns => unsure.allows_relation_signs,
+            Self::SeveralAssignments => unsure.allows_several_assignments,
+            Self::PlainIf => settings.allows_plain_if,
             Self::ThenWords => settings.then_takes_words,
             Self::ThenGoto => unsure.then_takes_goto,
-            Self::NewFunction(_) => unsure.new_functions,
-            Self::MoreFunction(_) => settings.more_functions,
-            Self::NewWord(_) => settings.new_words,
-            Self::Code(code) => codes::find(code).on(settings.codes).is_some(),
-            Self::Fraction => !settings.bits_of_variables,
+            Self::NewFunction(_) => unsure.has_new_functions,
+            Self::MoreFunction(_) => settings.has_extended_functions,
+            Self::NewWord(_) => settings.has_named_variables,
+            Self::GCodeCall(code) => g_codes::find(code).row_for(settings.codes).is_some(),
+            Self::FractionalNumber => !settings.has_variable_bits,
         }
     }
 
@@ -59,13 +59,13 @@ impl DialectSyntax {
         match self {
             Self::LowerCase => Alarm::LowerCase,
             Self::ShortWord => Alarm::ShortWord,
-            Self::Signs => Alarm::RelationSymbol,
+            Self::RelationSigns => Alarm::RelationSymbol,
             Self::SeveralAssignments => Alarm::MacroFormat { what: "two assignments in one block".into() },
             Self::PlainIf | Self::ThenWords | Self::ThenGoto => Alarm::IfFormat,
             Self::NewFunction(name) | Self::MoreFunction(name) => Alarm::Expression { text: name.into() },
             Self::NewWord(word) => Alarm::NotAWord { text: word.into() },
-            Self::Code(code) => Alarm::ImproperGCode { code: codes::spelled(code) },
-            Self::Fraction => Alarm::NotSimulated { what: "a bit of a variable, #n.m".into() },
+            Self::GCodeCall(code) => Alarm::ImproperGCode { code: g_codes::spelled(code) },
+            Self::FractionalNumber => Alarm::NotSimulated { what: "a bit of a variable, #n.m".into() },
         }
     }
 }

@@ -58,7 +58,7 @@ impl Loops {
     }
 
     /// The number of a loop that `to` lies in and that isn't among those open.
-    pub(super) fn entered(&self, to: OpIndex, open: &[Option<(OpIndex, OpIndex)>]) -> Option<u8> {
+    pub(super) fn loop_entered(&self, to: OpIndex, open: &[Option<(OpIndex, OpIndex)>]) -> Option<u8> {
         let entered = |(first, last, _): &&(OpIndex, OpIndex, u8)| {
             *first < to && to <= *last && !open.contains(&Some((*first, *last)))
         };

@@ -20,7 +20,7 @@ pub trait Library {
     }
 
     /// What couldn't be read while a program was looked for.
-    fn unread(&self) -> Option<String> {
+    fn read_error(&self) -> Option<String> {
         None
     }
 }
@@ -44,8 +44,8 @@ impl<L: Library + ?Sized> Library for &mut L {
         (**self).named(name)
     }
 
-    fn unread(&self) -> Option<String> {
-        (**self).unread()
+    fn read_error(&self) -> Option<String> {
+        (**self).read_error()
     }
 }
 
@@ -57,7 +57,7 @@ pub struct Memory {
     numbers: BTreeMap<u32, ProgramId>,
     names: BTreeMap<String, ProgramId>,
     /// Programs whose number was taken already.
-    refused: Vec<ProgramId>,
+    duplicates: Vec<ProgramId>,
 }
 
 impl Memory {
@@ -71,12 +71,12 @@ impl Memory {
             match &program.name {
                 ProgramName::Number(number) => {
                     if *self.numbers.entry(*number).or_insert(id) != id {
-                        self.refused.push(id);
+                        self.duplicates.push(id);
                     }
                 }
                 ProgramName::Name(name) => {
                     if *self.names.entry(name.clone()).or_insert(id) != id {
-                        self.refused.push(id);
+                        self.duplicates.push(id);
                     }
                 }
                 ProgramName::Unnamed => {}
@@ -91,8 +91,8 @@ impl Memory {
     }
 
     /// Programs that can't be called, because an earlier one has the same number or name.
-    pub fn refused(&self) -> impl Iterator<Item = &Program> {
-        self.refused.iter().map(|id| self.get(*id))
+    pub fn duplicates(&self) -> impl Iterator<Item = &Program> {
+        self.duplicates.iter().map(|id| self.get(*id))
     }
 
     pub fn programs(&self) -> &[Program] {
@@ -115,12 +115,12 @@ impl Memory {
     }
 
     /// One block of a program, lowered; `None` behind the last.
-    pub fn ready(&mut self, id: ProgramId, place: OpIndex) -> Option<&Op> {
-        self.get_mut(id)?.ready(place).map(|(_, op)| op)
+    pub fn lower_block(&mut self, id: ProgramId, place: OpIndex) -> Option<&Op> {
+        self.get_mut(id)?.lower_block(place).map(|(_, op)| op)
     }
 
     /// A program with all of its blocks lowered: [`Program::ops`].
-    pub fn lowered(&mut self, id: ProgramId) -> &Program {
+    pub fn lower_program(&mut self, id: ProgramId) -> &Program {
         let program = &mut self.programs[id.0 as usize];
         let Program { blocks, loops, .. } = program;
         blocks.lower_all(loops);
@@ -128,7 +128,7 @@ impl Memory {
     }
 
     /// The place of a block, read anew.
-    pub fn place_of(&self, id: ProgramId, place: OpIndex) -> Option<Span> {
+    pub fn block_span(&self, id: ProgramId, place: OpIndex) -> Option<Span> {
         self.get(id).blocks.tree(place).map(|tree| tree.span)
     }
 

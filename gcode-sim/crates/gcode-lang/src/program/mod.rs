@@ -5,13 +5,13 @@
 //! straight from its text (`numbers`), so that a long file takes little more memory than its text.
 mod arguments;
 mod blocks;
-mod code;
-pub mod codes;
+mod bytecode;
 pub mod cycles;
 mod dialect_syntax;
 mod expr;
+pub mod g_codes;
 mod loops;
-mod lower;
+mod lowering;
 pub mod m_codes;
 mod memory;
 pub mod modes;
@@ -21,8 +21,9 @@ mod outline;
 mod words;
 
 pub use arguments::{ArgumentLocals, argument_letter};
-pub use code::{
-    Bytecode, Computed, Instruction, Operand, OperandSource, Operation, STACK, Slot, Target, UncommonOp,
+pub use bytecode::{
+    AssignmentTarget, Bytecode, ComputedSource, Instruction, Operand, OperandSource, Operation, STACK, Slot,
+    UncommonOp,
 };
 pub use dialect_syntax::DialectSyntax;
 pub use memory::{Library, Memory, NoLibrary, ProgramId};
@@ -53,17 +54,17 @@ pub struct Program {
     numbers: OnceLock<Vec<(u32, u32)>>,
     loops: Loops,
     /// Whether `%` or another program stands behind its last block.
-    pub closed: bool,
+    pub is_closed: bool,
 }
 
 /// One block.
 #[derive(Debug, Default)]
 pub struct Op {
     /// Which of its program's blocks it is, counted from 1; 0 while it is none.
-    nth: u32,
+    ordinal: u32,
     pub span: Span,
     pub number: Option<u32>,
-    act: OpBody,
+    body: OpBody,
 }
 
 /// What a block does, and what is asked before.
@@ -71,7 +72,7 @@ pub struct Op {
 pub enum OpBody {
     /// Nothing is, as of most.
     Plain(OpKind),
-    Asked(Box<GuardedOp>),
+    Guarded(Box<GuardedOp>),
 }
 
 impl Default for OpBody {
@@ -86,36 +87,36 @@ pub struct GuardedOp {
     /// The block skip switch at its start.
     pub skip: Option<u8>,
     /// What is written in it that not every control takes, in the order it is held against the settings.
-    pub forms: Box<[Spanned<DialectSyntax>]>,
+    pub dialect_syntax: Box<[Spanned<DialectSyntax>]>,
     pub kind: OpKind,
 }
 
 impl Op {
     /// What the block does, once nothing is asked any more.
     pub fn kind(&self) -> &OpKind {
-        match &self.act {
+        match &self.body {
             OpBody::Plain(kind) => kind,
-            OpBody::Asked(asked) => &asked.kind,
+            OpBody::Guarded(asked) => &asked.kind,
         }
     }
 
     #[inline(always)]
     pub fn body(&self) -> &OpBody {
-        &self.act
+        &self.body
     }
 
-    fn asked(&self) -> Option<&GuardedOp> {
-        if let OpBody::Asked(asked) = &self.act { Some(asked) } else { None }
+    fn guarded_op(&self) -> Option<&GuardedOp> {
+        if let OpBody::Guarded(asked) = &self.body { Some(asked) } else { None }
     }
 
     /// The block skip switch at its start.
     pub fn skip(&self) -> Option<u8> {
-        self.asked()?.skip
+        self.guarded_op()?.skip
     }
 
     /// What is written in it that not every control takes.
-    pub fn forms(&self) -> &[Spanned<DialectSyntax>] {
-        self.asked().map_or(&[], |asked| &asked.forms)
+    pub fn dialect_syntax(&self) -> &[Spanned<DialectSyntax>] {
+        self.guarded_op().map_or(&[], |asked| &asked.dialect_syntax)
     }
 }
 
@@ -129,7 +130,7 @@ pub enum OpKind {
     Words(Words),
     Statement(Statement),
     /// A block of one [`Statement::Assign`]: who asks for statements has to ask for it as well.
-    Compute(Assign),
+    AssignFree(Assign),
     /// `IF[…]` before words or a statement, with THEN or without.
     If {
         condition: Bytecode,
@@ -145,14 +146,14 @@ pub enum OpKind {
 pub enum Statement {
     /// Any assignment that is no [`Statement::Assign`].
     Assign {
-        target: Target,
+        target: AssignmentTarget,
         target_span: Span,
         value: Operand,
         /// The first comment of the block: the text of `#3000=` and `#3006=`.
         text: Option<Box<[u8]>>,
     },
     /// `#1=1 #2=2`: assignments, one after the other.
-    Several(Vec<Self>),
+    Assignments(Vec<Self>),
     Goto(Spanned<Operand>),
     IfGoto {
         condition: Bytecode,
@@ -189,13 +190,13 @@ pub enum Statement {
     CloseOutput,
     /// `IF[…]THEN` of something that must not stand there.
     Alarm(LocatedAlarm),
-    Compute(Assign),
+    AssignFree(Assign),
 }
 
 /// An assignment of what code gives to a variable of [`Slot::Free`], as most are.
 #[derive(Debug)]
 pub struct Assign {
-    pub place: u16,
+    pub variable: u16,
     pub code: Bytecode,
 }
 
@@ -228,12 +229,12 @@ impl Program {
 
     /// Its operations in order, of a program that `Memory::lowered` gave.
     pub fn ops(&self) -> &[Op] {
-        self.blocks.all()
+        self.blocks.lowered_ops()
     }
 
     /// Lowers one block, so that it can be executed; `None` behind the last.
     #[inline(always)]
-    pub fn ready(&mut self, place: OpIndex) -> Option<(&Self, &Op)> {
+    pub fn lower_block(&mut self, place: OpIndex) -> Option<(&Self, &Op)> {
         if self.blocks.op(place).is_none() {
             self.blocks.lower(place, &self.loops)?;
         }
@@ -251,14 +252,14 @@ impl Program {
     }
 
     /// Whether several blocks have this sequence number.
-    pub fn has_twice(&self, number: u32) -> bool {
+    pub fn is_duplicate_number(&self, number: u32) -> bool {
         let first = self.numbers().partition_point(|entry| *entry < (number, 0));
         self.numbers().get(first + 1).is_some_and(|(n, _)| *n == number)
     }
 
     /// The number of a loop that `to` lies in and that isn't among those open.
     pub fn loop_entered(&self, to: OpIndex, open: &[Option<(OpIndex, OpIndex)>]) -> Option<u8> {
-        self.loops.entered(to, open)
+        self.loops.loop_entered(to, open)
     }
 
     /// The last block with this sequence number before `from`.

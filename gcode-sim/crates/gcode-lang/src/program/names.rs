@@ -12,11 +12,11 @@ pub struct NameRow {
     pub series_15: u32,
 }
 
-const fn one(name: &'static str, number: u32) -> NameRow {
+const fn single(name: &'static str, number: u32) -> NameRow {
     NameRow { name, number, suffix: None, series_15: number }
 }
 
-const fn many(name: &'static str, number: u32, from: u32, to: u32) -> NameRow {
+const fn numbered(name: &'static str, number: u32, from: u32, to: u32) -> NameRow {
     NameRow { name, number, suffix: Some((from, to)), series_15: number }
 }
 
@@ -27,23 +27,23 @@ const fn offset(name: &'static str, number: u32, series_15: u32) -> NameRow {
 /// All names but those of the additional work coordinate systems, [`find`] has them.
 #[rustfmt::skip]
 pub const NAMES: &[NameRow] = &[
-    many("_UI", 1000, 0, 31), many("_UIL", 1032, 0, 3), many("_UO", 1100, 0, 31), many("_UOL", 1132, 0, 3),
-    one("_ALM", 3000), one("_CLOCK1", 3001), one("_CLOCK2", 3002), one("_CNTL1", 3003), one("_CNTL2", 3004),
-    one("_SETDT", 3005), one("_MSGSTP", 3006), one("_MRIMG", 3007), one("_PRSTR", 3008),
-    one("_DATE", 3011), one("_TIME", 3012), one("_EMPTY", 3100), one("_PI", 3101), one("_E", 3102),
-    one("_PRTSA", 3901), one("_PRTSN", 3902),
-    many("_BUFG", 4001, 1, 30), one("_BUFB", 4102), one("_BUFD", 4107), one("_BUFE", 4108), one("_BUFF", 4109),
-    one("_BUFH", 4111), one("_BUFM", 4113), one("_BUFN", 4114), one("_BUFO", 4115), one("_BUFS", 4119),
-    one("_BUFT", 4120), one("_BUFWZP", 4130),
-    many("_ACTG", 4201, 1, 30), one("_ACTB", 4302), one("_ACTD", 4307), one("_ACTE", 4308), one("_ACTF", 4309),
-    one("_ACTH", 4311), one("_ACTM", 4313), one("_ACTN", 4314), one("_ACTO", 4315), one("_ACTS", 4319),
-    one("_ACTT", 4320), one("_ACTWZP", 4330),
-    many("_ABSIO", 5001, 1, 20), many("_ABSMT", 5021, 1, 20), many("_ABSOT", 5041, 1, 20),
-    many("_ABSKP", 5061, 1, 20), many("_TOFS", 5081, 1, 20), many("_SVERR", 5101, 1, 20),
-    many("_MIRTP", 5121, 1, 20), many("_DIST", 5181, 1, 20),
-    many("_WZCMN", 5201, 1, 20), many("_WZG54", 5221, 1, 20), many("_WZG55", 5241, 1, 20),
-    many("_WZG56", 5261, 1, 20), many("_WZG57", 5281, 1, 20), many("_WZG58", 5301, 1, 20),
-    many("_WZG59", 5321, 1, 20),
+    numbered("_UI", 1000, 0, 31), numbered("_UIL", 1032, 0, 3), numbered("_UO", 1100, 0, 31), numbered("_UOL", 1132, 0, 3),
+    single("_ALM", 3000), single("_CLOCK1", 3001), single("_CLOCK2", 3002), single("_CNTL1", 3003), single("_CNTL2", 3004),
+    single("_SETDT", 3005), single("_MSGSTP", 3006), single("_MRIMG", 3007), single("_PRSTR", 3008),
+    single("_DATE", 3011), single("_TIME", 3012), single("_EMPTY", 3100), single("_PI", 3101), single("_E", 3102),
+    single("_PRTSA", 3901), single("_PRTSN", 3902),
+    numbered("_BUFG", 4001, 1, 30), single("_BUFB", 4102), single("_BUFD", 4107), single("_BUFE", 4108), single("_BUFF", 4109),
+    single("_BUFH", 4111), single("_BUFM", 4113), single("_BUFN", 4114), single("_BUFO", 4115), single("_BUFS", 4119),
+    single("_BUFT", 4120), single("_BUFWZP", 4130),
+    numbered("_ACTG", 4201, 1, 30), single("_ACTB", 4302), single("_ACTD", 4307), single("_ACTE", 4308), single("_ACTF", 4309),
+    single("_ACTH", 4311), single("_ACTM", 4313), single("_ACTN", 4314), single("_ACTO", 4315), single("_ACTS", 4319),
+    single("_ACTT", 4320), single("_ACTWZP", 4330),
+    numbered("_ABSIO", 5001, 1, 20), numbered("_ABSMT", 5021, 1, 20), numbered("_ABSOT", 5041, 1, 20),
+    numbered("_ABSKP", 5061, 1, 20), numbered("_TOFS", 5081, 1, 20), numbered("_SVERR", 5101, 1, 20),
+    numbered("_MIRTP", 5121, 1, 20), numbered("_DIST", 5181, 1, 20),
+    numbered("_WZCMN", 5201, 1, 20), numbered("_WZG54", 5221, 1, 20), numbered("_WZG55", 5241, 1, 20),
+    numbered("_WZG56", 5261, 1, 20), numbered("_WZG57", 5281, 1, 20), numbered("_WZG58", 5301, 1, 20),
+    numbered("_WZG59", 5321, 1, 20),
     offset("_OFSHG", 11001, 10001), offset("_OFSHW", 10001, 11001),
     offset("_OFSDG", 13001, 12001), offset("_OFSDW", 12001, 13001),
 ];

@@ -1,25 +1,25 @@
 //! Blocks of numbers, lowered straight from their text.
-use super::codes;
+use super::g_codes;
 use super::words::{LoweredWord, WordOperand, Words, g_code};
 use super::{Op, OpBody, OpKind};
 use crate::source::{SourceId, Span};
-use crate::syntax::{NumberWord, Numbers};
+use crate::syntax::{NumberWord, NumberWords};
 
 impl Op {
     /// Becomes the block that begins at `start`; not where more stands in it than numbers, or a call: then it may have
     /// become anything, and its tree must be lowered.
     #[inline]
     pub(super) fn refill(&mut self, source: SourceId, text: &[u8], start: u32) -> bool {
-        self.nth = 0;
-        let Some(numbers) = Numbers::new(source, text, start) else { return false };
+        self.ordinal = 0;
+        let Some(numbers) = NumberWords::new(source, text, start) else { return false };
         let number = numbers.sequence_number;
-        if !matches!(self.act, OpBody::Plain(OpKind::Words(_))) {
-            self.act = OpBody::Plain(OpKind::Words(Words::default()));
+        if !matches!(self.body, OpBody::Plain(OpKind::Words(_))) {
+            self.body = OpBody::Plain(OpKind::Words(Words::default()));
         }
-        let OpBody::Plain(OpKind::Words(words)) = &mut self.act else { return false };
-        let Some(end) = fill(words.emptied(), numbers) else { return false };
+        let OpBody::Plain(OpKind::Words(words)) = &mut self.body else { return false };
+        let Some(end) = fill(words.cleared_list(), numbers) else { return false };
         if words.list.is_empty() {
-            self.act = OpBody::default();
+            self.body = OpBody::default();
         }
         self.span = Span { source, start, end };
         self.number = number;
@@ -29,15 +29,15 @@ impl Op {
 
 /// Puts the words of a line into an empty list, and tells where the last one ends; not where the line has others.
 #[inline(never)]
-fn fill(list: &mut Vec<LoweredWord>, mut numbers: Numbers<'_>) -> Option<u32> {
-    let mut end = numbers.begin;
+fn fill(list: &mut Vec<LoweredWord>, mut numbers: NumberWords<'_>) -> Option<u32> {
+    let mut end = numbers.words_start;
     for NumberWord { letter, number, span } in numbers.by_ref() {
         end = span.end;
         let coded = |value| LoweredWord { letter, axis: None, comma: false, value, span };
         match letter {
             b'G' => match g_code(number)? {
                 650 | 660 | 661 | 670 => return None,
-                code => list.push(coded(WordOperand::G(code, codes::find(code)))),
+                code => list.push(coded(WordOperand::G(code, g_codes::find(code)))),
             },
             b'M' if matches!(number.digits, 97 | 98 | 99 | 198) => return None,
             _ => list.push(coded(WordOperand::Literal(number))),
@@ -51,14 +51,14 @@ mod tests {
     use proptest::collection::vec;
     use proptest::prelude::*;
 
-    use super::super::lower::Lowering;
+    use super::super::lowering::Lowering;
     use super::*;
     use crate::syntax::block_at;
 
     /// An operation that was another block before.
     fn another() -> Op {
         let tree = block_at(SourceId(0), b"/N5 gO04 M30 /2 X1 (0123456789ABCDEF)", 0).unwrap();
-        Lowering::default().block(&tree, None)
+        Lowering::default().lower_block(&tree, None)
     }
 
     /// A long file goes on behind a line.
@@ -76,7 +76,7 @@ mod tests {
             if op.refill(SourceId(0), text.as_bytes(), 0) {
                 prop_assume!(op.span.end > 0);
                 let tree = block_at(SourceId(0), text.as_bytes(), 0).unwrap();
-                let lowered = Lowering::default().block(&tree, None);
+                let lowered = Lowering::default().lower_block(&tree, None);
                 prop_assert_eq!(format!("{op:?}"), format!("{lowered:?}"), "{:?}", text);
             }
         }

@@ -2,13 +2,15 @@
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
-use super::blocks::{Blocks, Text};
+use super::blocks::{Blocks, ProgramText};
 use super::loops::{LoopRole, Loops};
-use super::lower::Lowering;
+use super::lowering::Lowering;
 use super::{OpIndex, OpKind, Program, Statement};
 use crate::source::{Bytes, SourceId, Span};
 use crate::syntax::ast::{self, ProgramName};
-use crate::syntax::{Outlined, Parts, end_without_spaces, outline, sequence_number_at, written};
+use crate::syntax::{
+    BlockOutline, ProgramParts, end_without_spaces, outline, sequence_number_at, without_trailer,
+};
 
 /// What grows while a program is outlined.
 #[derive(Default)]
@@ -18,12 +20,12 @@ struct OutlineBuilder {
     end: u32,
     first_number: Option<u32>,
     loops: Vec<(OpIndex, LoopRole, u8)>,
-    apart: BTreeMap<u32, ast::Block>,
+    separate_trees: BTreeMap<u32, ast::Block>,
 }
 
 /// Outlines the programs of a file.
 pub(super) fn programs(source: SourceId, bytes: &Bytes) -> Vec<Program> {
-    let text = Text { source, bytes: bytes.clone(), length: written(bytes).len() };
+    let text = ProgramText { source, bytes: bytes.clone(), length: without_trailer(bytes).len() };
     let programs = outline(source, bytes, |growing: &mut OutlineBuilder, block| growing.block(block, &text));
     programs.into_iter().map(|parts| finish(parts, text.clone())).collect()
 }
@@ -31,10 +33,10 @@ pub(super) fn programs(source: SourceId, bytes: &Bytes) -> Vec<Program> {
 impl OutlineBuilder {
     /// Notes a block.
     #[inline(always)]
-    fn block(&mut self, block: Outlined, text: &Text) -> u32 {
+    fn block(&mut self, block: BlockOutline, text: &ProgramText) -> u32 {
         let span = block.span();
-        if !matches!(block, Outlined::Words(_)) || self.first_number.is_none() {
-            self.look_into(block, text);
+        if !matches!(block, BlockOutline::Words(_)) || self.first_number.is_none() {
+            self.record_block(block, text);
         }
         self.blocks += 1;
         self.end = span.end;
@@ -43,32 +45,32 @@ impl OutlineBuilder {
 
     /// Notes what is in a block besides words.
     #[inline(never)]
-    fn look_into(&mut self, block: Outlined, text: &Text) {
+    fn record_block(&mut self, block: BlockOutline, text: &ProgramText) {
         let place = self.blocks;
         match block {
-            Outlined::Words(span) => {
-                self.number(sequence_number_at(text.source, text.written(), span.start));
+            BlockOutline::Words(span) => {
+                self.record_number(sequence_number_at(text.source, text.content(), span.start));
             }
-            Outlined::Read(block) => self.read(place, &block),
-            Outlined::Apart(block) => {
-                self.read(place, &block);
-                self.apart.insert(place, *block);
+            BlockOutline::Tree(block) => self.record_tree(place, &block),
+            BlockOutline::WithinLine(block) => {
+                self.record_tree(place, &block);
+                self.separate_trees.insert(place, *block);
             }
         }
     }
 
     /// Notes the sequence number of a block.
-    fn number(&mut self, number: Option<u32>) {
+    fn record_number(&mut self, number: Option<u32>) {
         self.first_number = self.first_number.or(number.filter(|number| *number > 0));
     }
 
     /// Notes a block that had to be read.
-    fn read(&mut self, place: u32, block: &ast::Block) {
-        self.number(block.number.map(|number| number.node));
-        if !block.items.iter().any(is_of_loop) {
+    fn record_tree(&mut self, place: u32, block: &ast::Block) {
+        self.record_number(block.number.map(|number| number.node));
+        if !block.items.iter().any(is_loop_item) {
             return;
         }
-        let part = match Lowering::default().block(block, None).kind() {
+        let part = match Lowering::default().lower_block(block, None).kind() {
             OpKind::Statement(Statement::While { number, .. } | Statement::Do { number, .. }) => {
                 Some((LoopRole::Begin, *number))
             }
@@ -80,14 +82,17 @@ impl OutlineBuilder {
 }
 
 /// WHILE, DO or END.
-fn is_of_loop(item: &ast::Item) -> bool {
+fn is_loop_item(item: &ast::Item) -> bool {
     use ast::Statement::{Do, End, While};
     matches!(item, ast::Item::Statement(found) if matches!(found.node, While { .. } | Do(_) | End(_)))
 }
 
-fn finish(Parts { name, span, context, blocks, closed }: Parts<OutlineBuilder, u32>, text: Text) -> Program {
-    let OutlineBuilder { end, first_number, loops, apart, .. } = context;
-    let end = end_without_spaces(text.written(), end);
+fn finish(
+    ProgramParts { name, span, context, blocks, is_closed: closed }: ProgramParts<OutlineBuilder, u32>,
+    text: ProgramText,
+) -> Program {
+    let OutlineBuilder { end, first_number, loops, separate_trees: apart, .. } = context;
+    let end = end_without_spaces(text.content(), end);
     let number = match name {
         ProgramName::Number(number) => Some(number),
         ProgramName::Name(_) => None,
@@ -101,6 +106,6 @@ fn finish(Parts { name, span, context, blocks, closed }: Parts<OutlineBuilder, u
         blocks: Blocks::new(text, blocks, apart),
         numbers: OnceLock::new(),
         loops: Loops::pair(&loops),
-        closed,
+        is_closed: closed,
     }
 }

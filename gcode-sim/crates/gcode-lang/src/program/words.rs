@@ -1,9 +1,9 @@
 //! Blocks of words: codes looked up, calls taken out, the rest left for the run to evaluate.
 use super::DialectSyntax;
-use super::code::{Bytecode, Instruction, Operand, Slot};
-use super::codes::{self, RowLookup};
-use super::expr::Context;
-use super::lower::Lowering;
+use super::bytecode::{Bytecode, Instruction, Operand, Slot};
+use super::expr::ExprContext;
+use super::g_codes::{self, RowLookup};
+use super::lowering::Lowering;
 use crate::alarm::{Alarm, LocatedAlarm};
 use crate::source::Span;
 use crate::syntax::ast::{AX, Decimal, Expr, Item, Word, WordValue};
@@ -13,7 +13,7 @@ use crate::syntax::ast::{AX, Decimal, Expr, Item, Word, WordValue};
 pub struct Words {
     pub list: Vec<LoweredWord>,
     /// What blocks of numbers don't have, so that the next one needs only its list.
-    rest: Option<Box<UncommonWords>>,
+    uncommon: Option<Box<UncommonWords>>,
 }
 
 /// What few blocks of words have.
@@ -21,8 +21,8 @@ pub struct Words {
 struct UncommonWords {
     call: Option<CallOp>,
     /// `/n` inside the block: what is left of it while switch n is on.
-    short: Option<(u8, Words)>,
-    punched: Option<u64>,
+    skipped_form: Option<(u8, Words)>,
+    punched_value: Option<u64>,
     /// What [`WordOperand::Code`] counts.
     codes: Vec<Bytecode>,
     /// The numbers of axes that [`LoweredWord::axis`] counts.
@@ -99,86 +99,92 @@ pub struct CallOp {
 impl Words {
     fn new(list: Vec<LoweredWord>, call: Option<CallOp>) -> Self {
         let rest = call.map(|call| Box::new(UncommonWords { call: Some(call), ..UncommonWords::default() }));
-        Self { list, rest }
+        Self { list, uncommon: rest }
     }
 
     /// Its list, emptied for the words of another block.
     #[inline]
-    pub(super) fn emptied(&mut self) -> &mut Vec<LoweredWord> {
-        self.rest = None;
+    pub(super) fn cleared_list(&mut self) -> &mut Vec<LoweredWord> {
+        self.uncommon = None;
         self.list.clear();
         &mut self.list
     }
 
-    fn rest_mut(&mut self) -> &mut UncommonWords {
-        self.rest.get_or_insert_default()
+    fn uncommon_mut(&mut self) -> &mut UncommonWords {
+        self.uncommon.get_or_insert_default()
     }
 
     /// Keeps sixteen hexadecimal digits of the block's comment.
-    pub(super) fn punch(&mut self, value: u64) {
-        self.rest_mut().punched = Some(value);
+    pub(super) fn set_punched_value(&mut self, value: u64) {
+        self.uncommon_mut().punched_value = Some(value);
     }
 
     /// Whether the block has neither a call nor `/n` inside.
     #[inline]
     pub fn is_plain(&self) -> bool {
-        self.rest.as_ref().is_none_or(|rest| rest.call.is_none() && rest.short.is_none())
+        self.uncommon.as_ref().is_none_or(|rest| rest.call.is_none() && rest.skipped_form.is_none())
     }
 
     pub fn call(&self) -> Option<&CallOp> {
-        self.rest.as_ref()?.call.as_ref()
+        self.uncommon.as_ref()?.call.as_ref()
     }
 
     /// `/n` inside the block: n, and what is left of the block while switch n is on.
-    pub fn short(&self) -> Option<&(u8, Self)> {
-        self.rest.as_ref()?.short.as_ref()
+    pub fn skipped_form(&self) -> Option<&(u8, Self)> {
+        self.uncommon.as_ref()?.skipped_form.as_ref()
     }
 
     /// Sixteen hexadecimal digits in the block's comment: the value behind `G10 L85 P500`, as controls punch it.
-    pub fn punched(&self) -> Option<u64> {
-        self.rest.as_ref()?.punched
+    pub fn punched_value(&self) -> Option<u64> {
+        self.uncommon.as_ref()?.punched_value
     }
 
     /// What computes the value of a word.
     pub fn code(&self, place: u32) -> &[Instruction] {
-        self.rest.as_ref().map_or(&[], |rest| &rest.codes[place as usize])
+        self.uncommon.as_ref().map_or(&[], |rest| &rest.codes[place as usize])
     }
 
     /// The number of the axis that a word is for.
     pub fn axis(&self, place: u32) -> Option<&Operand> {
-        self.rest.as_ref()?.axes.get(place as usize)
+        self.uncommon.as_ref()?.axes.get(place as usize)
     }
 }
 
 impl Lowering {
     /// A block of words; `skips` are the switches inside it with their places among the items.
-    pub(super) fn words(&mut self, items: &[Item], skips: &[(u8, usize)]) -> Result<Words, LocatedAlarm> {
-        let Some(((switch, place), before)) = skips.split_last() else { return self.plain_words(items) };
-        let short = self.words(&items[..*place], before)?;
-        let mut whole = self.plain_words(items)?;
-        whole.rest_mut().short = Some((*switch, short));
+    pub(super) fn lower_words(
+        &mut self,
+        items: &[Item],
+        skips: &[(u8, usize)],
+    ) -> Result<Words, LocatedAlarm> {
+        let Some(((switch, place), before)) = skips.split_last() else {
+            return self.lower_plain_words(items);
+        };
+        let short = self.lower_words(&items[..*place], before)?;
+        let mut whole = self.lower_plain_words(items)?;
+        whole.uncommon_mut().skipped_form = Some((*switch, short));
         Ok(whole)
     }
 
-    fn plain_words(&mut self, items: &[Item]) -> Result<Words, LocatedAlarm> {
+    fn lower_plain_words(&mut self, items: &[Item]) -> Result<Words, LocatedAlarm> {
         (self.codes, self.axes) = (Vec::new(), Vec::new());
-        let mut words = self.listed(items)?;
+        let mut words = self.lower_list(items)?;
         let (codes, axes) = (std::mem::take(&mut self.codes), std::mem::take(&mut self.axes));
         if !codes.is_empty() || !axes.is_empty() {
-            let rest = words.rest_mut();
+            let rest = words.uncommon_mut();
             (rest.codes, rest.axes) = (codes, axes);
         }
         Ok(words)
     }
 
-    fn listed(&mut self, items: &[Item]) -> Result<Words, LocatedAlarm> {
+    fn lower_list(&mut self, items: &[Item]) -> Result<Words, LocatedAlarm> {
         let words =
             items.iter().filter_map(|item| if let Item::Word(word) = item { Some(word) } else { None });
         let mut list = Vec::with_capacity(items.len());
         // Macro calls begin with a G code, all others with an M code; names stand in calls.
         let (mut by_g, mut by_m) = (false, false);
         for word in words.clone() {
-            let coded = self.word(word)?;
+            let coded = self.lower_word(word)?;
             by_g |= matches!(coded.value, WordOperand::G(650 | 660 | 661 | 670, _));
             by_m |= coded.letter == b'M' || matches!(word.value, WordValue::Name(_));
             list.push(coded);
@@ -192,13 +198,13 @@ impl Lowering {
         let call = [(650, CallCode::Macro), (660, CallCode::AfterMoves), (661, CallCode::EveryBlock)];
         for (code, kind) in call {
             if let Some(at) = list.iter().position(|w| is(w, code)) {
-                self.note(DialectSyntax::Code(code), list[at].span);
+                self.record_syntax(DialectSyntax::GCodeCall(code), list[at].span);
                 return macro_call(list, at, kind, words);
             }
         }
         if let Some(at) = list.iter().position(|w| is(w, 670)) {
             let span = list.remove(at).span;
-            self.note(DialectSyntax::Code(670), span);
+            self.record_syntax(DialectSyntax::GCodeCall(670), span);
             let call = CallOp {
                 kind: CallCode::Cancel,
                 target: CallTarget::None,
@@ -212,23 +218,24 @@ impl Lowering {
         subprogram(list, words)
     }
 
-    fn word(&mut self, word: &Word) -> Result<LoweredWord, LocatedAlarm> {
+    fn lower_word(&mut self, word: &Word) -> Result<LoweredWord, LocatedAlarm> {
         let letter = word.address.letter;
         let value = match &word.value {
-            WordValue::Literal(number) => literal(letter, *number)
-                .ok_or_else(|| Alarm::ImproperGCode { code: number.value().to_string() }.at(word.span))?,
+            WordValue::Literal(number) => literal(letter, *number).ok_or_else(|| {
+                Alarm::ImproperGCode { code: number.value().to_string() }.located_at(word.span)
+            })?,
             // Axes have one increment.
-            WordValue::Expr(expr) if letter == AX => self.computed_word(expr, b'X')?,
-            WordValue::Expr(expr) => self.computed_word(expr, letter)?,
+            WordValue::Expr(expr) if letter == AX => self.lower_computed_word(expr, b'X')?,
+            WordValue::Expr(expr) => self.lower_computed_word(expr, letter)?,
             // Taken up by the call in the same block.
             WordValue::Name(_) => {
-                self.note(DialectSyntax::NewWord("<NAME>"), word.span);
+                self.record_syntax(DialectSyntax::NewWord("<NAME>"), word.span);
                 WordOperand::Literal(Decimal { negative: false, digits: 0, places: None })
             }
         };
         let axis = match &word.axis {
             Some(axis) => {
-                let axis = self.operand(axis, Context::Macro)?;
+                let axis = self.operand(axis, ExprContext::Macro)?;
                 self.axes.push(axis);
                 Some(self.axes.len() as u32 - 1)
             }
@@ -237,7 +244,7 @@ impl Lowering {
         Ok(LoweredWord { letter, axis, comma: word.address.comma, value, span: word.span })
     }
 
-    fn computed_word(&mut self, expr: &Expr, letter: u8) -> Result<WordOperand, LocatedAlarm> {
+    fn lower_computed_word(&mut self, expr: &Expr, letter: u8) -> Result<WordOperand, LocatedAlarm> {
         Ok(match self.word_value(expr, letter)? {
             Operand::Number(number) => WordOperand::Number(number),
             Operand::Variable { slot, span } => WordOperand::Variable { slot, span },
@@ -253,7 +260,7 @@ impl Lowering {
 fn literal(letter: u8, number: Decimal) -> Option<WordOperand> {
     if letter == b'G' {
         let code = g_code(number)?;
-        return Some(WordOperand::G(code, codes::find(code)));
+        return Some(WordOperand::G(code, g_codes::find(code)));
     }
     Some(WordOperand::Literal(number))
 }
@@ -285,7 +292,7 @@ fn macro_call<'a>(
     let span = list[at].span;
     if at > 0 {
         let what = "words before the macro call".into();
-        return Err(Alarm::MacroFormat { what }.at(list[0].span));
+        return Err(Alarm::MacroFormat { what }.located_at(list[0].span));
     }
     list.remove(0);
     let mut call =
@@ -295,16 +302,18 @@ fn macro_call<'a>(
             (b'P', WordValue::Name(name)) => call.target = CallTarget::Name(name.clone()),
             (b'P', _) => call.target = CallTarget::Number(coded),
             (_, WordValue::Name(_)) => {
-                return Err(Alarm::NotAWord { text: "a name without P".into() }.at(coded.span));
+                return Err(Alarm::NotAWord { text: "a name without P".into() }.located_at(coded.span));
             }
             (b'L', _) => call.repeats = Some(coded),
             (b'G', _) if matches!(coded.value, WordOperand::G(650 | 660 | 661, _)) => {
-                return Err(Alarm::TwoMacroCalls.at(coded.span));
+                return Err(Alarm::TwoMacroCalls.located_at(coded.span));
             }
             (b'M', WordValue::Literal(number)) if number.places.is_none() && number.digits == 98 => {
-                return Err(Alarm::TwoMacroCalls.at(coded.span));
+                return Err(Alarm::TwoMacroCalls.located_at(coded.span));
             }
-            (b'G', _) if kind != CallCode::EveryBlock => return Err(Alarm::GAsArgument.at(coded.span)),
+            (b'G', _) if kind != CallCode::EveryBlock => {
+                return Err(Alarm::GAsArgument.located_at(coded.span));
+            }
             _ => call.arguments.push(coded),
         }
     }
@@ -336,12 +345,12 @@ fn subprogram<'a>(
     let mut calls = words.clone().filter_map(|word| Some((word, kind(word)?)));
     let Some((call, calling)) = calls.next() else {
         if let Some(word) = words.clone().find(|w| matches!(w.value, WordValue::Name(_))) {
-            return Err(Alarm::NotAWord { text: "a name without M98 or G65".into() }.at(word.span));
+            return Err(Alarm::NotAWord { text: "a name without M98 or G65".into() }.located_at(word.span));
         }
         return Ok(Words::new(list, None));
     };
     if let Some((second, _)) = calls.next() {
-        return Err(Alarm::TwoSubprogramCalls.at(second.span));
+        return Err(Alarm::TwoSubprogramCalls.located_at(second.span));
     }
     let mut op = CallOp {
         kind: calling,
@@ -357,7 +366,7 @@ fn subprogram<'a>(
             (b'M', _) if kind(word).is_some() => {}
             (b'P', WordValue::Name(name)) => op.target = CallTarget::Name(name.clone()),
             (_, WordValue::Name(_)) => {
-                return Err(Alarm::NotAWord { text: "a name without P".into() }.at(coded.span));
+                return Err(Alarm::NotAWord { text: "a name without P".into() }.located_at(coded.span));
             }
             (b'P', _) if calling == CallCode::Local => op.start = Some(coded),
             (b'P', _) => op.target = CallTarget::Number(coded),

@@ -56,7 +56,7 @@ pub struct Block {
     /// `N10`.
     pub number: Option<Spanned<u32>>,
     /// The first statement with a word cut short: `WH[…]DO1`, `GO 5`.
-    pub short: Option<Span>,
+    pub short_word: Option<Span>,
     pub items: Vec<Item>,
     /// Comments in the order they stand in.
     pub comments: Vec<Comment>,
@@ -245,7 +245,7 @@ pub enum Condition {
     Compare {
         left: Expr,
         relation: Relation,
-        written: OperatorSpelling,
+        spelling: OperatorSpelling,
         right: Expr,
         span: Span,
     },

@@ -4,15 +4,15 @@ use nom::Err;
 use super::ast::{Address, Block, Item, Unreadable, Word, WordValue};
 use super::digits::window;
 use super::number::integer;
-use super::numbers::{goes_on, number_word};
+use super::numbers::{continues_number, number_word};
 use super::statement::{assignment, keyword, statement};
-use super::token::{Input, LineInput, Read, ReadFailure, fail, next, other, spaces};
+use super::token::{Input, LineInput, ReadFailure, ReadResult, fail, next, no_match, spaces};
 use super::word::{name_word, word};
 use crate::alarm::Alarm;
 use crate::source::Spanned;
 
 /// The largest sequence number.
-pub(super) const MOST_SEQUENCE: u32 = 99_999_999;
+pub(super) const MAX_SEQUENCE_NUMBER: u32 = 99_999_999;
 
 /// Reads one line, its end not included, into an empty block. What can't be read is the block's last item.
 ///
@@ -20,7 +20,7 @@ pub(super) const MOST_SEQUENCE: u32 = 99_999_999;
 pub(super) fn read_block<'a>(line: LineInput, input: Input<'a>, block: &mut Block) -> Input<'a> {
     let mut rest = spaces(input);
     while !rest.is_empty() && !ends_block(rest, block) {
-        match item(line, rest, block) {
+        match read_item(line, rest, block) {
             Ok((after, ())) => rest = spaces(after),
             Err(error) => {
                 block.items.push(Item::Unreadable(Box::new(unreadable(line, rest, error))));
@@ -56,7 +56,7 @@ pub(super) fn begins_program(input: Input<'_>) -> bool {
 fn unreadable(line: LineInput, from: Input<'_>, error: Err<ReadFailure>) -> Unreadable {
     let (alarm, left) = match error {
         Err::Error(fault) | Err::Failure(fault) => {
-            let left = fault.left;
+            let left = fault.remaining;
             (fault.into_alarm(), left)
         }
         Err::Incomplete(_) => (Alarm::NotAWord { text: String::new() }, from.len()),
@@ -66,7 +66,7 @@ fn unreadable(line: LineInput, from: Input<'_>, error: Err<ReadFailure>) -> Unre
     Unreadable { alarm: line.spanned(alarm, at, end), span: line.span(from, end), text: Vec::new() }
 }
 
-fn item<'a>(line: LineInput, at: Input<'a>, block: &mut Block) -> Read<'a, ()> {
+fn read_item<'a>(line: LineInput, at: Input<'a>, block: &mut Block) -> ReadResult<'a, ()> {
     let beginning = block.items.is_empty();
     let (rest, item) = match at {
         [b'/', ..] => {
@@ -92,7 +92,7 @@ fn item<'a>(line: LineInput, at: Input<'a>, block: &mut Block) -> Read<'a, ()> {
         }
         [b'O' | b'o' | b':', ..] if beginning && begins_program(at) => return fail(at, Alarm::ProgramNumber),
         [b',' | b'A'..=b'Z' | b'a'..=b'z', ..] => match (number_word(&window(at)), keyword(at)) {
-            (Some((letter, number, length)), _) if !goes_on(&at[length..]) => {
+            (Some((letter, number, length)), _) if !continues_number(&at[length..]) => {
                 let rest = &at[length..];
                 let (address, value) = (Address { letter, comma: false }, WordValue::Literal(number));
                 (rest, Item::Word(Word { address, axis: None, value, span: line.span(at, rest) }))
@@ -101,7 +101,7 @@ fn item<'a>(line: LineInput, at: Input<'a>, block: &mut Block) -> Read<'a, ()> {
                 let (rest, (found, short)) = statement(line, &begun)?;
                 let found = line.spanned(found, at, rest);
                 if short {
-                    block.short = block.short.or(Some(found.span));
+                    block.short_word = block.short_word.or(Some(found.span));
                 }
                 (rest, Item::Statement(Box::new(found)))
             }
@@ -112,30 +112,30 @@ fn item<'a>(line: LineInput, at: Input<'a>, block: &mut Block) -> Read<'a, ()> {
         },
         [b']', ..] => return fail(at, Alarm::MissingOpenBracket),
         [b';', ..] => return fail(at, Alarm::TwoBlocksInOneLine),
-        _ => return other(at),
+        _ => return no_match(at),
     };
     block.items.push(item);
     Ok((rest, ()))
 }
 
 /// `/` or `/n`: the number of the switch.
-fn skip(line: LineInput, at: Input<'_>) -> Read<'_, Spanned<u8>> {
+fn skip(line: LineInput, at: Input<'_>) -> ReadResult<'_, Spanned<u8>> {
     let after = &at[1..];
     match next(after) {
         Some((digit @ b'1'..=b'9', rest)) if !matches!(next(rest), Some((b'0'..=b'9' | b'.', _))) => {
             Ok((rest, line.spanned(digit - b'0', at, rest)))
         }
-        Some((b'0'..=b'9' | b'.', _)) => other(at),
+        Some((b'0'..=b'9' | b'.', _)) => no_match(at),
         _ => Ok((after, line.spanned(1, at, after))),
     }
 }
 
 /// `N10`. The input begins with the letter.
-pub(super) fn sequence_number(line: LineInput, at: Input<'_>) -> Read<'_, Spanned<u32>> {
+pub(super) fn sequence_number(line: LineInput, at: Input<'_>) -> ReadResult<'_, Spanned<u32>> {
     let start = spaces(&at[1..]);
     let (rest, number) = match integer(start) {
         Err(Err::Error(_)) => match start.first() {
-            Some(b'#' | b'[') => return other(at),
+            Some(b'#' | b'[') => return no_match(at),
             Some(b'-') => return fail(start, Alarm::IllegalMinus { letter: 'N' }),
             _ => return fail(at, Alarm::NoDataAfterAddress { letter: 'N' }),
         },
@@ -145,7 +145,7 @@ pub(super) fn sequence_number(line: LineInput, at: Input<'_>) -> Read<'_, Spanne
         read => read?,
     };
     match u32::try_from(number) {
-        Ok(number) if number <= MOST_SEQUENCE => Ok((rest, line.spanned(number, at, rest))),
+        Ok(number) if number <= MAX_SEQUENCE_NUMBER => Ok((rest, line.spanned(number, at, rest))),
         _ => fail(at, Alarm::TooManyDigits),
     }
 }

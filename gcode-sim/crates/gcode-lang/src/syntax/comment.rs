@@ -8,7 +8,7 @@ use crate::source::{SourceId, Span};
 /// Copies a line into `code` with its comments overwritten by [`COMMENT`], and appends them to `comments`. Remarks at
 /// the end, `; TEXT` and `// TEXT`, are cut off. `reads` tells whether a text reads as a block: where a `;` is followed
 /// by one, nobody can tell a remark from a second block, and the `;` stays in the code for the reader to refuse.
-pub(super) fn blank(
+pub(super) fn blank_out_comments(
     source: SourceId,
     start: u32,
     line: &[u8],
@@ -82,7 +82,7 @@ fn closing(line: &[u8], open: usize, pairs: &mut Option<Vec<usize>>) -> Option<u
     if line[first] == b')' {
         return Some(first);
     }
-    let pairs = pairs.get_or_insert_with(|| matching(line));
+    let pairs = pairs.get_or_insert_with(|| matching_brackets(line));
     match pairs[open] {
         0 => line[open + 1..].iter().position(|b| *b == b')').map(|i| open + 1 + i),
         own => Some(own),
@@ -90,7 +90,7 @@ fn closing(line: &[u8], open: usize, pairs: &mut Option<Vec<usize>>) -> Option<u
 }
 
 /// For each `(` where the `)` of its own stands, 0 where there is none.
-fn matching(line: &[u8]) -> Vec<usize> {
+fn matching_brackets(line: &[u8]) -> Vec<usize> {
     let mut closes = vec![0; line.len()];
     let mut open = Vec::new();
     for (at, byte) in line.iter().enumerate() {
@@ -113,7 +113,9 @@ mod tests {
 
     fn blanked(line: &str) -> (String, Vec<String>) {
         let (mut code, mut comments) = (Vec::new(), VecDeque::new());
-        blank(SourceId(0), 0, line.as_bytes(), &mut code, &mut comments, |text| text.starts_with(b" G"));
+        blank_out_comments(SourceId(0), 0, line.as_bytes(), &mut code, &mut comments, |text| {
+            text.starts_with(b" G")
+        });
         let comments = comments.into_iter().map(|c| String::from_utf8(c.text).unwrap()).collect();
         (String::from_utf8(code).unwrap(), comments)
     }

@@ -25,7 +25,7 @@ const DIVIDES: [bool; 256] = {
 
 /// How far a text has no byte, from a place on, that [`divides`] its line.
 #[inline(never)]
-pub(super) fn undivided(bytes: &[u8], from: usize) -> usize {
+pub(super) fn find_divider(bytes: &[u8], from: usize) -> usize {
     let text = &bytes[from..];
     let divided = |chunk: &[u8; 32]| chunk.iter().fold(false, |any, byte| any | divides(*byte));
     let plain = 32 * text.as_chunks().0.iter().take_while(|chunk| !divided(chunk)).count();
@@ -43,9 +43,9 @@ mod tests {
             for place in 0..80 {
                 let mut text = b"N10 G1 X-1.5 Y+2. Z#3 F[100*2]=,\tgzAKQ@\n\r9".repeat(3);
                 text[place] = byte;
-                assert_eq!(undivided(&text, 0), place);
-                assert_eq!(undivided(&text, place), place);
-                assert_eq!(undivided(&text, place + 1), text.len());
+                assert_eq!(find_divider(&text, 0), place);
+                assert_eq!(find_divider(&text, place), place);
+                assert_eq!(find_divider(&text, place + 1), text.len());
             }
         }
     }

@@ -10,51 +10,51 @@ use super::ast::{BinaryOp, Condition, Expr, ExprKind, OperatorSpelling, Relation
 use super::function::{call, is_name, named};
 use super::number::{EXPRESSION_LIMIT, decimal};
 use super::token::{
-    Input, LineInput, Read, comment_before, fail, must, next, no_expression, other, round_brackets, sign,
-    spaces, word,
+    Input, LineInput, ReadResult, comment_before, fail, next, no_expression, no_match, require,
+    round_brackets, sign, spaces, word,
 };
 use crate::alarm::Alarm;
 
 /// Brackets inside one another, those of functions and of `#[…]` included (manual: at most five).
-const DEEPEST: u8 = 5;
+const MAX_BRACKET_DEPTH: u8 = 5;
 
 /// Operators of one level side by side. No control takes a block this long; the limit keeps the tree shallow.
-const MOST_OPERATORS: usize = 100;
+const MAX_OPERATORS: usize = 100;
 
 enum ExprOrCondition {
-    Number(Expr),
-    Truth(Condition),
+    Expr(Expr),
+    Condition(Condition),
 }
 
 /// An expression; a condition in its place is an alarm.
-pub(super) fn expr(line: LineInput, input: Input<'_>, depth: u8) -> Read<'_, Expr> {
+pub(super) fn expr(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, Expr> {
     let (rest, mixed) = sum(line, input, depth)?;
     number(rest, input, mixed)
 }
 
 /// `[c]` of IF and WHILE, or `[c1]AND[c2]` as some programs write `[[c1]AND[c2]]`. The bracket around all of it is
 /// not kept.
-pub(super) fn condition(line: LineInput, input: Input<'_>) -> Read<'_, Condition> {
+pub(super) fn condition(line: LineInput, input: Input<'_>) -> ReadResult<'_, Condition> {
     sign(b'[')(input)?;
     match sum(line, input, 0)? {
-        (rest, ExprOrCondition::Truth(Condition::Bracket(inner))) => Ok((rest, *inner)),
-        (rest, ExprOrCondition::Truth(condition)) => Ok((rest, condition)),
-        (_, ExprOrCondition::Number(_)) => other(input),
+        (rest, ExprOrCondition::Condition(Condition::Bracket(inner))) => Ok((rest, *inner)),
+        (rest, ExprOrCondition::Condition(condition)) => Ok((rest, condition)),
+        (_, ExprOrCondition::Expr(_)) => no_match(input),
     }
 }
 
 /// `#n`, `#[…]`, or a variable by its name in brackets: what may stand left of `=`.
-pub(super) fn variable(line: LineInput, input: Input<'_>) -> Read<'_, Expr> {
+pub(super) fn variable(line: LineInput, input: Input<'_>) -> ReadResult<'_, Expr> {
     let start = spaces(input);
     match start.first() {
         Some(b'#') => numbered(line, start, 0),
         Some(b'[') if is_name(start) => named(line, start, 0),
-        _ => other(input),
+        _ => no_match(input),
     }
 }
 
 /// One value: a variable or `[…]`, as after an address.
-pub(super) fn single(line: LineInput, input: Input<'_>) -> Read<'_, Expr> {
+pub(super) fn single_value(line: LineInput, input: Input<'_>) -> ReadResult<'_, Expr> {
     let start = spaces(input);
     match start.first() {
         Some(b'[') if !is_name(start) => {
@@ -65,43 +65,43 @@ pub(super) fn single(line: LineInput, input: Input<'_>) -> Read<'_, Expr> {
     }
 }
 
-fn number<'a>(rest: Input<'a>, from: Input<'a>, mixed: ExprOrCondition) -> Read<'a, Expr> {
+fn number<'a>(rest: Input<'a>, from: Input<'a>, mixed: ExprOrCondition) -> ReadResult<'a, Expr> {
     match mixed {
-        ExprOrCondition::Number(expr) => Ok((rest, expr)),
-        ExprOrCondition::Truth(_) => no_expression(spaces(from)),
+        ExprOrCondition::Expr(expr) => Ok((rest, expr)),
+        ExprOrCondition::Condition(_) => no_expression(spaces(from)),
     }
 }
 
-type Operator = for<'a> fn(Input<'a>) -> Option<(Input<'a>, BinaryOp, OperatorSpelling)>;
-type Part = for<'a> fn(LineInput, Input<'a>, u8) -> Read<'a, ExprOrCondition>;
+type OperatorParser = for<'a> fn(Input<'a>) -> Option<(Input<'a>, BinaryOp, OperatorSpelling)>;
+type OperandParser = for<'a> fn(LineInput, Input<'a>, u8) -> ReadResult<'a, ExprOrCondition>;
 
 /// `+ - OR XOR |`, left to right.
-fn sum(line: LineInput, input: Input<'_>, depth: u8) -> Read<'_, ExprOrCondition> {
-    let operator: Operator = |input| match next(input)? {
+fn sum(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, ExprOrCondition> {
+    let operator: OperatorParser = |input| match next(input)? {
         (b'+', rest) => Some((rest, BinaryOp::Add, OperatorSpelling::Sign)),
         (b'-', rest) => Some((rest, BinaryOp::Sub, OperatorSpelling::Sign)),
         (b'|', rest) => Some((rest, BinaryOp::Or, OperatorSpelling::Sign)),
-        (b'O' | b'o', _) => in_letters(input, "OR", BinaryOp::Or),
-        (b'X' | b'x', _) => in_letters(input, "XOR", BinaryOp::Xor),
+        (b'O' | b'o', _) => letter_operator(input, "OR", BinaryOp::Or),
+        (b'X' | b'x', _) => letter_operator(input, "XOR", BinaryOp::Xor),
         _ => None,
     };
     chain(line, input, depth, operator, term)
 }
 
 /// `* / AND MOD &`, left to right.
-fn term(line: LineInput, input: Input<'_>, depth: u8) -> Read<'_, ExprOrCondition> {
-    let operator: Operator = |input| match next(input)? {
+fn term(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, ExprOrCondition> {
+    let operator: OperatorParser = |input| match next(input)? {
         (b'*', rest) => Some((rest, BinaryOp::Mul, OperatorSpelling::Sign)),
         (b'/', rest) => Some((rest, BinaryOp::Div, OperatorSpelling::Sign)),
         (b'&', rest) => Some((rest, BinaryOp::And, OperatorSpelling::Sign)),
-        (b'A' | b'a', _) => in_letters(input, "AND", BinaryOp::And),
-        (b'M' | b'm', _) => in_letters(input, "MOD", BinaryOp::Mod),
+        (b'A' | b'a', _) => letter_operator(input, "AND", BinaryOp::And),
+        (b'M' | b'm', _) => letter_operator(input, "MOD", BinaryOp::Mod),
         _ => None,
     };
     chain(line, input, depth, operator, signed)
 }
 
-fn in_letters<'a>(
+fn letter_operator<'a>(
     input: Input<'a>,
     text: &'static str,
     op: BinaryOp,
@@ -113,36 +113,34 @@ fn chain<'a>(
     line: LineInput,
     input: Input<'a>,
     depth: u8,
-    operator: Operator,
-    part: Part,
-) -> Read<'a, ExprOrCondition> {
+    operator: OperatorParser,
+    part: OperandParser,
+) -> ReadResult<'a, ExprOrCondition> {
     let start = spaces(input);
     let (mut rest, mut left) = part(line, input, depth)?;
     let mut count = 0;
     while let Some((after, op, written)) = operator(rest) {
         let at = spaces(rest);
         count += 1;
-        if count > MOST_OPERATORS {
-            let what = format!("an expression of more than {MOST_OPERATORS} operators");
+        if count > MAX_OPERATORS {
+            let what = format!("an expression of more than {MAX_OPERATORS} operators");
             return fail(at, Alarm::NotSimulated { what });
         }
-        let (after, right) = wanted(part(line, after, depth), after)?;
+        let (after, right) = require_value(part(line, after, depth), after)?;
         let bits = matches!(op, BinaryOp::And | BinaryOp::Or | BinaryOp::Xor);
         left = match (left, right) {
             // `&` and `|` join conditions only.
-            (ExprOrCondition::Number(_), ExprOrCondition::Number(_))
+            (ExprOrCondition::Expr(_), ExprOrCondition::Expr(_))
                 if bits && written == OperatorSpelling::Sign =>
             {
                 return no_expression(at);
             }
-            (ExprOrCondition::Number(left), ExprOrCondition::Number(right)) => {
-                ExprOrCondition::Number(Expr {
-                    kind: ExprKind::Binary(op, Box::new(left), Box::new(right)),
-                    span: line.span(start, after),
-                })
-            }
-            (ExprOrCondition::Truth(left), ExprOrCondition::Truth(right)) if bits => {
-                ExprOrCondition::Truth(Condition::Logic(op, written, Box::new(left), Box::new(right)))
+            (ExprOrCondition::Expr(left), ExprOrCondition::Expr(right)) => ExprOrCondition::Expr(Expr {
+                kind: ExprKind::Binary(op, Box::new(left), Box::new(right)),
+                span: line.span(start, after),
+            }),
+            (ExprOrCondition::Condition(left), ExprOrCondition::Condition(right)) if bits => {
+                ExprOrCondition::Condition(Condition::Logic(op, written, Box::new(left), Box::new(right)))
             }
             _ => return no_expression(at),
         };
@@ -152,7 +150,7 @@ fn chain<'a>(
 }
 
 /// Where a value must follow, round brackets, which are a comment, get an alarm of their own.
-pub(super) fn wanted<'a, T>(read: Read<'a, T>, at: Input<'a>) -> Read<'a, T> {
+pub(super) fn require_value<'a, T>(read: ReadResult<'a, T>, at: Input<'a>) -> ReadResult<'a, T> {
     match read {
         Err(nom::Err::Error(_)) if comment_before(at) => round_brackets(at, None),
         Err(nom::Err::Error(_)) => no_expression(spaces(at)),
@@ -160,19 +158,19 @@ pub(super) fn wanted<'a, T>(read: Read<'a, T>, at: Input<'a>) -> Read<'a, T> {
     }
 }
 
-fn signed(line: LineInput, input: Input<'_>, depth: u8) -> Read<'_, ExprOrCondition> {
+fn signed(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, ExprOrCondition> {
     let start = spaces(input);
     let wrap: fn(Box<Expr>) -> ExprKind = match start.first() {
         Some(b'-') => ExprKind::Negate,
         Some(b'+') => ExprKind::Plus,
         _ => return primary(line, input, depth),
     };
-    let (rest, mixed) = wanted(primary(line, &start[1..], depth), &start[1..])?;
+    let (rest, mixed) = require_value(primary(line, &start[1..], depth), &start[1..])?;
     let (rest, inner) = number(rest, start, mixed)?;
-    Ok((rest, ExprOrCondition::Number(Expr { kind: wrap(Box::new(inner)), span: line.span(start, rest) })))
+    Ok((rest, ExprOrCondition::Expr(Expr { kind: wrap(Box::new(inner)), span: line.span(start, rest) })))
 }
 
-fn primary(line: LineInput, input: Input<'_>, depth: u8) -> Read<'_, ExprOrCondition> {
+fn primary(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, ExprOrCondition> {
     let start = spaces(input);
     let (rest, expr) = match start.first() {
         Some(b'0'..=b'9' | b'.') => {
@@ -183,33 +181,42 @@ fn primary(line: LineInput, input: Input<'_>, depth: u8) -> Read<'_, ExprOrCondi
         Some(b'[') if is_name(start) => named(line, start, depth)?,
         Some(b'[') => return bracket(line, start, depth),
         Some(b'A'..=b'Z' | b'a'..=b'z') => call(line, start, depth)?,
-        _ => return other(input),
+        _ => return no_match(input),
     };
-    Ok((rest, ExprOrCondition::Number(expr)))
+    Ok((rest, ExprOrCondition::Expr(expr)))
 }
 
 /// `[…]` with whatever is in it.
-fn bracket(line: LineInput, input: Input<'_>, depth: u8) -> Read<'_, ExprOrCondition> {
-    let depth = deeper(input, depth)?;
+fn bracket(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, ExprOrCondition> {
+    let depth = increase_depth(input, depth)?;
     let start = &input[1..];
-    let (rest, left) = wanted(sum(line, start, depth), start)?;
+    let (rest, left) = require_value(sum(line, start, depth), start)?;
     let (rest, inside) = match (relation(rest), left) {
-        (Ok((after, (relation, written))), ExprOrCondition::Number(left)) => {
-            let (after, right) = wanted(expr(line, after, depth), after)?;
+        (Ok((after, (relation, written))), ExprOrCondition::Expr(left)) => {
+            let (after, right) = require_value(expr(line, after, depth), after)?;
             let span = line.span(spaces(start), after);
-            (after, ExprOrCondition::Truth(Condition::Compare { left, relation, written, right, span }))
+            (
+                after,
+                ExprOrCondition::Condition(Condition::Compare {
+                    left,
+                    relation,
+                    spelling: written,
+                    right,
+                    span,
+                }),
+            )
         }
-        (Ok(_), ExprOrCondition::Truth(_)) => return no_expression(spaces(rest)),
+        (Ok(_), ExprOrCondition::Condition(_)) => return no_expression(spaces(rest)),
         (Err(nom::Err::Error(_)), left) => (rest, left),
         (Err(error), _) => return Err(error),
     };
     let (rest, ()) = close(rest)?;
     let inside = match inside {
-        ExprOrCondition::Number(inner) => ExprOrCondition::Number(Expr {
+        ExprOrCondition::Expr(inner) => ExprOrCondition::Expr(Expr {
             kind: ExprKind::Bracket(Box::new(inner)),
             span: line.span(input, rest),
         }),
-        ExprOrCondition::Truth(inner) => ExprOrCondition::Truth(Condition::Bracket(Box::new(inner))),
+        ExprOrCondition::Condition(inner) => ExprOrCondition::Condition(Condition::Bracket(Box::new(inner))),
     };
     Ok((rest, inside))
 }
@@ -224,7 +231,7 @@ const SIGNS: [(&[u8], Relation); 6] = [
     (b"<", Relation::Lt),
 ];
 
-fn relation(input: Input<'_>) -> Read<'_, (Relation, OperatorSpelling)> {
+fn relation(input: Input<'_>) -> ReadResult<'_, (Relation, OperatorSpelling)> {
     let start = spaces(input);
     if let Some((sign, relation)) = SIGNS.iter().find(|(sign, _)| start.starts_with(sign)) {
         let rest = &start[sign.len()..];
@@ -245,22 +252,26 @@ fn relation(input: Input<'_>) -> Read<'_, (Relation, OperatorSpelling)> {
     letters.map(|relation| (relation, OperatorSpelling::Letters)).parse(input)
 }
 
-pub(super) fn deeper(input: Input<'_>, depth: u8) -> Result<u8, nom::Err<super::token::ReadFailure>> {
-    if depth < DEEPEST { Ok(depth + 1) } else { fail(input, Alarm::TooManyBrackets).map(|(_, depth)| depth) }
+pub(super) fn increase_depth(input: Input<'_>, depth: u8) -> Result<u8, nom::Err<super::token::ReadFailure>> {
+    if depth < MAX_BRACKET_DEPTH {
+        Ok(depth + 1)
+    } else {
+        fail(input, Alarm::TooManyBrackets).map(|(_, depth)| depth)
+    }
 }
 
-pub(super) fn close(input: Input<'_>) -> Read<'_, ()> {
+pub(super) fn close(input: Input<'_>) -> ReadResult<'_, ()> {
     if spaces(input).is_empty() {
         return fail(spaces(input), Alarm::MissingCloseBracket);
     }
-    must(sign(b']'), || Alarm::Expression { text: String::new() })(input)
+    require(sign(b']'), || Alarm::Expression { text: String::new() })(input)
 }
 
 /// `#5`, `#-1` (an alarm when it runs), `#[…]`; `##1` is none.
-fn numbered(line: LineInput, input: Input<'_>, depth: u8) -> Read<'_, Expr> {
+fn numbered(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, Expr> {
     let (rest, index) = match next(&input[1..]) {
         Some((b'[' | b'0'..=b'9' | b'.' | b'-', _)) => {
-            let (rest, mixed) = wanted(signed(line, &input[1..], depth), input)?;
+            let (rest, mixed) = require_value(signed(line, &input[1..], depth), input)?;
             number(rest, input, mixed)?
         }
         _ if comment_before(&input[1..]) => return round_brackets(&input[1..], None),

@@ -1,17 +1,17 @@
 //! A whole file: the programs in it.
 use super::ast::{Block, Program, ProgramName};
-use super::file_items::{FileItem, FileItems, says_nothing};
+use super::file_items::{FileItem, FileItems, is_unreadable_block};
 use crate::source::{SourceId, Span};
 
 /// One program, its blocks in the form that was asked for.
 #[derive(Debug)]
-pub struct Parts<C, B> {
+pub struct ProgramParts<C, B> {
     pub name: ProgramName,
     pub span: Span,
     pub context: C,
     pub blocks: Vec<B>,
     /// Whether `%` or another program follows, and not just the end of the text.
-    pub closed: bool,
+    pub is_closed: bool,
 }
 
 /// All programs of a file.
@@ -22,20 +22,20 @@ pub fn parse(source: SourceId, bytes: &[u8]) -> Vec<Program> {
             FileItem::Section => programs.close(),
             FileItem::Program { name, span } => programs.begin(name, span),
             FileItem::Block(block) => {
-                let (span, silent) = (block.span, says_nothing(&block));
-                programs.open(span, silent).blocks.push(block);
+                let (span, silent) = (block.span, is_unreadable_block(&block));
+                programs.program_for_block(span, silent).blocks.push(block);
             }
         }
     }
-    let parts = programs.done().into_iter();
-    parts.map(|Parts { name, span, blocks, .. }| Program { name, span, blocks }).collect()
+    let parts = programs.finish().into_iter();
+    parts.map(|ProgramParts { name, span, blocks, .. }| Program { name, span, blocks }).collect()
 }
 
 /// The programs that pieces make up. Each has a context of its own.
 #[derive(Debug)]
 pub(super) struct Programs<C, B> {
     /// Each with whether nothing in it can be read.
-    list: Vec<(Parts<C, B>, bool)>,
+    list: Vec<(ProgramParts<C, B>, bool)>,
     /// Whether a block that comes now belongs to the last one.
     is_open: bool,
 }
@@ -52,21 +52,21 @@ impl<C: Default, B> Programs<C, B> {
         self.close();
         let silent = name == ProgramName::Unnamed;
         let (context, blocks) = (C::default(), Vec::new());
-        self.list.push((Parts { name, span, context, blocks, closed: false }, silent));
+        self.list.push((ProgramParts { name, span, context, blocks, is_closed: false }, silent));
         self.is_open = true;
     }
 
     /// Something follows the last program.
     pub(super) fn close(&mut self) {
         if let Some((program, _)) = self.list.last_mut() {
-            program.closed = true;
+            program.is_closed = true;
         }
         self.is_open = false;
     }
 
     /// The program that a block belongs to, `silent` if nothing in it can be read. Blocks before the first O word of a
     /// section are a program without a name.
-    pub(super) fn open(&mut self, span: Span, silent: bool) -> &mut Parts<C, B> {
+    pub(super) fn program_for_block(&mut self, span: Span, silent: bool) -> &mut ProgramParts<C, B> {
         if !self.is_open {
             self.begin(ProgramName::Unnamed, span);
         }
@@ -77,7 +77,7 @@ impl<C: Default, B> Programs<C, B> {
     }
 
     /// All of them. One in which nothing can be read is the text around a tape and left out where the file has others.
-    pub(super) fn done(self) -> Vec<Parts<C, B>> {
+    pub(super) fn finish(self) -> Vec<ProgramParts<C, B>> {
         let alone = self.list.len() == 1;
         self.list.into_iter().filter(|(_, silent)| alone || !silent).map(|(program, _)| program).collect()
     }

@@ -3,8 +3,8 @@ use std::collections::VecDeque;
 
 use super::ast::{Block, Comment, Item, ProgramName, Unreadable};
 use super::block::{begins_program, read_block};
-use super::comment::blank;
-use super::dividers::undivided;
+use super::comment::blank_out_comments;
+use super::dividers::find_divider;
 use super::number::integer;
 use super::token::{Input, LineInput, is_space, spaces, unspaced};
 use super::word::program_name;
@@ -30,14 +30,14 @@ pub struct FileItems<'a> {
     source: SourceId,
     bytes: &'a [u8],
     /// Where the next line begins.
-    next: usize,
+    next_line_start: usize,
     /// The line in hand: where it begins, what is left to read, and where the line itself and its code end.
-    begin: usize,
-    at: usize,
-    end: usize,
+    line_start: usize,
+    position: usize,
+    line_end: usize,
     code_end: usize,
     /// How far nothing divides the lines behind the one in hand.
-    undivided: usize,
+    undivided_end: usize,
     /// The line's code where comments had to be blanked, and where it begins.
     blanked: Option<usize>,
     code: Vec<u8>,
@@ -47,12 +47,12 @@ pub struct FileItems<'a> {
 
 impl<'a> FileItems<'a> {
     pub fn new(source: SourceId, bytes: &'a [u8]) -> Self {
-        let bytes = written(bytes);
-        Self::starting(source, bytes, byte_order_marks(bytes)).behind_leader()
+        let bytes = without_trailer(bytes);
+        Self::starting(source, bytes, byte_order_marks(bytes)).skip_leader()
     }
 
     /// The pieces from a place on where a line begins, spaces before it left out; of a text as [`written`].
-    pub(super) fn from(source: SourceId, bytes: &'a [u8], place: u32) -> Self {
+    pub(super) fn starting_at(source: SourceId, bytes: &'a [u8], place: u32) -> Self {
         Self::starting(source, bytes, place as usize)
     }
 
@@ -61,12 +61,12 @@ impl<'a> FileItems<'a> {
         Self {
             source,
             bytes,
-            next,
-            begin: 0,
-            at: 0,
-            end: 0,
+            next_line_start: next,
+            line_start: 0,
+            position: 0,
+            line_end: 0,
             code_end: 0,
-            undivided: next,
+            undivided_end: next,
             blanked: None,
             code,
             comments,
@@ -74,19 +74,23 @@ impl<'a> FileItems<'a> {
     }
 
     /// What stands before the first `%` is a leader, which a control ignores, if nothing in it can be read.
-    fn behind_leader(mut self) -> Self {
+    fn skip_leader(mut self) -> Self {
         // Nearly every file begins with what can be read.
-        let first = FileItems::starting(self.source, self.bytes, self.next).next();
-        let text = &self.bytes[self.next..];
-        if !first.as_ref().is_some_and(is_silent) || !text.contains(&b'%') {
+        let first = FileItems::starting(self.source, self.bytes, self.next_line_start).next();
+        let text = &self.bytes[self.next_line_start..];
+        if !first.as_ref().is_some_and(has_nothing_readable) || !text.contains(&b'%') {
             return self;
         }
         let begins_line = |at: usize| text[..at].last().is_none_or(|b| matches!(b, b'\n' | b'\r'));
         let mark = text.iter().enumerate().find(|(at, byte)| **byte == b'%' && begins_line(*at));
         let Some((mark, _)) = mark else { return self };
-        let mut leader = FileItems::starting(self.source, &self.bytes[..self.next + mark], self.next);
-        if leader.all(|piece| is_silent(&piece)) {
-            self.next += mark;
+        let mut leader = FileItems::starting(
+            self.source,
+            &self.bytes[..self.next_line_start + mark],
+            self.next_line_start,
+        );
+        if leader.all(|piece| has_nothing_readable(&piece)) {
+            self.next_line_start += mark;
         }
         self
     }
@@ -94,13 +98,13 @@ impl<'a> FileItems<'a> {
     /// Takes the next line in hand. Folder lines of memory dumps, `&F=//CNC_MEM/…`, say nothing to the control.
     pub(super) fn next_line(&mut self) -> Option<()> {
         loop {
-            let text = self.bytes.get(self.next..).filter(|text| !text.is_empty())?;
+            let text = self.bytes.get(self.next_line_start..).filter(|text| !text.is_empty())?;
             let length = line_length(text);
-            (self.begin, self.at) = (self.next, self.next);
-            self.end = self.next + length;
-            self.code_end = self.end;
+            (self.line_start, self.position) = (self.next_line_start, self.next_line_start);
+            self.line_end = self.next_line_start + length;
+            self.code_end = self.line_end;
             self.blanked = None;
-            self.next = self.end + end_of_line(&text[length..]);
+            self.next_line_start = self.line_end + end_of_line(&text[length..]);
             let line = &text[..length];
             if unspaced(line).starts_with(b"&F=") {
                 continue;
@@ -113,32 +117,32 @@ impl<'a> FileItems<'a> {
     }
 
     fn blank_comments(&mut self, text: &[u8]) {
-        let Self { source, at, code, comments, .. } = self;
-        blank(*source, *at as u32, text, code, comments, |text| {
+        let Self { source, position: at, code, comments, .. } = self;
+        blank_out_comments(*source, *at as u32, text, code, comments, |text| {
             let mut block = Block::default();
             let left =
                 read_block(LineInput { source: SourceId(0), end: text.len() as u32 }, text, &mut block);
-            !left.is_empty() || !says_nothing(&block) && !block.items.iter().any(is_unreadable)
+            !left.is_empty() || !is_unreadable_block(&block) && !block.items.iter().any(is_unreadable)
         });
         self.code_end = *at + code.len();
         self.blanked = Some(*at);
     }
 
     /// Reads the next piece of the line in hand; `None` at its end.
-    pub(super) fn piece(&mut self) -> Option<FileItem> {
-        if self.at == self.code_end && self.comments.is_empty() {
+    pub(super) fn next_item(&mut self) -> Option<FileItem> {
+        if self.position == self.code_end && self.comments.is_empty() {
             return None;
         }
-        self.read_piece()
+        self.read_item()
     }
 
-    fn read_piece(&mut self) -> Option<FileItem> {
+    fn read_item(&mut self) -> Option<FileItem> {
         let text = match self.blanked {
-            Some(begin) => &self.code[self.at - begin..],
-            None => &self.bytes[self.at..self.code_end],
+            Some(begin) => &self.code[self.position - begin..],
+            None => &self.bytes[self.position..self.code_end],
         };
         let line = LineInput { source: self.source, end: self.code_end as u32 };
-        let from = self.at;
+        let from = self.position;
         let at = spaces(text);
         let left = |rest: Input<'_>| self.code_end - rest.len();
         if at.is_empty() && self.comments.is_empty() {
@@ -148,7 +152,7 @@ impl<'a> FileItems<'a> {
             // `%O0003(…)` goes on with the program; any other text behind the sign is a leader.
             let behind = spaces(behind);
             let goes_on = begins_program(behind) || behind.first() == Some(&b'<');
-            self.at = if goes_on { left(behind) } else { self.code_end };
+            self.position = if goes_on { left(behind) } else { self.code_end };
             if !goes_on {
                 self.comments.clear();
             }
@@ -158,13 +162,13 @@ impl<'a> FileItems<'a> {
             && let Some((rest, name)) = program_word(at)
         {
             let span = line.span(at, rest);
-            self.at = left(rest);
+            self.position = left(rest);
             return Some(FileItem::Program { name, span });
         }
         let mut block = Block::default();
         let to = left(read_block(line, text, &mut block));
-        self.at = to;
-        self.finish(&mut block, from, to);
+        self.position = to;
+        self.attach_comments(&mut block, from, to);
         Some(FileItem::Block(block))
     }
 
@@ -172,15 +176,15 @@ impl<'a> FileItems<'a> {
     /// nothing divides it and nothing in it is a remark. They count as read then.
     #[inline]
     pub(super) fn plain_lines(&mut self, mut each: impl FnMut(Span)) {
-        let mut text = &self.bytes[self.next..];
+        let mut text = &self.bytes[self.next_line_start..];
         while !text.is_empty() {
             let place = self.bytes.len() - text.len();
-            if self.undivided <= place {
-                self.undivided = undivided(self.bytes, place);
+            if self.undivided_end <= place {
+                self.undivided_end = find_divider(self.bytes, place);
             }
             let (line, behind) = text.split_at(line_length(text));
             let end = place + line.len();
-            if self.undivided < end {
+            if self.undivided_end < end {
                 break;
             }
             let line = if let [0x21..=0x7e, ..] = line { line } else { unspaced(line) };
@@ -189,18 +193,18 @@ impl<'a> FileItems<'a> {
             }
             text = &behind[end_of_line(behind)..];
         }
-        self.next = self.bytes.len() - text.len();
+        self.next_line_start = self.bytes.len() - text.len();
     }
 
     /// Whether nothing of the line in hand has been read.
     pub(super) fn begins_line(&self) -> bool {
-        self.at == self.begin
+        self.position == self.line_start
     }
 
     /// Gives the block its comments and its place, and what can't be read its text as written.
-    fn finish(&mut self, block: &mut Block, from: usize, to: usize) {
+    fn attach_comments(&mut self, block: &mut Block, from: usize, to: usize) {
         let last = to == self.code_end;
-        let end = if last { self.end } else { to };
+        let end = if last { self.line_end } else { to };
         if last {
             block.comments = self.comments.drain(..).collect();
         } else if !self.comments.is_empty() {
@@ -209,7 +213,7 @@ impl<'a> FileItems<'a> {
         }
         block.span = trimmed(self.source, self.bytes, from, end);
         if let Some(Item::Unreadable(unreadable)) = block.items.last_mut() {
-            show(unreadable, self.bytes, end);
+            fill_alarm_text(unreadable, self.bytes, end);
             let begin = unreadable.span.start;
             block.comments.retain(|c| c.span.start < begin);
         }
@@ -221,7 +225,7 @@ impl Iterator for FileItems<'_> {
 
     fn next(&mut self) -> Option<FileItem> {
         loop {
-            if let Some(piece) = self.piece() {
+            if let Some(piece) = self.next_item() {
                 return Some(piece);
             }
             self.next_line()?;
@@ -230,7 +234,7 @@ impl Iterator for FileItems<'_> {
 }
 
 /// The text without what senders end a file with: 0x1A or blank tape.
-pub fn written(bytes: &[u8]) -> &[u8] {
+pub fn without_trailer(bytes: &[u8]) -> &[u8] {
     let kept = bytes.iter().rposition(|b| !matches!(b, 0 | 0x1a | b' ' | b'\t' | b'\r' | b'\n'));
     &bytes[..kept.map_or(0, |last| last + 1)]
 }
@@ -255,7 +259,7 @@ pub fn end_without_spaces(bytes: &[u8], place: u32) -> u32 {
 }
 
 /// Fills in what is shown of a text that can't be read.
-fn show(unreadable: &mut Unreadable, bytes: &[u8], end: usize) {
+fn fill_alarm_text(unreadable: &mut Unreadable, bytes: &[u8], end: usize) {
     let Unreadable { alarm, span, text } = unreadable;
     *span = trimmed(span.source, bytes, span.start as usize, end);
     *text = bytes[span.start as usize..span.end as usize].to_vec();
@@ -273,12 +277,12 @@ fn is_unreadable(item: &Item) -> bool {
     matches!(item, Item::Unreadable(_))
 }
 
-fn is_silent(piece: &FileItem) -> bool {
-    matches!(piece, FileItem::Block(block) if says_nothing(block))
+fn has_nothing_readable(piece: &FileItem) -> bool {
+    matches!(piece, FileItem::Block(block) if is_unreadable_block(block))
 }
 
 /// No word and no statement that can be read: a comment, or text that was never meant for a control.
-pub(super) fn says_nothing(block: &Block) -> bool {
+pub(super) fn is_unreadable_block(block: &Block) -> bool {
     block.items.iter().all(is_unreadable) && block.number.is_none() && block.skip.is_none()
 }
 

@@ -4,10 +4,10 @@ use nom::combinator::opt;
 use nom::sequence::{pair, preceded};
 
 use super::ast::{CallForm, Expr, ExprKind, Function, Name};
-use super::expr::{close, deeper, expr, wanted};
+use super::expr::{close, expr, increase_depth, require_value};
 use super::token::{
-    Input, LineInput, Read, comment_before, fail, is_space, letters, next, no_expression, round_brackets,
-    sign, spaces,
+    Input, LineInput, ReadResult, comment_before, fail, is_space, letters, next, no_expression,
+    round_brackets, sign, spaces,
 };
 use crate::alarm::Alarm;
 
@@ -39,7 +39,7 @@ impl Function {
 }
 
 /// A function with its brackets. The input begins with a letter.
-pub(super) fn call(line: LineInput, input: Input<'_>, depth: u8) -> Read<'_, Expr> {
+pub(super) fn call(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, Expr> {
     if let (rest, 3) = letters(input, "PRM") {
         return parameter(line, input, rest, depth);
     }
@@ -73,22 +73,22 @@ pub(super) fn call(line: LineInput, input: Input<'_>, depth: u8) -> Read<'_, Exp
 type Arguments = (Box<Expr>, Option<Box<Expr>>);
 
 /// `[a]` or `[a,b]`.
-fn arguments(line: LineInput, input: Input<'_>, depth: u8) -> Read<'_, Arguments> {
+fn arguments(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, Arguments> {
     let Some((b'[', inside)) = next(input) else {
         if comment_before(input) {
             return round_brackets(input, None);
         }
         return fail(spaces(input), Alarm::MissingOpenBracket);
     };
-    let depth = deeper(spaces(input), depth)?;
-    let argument = |input| wanted(expr(line, input, depth), input);
+    let depth = increase_depth(spaces(input), depth)?;
+    let argument = |input| require_value(expr(line, input, depth), input);
     let (rest, (first, second)) = pair(argument, opt(preceded(sign(b','), argument))).parse(inside)?;
     let (rest, ()) = close(rest)?;
     Ok((rest, (Box::new(first), second.map(Box::new))))
 }
 
 /// `/[b]`, which belongs to the function before it.
-fn divided_by(line: LineInput, input: Input<'_>, depth: u8) -> Read<'_, Option<Box<Expr>>> {
+fn divided_by(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, Option<Box<Expr>>> {
     match next(input) {
         Some((b'/', after)) if matches!(next(after), Some((b'[', _))) => {
             match arguments(line, after, depth)? {
@@ -101,18 +101,18 @@ fn divided_by(line: LineInput, input: Input<'_>, depth: u8) -> Read<'_, Option<B
 }
 
 /// `PRM[n]`, `PRM[n,bit]`, `PRM[n]/[axis]`, `PRM[n,bit]/[axis]`.
-fn parameter<'a>(line: LineInput, input: Input<'a>, after: Input<'a>, depth: u8) -> Read<'a, Expr> {
+fn parameter<'a>(line: LineInput, input: Input<'a>, after: Input<'a>, depth: u8) -> ReadResult<'a, Expr> {
     let (rest, (number, bit)) = arguments(line, after, depth)?;
     let (rest, axis) = divided_by(line, rest, depth)?;
     Ok((rest, Expr { kind: ExprKind::Parameter { number, bit, axis }, span: line.span(input, rest) }))
 }
 
 /// `AXNUM[X]`.
-fn axis_number<'a>(line: LineInput, input: Input<'a>, after: Input<'a>, depth: u8) -> Read<'a, Expr> {
+fn axis_number<'a>(line: LineInput, input: Input<'a>, after: Input<'a>, depth: u8) -> ReadResult<'a, Expr> {
     let Some((b'[', inside)) = next(after) else {
         return fail(spaces(after), Alarm::MissingOpenBracket);
     };
-    deeper(spaces(after), depth)?;
+    increase_depth(spaces(after), depth)?;
     match next(inside) {
         Some((letter, rest)) if letter.is_ascii_alphabetic() && matches!(next(rest), Some((b']', _))) => {
             let (rest, ()) = close(rest)?;
@@ -130,8 +130,8 @@ pub(super) fn is_name(input: Input<'_>) -> bool {
 }
 
 /// `[#NAME]`, `[#NAME[n]]`; [`is_name`] holds.
-pub(super) fn named(line: LineInput, input: Input<'_>, depth: u8) -> Read<'_, Expr> {
-    let depth = deeper(input, depth)?;
+pub(super) fn named(line: LineInput, input: Input<'_>, depth: u8) -> ReadResult<'_, Expr> {
+    let depth = increase_depth(input, depth)?;
     let (start, ()) = preceded(sign(b'['), sign(b'#')).parse(input)?;
     let mut text = String::new();
     let mut rest = spaces(start);
@@ -147,8 +147,8 @@ pub(super) fn named(line: LineInput, input: Input<'_>, depth: u8) -> Read<'_, Ex
     }
     let mut index = None;
     if let Some((b'[', inside)) = next(rest) {
-        let depth = deeper(rest, depth)?;
-        let (after, value) = wanted(expr(line, inside, depth), inside)?;
+        let depth = increase_depth(rest, depth)?;
+        let (after, value) = require_value(expr(line, inside, depth), inside)?;
         index = Some(Box::new(value));
         rest = close(after)?.0;
     }

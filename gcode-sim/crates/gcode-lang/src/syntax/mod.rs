@@ -23,8 +23,8 @@ mod statement;
 mod token;
 mod word;
 
-pub use file::{Parts, parse};
-pub use file_items::{FileItem, FileItems, end_without_spaces, written};
-pub use numbers::{NumberWord, Numbers};
-pub use outline::{Outlined, block_at, outline, sequence_number_at};
+pub use file::{ProgramParts, parse};
+pub use file_items::{FileItem, FileItems, end_without_spaces, without_trailer};
+pub use numbers::{NumberWord, NumberWords};
+pub use outline::{BlockOutline, block_at, outline, sequence_number_at};
 pub use print::print;

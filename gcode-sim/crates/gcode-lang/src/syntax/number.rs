@@ -1,16 +1,16 @@
 //! Literal numbers: digits with at most one point, spaces anywhere between them.
 use super::ast::Decimal;
-use super::token::{Input, Read, fail, is_space, other, unspaced};
+use super::token::{Input, ReadResult, fail, is_space, no_match, unspaced};
 use crate::alarm::Alarm;
 
 /// A literal in a macro expression has twelve digits at most, and nine after an address: what has more.
 pub(super) const EXPRESSION_LIMIT: u64 = 1_000_000_000_000;
 pub(super) const WORD_LIMIT: u64 = 1_000_000_000;
 /// Zeros behind the point don't count as digits; beyond this many no control has a use for them.
-const MOST_PLACES: usize = 18;
+const MAX_DECIMAL_PLACES: usize = 18;
 
 /// An unsigned literal below `limit`, were its point left out.
-pub(super) fn decimal(input: Input<'_>, negative: bool, limit: u64) -> Read<'_, Decimal> {
+pub(super) fn decimal(input: Input<'_>, negative: bool, limit: u64) -> ReadResult<'_, Decimal> {
     let (mut digits, mut count, mut rest) = (0u64, 0, input);
     let mut before_point = None;
     loop {
@@ -41,15 +41,15 @@ pub(super) fn decimal(input: Input<'_>, negative: bool, limit: u64) -> Read<'_, 
         }
     }
     let places = before_point.map(|before| count - before);
-    if places > Some(MOST_PLACES) {
+    if places > Some(MAX_DECIMAL_PLACES) {
         return fail(input, Alarm::TooManyDigits);
     }
     let places = places.map(|places| places as u8);
-    if count > 0 { Ok((rest, Decimal { negative, digits, places })) } else { other(input) }
+    if count > 0 { Ok((rest, Decimal { negative, digits, places })) } else { no_match(input) }
 }
 
 /// A whole number without a point, as after N, O, DO and `/`.
-pub(super) fn integer(input: Input<'_>) -> Read<'_, u64> {
+pub(super) fn integer(input: Input<'_>) -> ReadResult<'_, u64> {
     let (rest, number) = decimal(input, false, EXPRESSION_LIMIT)?;
     match number.places {
         None => Ok((rest, number.digits)),

@@ -2,7 +2,7 @@
 //!
 //! They are handed out word by word, so that nobody who only wants the words has to build a tree of them.
 use super::ast::Decimal;
-use super::block::MOST_SEQUENCE;
+use super::block::MAX_SEQUENCE_NUMBER;
 use super::digits::{Window, number};
 use super::number::WORD_LIMIT;
 use super::token::{Input, is_space, unspaced};
@@ -21,29 +21,31 @@ pub struct NumberWord {
 /// something else: a comment, a statement, a letter in lower case, more digits of the last word's number; and shortly before
 /// the end of the text.
 #[derive(Debug)]
-pub struct Numbers<'a> {
+pub struct NumberWords<'a> {
     source: SourceId,
     text: Input<'a>,
     /// Where the sequence number ends, or the block begins where there is none.
-    pub begin: u32,
+    pub words_start: u32,
     /// Where the next word may begin, spaces before it.
-    next: usize,
+    position: usize,
     /// `N10` at its beginning.
     pub sequence_number: Option<u32>,
 }
 
-impl<'a> Numbers<'a> {
+impl<'a> NumberWords<'a> {
     /// `text` may go on behind the line. `None` where it begins with an N that is no plain sequence number.
     #[inline]
     pub fn new(source: SourceId, text: Input<'a>, start: u32) -> Option<Self> {
-        let mut numbers = Self { source, text, begin: start, next: start as usize, sequence_number: None };
+        let mut numbers =
+            Self { source, text, words_start: start, position: start as usize, sequence_number: None };
         if text.get(start as usize) == Some(&b'N') {
             let window = numbers.window()?;
             let (number, None, length) = number(window, 1)? else { return None };
-            numbers.sequence_number = u32::try_from(number).ok().filter(|number| *number <= MOST_SEQUENCE);
+            numbers.sequence_number =
+                u32::try_from(number).ok().filter(|number| *number <= MAX_SEQUENCE_NUMBER);
             numbers.sequence_number?;
-            numbers.begin = start + length as u32;
-            numbers.next = behind(window, length, numbers.next);
+            numbers.words_start = start + length as u32;
+            numbers.position = word_end(window, length, numbers.position);
         }
         Some(numbers)
     }
@@ -60,23 +62,23 @@ impl<'a> Numbers<'a> {
 
     #[inline]
     fn behind_spaces(&self) -> Input<'a> {
-        let rest = self.text.get(self.next..).unwrap_or_default();
+        let rest = self.text.get(self.position..).unwrap_or_default();
         if rest.first().is_some_and(|byte| is_space(*byte)) { unspaced(rest) } else { rest }
     }
 
     #[inline(always)]
     fn window(&self) -> Option<&'a Window> {
-        self.text.get(self.next..)?.first_chunk()
+        self.text.get(self.position..)?.first_chunk()
     }
 }
 
 /// What is behind a word of some bytes that stands at a place: mostly a single space, and then the next one.
 #[inline(always)]
-fn behind(window: &Window, length: usize, place: usize) -> usize {
+fn word_end(window: &Window, length: usize, place: usize) -> usize {
     place + length + usize::from(window.get(length) == Some(&b' '))
 }
 
-impl Iterator for Numbers<'_> {
+impl Iterator for NumberWords<'_> {
     type Item = NumberWord;
 
     #[inline(always)]
@@ -84,15 +86,15 @@ impl Iterator for Numbers<'_> {
         loop {
             let window = self.window()?;
             if let Some((letter, number, length)) = number_word(window) {
-                let start = self.next as u32;
+                let start = self.position as u32;
                 let span = Span { source: self.source, start, end: start + length as u32 };
-                self.next = behind(window, length, self.next);
+                self.position = word_end(window, length, self.position);
                 return Some(NumberWord { letter, number, span });
             }
             if !is_space(window[0]) {
                 return None;
             }
-            self.next = self.text.len() - self.behind_spaces().len();
+            self.position = self.text.len() - self.behind_spaces().len();
         }
     }
 }
@@ -122,6 +124,6 @@ pub(super) fn number_word(window: &Window) -> Option<(u8, Decimal, usize)> {
 }
 
 /// Whether a number goes on at the beginning of a text.
-pub(super) fn goes_on(text: Input<'_>) -> bool {
+pub(super) fn continues_number(text: Input<'_>) -> bool {
     matches!(unspaced(text), [b'0'..=b'9' | b'.', ..])
 }

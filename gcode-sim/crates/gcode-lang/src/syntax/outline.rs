@@ -3,26 +3,26 @@
 //! Most lines of long files are one block of words. That much is seen without reading them; the others are read, so that
 //! an outline has the same programs and blocks as the tree.
 use super::ast::Block;
-use super::file::{Parts, Programs};
-use super::file_items::{FileItem, FileItems, says_nothing};
-use super::numbers::Numbers;
+use super::file::{ProgramParts, Programs};
+use super::file_items::{FileItem, FileItems, is_unreadable_block};
+use super::numbers::NumberWords;
 use crate::source::{SourceId, Span};
 
 /// A block as its outline has it.
 #[derive(Debug)]
-pub enum Outlined {
+pub enum BlockOutline {
     /// Not looked at: neither DO nor END. Spaces behind it belong to its place.
     Words(Span),
-    Read(Box<Block>),
+    Tree(Box<Block>),
     /// Something else stands before it in its line: it can't be read from its own beginning on.
-    Apart(Box<Block>),
+    WithinLine(Box<Block>),
 }
 
-impl Outlined {
+impl BlockOutline {
     pub fn span(&self) -> Span {
         match self {
             Self::Words(span) => *span,
-            Self::Read(block) | Self::Apart(block) => block.span,
+            Self::Tree(block) | Self::WithinLine(block) => block.span,
         }
     }
 }
@@ -32,15 +32,15 @@ impl Outlined {
 pub fn outline<C: Default, B>(
     source: SourceId,
     bytes: &[u8],
-    mut each: impl FnMut(&mut C, Outlined) -> B,
-) -> Vec<Parts<C, B>> {
+    mut each: impl FnMut(&mut C, BlockOutline) -> B,
+) -> Vec<ProgramParts<C, B>> {
     let mut programs = Programs::default();
     let mut pieces = FileItems::new(source, bytes);
     // Whether it is known that the program at hand is one: it has a name, or a block that says something.
     let mut told = false;
     loop {
         let begins_line = pieces.begins_line();
-        match pieces.piece() {
+        match pieces.next_item() {
             Some(FileItem::Section) => {
                 told = false;
                 programs.close();
@@ -50,20 +50,22 @@ pub fn outline<C: Default, B>(
                 programs.begin(name, span);
             }
             Some(FileItem::Block(block)) => {
-                let silent = says_nothing(&block);
+                let silent = is_unreadable_block(&block);
                 told |= !silent;
-                let Parts { context, blocks, .. } = programs.open(block.span, silent);
+                let ProgramParts { context, blocks, .. } = programs.program_for_block(block.span, silent);
                 let block = Box::new(block);
-                let outlined = if begins_line { Outlined::Read(block) } else { Outlined::Apart(block) };
+                let outlined =
+                    if begins_line { BlockOutline::Tree(block) } else { BlockOutline::WithinLine(block) };
                 blocks.push(each(context, outlined));
             }
             None => {
                 if told {
-                    let Parts { context, blocks, .. } = programs.open(Span::default(), false);
-                    pieces.plain_lines(|span| blocks.push(each(context, Outlined::Words(span))));
+                    let ProgramParts { context, blocks, .. } =
+                        programs.program_for_block(Span::default(), false);
+                    pieces.plain_lines(|span| blocks.push(each(context, BlockOutline::Words(span))));
                 }
                 if pieces.next_line().is_none() {
-                    return programs.done();
+                    return programs.finish();
                 }
             }
         }
@@ -72,7 +74,7 @@ pub fn outline<C: Default, B>(
 
 /// The block at the beginning of a line, from where an outline has it, of a text as [`super::written`].
 pub fn block_at(source: SourceId, bytes: &[u8], start: u32) -> Option<Block> {
-    FileItems::from(source, bytes, start).find_map(|piece| match piece {
+    FileItems::starting_at(source, bytes, start).find_map(|piece| match piece {
         FileItem::Block(block) => Some(block),
         _ => None,
     })
@@ -83,7 +85,7 @@ pub fn sequence_number_at(source: SourceId, bytes: &[u8], start: u32) -> Option<
     match bytes.get(start as usize)? {
         b'N' => {
             // A comment may go on with the number, and only the whole block tells.
-            if let Some(numbers) = Numbers::new(source, bytes, start)
+            if let Some(numbers) = NumberWords::new(source, bytes, start)
                 && (numbers.is_at_end() || numbers.is_at_letter())
             {
                 return numbers.sequence_number;

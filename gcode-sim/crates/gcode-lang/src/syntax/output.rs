@@ -1,26 +1,26 @@
 //! Statements that name variables and print them: SETVN, DPRNT, BPRNT.
 use super::ast::{PrintKind, PrintPart, Statement};
-use super::expr::{close, single};
+use super::expr::{close, single_value};
 use super::function::is_name;
 use super::number::{EXPRESSION_LIMIT, decimal};
-use super::token::{COMMENT, Input, LineInput, Read, fail, is_space, must, next, sign, spaces};
+use super::token::{COMMENT, Input, LineInput, ReadResult, fail, is_space, next, require, sign, spaces};
 use crate::alarm::Alarm;
 use crate::syntax::ast::{Expr, ExprKind};
 
 /// The longest name that SETVN gives.
-const LONGEST_NAME: usize = 8;
+const MAX_NAME_LENGTH: usize = 8;
 
 /// `SETVN 510[TOOL_NO, WORK]`, after its word.
-pub(super) fn set_names(line: LineInput, input: Input<'_>) -> Read<'_, Statement> {
+pub(super) fn set_names(line: LineInput, input: Input<'_>) -> ReadResult<'_, Statement> {
     let at = spaces(input);
     let (rest, first) = match at.first() {
         Some(b'0'..=b'9') => {
             let (rest, number) = decimal(at, false, EXPRESSION_LIMIT)?;
             (rest, Expr { kind: ExprKind::Literal(number), span: line.span(at, rest) })
         }
-        _ => must(|input| single(line, input), || Alarm::SetNamesFormat)(at)?,
+        _ => require(|input| single_value(line, input), || Alarm::SetNamesFormat)(at)?,
     };
-    let (mut rest, ()) = must(sign(b'['), || Alarm::SetNamesFormat)(rest)?;
+    let (mut rest, ()) = require(sign(b'['), || Alarm::SetNamesFormat)(rest)?;
     let mut names = Vec::new();
     loop {
         let (after, name) = name(rest)?;
@@ -36,7 +36,7 @@ pub(super) fn set_names(line: LineInput, input: Input<'_>) -> Read<'_, Statement
 }
 
 /// Letters, digits and underscores.
-fn name(input: Input<'_>) -> Read<'_, String> {
+fn name(input: Input<'_>) -> ReadResult<'_, String> {
     let mut name = String::new();
     let mut rest = spaces(input);
     while let Some((byte, after)) = rest.split_first() {
@@ -52,14 +52,14 @@ fn name(input: Input<'_>) -> Read<'_, String> {
     }
     match name.len() {
         0 => fail(rest, Alarm::SetNamesFormat),
-        1..=LONGEST_NAME => Ok((rest, name)),
+        1..=MAX_NAME_LENGTH => Ok((rest, name)),
         _ => fail(input, Alarm::NameTooLong { name }),
     }
 }
 
 /// `DPRNT[TEXT#1[44]*#[#2][30]]`, after its word. Spaces print nothing; `*` prints a space.
-pub(super) fn print(line: LineInput, input: Input<'_>, kind: PrintKind) -> Read<'_, Statement> {
-    let (mut rest, ()) = must(sign(b'['), || Alarm::PrintFormat)(input)?;
+pub(super) fn print(line: LineInput, input: Input<'_>, kind: PrintKind) -> ReadResult<'_, Statement> {
+    let (mut rest, ()) = require(sign(b'['), || Alarm::PrintFormat)(input)?;
     let mut parts = Vec::new();
     let mut text = String::new();
     loop {
@@ -88,9 +88,9 @@ pub(super) fn print(line: LineInput, input: Input<'_>, kind: PrintKind) -> Read<
 }
 
 /// `#1[44]`: a variable and how many digits are printed before and after the point.
-fn printed_value(line: LineInput, input: Input<'_>) -> Read<'_, PrintPart> {
-    let (rest, variable) = must(|input| single(line, input), || Alarm::PrintFormat)(input)?;
-    let (mut rest, ()) = must(sign(b'['), || Alarm::PrintFormat)(rest)?;
+fn printed_value(line: LineInput, input: Input<'_>) -> ReadResult<'_, PrintPart> {
+    let (rest, variable) = require(|input| single_value(line, input), || Alarm::PrintFormat)(input)?;
+    let (mut rest, ()) = require(sign(b'['), || Alarm::PrintFormat)(rest)?;
     let mut format = String::new();
     while let Some((digit @ b'0'..=b'9', after)) = next(rest) {
         format.push(char::from(digit));

@@ -55,7 +55,7 @@ pub fn print_block(block: &Block, out: &mut Vec<u8>) {
         match item {
             Item::Word(word) => out.extend(print_word(word).bytes()),
             Item::Statement(statement) => {
-                out.extend(statement_text(&statement.node, block.short.is_some()).bytes())
+                out.extend(statement_text(&statement.node, block.short_word.is_some()).bytes())
             }
             Item::Skip(switch) => out.extend(skip(switch.node).bytes()),
             Item::Unreadable(unreadable) => out.extend_from_slice(&unreadable.text),
@@ -155,7 +155,7 @@ fn operator(op: BinaryOp) -> &'static str {
 /// A condition without the bracket that IF and WHILE put around it.
 pub fn condition(value: &Condition) -> String {
     match value {
-        Condition::Compare { left, relation, written, right, .. } => {
+        Condition::Compare { left, relation, spelling: written, right, .. } => {
             let relation = match (relation, written) {
                 (Relation::Eq, OperatorSpelling::Letters) => "EQ",
                 (Relation::Eq, OperatorSpelling::Sign) => "=",

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use proptest::sample::select;
 
 use super::ast::*;
-use super::{Outlined, block_at, outline, parse, print, sequence_number_at, written};
+use super::{BlockOutline, block_at, outline, parse, print, sequence_number_at, without_trailer};
 use crate::source::{SourceId, Span, Spanned};
 
 const NOWHERE: Span = Span { source: SourceId(0), start: 0, end: 0 };
@@ -120,7 +120,7 @@ fn condition(levels: u32) -> BoxedStrategy<Condition> {
         |(left, relation, written, right)| Condition::Compare {
             left,
             relation,
-            written,
+            spelling: written,
             right,
             span: NOWHERE,
         },
@@ -238,7 +238,7 @@ fn block() -> impl Strategy<Value = Block> {
             span: NOWHERE,
             skip,
             number,
-            short: None,
+            short_word: None,
             items,
             comments,
         })
@@ -281,13 +281,13 @@ proptest! {
         end in select(vec!["\n", "\r\n", "\r", "\n\r\r"]),
     ) {
         let text = lines.join(end);
-        let whole = written(text.as_bytes());
+        let whole = without_trailer(text.as_bytes());
         let tree = parse(SourceId(0), text.as_bytes());
         let at = |start| (sequence_number_at(SourceId(0), whole, start), block_at(SourceId(0), whole, start));
         let outlined = outline(SourceId(0), text.as_bytes(), |(), block| match block {
-            Outlined::Words(span) => at(span.start),
-            Outlined::Read(block) => at(block.span.start),
-            Outlined::Apart(block) => (block.number.map(|n| n.node), Some(*block)),
+            BlockOutline::Words(span) => at(span.start),
+            BlockOutline::Tree(block) => at(block.span.start),
+            BlockOutline::WithinLine(block) => (block.number.map(|n| n.node), Some(*block)),
         });
         prop_assert_eq!(tree.len(), outlined.len());
         for (tree, outlined) in tree.into_iter().zip(outlined) {

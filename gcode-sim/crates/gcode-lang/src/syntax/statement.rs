@@ -1,11 +1,11 @@
 //! Macro statements: assignment, GOTO, IF, WHILE, DO, END.
 use super::ast::{Condition, Expr, PrintKind, Statement};
-use super::expr::{condition, expr, variable, wanted};
+use super::expr::{condition, expr, require_value, variable};
 use super::number::integer;
 use super::output::{print, set_names};
 use super::token::{
-    Input, LineInput, Read, comment_before, fail, is_space, letters, must, next, no_expression, other,
-    round_brackets, sign, spaces,
+    Input, LineInput, ReadResult, comment_before, fail, is_space, letters, next, no_expression, no_match,
+    require, round_brackets, sign, spaces,
 };
 use crate::alarm::Alarm;
 use crate::source::Spanned;
@@ -46,7 +46,7 @@ pub(super) struct StatementStart<'a> {
     pub rest: Input<'a>,
     pub keyword: Keyword,
     /// Not all of its letters are there.
-    pub short: bool,
+    pub is_short: bool,
 }
 
 /// The statement word that the input begins with. Two letters one after the other are never words, so a single look
@@ -64,13 +64,16 @@ pub(super) fn keyword(input: Input<'_>) -> Option<StatementStart<'_>> {
 fn written_keyword(input: Input<'_>) -> Option<StatementStart<'_>> {
     KEYWORDS.iter().find_map(|(text, keyword)| {
         let (rest, count) = letters(input, text);
-        (count >= 2).then_some(StatementStart { rest, keyword: *keyword, short: count < text.len() })
+        (count >= 2).then_some(StatementStart { rest, keyword: *keyword, is_short: count < text.len() })
     })
 }
 
 /// The statement after its keyword, and whether one of its words is cut short.
-pub(super) fn statement<'a>(line: LineInput, begun: &StatementStart<'a>) -> Read<'a, (Statement, bool)> {
-    let &StatementStart { rest, keyword, short } = begun;
+pub(super) fn statement<'a>(
+    line: LineInput,
+    begun: &StatementStart<'a>,
+) -> ReadResult<'a, (Statement, bool)> {
+    let &StatementStart { rest, keyword, is_short: short } = begun;
     let (rest, (statement, inside)) = match keyword {
         Keyword::If => if_statement(line, rest)?,
         Keyword::While => while_statement(line, rest)?,
@@ -82,7 +85,7 @@ pub(super) fn statement<'a>(line: LineInput, begun: &StatementStart<'a>) -> Read
         Keyword::Decimal => whole_words(print(line, rest, PrintKind::Decimal)?, |print| print),
         Keyword::Binary => whole_words(print(line, rest, PrintKind::Binary)?, |print| print),
         // `PC LOS`: letters behind a cut word could be its own.
-        Keyword::Open | Keyword::Close if short && begins_with_letter(rest) => return other(rest),
+        Keyword::Open | Keyword::Close if short && begins_with_letter(rest) => return no_match(rest),
         Keyword::Open => (rest, (Statement::OpenOutput, false)),
         Keyword::Close => (rest, (Statement::CloseOutput, false)),
     };
@@ -102,11 +105,11 @@ fn whole_words<'a, T>(
 }
 
 /// `#n=value`; the input begins with `#` or with a name in brackets.
-pub(super) fn assignment(line: LineInput, input: Input<'_>) -> Read<'_, Statement> {
-    let (rest, target) = must(|input| variable(line, input), not_a_word)(input)?;
-    let (after, ()) = must(sign(b'='), || Alarm::MissingEquals)(rest)?;
-    let (rest, value) = wanted(expr(line, after, 0), after)?;
-    let (rest, ()) = whole(rest)?;
+pub(super) fn assignment(line: LineInput, input: Input<'_>) -> ReadResult<'_, Statement> {
+    let (rest, target) = require(|input| variable(line, input), not_a_word)(input)?;
+    let (after, ()) = require(sign(b'='), || Alarm::MissingEquals)(rest)?;
+    let (rest, value) = require_value(expr(line, after, 0), after)?;
+    let (rest, ()) = check_expression_end(rest)?;
     Ok((rest, Statement::Assign { target, value }))
 }
 
@@ -115,7 +118,7 @@ fn not_a_word() -> Alarm {
 }
 
 /// What may not follow an expression: a `]` too many tells that an opening one is missing.
-fn whole(rest: Input<'_>) -> Read<'_, ()> {
+fn check_expression_end(rest: Input<'_>) -> ReadResult<'_, ()> {
     match next(rest) {
         Some((b']', _)) => fail(spaces(rest), Alarm::MissingOpenBracket),
         Some((b'[' | b'=' | b'<' | b'>' | b'.' | b'0'..=b'9', _)) => no_expression(spaces(rest)),
@@ -123,26 +126,26 @@ fn whole(rest: Input<'_>) -> Read<'_, ()> {
     }
 }
 
-fn goto(line: LineInput, input: Input<'_>) -> Read<'_, Expr> {
+fn goto(line: LineInput, input: Input<'_>) -> ReadResult<'_, Expr> {
     let what = || Alarm::MacroFormat { what: "GOTO needs a sequence number".into() };
-    let (rest, to) = must(|input| expr(line, input, 0), what)(input)?;
-    let (rest, ()) = whole(rest)?;
+    let (rest, to) = require(|input| expr(line, input, 0), what)(input)?;
+    let (rest, ()) = check_expression_end(rest)?;
     Ok((rest, to))
 }
 
-fn if_statement(line: LineInput, input: Input<'_>) -> Read<'_, (Statement, bool)> {
-    let (rest, condition) = wanted_condition(line, input, Alarm::IfFormat)?;
+fn if_statement(line: LineInput, input: Input<'_>) -> ReadResult<'_, (Statement, bool)> {
+    let (rest, condition) = require_condition(line, input, Alarm::IfFormat)?;
     let at = spaces(rest);
     match keyword(at) {
-        Some(StatementStart { rest, keyword: Keyword::Goto, short }) => {
+        Some(StatementStart { rest, keyword: Keyword::Goto, is_short: short }) => {
             let (rest, to) = goto(line, rest)?;
             Ok((rest, (Statement::IfGoto { condition, to }, short)))
         }
-        Some(StatementStart { rest, keyword: Keyword::Then, short }) if begins_word(rest) => {
+        Some(StatementStart { rest, keyword: Keyword::Then, is_short: short }) if begins_word(rest) => {
             Ok((rest, (Statement::If { condition, has_then: true }, short)))
         }
-        Some(StatementStart { rest, keyword: Keyword::Then, short }) => {
-            let (rest, (then, inside)) = must(|input| then(line, input), || Alarm::IfFormat)(rest)?;
+        Some(StatementStart { rest, keyword: Keyword::Then, is_short: short }) => {
+            let (rest, (then, inside)) = require(|input| then(line, input), || Alarm::IfFormat)(rest)?;
             Ok((rest, (Statement::IfThen { condition, then: Box::new(then) }, short || inside)))
         }
         None if begins_word(at) || matches!(at.first(), Some(b'#')) => {
@@ -159,19 +162,19 @@ fn begins_word(input: Input<'_>) -> bool {
 }
 
 /// One assignment, or a GOTO, which some controls take.
-fn then(line: LineInput, input: Input<'_>) -> Read<'_, (Statement, bool)> {
+fn then(line: LineInput, input: Input<'_>) -> ReadResult<'_, (Statement, bool)> {
     let at = spaces(input);
     match at.first() {
         Some(b'#' | b'[') => assignment(line, at).map(|(rest, found)| (rest, (found, false))),
         _ => match keyword(at) {
             Some(begun) if begun.keyword == Keyword::Goto => statement(line, &begun),
-            _ => other(at),
+            _ => no_match(at),
         },
     }
 }
 
-fn while_statement(line: LineInput, input: Input<'_>) -> Read<'_, (Statement, bool)> {
-    let (rest, condition) = wanted_condition(line, input, Alarm::WhileFormat)?;
+fn while_statement(line: LineInput, input: Input<'_>) -> ReadResult<'_, (Statement, bool)> {
+    let (rest, condition) = require_condition(line, input, Alarm::WhileFormat)?;
     let at = spaces(rest);
     match keyword(at) {
         Some(StatementStart { rest, keyword: Keyword::Do, .. })
@@ -185,7 +188,7 @@ fn while_statement(line: LineInput, input: Input<'_>) -> Read<'_, (Statement, bo
 }
 
 /// `IF(…)` has a comment where its condition should be.
-fn wanted_condition<'a>(line: LineInput, input: Input<'a>, otherwise: Alarm) -> Read<'a, Condition> {
+fn require_condition<'a>(line: LineInput, input: Input<'a>, otherwise: Alarm) -> ReadResult<'a, Condition> {
     match condition(line, input) {
         Err(nom::Err::Error(_)) if comment_before(input) => round_brackets(input, None),
         Err(nom::Err::Error(_)) => fail(spaces(input), otherwise),
@@ -193,9 +196,9 @@ fn wanted_condition<'a>(line: LineInput, input: Input<'a>, otherwise: Alarm) -> 
     }
 }
 
-fn loop_number(line: LineInput, input: Input<'_>) -> Read<'_, Spanned<i64>> {
+fn loop_number(line: LineInput, input: Input<'_>) -> ReadResult<'_, Spanned<i64>> {
     let what = || Alarm::MacroFormat { what: "DO and END need the loop's number, 1, 2 or 3".into() };
     let at = spaces(input);
-    let (rest, number) = must(integer, what)(at)?;
+    let (rest, number) = require(integer, what)(at)?;
     Ok((rest, line.spanned(i64::try_from(number).unwrap_or(i64::MAX), at, rest)))
 }

@@ -6,7 +6,7 @@ use crate::alarm::Alarm;
 use crate::source::{SourceId, Span, Spanned};
 
 pub(super) type Input<'a> = &'a [u8];
-pub(super) type Read<'a, T> = IResult<Input<'a>, T, ReadFailure>;
+pub(super) type ReadResult<'a, T> = IResult<Input<'a>, T, ReadFailure>;
 
 /// Every byte of a comment is overwritten with this one before a line is read (see [`super::comment`]), so that a
 /// comment may stand between any two words, numbers and brackets. No other byte of a line's code is a `(`.
@@ -18,7 +18,7 @@ pub(super) const COMMENT: u8 = b'(';
 pub(super) struct ReadFailure {
     /// `None` where the text is neither this nor that. Faults are handed on at every step, so they are small.
     alarm: Option<Box<Alarm>>,
-    pub(super) left: usize,
+    pub(super) remaining: usize,
 }
 
 impl ReadFailure {
@@ -33,7 +33,7 @@ impl ReadFailure {
 
 impl ParseError<Input<'_>> for ReadFailure {
     fn from_error_kind(input: Input<'_>, _: ErrorKind) -> Self {
-        Self { alarm: None, left: input.len() }
+        Self { alarm: None, remaining: input.len() }
     }
 
     fn append(_: Input<'_>, _: ErrorKind, other: Self) -> Self {
@@ -43,31 +43,31 @@ impl ParseError<Input<'_>> for ReadFailure {
 
 /// Reading can't go on in any other way.
 #[cold]
-pub(super) fn fail<T>(input: Input<'_>, alarm: Alarm) -> Read<'_, T> {
-    Err(Err::Failure(ReadFailure { alarm: Some(Box::new(alarm)), left: input.len() }))
+pub(super) fn fail<T>(input: Input<'_>, alarm: Alarm) -> ReadResult<'_, T> {
+    Err(Err::Failure(ReadFailure { alarm: Some(Box::new(alarm)), remaining: input.len() }))
 }
 
 /// Neither a number nor anything else an expression may have here.
-pub(super) fn no_expression<T>(input: Input<'_>) -> Read<'_, T> {
+pub(super) fn no_expression<T>(input: Input<'_>) -> ReadResult<'_, T> {
     fail(input, Alarm::Expression { text: String::new() })
 }
 
 /// `(` where a value or `[` must stand; [`comment_before`] holds.
-pub(super) fn round_brackets<T>(input: Input<'_>, letter: Option<char>) -> Read<'_, T> {
+pub(super) fn round_brackets<T>(input: Input<'_>, letter: Option<char>) -> ReadResult<'_, T> {
     let gap = input.iter().take_while(|b| is_space(**b)).count();
     fail(&input[gap..], Alarm::RoundBrackets { letter })
 }
 
 /// This isn't the piece looked for; another may be.
-pub(super) fn other<T>(input: Input<'_>) -> Read<'_, T> {
+pub(super) fn no_match<T>(input: Input<'_>) -> ReadResult<'_, T> {
     Err(Err::Error(ReadFailure::from_error_kind(input, ErrorKind::Alt)))
 }
 
 /// What must follow: where it isn't there, the line can't be read.
-pub(super) fn must<'a, T>(
+pub(super) fn require<'a, T>(
     mut parser: impl Parser<Input<'a>, Output = T, Error = ReadFailure>,
     alarm: impl Fn() -> Alarm,
-) -> impl FnMut(Input<'a>) -> Read<'a, T> {
+) -> impl FnMut(Input<'a>) -> ReadResult<'a, T> {
     move |input| match parser.parse(input) {
         Err(Err::Error(_)) => fail(spaces(input), alarm()),
         read => read,
@@ -120,18 +120,18 @@ pub(super) fn next(input: Input<'_>) -> Option<(u8, Input<'_>)> {
 }
 
 /// One sign such as `[`, spaces before it.
-pub(super) fn sign<'a>(wanted: u8) -> impl Fn(Input<'a>) -> Read<'a, ()> {
+pub(super) fn sign<'a>(wanted: u8) -> impl Fn(Input<'a>) -> ReadResult<'a, ()> {
     move |input| match next(input) {
         Some((byte, rest)) if byte == wanted => Ok((rest, ())),
-        _ => other(input),
+        _ => no_match(input),
     }
 }
 
 /// A word of letters in either case, spaces before and between them.
-pub(super) fn word<'a>(text: &'static str) -> impl Fn(Input<'a>) -> Read<'a, ()> {
+pub(super) fn word<'a>(text: &'static str) -> impl Fn(Input<'a>) -> ReadResult<'a, ()> {
     move |input| match letters(spaces(input), text) {
         (rest, count) if count == text.len() => Ok((rest, ())),
-        _ => other(input),
+        _ => no_match(input),
     }
 }
 

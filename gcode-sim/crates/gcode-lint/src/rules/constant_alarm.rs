@@ -1,6 +1,6 @@
 //! Arithmetic of numbers written out that always alarms: `SQRT[-4]`, `5/0`, `ACOS[1.5]`.
+use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use crate::expressions;
-use crate::subject::{CheckContext, ProgramUnit, RuleFinding};
 use gcode_control::static_eval::{atan2, binary, function, power};
 use gcode_lang::alarm::{Alarm, LocatedAlarm};
 use gcode_lang::control::Settings;
@@ -12,9 +12,9 @@ pub(super) const NAME: &str = "constant-alarm";
 
 pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut found = Vec::new();
-    for (index, block) in unit.blocks.iter().enumerate().filter(|(index, _)| unit.reached[*index]) {
-        let mut numbers = Numbers { settings: subject.settings, alarms: Vec::new() };
-        for expr in expressions::of_block(block) {
+    for (index, block) in unit.blocks.iter().enumerate().filter(|(index, _)| unit.is_reached[*index]) {
+        let mut numbers = ConstantEvaluator { settings: subject.settings, alarms: Vec::new() };
+        for expr in expressions::block_expressions(block) {
             numbers.value(expr);
         }
         found.extend(numbers.alarms.iter().map(|alarm| finding(subject, unit, NAME, index, alarm)));
@@ -23,12 +23,12 @@ pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
 }
 
 /// Computes what needs no variable, and keeps the alarms.
-struct Numbers<'a> {
+struct ConstantEvaluator<'a> {
     settings: &'a Settings,
     alarms: Vec<LocatedAlarm>,
 }
 
-impl Numbers<'_> {
+impl ConstantEvaluator<'_> {
     /// `None` where it needs a variable, or has raised an alarm.
     fn value(&mut self, expr: &Expr) -> Option<f64> {
         let computed = match &expr.kind {
@@ -39,7 +39,7 @@ impl Numbers<'_> {
                 let (left, right) = (self.value(left), self.value(right)?);
                 // Whatever is divided by 0, it alarms.
                 let divides = matches!(op, BinaryOp::Div | BinaryOp::Mod);
-                let value = binary(*op, left.or(divides.then_some(1.0))?, right, &self.settings.unsure);
+                let value = binary(*op, left.or(divides.then_some(1.0))?, right, &self.settings.undocumented);
                 if left.is_none() && value.is_ok() {
                     return None;
                 }
@@ -52,7 +52,7 @@ impl Numbers<'_> {
             }
             ExprKind::Named(_) | ExprKind::Parameter { .. } | ExprKind::AxisNumber(_) => return None,
         };
-        computed.map_err(|alarm| self.alarms.push(alarm.at(expr.span))).ok()
+        computed.map_err(|alarm| self.alarms.push(alarm.located_at(expr.span))).ok()
     }
 
     fn call(&mut self, name: Function, form: &CallForm) -> Option<Result<f64, Alarm>> {

@@ -2,8 +2,8 @@
 //! what it has read already.
 use std::collections::BTreeMap;
 
+use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use crate::parameters;
-use crate::subject::{CheckContext, ProgramUnit, RuleFinding};
 use gcode_lang::source::Span;
 
 pub(super) const NAME: &str = "doubled-n";
@@ -11,7 +11,7 @@ pub(super) const NAME: &str = "doubled-n";
 pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut first: BTreeMap<u32, (Span, bool)> = BTreeMap::new();
     let mut found = Vec::new();
-    let parameters = parameters::inside(unit.program);
+    let parameters = parameters::parameter_blocks(unit.program);
     for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| !parameters[*block]) {
         let Some(number) = op.number.filter(|number| *number > 0) else { continue };
         match first.get_mut(&number) {
@@ -20,8 +20,8 @@ pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
             }
             Some((_, told @ false)) => {
                 *told = true;
-                let line = subject.memory.sources().place(first[&number].0).line;
-                let jump = unit.flow.jumps.iter().any(|jump| jump.number == number && !jump.returns);
+                let line = subject.memory.sources().line_column(first[&number].0).line;
+                let jump = unit.flow.jumps.iter().any(|jump| jump.number == number && !jump.is_return);
                 let so = if jump {
                     ": the control decides which of the two GOTO takes"
                 } else {

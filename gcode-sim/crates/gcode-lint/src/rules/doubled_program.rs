@@ -1,10 +1,10 @@
 //! Two programs of one number or name: a control refuses the second when it reads it, and a run doesn't begin.
-use crate::subject::{CheckContext, ProgramUnit, RuleFinding};
+use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 
 pub(super) const NAME: &str = "doubled-program";
 
 pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
-    let refused = subject.memory.refused().any(|program| std::ptr::eq(program, unit.program));
+    let refused = subject.memory.duplicates().any(|program| std::ptr::eq(program, unit.program));
     if !refused || unit.program.ops().is_empty() {
         return Vec::new();
     }

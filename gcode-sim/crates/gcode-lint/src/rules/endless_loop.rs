@@ -2,11 +2,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::components::strongly_connected_components;
-use crate::flow::{Jump, raises};
+use crate::context::{CheckContext, ProgramUnit, RuleFinding};
+use crate::control_flow::{Jump, raises_alarm};
 use crate::literal;
-use crate::subject::{CheckContext, ProgramUnit, RuleFinding};
 use crate::vacancy::{Locals, truth};
-use crate::variables::{self, Uses};
+use crate::variables::{self, VariableUses};
 use gcode_lang::program::{OpIndex, OpKind};
 use gcode_lang::syntax::ast::{Condition, Statement};
 
@@ -18,35 +18,35 @@ const FIRST_SYSTEM: u32 = 1000;
 pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut found = Vec::new();
     let mut told = vec![false; unit.program.ops().len()];
-    for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.reached[*block]) {
+    for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.is_reached[*block]) {
         use gcode_lang::program::Statement::{Do, While};
         let OpKind::Statement(While { end, .. } | Do { end, .. }) = *op.kind() else { continue };
-        let inside: Vec<OpIndex> = (block..=end).filter(|b| unit.reached[*b]).collect();
+        let inside: Vec<OpIndex> = (block..=end).filter(|b| unit.is_reached[*b]).collect();
         if never_entered(unit, block)
-            || has_exit(subject, unit, &inside, |to| (block..=end).contains(&to) && unit.reached[to])
+            || has_exit(subject, unit, &inside, |to| (block..=end).contains(&to) && unit.is_reached[to])
         {
             continue;
         }
         found.push(loop_finding(unit, block));
         told[block..=end].fill(true);
     }
-    found.extend(jumps(subject, unit, &told));
+    found.extend(find_jump_loops(subject, unit, &told));
     found
 }
 
 /// Circles that a GOTO closes, each looked at once.
-fn jumps(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>, told: &[bool]) -> Vec<RuleFinding> {
+fn find_jump_loops(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>, told: &[bool]) -> Vec<RuleFinding> {
     let mut found = Vec::new();
     let back = |jump: &Jump| {
         let to = jump.to.filter(|to| *to <= jump.block)?;
-        (unit.reached[jump.block] && !jump.returns && !told[jump.block]).then_some(to)
+        (unit.is_reached[jump.block] && !jump.is_return && !told[jump.block]).then_some(to)
     };
     if !unit.flow.jumps.iter().any(|jump| back(jump).is_some()) {
         return found;
     }
     let circle = strongly_connected_components(&unit.flow);
     let mut members: BTreeMap<usize, Vec<OpIndex>> = BTreeMap::new();
-    for (block, circle) in circle[..unit.flow.ways.len()].iter().enumerate() {
+    for (block, circle) in circle[..unit.flow.block_successors.len()].iter().enumerate() {
         members.entry(*circle).or_default().push(block);
     }
     for jump in &unit.flow.jumps {
@@ -69,7 +69,7 @@ fn jumps(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>, told: &[bool]) -> V
 fn loop_finding(unit: &ProgramUnit<'_>, block: OpIndex) -> RuleFinding {
     match condition(unit, block) {
         Some(condition) => {
-            let uses = variables::of_condition(condition);
+            let uses = variables::condition_uses(condition);
             let mut names: Vec<String> = uses.reads.iter().map(|read| format!("#{}", read.number)).collect();
             names.dedup();
             let message = if names.is_empty() {
@@ -114,8 +114,13 @@ fn has_exit(
     let mut written = None;
     inside.iter().copied().any(|block| {
         let op = unit.op(block);
-        let ways = &unit.flow.ways[block];
-        if ways.is_exit || ways.anywhere || raises(op.kind()) || waits(op.kind()) || is_alarm(op.kind()) {
+        let ways = &unit.flow.block_successors[block];
+        if ways.is_exit
+            || ways.jumps_anywhere
+            || raises_alarm(op.kind())
+            || waits_for_operator(op.kind())
+            || is_alarm(op.kind())
+        {
             return true;
         }
         if unit.flow.successors(block).all(&contains) {
@@ -127,8 +132,8 @@ fn has_exit(
                     !matches!(variables::statement(&unit.blocks, block), Some(Statement::While { .. }));
                 truth(condition, &Locals::ANYTHING) == Some(leaves_when)
                     || written
-                        .get_or_insert_with(|| WrittenVariables::by(subject, unit, inside))
-                        .changes(&variables::of_condition(condition))
+                        .get_or_insert_with(|| WrittenVariables::collect(subject, unit, inside))
+                        .changes(&variables::condition_uses(condition))
             }
             None => true,
         }
@@ -140,12 +145,12 @@ fn is_alarm(kind: &OpKind) -> bool {
 }
 
 /// The operator is asked: M00, M01, `#3006`.
-fn waits(kind: &OpKind) -> bool {
+fn waits_for_operator(kind: &OpKind) -> bool {
     match kind {
         OpKind::Words(words) => {
-            words.list.iter().any(|w| w.letter == b'M' && matches!(literal::count(w), Some(0 | 1)))
+            words.list.iter().any(|w| w.letter == b'M' && matches!(literal::word_count(w), Some(0 | 1)))
         }
-        OpKind::Statement(gcode_lang::program::Statement::Assign { target, .. }) => target.is(3006),
+        OpKind::Statement(gcode_lang::program::Statement::Assign { target, .. }) => target.is_variable(3006),
         _ => false,
     }
 }
@@ -155,19 +160,19 @@ fn waits(kind: &OpKind) -> bool {
 struct WrittenVariables {
     numbers: BTreeSet<u32>,
     /// All from this number on.
-    from: Option<u32>,
+    all_from: Option<u32>,
 }
 
 impl WrittenVariables {
-    fn by(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>, blocks: &[OpIndex]) -> Self {
+    fn collect(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>, blocks: &[OpIndex]) -> Self {
         let mut written = Self::default();
         let mut called = BTreeSet::new();
         // A modal call acts in any block that moves.
-        let modal = unit.calls.iter().filter(|call| call.modal);
+        let modal = unit.calls.iter().filter(|call| call.is_modal);
         for call in blocks.iter().filter_map(|block| unit.call_in(*block)).chain(modal) {
             // A macro has locals of its own; a subprogram has its caller's.
-            let reach = if call.own_locals { 100 } else { 0 };
-            match subject.called(call).map(|place| (place, &subject.units[place])) {
+            let reach = if call.has_own_locals { 100 } else { 0 };
+            match subject.called_unit(call).map(|place| (place, &subject.units[place])) {
                 Some((place, program)) if program.calls.is_empty() => {
                     if called.insert((place, reach)) {
                         written.add(program, 0..program.blocks.len(), reach);
@@ -192,16 +197,16 @@ impl WrittenVariables {
     }
 
     fn all_from(&mut self, number: u32) {
-        self.from = Some(self.from.map_or(number, |from| from.min(number)));
+        self.all_from = Some(self.all_from.map_or(number, |from| from.min(number)));
     }
 
     /// Whether one of these is what a condition asks, or something that changes by itself.
-    fn changes(&self, uses: &Uses) -> bool {
-        uses.reads_any
+    fn changes(&self, uses: &VariableUses) -> bool {
+        uses.reads_computed
             || uses.reads.iter().map(|read| read.number).any(|number| {
                 number >= FIRST_SYSTEM
                     || self.numbers.contains(&number)
-                    || self.from.is_some_and(|from| number >= from)
+                    || self.all_from.is_some_and(|from| number >= from)
             })
     }
 }

@@ -1,13 +1,13 @@
 //! A jump into a loop from outside: the control finds at END that no DO was passed (PS1124).
-use crate::subject::{CheckContext, ProgramUnit, RuleFinding};
+use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use gcode_lang::program::{OpIndex, OpKind, Statement};
 
 pub(super) const NAME: &str = "jump-into-loop";
 
 pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut found = Vec::new();
-    let around = around(unit);
-    for jump in unit.flow.jumps.iter().filter(|jump| unit.reached[jump.block] && !jump.returns) {
+    let around = enclosing_loops(unit);
+    for jump in unit.flow.jumps.iter().filter(|jump| unit.is_reached[jump.block] && !jump.is_return) {
         let Some(to) = jump.to else { continue };
         let entered = around[to].iter().find(|(first, last)| !(*first..=*last).contains(&jump.block));
         if let Some((first, _)) = entered.copied() {
@@ -21,7 +21,7 @@ pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFind
 }
 
 /// For each block the first and the last block of the loops it stands in, the outer ones first; at most three.
-fn around(unit: &ProgramUnit<'_>) -> Vec<Vec<(OpIndex, OpIndex)>> {
+fn enclosing_loops(unit: &ProgramUnit<'_>) -> Vec<Vec<(OpIndex, OpIndex)>> {
     let mut around = vec![Vec::new(); unit.program.ops().len()];
     for (first, op) in unit.program.ops().iter().enumerate() {
         if let OpKind::Statement(Statement::While { end, .. } | Statement::Do { end, .. }) = *op.kind() {

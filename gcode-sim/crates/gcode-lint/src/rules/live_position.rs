@@ -3,36 +3,36 @@
 //! work are those of that instant.
 //!
 //! #5001… (the end of the block before) and #5061… (kept by G31) don't depend on the moment.
+use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use crate::literal;
-use crate::subject::{CheckContext, ProgramUnit, RuleFinding};
 use crate::variables;
 use std::ops::RangeInclusive;
 
 use gcode_lang::control::Settings;
-use gcode_lang::program::codes::{Effect, OneShot};
+use gcode_lang::program::g_codes::{Effect, OneShot};
 use gcode_lang::program::{OpIndex, OpKind, Statement, WordOperand, Words};
 
 pub(super) const NAME: &str = "live-position";
 
 /// Inputs, clocks, codes of the block at work, positions, position deviations, handle interruption, distance to go.
-const LIVE: [RangeInclusive<u32>; 6] =
+const LIVE_VARIABLES: [RangeInclusive<u32>; 6] =
     [1000..=1035, 3001..=3002, 4201..=4330, 5021..=5060, 5101..=5140, 5181..=5200];
 
 /// Outputs.
 const OUTPUTS: RangeInclusive<u32> = 1100..=1135;
 
 pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
-    let moving = moving(subject.settings, unit);
+    let moving = pending_moves(subject.settings, unit);
     let mut found = Vec::new();
-    for (block, written) in unit.blocks.iter().enumerate().filter(|(block, _)| unit.reached[*block]) {
+    for (block, written) in unit.blocks.iter().enumerate().filter(|(block, _)| unit.is_reached[*block]) {
         let Some(motion) = moving[block] else { continue };
-        let reads = variables::of_block(written).reads.into_iter();
-        let live = reads.filter(|read| LIVE.iter().any(|range| range.contains(&read.number)));
+        let reads = variables::block_uses(written).reads.into_iter();
+        let live = reads.filter(|read| LIVE_VARIABLES.iter().any(|range| range.contains(&read.number)));
         // One finding a block: a probe reads several axes at once.
         if let Some(read) = live.take(1).next() {
             let number = read.number;
             let message = format!("#{number} is read while the preceding move may still be in progress");
-            let finding = unit.warning(NAME, block, message).on(read.span);
+            let finding = unit.warning(NAME, block, message).with_span(read.span);
             let finding = finding.label(unit.op(motion).span, "the move");
             found.push(finding.help(HELP));
         }
@@ -49,7 +49,7 @@ pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
 const HELP: &str = "insert a block before it that waits for the move: G53, M00 or G31";
 
 /// For each block a move that may still be under way before it, where there is one.
-fn moving(settings: &Settings, unit: &ProgramUnit<'_>) -> Vec<Option<OpIndex>> {
+fn pending_moves(settings: &Settings, unit: &ProgramUnit<'_>) -> Vec<Option<OpIndex>> {
     let count = unit.flow.block_count();
     let mut moving = vec![None; count];
     let mut seen = vec![false; count];
@@ -61,7 +61,7 @@ fn moving(settings: &Settings, unit: &ProgramUnit<'_>) -> Vec<Option<OpIndex>> {
         seen[block] = true;
         moving[block] = moving[block].or(motion);
         let op = unit.program.ops().get(block);
-        let after = match op.and_then(|op| effect(settings, op.kind())) {
+        let after = match op.and_then(|op| move_effect(settings, op.kind())) {
             Some(true) => Some(block),
             Some(false) => None,
             None => moving[block],
@@ -69,16 +69,16 @@ fn moving(settings: &Settings, unit: &ProgramUnit<'_>) -> Vec<Option<OpIndex>> {
         let skipped = op.and_then(|op| op.skip()).map(|_| (block + 1, moving[block]));
         open.extend(unit.flow.successors(block).map(|to| (to, after)).chain(skipped));
     }
-    moving.truncate(unit.flow.ways.len());
+    moving.truncate(unit.flow.block_successors.len());
     moving
 }
 
 /// Whether a block starts a move (true) or waits for all moves before it (false).
-fn effect(settings: &Settings, kind: &OpKind) -> Option<bool> {
+fn move_effect(settings: &Settings, kind: &OpKind) -> Option<bool> {
     match kind {
         OpKind::Words(words) => of_words(settings, words),
         // A message stops until the operator starts again.
-        OpKind::Statement(Statement::Assign { target, .. }) if target.is(3006) => Some(false),
+        OpKind::Statement(Statement::Assign { target, .. }) if target.is_variable(3006) => Some(false),
         _ => None,
     }
 }
@@ -87,7 +87,7 @@ fn of_words(settings: &Settings, words: &Words) -> Option<bool> {
     let mut axis = false;
     for word in &words.list {
         match (word.letter, word.value) {
-            (b'G', WordOperand::G(_, found)) => match found.on(settings.codes).map(|row| row.effect) {
+            (b'G', WordOperand::G(_, found)) => match found.row_for(settings.codes).map(|row| row.effect) {
                 // G53 waits; G31 ends where its signal comes; G04 and G10 wait on some controls.
                 Some(Effect::OneShot(
                     OneShot::MachineSystem | OneShot::Skip | OneShot::Dwell | OneShot::DataInput,
@@ -99,7 +99,9 @@ fn of_words(settings: &Settings, words: &Words) -> Option<bool> {
                 _ => {}
             },
             // Coolant and spindle don't wait; what the machine's builder made of other codes nobody knows.
-            (b'M', _) if !matches!(literal::count(word), Some(3 | 4 | 5 | 7 | 8 | 9)) => return Some(false),
+            (b'M', _) if !matches!(literal::word_count(word), Some(3 | 4 | 5 | 7 | 8 | 9)) => {
+                return Some(false);
+            }
             (letter, _) => axis |= word.axis.is_some() || settings.axes.find(letter).is_some(),
         }
     }

@@ -1,6 +1,6 @@
 //! DO and END that don't pair: one of the two is missing, two loops of one number stand in one another, or two loops
 //! overlap.
-use crate::subject::{CheckContext, ProgramUnit, RuleFinding};
+use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use gcode_lang::source::Span;
 use gcode_lang::syntax::ast::{Item, Statement};
 
@@ -49,7 +49,7 @@ pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFind
         let message = format!("PS0124: DO{number} has no END{number}");
         found.push(unit.error(NAME, block, message).help(format!("write END{number} after the loop")));
     }
-    found.retain(|finding| unit.reached[finding.block]);
+    found.retain(|finding| unit.is_reached[finding.block]);
     found
 }
 
@@ -58,7 +58,9 @@ fn loop_word(item: &Item) -> Option<(i64, bool)> {
     let statement = match item {
         Item::Statement(statement) => statement,
         // `WHILE(#1 GT 0)DO1` has a fault of its own; its END has none.
-        Item::Unreadable(unreadable) => return spoilt_loop(&unreadable.text).map(|number| (number, true)),
+        Item::Unreadable(unreadable) => {
+            return unreadable_loop_number(&unreadable.text).map(|number| (number, true));
+        }
         Item::Word(_) | Item::Skip(_) => return None,
     };
     match &statement.node {
@@ -69,7 +71,7 @@ fn loop_word(item: &Item) -> Option<(i64, bool)> {
 }
 
 /// The number behind the DO of a WHILE that can't be read.
-fn spoilt_loop(text: &[u8]) -> Option<i64> {
+fn unreadable_loop_number(text: &[u8]) -> Option<i64> {
     let text: Vec<u8> =
         text.iter().filter(|b| !b.is_ascii_whitespace()).map(u8::to_ascii_uppercase).collect();
     let place = text.windows(2).rposition(|two| two == b"DO").filter(|_| text.starts_with(b"WH"))?;

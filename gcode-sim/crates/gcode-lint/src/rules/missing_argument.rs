@@ -2,11 +2,11 @@
 //! the macro reckons with the vacant variable.
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::flow::raises;
-use crate::subject::{CheckContext, ProgramUnit, RuleFinding};
-use crate::unset::{entry, reads};
+use crate::context::{CheckContext, ProgramUnit, RuleFinding};
+use crate::control_flow::raises_alarm;
+use crate::unset_reads::{entry_locals, unset_reads};
 use crate::vacancy::{Locals, NUMBER, States, UNSET, states, truth};
-use crate::variables::{self, Use};
+use crate::variables::{self, VariableUse};
 use gcode_lang::program::{OpIndex, OpKind, argument_letter};
 use gcode_lang::syntax::ast::Statement;
 
@@ -15,16 +15,18 @@ pub(super) const NAME: &str = "missing-argument";
 pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut found = Vec::new();
     let mut known: BTreeMap<(usize, Locals), Vec<MissingArgumentEffect>> = BTreeMap::new();
-    for call in unit.calls.iter().filter(|call| unit.reached[call.block] && call.own_locals) {
-        let Some(called) = subject.called(call) else { continue };
-        let entry = entry(call);
-        let lacking = known
-            .entry((called, entry))
-            .or_insert_with(|| lacking(subject, &subject.units[called], entry, call.modal));
+    for call in unit.calls.iter().filter(|call| unit.is_reached[call.block] && call.has_own_locals) {
+        let Some(called) = subject.called_unit(call) else { continue };
+        let entry = entry_locals(call);
+        let lacking = known.entry((called, entry)).or_insert_with(|| {
+            missing_argument_effects(subject, &subject.units[called], entry, call.is_modal)
+        });
         for lack in lacking {
             let finding = match lack {
-                MissingArgumentEffect::Refused(message) => unit.error(NAME, call.block, message.clone()),
-                MissingArgumentEffect::Reckoned(message) => unit.warning(NAME, call.block, message.clone()),
+                MissingArgumentEffect::Alarm(message) => unit.error(NAME, call.block, message.clone()),
+                MissingArgumentEffect::DefaultsToZero(message) => {
+                    unit.warning(NAME, call.block, message.clone())
+                }
             };
             found.push(finding.help("write the letter with its value"));
         }
@@ -35,13 +37,13 @@ pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
 /// What comes of a letter that isn't there, in a sentence.
 enum MissingArgumentEffect {
     /// The macro stops with its alarm.
-    Refused(String),
+    Alarm(String),
     /// The macro reckons with 0, which may even be meant.
-    Reckoned(String),
+    DefaultsToZero(String),
 }
 
 /// What a macro lacks, letter by letter.
-fn lacking(
+fn missing_argument_effects(
     subject: &CheckContext<'_>,
     called: &ProgramUnit<'_>,
     entry: Locals,
@@ -55,18 +57,18 @@ fn lacking(
     let mut lacks = Vec::new();
     let mut told = BTreeSet::new();
     // Letters that belong together may all be left out where each alone is refused.
-    let refused = refusal(subject, called, &states(called, entry)).is_some();
+    let refused = unavoidable_alarm(subject, called, &states(called, entry)).is_some();
     for (local, letter) in missing.iter().filter(|_| refused) {
         let mut without = filled;
         without.0[*local] = UNSET;
-        if let Some(alarm) = refusal(subject, called, &states(called, without))
-            && refusal(subject, called, &states(called, filled)).is_none()
+        if let Some(alarm) = unavoidable_alarm(subject, called, &states(called, without))
+            && unavoidable_alarm(subject, called, &states(called, filled)).is_none()
         {
             told.insert(*local as u32);
             let message = format!(
                 "{label} needs {letter} (#{local}): if it is omitted, the program stops with {alarm}"
             );
-            lacks.push(MissingArgumentEffect::Refused(message));
+            lacks.push(MissingArgumentEffect::Alarm(message));
         }
     }
     // Beyond a refusal nothing is read, and a modal macro may find what its last pass left.
@@ -74,20 +76,20 @@ fn lacking(
         return lacks;
     }
     let states = states(called, entry);
-    for ((block, local), (_, usage)) in reads(called, &states) {
+    for ((block, local), (_, usage)) in unset_reads(called, &states) {
         let Some(letter) = argument_letter(local as usize) else { continue };
-        if usage == Use::Computed && told.insert(local) {
-            let line = subject.memory.sources().place(called.op(block).span).line;
+        if usage == VariableUse::Computed && told.insert(local) {
+            let line = subject.memory.sources().line_column(called.op(block).span).line;
             let message =
                 format!("{label} uses {letter} (#{local}) in line {line}; if it is omitted, it is 0");
-            lacks.push(MissingArgumentEffect::Reckoned(message));
+            lacks.push(MissingArgumentEffect::DefaultsToZero(message));
         }
     }
     lacks
 }
 
 /// The alarm that every way through a program ends in; `None` where it can end otherwise.
-fn refusal(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>, states: &States) -> Option<String> {
+fn unavoidable_alarm(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>, states: &States) -> Option<String> {
     let ops = unit.program.ops();
     let mut first = None;
     // One past the last block is the program's end.
@@ -96,7 +98,7 @@ fn refusal(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>, states: &States) 
     }
     for (block, state) in states[..ops.len()].iter().enumerate() {
         let Some(state) = state else { continue };
-        if raises(ops[block].kind()) {
+        if raises_alarm(ops[block].kind()) {
             let sure = match variables::statement(&unit.blocks, block) {
                 Some(Statement::IfThen { condition, .. }) => truth(condition, state) == Some(true),
                 _ => true,
@@ -104,15 +106,15 @@ fn refusal(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>, states: &States) 
             if sure && first.is_none() {
                 first = Some(block);
             }
-        } else if unit.flow.ways[block].is_exit || matches!(ops[block].kind(), OpKind::Alarm(_)) {
+        } else if unit.flow.block_successors[block].is_exit || matches!(ops[block].kind(), OpKind::Alarm(_)) {
             return None;
         }
     }
-    first.map(|block| alarm(subject, unit, block))
+    first.map(|block| alarm_text(subject, unit, block))
 }
 
 /// `MC3007 (R MISSING)`.
-fn alarm(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>, block: OpIndex) -> String {
+fn alarm_text(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>, block: OpIndex) -> String {
     let written = &unit.blocks[block];
     let number =
         variables::assignment(written).and_then(|(_, value)| crate::literal::constant(value)).map_or_else(

@@ -1,7 +1,7 @@
 //! A feed move before any F, whichever way the program has taken: PS0011.
-use crate::subject::{CheckContext, ProgramUnit, Role, RuleFinding};
+use crate::context::{CheckContext, ProgramUnit, Role, RuleFinding};
 use gcode_lang::alarm::Alarm;
-use gcode_lang::program::codes::Effect;
+use gcode_lang::program::g_codes::Effect;
 use gcode_lang::program::{OpIndex, OpKind, WordOperand, Words};
 
 use super::unreadable::finding;
@@ -17,10 +17,10 @@ pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
         return Vec::new();
     }
     let mut found = Vec::new();
-    for (block, fed) in fed(subject, unit).into_iter().enumerate() {
+    for (block, fed) in feed_before(subject, unit).into_iter().enumerate() {
         let OpKind::Words(words) = unit.op(block).kind() else { continue };
-        if fed == Some(false) && !gives(words) && feeds(subject, words) {
-            let alarm = Alarm::FeedZero.at(unit.op(block).span);
+        if fed == Some(false) && !has_feed_word(words) && is_feed_move(subject, words) {
+            let alarm = Alarm::FeedZero.located_at(unit.op(block).span);
             found.push(finding(subject, unit, NAME, block, &alarm));
         }
     }
@@ -28,56 +28,57 @@ pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
 }
 
 /// Whether some way to each block may have passed an F; `None` where no way leads to it.
-fn fed(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Option<bool>> {
+fn feed_before(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Option<bool>> {
     let mut fed: Vec<Option<bool>> = vec![None; unit.flow.block_count()];
     // Where a call with Q starts, anything may have been before.
     let mut open: Vec<(OpIndex, bool)> =
-        unit.starts.iter().enumerate().map(|(nth, start)| (*start, nth > 0)).collect();
+        unit.entry_blocks.iter().enumerate().map(|(nth, start)| (*start, nth > 0)).collect();
     while let Some((block, before)) = open.pop() {
         let Some(known) = fed.get_mut(block) else { continue };
         if known.is_some_and(|known| known || !before) {
             continue;
         }
         *known = Some(before);
-        let after = before || block < unit.flow.ways.len() && may_give(subject, unit, block);
+        let after = before || block < unit.flow.block_successors.len() && may_set_feed(subject, unit, block);
         open.extend(unit.flow.successors(block).map(|to| (to, after)));
     }
-    fed.truncate(unit.flow.ways.len());
+    fed.truncate(unit.flow.block_successors.len());
     fed
 }
 
 /// Whether a block has an F, or calls what may have one.
-fn may_give(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>, block: OpIndex) -> bool {
+fn may_set_feed(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>, block: OpIndex) -> bool {
     let here = match unit.op(block).kind() {
-        OpKind::Words(words) => gives(words),
+        OpKind::Words(words) => has_feed_word(words),
         OpKind::If { .. } => true,
         _ => false,
     };
-    let called = unit.call_in(block).map(|call| subject.called(call));
+    let called = unit.call_in(block).map(|call| subject.called_unit(call));
     here || match called {
         None => false,
         Some(None) => true,
         // What it calls in its turn is not looked at: it may.
         Some(Some(called)) => {
             let called = &subject.units[called];
-            let written = |block| matches!(called.op(block).kind(), OpKind::Words(words) if gives(words));
+            let written =
+                |block| matches!(called.op(block).kind(), OpKind::Words(words) if has_feed_word(words));
             !called.calls.is_empty() || (0..called.program.ops().len()).any(written)
         }
     }
 }
 
-fn gives(words: &Words) -> bool {
+fn has_feed_word(words: &Words) -> bool {
     words.list.iter().any(|word| word.letter == b'F')
 }
 
 /// G01, G02 or G03 with an axis, and no other code that would take the axis words.
-fn feeds(subject: &CheckContext<'_>, words: &Words) -> bool {
+fn is_feed_move(subject: &CheckContext<'_>, words: &Words) -> bool {
     let axis = words.list.iter().any(|word| subject.settings.axes.find(word.letter).is_some());
     let mut feeds = false;
     for word in &words.list {
         let WordOperand::G(code, row) = word.value else { continue };
         feeds |= FEEDS.contains(&code);
-        match row.on(subject.settings.codes).map(|row| row.effect) {
+        match row.row_for(subject.settings.codes).map(|row| row.effect) {
             Some(Effect::OneShot(_) | Effect::Cycle(Some(_))) | None => return false,
             Some(_) => {}
         }

@@ -1,14 +1,14 @@
 //! Jumps to a sequence number that isn't there: PS0128 at GOTO, PS0078 at M99 P.
-use crate::calls::CalledAs;
-use crate::subject::{CheckContext, ProgramUnit, Role, RuleFinding};
+use crate::calls::CalledProgramName;
+use crate::context::{CheckContext, ProgramUnit, Role, RuleFinding};
 
 pub(super) const NAME: &str = "missing-n";
 
 pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut found = Vec::new();
-    for jump in unit.flow.jumps.iter().filter(|jump| unit.reached[jump.block]) {
+    for jump in unit.flow.jumps.iter().filter(|jump| unit.is_reached[jump.block]) {
         let number = jump.number;
-        if !jump.returns {
+        if !jump.is_return {
             if jump.to.is_none() {
                 let message = format!("PS0128: sequence number N{number} is not in {}", unit.program.label());
                 found.push(unit.error(NAME, jump.block, message).help(HELP));
@@ -41,15 +41,15 @@ pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
             }
         }
     }
-    for call in unit.calls.iter().filter(|call| unit.reached[call.block]) {
-        if let (Some(number), Some(called)) = (call.start, subject.called(call)) {
+    for call in unit.calls.iter().filter(|call| unit.is_reached[call.block]) {
+        if let (Some(number), Some(called)) = (call.start, subject.called_unit(call)) {
             let program = subject.units[called].program;
             if program.find_number(number, 0).is_none() {
                 let label = program.label();
                 let message = format!("PS0078: sequence number N{number}, the start, is not in {label}");
                 found.push(unit.error(NAME, call.block, message).help(HELP));
             }
-        } else if let (Some(number), CalledAs::Nothing) = (call.start, &call.target)
+        } else if let (Some(number), CalledProgramName::Missing) = (call.start, &call.target)
             && unit.program.find_number(number, 0).is_none()
         {
             let message =

@@ -1,6 +1,6 @@
 //! An H or D that the control has no tool offset for (PS0030).
+use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use crate::literal;
-use crate::subject::{CheckContext, ProgramUnit, RuleFinding};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::program::OpKind;
 
@@ -11,17 +11,17 @@ pub(super) const NAME: &str = "missing-offset";
 pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let most = subject.settings.tool_offsets;
     let mut found = Vec::new();
-    for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.reached[*block]) {
+    for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.is_reached[*block]) {
         let OpKind::Words(words) = op.kind() else { continue };
         // What a macro gets is its own affair.
         if unit.call_in(block).is_some() {
             continue;
         }
         for word in words.list.iter().filter(|word| matches!(word.letter, b'H' | b'D')) {
-            let Some(number) = literal::count(word).filter(|number| *number as usize > most) else {
+            let Some(number) = literal::word_count(word).filter(|number| *number as usize > most) else {
                 continue;
             };
-            let alarm = Alarm::OffsetNumber { number: i64::from(number) }.at(word.span);
+            let alarm = Alarm::OffsetNumber { number: i64::from(number) }.located_at(word.span);
             let told = finding(subject, unit, NAME, block, &alarm);
             found.push(
                 told.help(format!(

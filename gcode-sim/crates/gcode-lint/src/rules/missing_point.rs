@@ -2,9 +2,9 @@
 //!
 //! Programs that count in increments throughout (`X45000`) are left alone: they have no points, and numbers of 1 mm
 //! and more.
+use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use crate::literal::without_point;
 use crate::parameters;
-use crate::subject::{CheckContext, ProgramUnit, RuleFinding};
 use gcode_lang::control::Settings;
 use gcode_lang::program::{LoweredWord, OpKind, WordOperand, Words};
 use gcode_lang::syntax::ast::Decimal;
@@ -14,33 +14,36 @@ pub(super) const NAME: &str = "missing-point";
 /// Cycles whose Q is a length: G73, G76, G83, G87. Older controls take no point there.
 const WITH_Q: [u32; 4] = [730, 760, 830, 870];
 /// A peck or a dwell of this many increments may be meant: many programs write `G4 X500`.
-const LEAST_MEANT: u64 = 100;
+const MIN_INTENDED_INCREMENTS: u64 = 100;
 
 pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let settings = subject.settings;
-    if settings.calculator_input || in_increments(unit, settings) {
+    if settings.uses_calculator_input || counts_in_increments(unit, settings) {
         return Vec::new();
     }
-    let inch = unit.program.ops().iter().any(|op| words(op.kind()).is_some_and(|words| has(words, &[200])));
-    let parameters = parameters::inside(unit.program);
+    let inch =
+        unit.program.ops().iter().any(|op| block_words(op.kind()).is_some_and(|words| has(words, &[200])));
+    let parameters = parameters::parameter_blocks(unit.program);
     let mut found = Vec::new();
-    for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.reached[*block]) {
-        let Some(words) = words(op.kind()).filter(|_| !parameters[block]) else { continue };
-        for word in measures(words, settings) {
+    for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.is_reached[*block]) {
+        let Some(words) = block_words(op.kind()).filter(|_| !parameters[block]) else { continue };
+        for word in measured_words(words, settings) {
             let Some(number) = without_point(word) else { continue };
             let counted = (word.letter == b'Q' && words.call().is_none()) || has(words, &[40]);
-            if counted && number.digits >= LEAST_MEANT {
+            if counted && number.digits >= MIN_INTENDED_INCREMENTS {
                 continue;
             }
             let written = spelled(word.letter, number);
             let message = format!("{written} is {}", meaning(word.letter, number, words, settings, inch));
-            found.push(unit.warning(NAME, block, message).on(word.span).help(format!("write {written}.")));
+            found.push(
+                unit.warning(NAME, block, message).with_span(word.span).help(format!("write {written}.")),
+            );
         }
     }
     found
 }
 
-fn words(kind: &OpKind) -> Option<&Words> {
+fn block_words(kind: &OpKind) -> Option<&Words> {
     match kind {
         OpKind::Words(words) => Some(words),
         _ => None,
@@ -52,13 +55,13 @@ fn has(words: &Words, codes: &[u32]) -> bool {
 }
 
 /// The words of a block that are lengths, angles or seconds.
-fn measures<'a>(words: &'a Words, settings: &'a Settings) -> impl Iterator<Item = &'a LoweredWord> {
+fn measured_words<'a>(words: &'a Words, settings: &'a Settings) -> impl Iterator<Item = &'a LoweredWord> {
     let plain = words.list.iter().filter(move |word| is_measure(words, word, settings));
     // The letters of a macro call that a control scales: all but D E F H M S T.
     let arguments = words.call().into_iter().flat_map(|call| &call.arguments);
     let scaled = arguments.filter(|word| b"ABCIJKQRUVWXYZ".contains(&word.letter));
     // K of a drilling cycle counts repetitions, and arcs have it with I or J or alone: a small K is left alone.
-    plain.filter(move |word| word.letter != b'K' || !drills(words)).chain(scaled)
+    plain.filter(move |word| word.letter != b'K' || !is_drilling(words)).chain(scaled)
 }
 
 fn is_measure(words: &Words, word: &LoweredWord, settings: &Settings) -> bool {
@@ -67,7 +70,7 @@ fn is_measure(words: &Words, word: &LoweredWord, settings: &Settings) -> bool {
         // Look-ahead.
         _ if has(words, &[51]) => false,
         letter if has(words, &[40]) => matches!(letter, b'X' | b'U'),
-        letter if has(words, &[100]) => match parameters::data(words) {
+        letter if has(words, &[100]) => match parameters::data_input_kind(words) {
             Some(2 | 20) => axis,
             Some(1 | 10..=13) => letter == b'R',
             _ => false,
@@ -81,16 +84,16 @@ fn is_measure(words: &Words, word: &LoweredWord, settings: &Settings) -> bool {
     }
 }
 
-fn drills(words: &Words) -> bool {
+fn is_drilling(words: &Words) -> bool {
     let arc = has(words, &[20, 30]);
     !arc && !words.list.iter().any(|word| matches!(word.letter, b'I' | b'J'))
 }
 
 /// A program without any point whose numbers are of 1 mm and more counts in increments on purpose.
-fn in_increments(unit: &ProgramUnit<'_>, settings: &Settings) -> bool {
+fn counts_in_increments(unit: &ProgramUnit<'_>, settings: &Settings) -> bool {
     let mut large = false;
-    for words in unit.program.ops().iter().filter_map(|op| words(op.kind())) {
-        for word in measures(words, settings) {
+    for words in unit.program.ops().iter().filter_map(|op| block_words(op.kind())) {
+        for word in measured_words(words, settings) {
             match word.value {
                 WordOperand::Literal(Decimal { places: Some(_), .. }) => return false,
                 WordOperand::Literal(number) => {

@@ -1,5 +1,5 @@
 //! A variable that the control doesn't have (PS0115), can't write (PS0116) or can't read (PS1115).
-use crate::subject::{CheckContext, ProgramUnit, RuleFinding};
+use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use crate::{literal, variables};
 use gcode_control::static_eval::VariableTable;
 use gcode_lang::alarm::{Alarm, LocatedAlarm};
@@ -11,23 +11,23 @@ pub(super) const NAME: &str = "no-such-variable";
 pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let known = VariableTable::new(subject.settings);
     let mut found = Vec::new();
-    for (index, block) in unit.blocks.iter().enumerate().filter(|(index, _)| unit.reached[*index]) {
+    for (index, block) in unit.blocks.iter().enumerate().filter(|(index, _)| unit.is_reached[*index]) {
         let mut tell = |alarm: LocatedAlarm| {
             // What a run here lacks is no fault of the program.
             if !matches!(alarm.node, Alarm::NotSimulated { .. }) {
                 found.push(finding(subject, unit, NAME, index, &alarm));
             }
         };
-        for read in variables::of_block(block).reads {
+        for read in variables::block_uses(block).reads {
             if let Err(alarm) = known.read(read.number) {
-                tell(alarm.at(read.span));
+                tell(alarm.located_at(read.span));
             }
         }
-        for (target, _) in block.items.iter().filter_map(variables::assigned_by) {
+        for (target, _) in block.items.iter().filter_map(variables::item_assignment) {
             if let Some(number) = literal::variable(target)
                 && let Err(alarm) = known.write(number)
             {
-                tell(alarm.at(target.span));
+                tell(alarm.located_at(target.span));
             }
         }
     }

@@ -1,5 +1,5 @@
 //! A comment that isn't closed: what stands behind it on the line is comment too, and some controls refuse the line.
-use crate::subject::{CheckContext, ProgramUnit, RuleFinding};
+use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use gcode_lang::syntax::ast::CommentMark;
 
 pub(super) const NAME: &str = "open-comment";
@@ -10,7 +10,7 @@ pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFind
         for comment in block.comments.iter().filter(|comment| comment.mark == CommentMark::Unclosed) {
             let message = "the comment is not closed: it extends to the end of the line";
             let help = "close it with ): some controls refuse the line";
-            found.push(unit.warning(NAME, index, message).on(comment.span).help(help));
+            found.push(unit.warning(NAME, index, message).with_span(comment.span).help(help));
         }
     }
     found

@@ -1,14 +1,14 @@
 //! `=`, `<` and `>` in a condition: a control compares with EQ, NE, LT, LE, GT and GE.
-use crate::subject::{CheckContext, ProgramUnit, RuleFinding};
+use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use gcode_lang::alarm::Alarm;
 
-use super::unreadable::{alarms, finding, refused};
+use super::unreadable::{alarm_blocks, finding, refused_blocks};
 
 pub(super) const NAME: &str = "relation-symbol";
 
 pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
-    let of_all = alarms(unit).map(|(block, alarm)| (block, alarm.clone()));
-    let all = of_all.chain(refused(subject, unit));
+    let of_all = alarm_blocks(unit).map(|(block, alarm)| (block, alarm.clone()));
+    let all = of_all.chain(refused_blocks(subject, unit));
     let signs = all.filter(|(_, alarm)| matches!(alarm.node, Alarm::RelationSymbol));
     signs.map(|(block, alarm)| finding(subject, unit, NAME, block, &alarm)).collect()
 }

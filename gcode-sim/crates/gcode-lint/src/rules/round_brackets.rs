@@ -1,13 +1,13 @@
 //! `(` where `[` was meant: to a control round brackets are a comment, and what stands in them is gone.
-use crate::subject::{CheckContext, ProgramUnit, RuleFinding};
+use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use gcode_lang::alarm::Alarm;
 
-use super::unreadable::{alarms, finding};
+use super::unreadable::{alarm_blocks, finding};
 
 pub(super) const NAME: &str = "round-brackets";
 
 pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
-    let alarms = alarms(unit).filter(|(_, alarm)| matches!(alarm.node, Alarm::RoundBrackets { .. }));
+    let alarms = alarm_blocks(unit).filter(|(_, alarm)| matches!(alarm.node, Alarm::RoundBrackets { .. }));
     alarms.map(|(block, alarm)| finding(subject, unit, NAME, block, alarm)).collect()
 }
 

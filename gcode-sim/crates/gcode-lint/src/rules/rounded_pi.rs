@@ -1,24 +1,26 @@
 //! A rounded π as a factor: on the circumference of a cylinder 3.14 leaves half a millimetre in a thousand over.
 use std::f64::consts::PI;
 
+use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use crate::expressions;
 use crate::literal::constant;
-use crate::subject::{CheckContext, ProgramUnit, RuleFinding};
 use gcode_lang::source::Span;
 use gcode_lang::syntax::ast::{BinaryOp, CallForm, Expr, ExprKind};
 
 pub(super) const NAME: &str = "rounded-pi";
 
 /// Nobody means a number this near by anything but π: 22/7 is 0.0013 off.
-const NEAR: f64 = 0.002;
+const PI_TOLERANCE: f64 = 0.002;
 /// Six digits behind the point are exact enough: on a metre of diameter 1 µm.
-const EXACT: f64 = 1e-6;
+const PI_PRECISION: f64 = 1e-6;
 
 pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut found = Vec::new();
-    for (index, block) in unit.blocks.iter().enumerate().filter(|(index, _)| unit.reached[*index]) {
+    for (index, block) in unit.blocks.iter().enumerate().filter(|(index, _)| unit.is_reached[*index]) {
         let mut factors = Vec::new();
-        expressions::of_block(block).into_iter().for_each(|expr| in_expr(expr, &mut factors));
+        expressions::block_expressions(block)
+            .into_iter()
+            .for_each(|expr| collect_factors(expr, &mut factors));
         for (pi, span) in factors {
             let off = (pi - PI) / PI * 100.0;
             let written = format!("{pi:.7}");
@@ -29,29 +31,33 @@ pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFind
                 if off < 0.0 { "small" } else { "large" },
                 (pi - PI).abs() * 500.0
             );
-            found.push(unit.warning(NAME, index, message).on(span).help("write 3.14159265"));
+            found.push(unit.warning(NAME, index, message).with_span(span).help("write 3.14159265"));
         }
     }
     found
 }
 
 /// The factors and divisors that are nearly π.
-fn in_expr(expr: &Expr, found: &mut Vec<(f64, Span)>) {
+fn collect_factors(expr: &Expr, found: &mut Vec<(f64, Span)>) {
     match &expr.kind {
         ExprKind::Binary(BinaryOp::Mul | BinaryOp::Div, left, right) => {
             for part in [left, right] {
-                match constant(part).filter(|value| (value - PI).abs() < NEAR) {
-                    Some(pi) if (pi - PI).abs() > EXACT => found.push((pi, part.span)),
+                match constant(part).filter(|value| (value - PI).abs() < PI_TOLERANCE) {
+                    Some(pi) if (pi - PI).abs() > PI_PRECISION => found.push((pi, part.span)),
                     Some(_) => {}
-                    None => in_expr(part, found),
+                    None => collect_factors(part, found),
                 }
             }
         }
-        ExprKind::Binary(_, left, right) => [left, right].into_iter().for_each(|part| in_expr(part, found)),
-        ExprKind::Negate(inner) | ExprKind::Plus(inner) | ExprKind::Bracket(inner) => in_expr(inner, found),
-        ExprKind::Call(_, CallForm::One(argument)) => in_expr(argument, found),
+        ExprKind::Binary(_, left, right) => {
+            [left, right].into_iter().for_each(|part| collect_factors(part, found))
+        }
+        ExprKind::Negate(inner) | ExprKind::Plus(inner) | ExprKind::Bracket(inner) => {
+            collect_factors(inner, found)
+        }
+        ExprKind::Call(_, CallForm::One(argument)) => collect_factors(argument, found),
         ExprKind::Call(_, CallForm::Slash(one, other) | CallForm::Comma(one, other)) => {
-            [one, other].into_iter().for_each(|part| in_expr(part, found));
+            [one, other].into_iter().for_each(|part| collect_factors(part, found));
         }
         _ => {}
     }

@@ -1,6 +1,6 @@
 //! More M codes in a block than the control takes: the last counts and the others are lost, or it alarms.
+use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use crate::literal;
-use crate::subject::{CheckContext, ProgramUnit, RuleFinding};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::program::{OpKind, m_codes};
 
@@ -10,26 +10,27 @@ pub(super) const NAME: &str = "several-m-codes";
 
 pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let settings = subject.settings;
-    let most = if settings.three_m_codes { 3 } else { 1 };
+    let most = if settings.allows_three_m_codes { 3 } else { 1 };
     let mut found = Vec::new();
-    for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.reached[*block]) {
+    for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.is_reached[*block]) {
         let OpKind::Words(words) = op.kind() else { continue };
         let mut kept = Vec::new();
         for word in words.list.iter().filter(|word| word.letter == b'M') {
             // A code that calls a macro is none of the control's.
-            let code = literal::count(word).filter(|code| settings.code_calls.find(b'M', *code).is_none());
+            let code =
+                literal::word_count(word).filter(|code| settings.code_calls.find_call(b'M', *code).is_none());
             let Some(code) = code else { continue };
             if kept.len() == most
                 && let Some(first) = kept.pop()
             {
                 if m_codes::ends_or_stops(first) || settings.plural_m_alarms {
-                    let alarm = Alarm::PluralM { first, second: code }.at(word.span);
+                    let alarm = Alarm::PluralM { first, second: code }.located_at(word.span);
                     found.push(finding(subject, unit, NAME, block, &alarm));
                 } else {
                     let message =
                         format!("M{first} is lost: of several M codes in a block only the last counts");
                     let help = "write each in a block of its own; M3B=1 is for a control that accepts three";
-                    found.push(unit.warning(NAME, block, message).on(word.span).help(help));
+                    found.push(unit.warning(NAME, block, message).with_span(word.span).help(help));
                 }
             }
             kept.push(code);

@@ -1,7 +1,7 @@
 //! A word that no block of this control takes: `X10., Y5.` (PS0053), `X1E3` and axes that it doesn't have (PS0009).
-use crate::subject::{CheckContext, ProgramUnit, RuleFinding};
+use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use gcode_lang::alarm::Alarm;
-use gcode_lang::program::codes::{Effect, OneShot};
+use gcode_lang::program::g_codes::{Effect, OneShot};
 use gcode_lang::program::{LoweredWord, OpKind, WordOperand, Words};
 
 use super::unreadable::finding;
@@ -10,14 +10,14 @@ pub(super) const NAME: &str = "stray-word";
 
 pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut found = Vec::new();
-    for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.reached[*block]) {
+    for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.is_reached[*block]) {
         let OpKind::Words(words) = op.kind() else { continue };
         if unit.call_in(block).is_some() {
             continue;
         }
         let told = words.list.iter().filter_map(|word| Some((word, alarm(subject, words, word)?)));
         found.extend(told.map(|(word, alarm)| {
-            let told = finding(subject, unit, NAME, block, &alarm.at(word.span));
+            let told = finding(subject, unit, NAME, block, &alarm.located_at(word.span));
             match (word.comma, word.letter) {
                 (true, _) => told.help("remove the comma: words are not separated by commas"),
                 (_, b'E') => told.help("write the number in full, 1000. for 1E3: numbers have no exponent"),
@@ -32,7 +32,9 @@ fn alarm(subject: &CheckContext<'_>, words: &Words, word: &LoweredWord) -> Optio
     let axes = &subject.settings.axes;
     let has = |effect: Effect| {
         words.list.iter().any(|word| match word.value {
-            WordOperand::G(_, row) => row.on(subject.settings.codes).is_some_and(|row| row.effect == effect),
+            WordOperand::G(_, row) => {
+                row.row_for(subject.settings.codes).is_some_and(|row| row.effect == effect)
+            }
             _ => false,
         })
     };

@@ -1,5 +1,5 @@
 //! `(CHECK-OFF NAME)` with a name that no rule has: it silences nothing, and its author believes it does.
-use crate::subject::{CheckContext, ProgramUnit, RuleFinding};
+use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 use crate::suppression::Suppressions;
 
 pub(super) const NAME: &str = "unknown-check";
@@ -13,7 +13,7 @@ pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
             "" => "CHECK-OFF does not name a rule".to_owned(),
             name => format!("{name} is not a rule: CHECK-OFF suppresses nothing"),
         };
-        unit.warning(NAME, block, message).on(span).help("see docs/checks.md for the rules")
+        unit.warning(NAME, block, message).with_span(span).help("see docs/checks.md for the rules")
     });
     unknown.collect()
 }

@@ -1,6 +1,6 @@
 //! Blocks that nothing reaches: behind M30, M99, GOTO or a #3000 without a number that something jumps to.
-use crate::flow::raises;
-use crate::subject::{CheckContext, ProgramUnit, RuleFinding};
+use crate::context::{CheckContext, ProgramUnit, RuleFinding};
+use crate::control_flow::raises_alarm;
 use gcode_lang::program::{OpIndex, OpKind, Statement};
 
 pub(super) const NAME: &str = "unreachable";
@@ -10,16 +10,16 @@ pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
     let ops = unit.program.ops();
     let mut block = 0;
     while block < ops.len() {
-        if unit.reached[block] {
+        if unit.is_reached[block] {
             block += 1;
             continue;
         }
-        let end = (block..ops.len()).find(|next| unit.reached[*next]).unwrap_or(ops.len());
+        let end = (block..ops.len()).find(|next| unit.is_reached[*next]).unwrap_or(ops.len());
         // Comments and numbers alone do nothing, an end behind an end or an alarm neither; an alarm that is lost is
         // told by its own rule.
-        let lost: Vec<_> = (block..end).filter(|b| !harmless(unit, *b)).collect();
+        let lost: Vec<_> = (block..end).filter(|b| !is_harmless(unit, *b)).collect();
         if let (Some(first), Some(last)) = (lost.first(), lost.last()) {
-            let line = |block: usize| subject.memory.sources().place(ops[block].span).line;
+            let line = |block: usize| subject.memory.sources().line_column(ops[block].span).line;
             let message = if first == last {
                 "this block is never reached".to_owned()
             } else {
@@ -34,14 +34,14 @@ pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
 }
 
 /// What isn't missed where nothing reaches it.
-fn harmless(unit: &ProgramUnit<'_>, block: OpIndex) -> bool {
+fn is_harmless(unit: &ProgramUnit<'_>, block: OpIndex) -> bool {
     let kind = unit.op(block).kind();
     match kind {
         OpKind::Empty => true,
-        OpKind::Words(words) => unit.flow.ways[block].is_exit && words.list.len() <= 1,
+        OpKind::Words(words) => unit.flow.block_successors[block].is_exit && words.list.len() <= 1,
         // A loop that is always left on the way needs its END all the same.
-        OpKind::Statement(Statement::End { start, .. }) => unit.reached[*start],
-        _ => raises(kind),
+        OpKind::Statement(Statement::End { start, .. }) => unit.is_reached[*start],
+        _ => raises_alarm(kind),
     }
 }
 

@@ -1,6 +1,6 @@
 //! A #3000 that can't be reached: the check that its author relies on never happens.
-use crate::flow::raises;
-use crate::subject::{CheckContext, ProgramUnit, Role, RuleFinding};
+use crate::context::{CheckContext, ProgramUnit, Role, RuleFinding};
+use crate::control_flow::raises_alarm;
 use crate::vacancy::{Locals, states, truth};
 use crate::variables;
 use gcode_lang::syntax::ast::Statement;
@@ -12,8 +12,8 @@ pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFind
     let entry = if unit.role == Role::Main { Locals::UNSET } else { Locals::ANYTHING };
     let states = states(unit, entry);
     let mut found = Vec::new();
-    for (block, op) in unit.program.ops().iter().enumerate().filter(|(_, op)| raises(op.kind())) {
-        if !unit.reached[block] {
+    for (block, op) in unit.program.ops().iter().enumerate().filter(|(_, op)| raises_alarm(op.kind())) {
+        if !unit.is_reached[block] {
             let help = "jump to its number, or remove it";
             let message = "this alarm is never reached, so it never stops the program";
             found.push(unit.warning(NAME, block, message).help(help));
@@ -29,7 +29,7 @@ pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFind
         if never {
             let message = "this alarm is never raised: the preceding blocks decide its condition";
             let help = "test the variable before it is set";
-            found.push(unit.warning(NAME, block, message).on(op.span).help(help));
+            found.push(unit.warning(NAME, block, message).with_span(op.span).help(help));
         }
     }
     found

@@ -1,6 +1,6 @@
 //! Blocks that stop the control as soon as it reads them: text it can't read, words that can't stand together.
-use crate::flow::is_loop_alarm;
-use crate::subject::{CheckContext, ProgramUnit, RuleFinding};
+use crate::context::{CheckContext, ProgramUnit, RuleFinding};
+use crate::control_flow::is_loop_alarm;
 use gcode_lang::alarm::{Alarm, LocatedAlarm, remedy};
 use gcode_lang::program::{OpKind, Statement};
 use gcode_lang::source::Spanned;
@@ -8,28 +8,28 @@ use gcode_lang::source::Spanned;
 pub(super) const NAME: &str = "unreadable";
 
 pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
-    let alarms = alarms(unit).filter(|(_, alarm)| !has_own_rule(&alarm.node));
+    let alarms = alarm_blocks(unit).filter(|(_, alarm)| !has_own_rule(&alarm.node));
     let mut found: Vec<_> = alarms.map(|(block, alarm)| finding(subject, unit, NAME, block, alarm)).collect();
-    let refused = refused(subject, unit).filter(|(_, alarm)| !has_own_rule(&alarm.node));
+    let refused = refused_blocks(subject, unit).filter(|(_, alarm)| !has_own_rule(&alarm.node));
     found.extend(refused.map(|(block, alarm)| finding(subject, unit, NAME, block, &alarm)));
     found
 }
 
 /// The blocks that something reaches and that are written in a way this control doesn't take.
-pub(super) fn refused<'a>(
+pub(super) fn refused_blocks<'a>(
     subject: &'a CheckContext<'_>,
     unit: &'a ProgramUnit<'_>,
 ) -> impl Iterator<Item = (usize, LocatedAlarm)> + 'a {
-    let ops = unit.program.ops().iter().enumerate().filter(|(block, _)| unit.reached[*block]);
+    let ops = unit.program.ops().iter().enumerate().filter(|(block, _)| unit.is_reached[*block]);
     ops.filter_map(|(block, op)| {
-        let form = op.forms().iter().find(|form| !form.node.is_taken(subject.settings))?;
-        Some((block, form.node.alarm().at(form.span)))
+        let form = op.dialect_syntax().iter().find(|form| !form.node.is_accepted(subject.settings))?;
+        Some((block, form.node.alarm().located_at(form.span)))
     })
 }
 
 /// The blocks that raise an alarm as they are read and that something reaches.
-pub(super) fn alarms<'a>(unit: &'a ProgramUnit<'_>) -> impl Iterator<Item = (usize, &'a LocatedAlarm)> {
-    unit.program.ops().iter().enumerate().filter(|(block, _)| unit.reached[*block]).filter_map(
+pub(super) fn alarm_blocks<'a>(unit: &'a ProgramUnit<'_>) -> impl Iterator<Item = (usize, &'a LocatedAlarm)> {
+    unit.program.ops().iter().enumerate().filter(|(block, _)| unit.is_reached[*block]).filter_map(
         |(block, op)| match op.kind() {
             OpKind::Alarm(alarm) => Some((block, alarm)),
             OpKind::Statement(Statement::IfThen { then, .. }) => match &**then {
@@ -55,7 +55,7 @@ pub(super) fn finding(
     alarm: &Spanned<Alarm>,
 ) -> RuleFinding {
     let row = alarm.node.row();
-    let found = unit.error(name, block, format!("{}: {}", row.code, row.message)).on(alarm.span);
+    let found = unit.error(name, block, format!("{}: {}", row.code, row.message)).with_span(alarm.span);
     match remedy(&alarm.node, alarm.span, subject.memory.sources()) {
         Some(help) => found.help(help),
         None => found,

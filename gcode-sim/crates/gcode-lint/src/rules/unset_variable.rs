@@ -1,34 +1,35 @@
 //! A local variable that is read before anything has set it: its word disappears, or it counts as 0.
 use std::collections::BTreeMap;
 
-use crate::subject::{CheckContext, ProgramUnit, Role, RuleFinding};
-use crate::unset::{entry, reads};
+use crate::context::{CheckContext, ProgramUnit, Role, RuleFinding};
+use crate::unset_reads::{entry_locals, unset_reads};
 use crate::vacancy::{Locals, states};
-use crate::variables::Use;
+use crate::variables::VariableUse;
 use gcode_lang::program::{OpIndex, argument_letter};
 use gcode_lang::source::Span;
 
 pub(super) const NAME: &str = "unset-variable";
 
 pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
-    let mut unset: BTreeMap<(OpIndex, u32), (Span, Use)> = BTreeMap::new();
+    let mut unset: BTreeMap<(OpIndex, u32), (Span, VariableUse)> = BTreeMap::new();
     match unit.role {
         Role::Resident => {}
         Role::Main => {
             let states = states(unit, Locals::UNSET);
-            unset.extend(reads(unit, &states));
+            unset.extend(unset_reads(unit, &states));
         }
         Role::Called => {
             for (caller, site) in &unit.callers {
                 let call = &subject.units[*caller].calls[*site];
                 // A subprogram has its caller's locals, and a modal call keeps its own from call to call.
-                if !call.own_locals || call.modal {
+                if !call.has_own_locals || call.is_modal {
                     return Vec::new();
                 }
-                let states = states(unit, entry(call));
+                let states = states(unit, entry_locals(call));
                 // What a letter could have set is told at the call.
                 unset.extend(
-                    reads(unit, &states).filter(|((_, local), _)| argument_letter(*local as usize).is_none()),
+                    unset_reads(unit, &states)
+                        .filter(|((_, local), _)| argument_letter(*local as usize).is_none()),
                 );
             }
         }
@@ -36,14 +37,14 @@ pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
     let mut found = Vec::new();
     for ((block, local), (span, usage)) in unset {
         let so = match usage {
-            Use::Word => "its word is ignored",
-            Use::Passed => "it is passed on vacant",
-            Use::Tested | Use::Compared => "a vacant variable is compared",
-            Use::Computed => "it counts as 0",
+            VariableUse::Word => "its word is ignored",
+            VariableUse::PassedOn => "it is passed on vacant",
+            VariableUse::VacancyTest | VariableUse::Comparison => "a vacant variable is compared",
+            VariableUse::Computed => "it counts as 0",
         };
         let message = format!("#{local} is read but never set: {so}");
         let help = format!("set #{local} before it is read, or correct its number");
-        found.push(unit.warning(NAME, block, message).on(span).help(help));
+        found.push(unit.warning(NAME, block, message).with_span(span).help(help));
     }
     found
 }

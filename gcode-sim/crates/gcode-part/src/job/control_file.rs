@@ -18,7 +18,7 @@ use toml::Value;
 use super::FileError;
 use crate::reader::{Reader, Spanned};
 use gcode_lang::control::{
-    ADDRESSES, CodeCalls, FAMILIES, RANGES, ROWS, SettingRow, SettingValues, Settings,
+    ADDRESSES, CODE_RANGES, CodeCalls, ROWS, SEQUENTIAL_CODES, SettingRow, SettingValues, Settings,
 };
 
 /// Sets what the text of a control file says, the family of controls first and the rest in the order of the file.
@@ -100,8 +100,8 @@ fn switch() -> serde_json::Value {
 /// The parameters and addresses that make calls, by their numbers and letters.
 fn calls() -> impl Iterator<Item = (String, serde_json::Value)> {
     let whole = |values: RangeInclusive<i64>, what: String| json!({ "description": what, "type": "integer", "minimum": values.start(), "maximum": values.end() });
-    let codes = FAMILIES.iter().flat_map(move |family| {
-        let (letter, taken) = (char::from(family.letter), CodeCalls::taken(family.letter));
+    let codes = SEQUENTIAL_CODES.iter().flat_map(move |family| {
+        let (letter, taken) = (char::from(family.letter), CodeCalls::reserved_codes(family.letter));
         // A parameter that is 0 holds no code.
         let taken: Vec<i64> =
             taken.map(i64::from).filter(|code| *code != 0).flat_map(|code| [code, -code]).collect();
@@ -112,7 +112,7 @@ fn calls() -> impl Iterator<Item = (String, serde_json::Value)> {
             (number.to_string(), schema)
         })
     });
-    let ranges = RANGES.iter().flat_map(move |range| {
+    let ranges = CODE_RANGES.iter().flat_map(move |range| {
         let (letter, all) = (char::from(range.letter), 0..=99_999_999);
         let first = if range.letter == b'G' { -9999..=99_999_999 } else { all.clone() };
         let of = [(first, "the first code"), (all.clone(), "the first program"), (all, "how many")];
@@ -126,7 +126,7 @@ fn calls() -> impl Iterator<Item = (String, serde_json::Value)> {
         (number.to_string(), json!({ "description": what, "type": "integer", "enum": letters }))
     });
     let by_letter = ADDRESSES.iter().map(|letter| {
-        let programs: Vec<u32> = CodeCalls::programs_of(*letter).collect();
+        let programs: Vec<u32> = CodeCalls::address_programs(*letter).collect();
         let what = "The program that the address calls, whatever its number.";
         (char::from(*letter).to_string(), json!({ "description": what, "type": "integer", "enum": programs }))
     });
@@ -144,7 +144,7 @@ mod tests {
         let text = "NAT = true\n5115 = 0.25\nMACRO-LEVELS = 4\nDIALECT = \"haas-ngc\"\n\"#1005\" = 1\n";
         apply(text, &mut settings).unwrap();
         assert_eq!(settings.dialect, Dialect::HaasNgc);
-        assert!(settings.signed_angles);
+        assert!(settings.returns_signed_angles);
         assert_eq!(settings.macro_levels, 4, "the family would have set 9");
         let mut wanted = Settings::default();
         for (key, value) in

@@ -7,7 +7,7 @@ use gcode_part::ProcessLimits;
 
 pub(in crate::verify) fn findings(close_motions: &[CloseMotion], conduct: &ProcessLimits) -> Vec<Diagnostic> {
     let told = close_motions.iter().map(|passing| {
-        with_repeat_note(finding(passing, conduct), passing.count).at(passing.backtrace.clone())
+        with_repeat_note(finding(passing, conduct), passing.count).with_backtrace(passing.backtrace.clone())
     });
     told.collect()
 }

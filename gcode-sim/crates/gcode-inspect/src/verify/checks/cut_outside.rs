@@ -31,7 +31,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
                 false => Diagnostic::error("hole-cut-aside", message)
                     .help("correct the point of that pass: material cut outside the hole cannot be restored"),
             };
-            let finding = finding.at(cut.backtrace.clone());
+            let finding = finding.with_backtrace(cut.backtrace.clone());
             objections.push(match unknown {
                 true => HoleFinding::unlocated(finding),
                 false => HoleFinding::of_nominal(pair.nominal, finding),

@@ -28,7 +28,7 @@ pub(in crate::verify) fn findings(
             Some(index) => told[*index].1 += cutting.count,
             None => {
                 known.insert(finding.message.clone(), told.len());
-                told.push((finding.at(cutting.backtrace.clone()), cutting.count));
+                told.push((finding.with_backtrace(cutting.backtrace.clone()), cutting.count));
             }
         }
     }

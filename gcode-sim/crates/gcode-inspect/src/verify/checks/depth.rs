@@ -19,7 +19,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
         );
         let mut finding = Diagnostic::error("hole-depth", message)
             .help("check the programmed depth, the tool length and its offset")
-            .at(comparison.actual[pair.actual].backtrace.clone());
+            .with_backtrace(comparison.actual[pair.actual].backtrace.clone());
         if let Some(note) = mistaken_factor(nominal, nominal + error) {
             finding = finding.note(note);
         }

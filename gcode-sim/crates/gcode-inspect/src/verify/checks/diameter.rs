@@ -18,7 +18,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
         );
         let finding = Diagnostic::error("hole-diameter", message)
             .help("finish the hole with the right tool, or correct the tool table")
-            .at(found.backtrace.clone());
+            .with_backtrace(found.backtrace.clone());
         objections.push(HoleFinding::of_nominal(pair.nominal, finding));
     }
 }

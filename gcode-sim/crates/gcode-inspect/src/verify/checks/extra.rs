@@ -13,7 +13,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
         };
         let finding = Diagnostic::error(code, explain(comparison, *index))
             .help(help)
-            .at(comparison.actual[*index].backtrace.clone());
+            .with_backtrace(comparison.actual[*index].backtrace.clone());
         objections.push(HoleFinding::of_extra(*index, finding));
     }
 }

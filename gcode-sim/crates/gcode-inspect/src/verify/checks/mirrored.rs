@@ -76,7 +76,7 @@ pub(in crate::verify) fn check(
         }
     };
     let place = comparison.actual[comparison.extra[0]].backtrace.clone();
-    objections.push(HoleFinding::unlocated(finding.at(place)));
+    objections.push(HoleFinding::unlocated(finding.with_backtrace(place)));
 }
 
 /// Whether a table that turns the other way mirrors the part so: it turned between the holes, and about another axis.

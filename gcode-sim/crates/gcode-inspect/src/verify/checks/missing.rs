@@ -27,7 +27,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
                         off.x, off.y, off.z
                     ))
                     .help("if that hole is the intended one, correct its position; otherwise add the missing hole")
-                    .at(found.backtrace.clone())
+                    .with_backtrace(found.backtrace.clone())
             }
             None => finding.help("add the hole to the program"),
         };

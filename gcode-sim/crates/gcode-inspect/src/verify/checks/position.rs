@@ -37,5 +37,5 @@ fn finding(comparison: &Comparison<'_>, pair: &HolePair) -> Diagnostic {
             ))
             .help("correct the programmed point")
     };
-    finding.at(found.backtrace.clone())
+    finding.with_backtrace(found.backtrace.clone())
 }

@@ -80,7 +80,7 @@ fn finding(mismatch: &LengthMismatch, conduct: &ProcessLimits, machine: &Machine
     Diagnostic::error("length-offset", message)
         .note("this length error alone explains the missed depths; the length comes from the machine file")
         .help(help)
-        .at(mismatch.backtrace.clone())
+        .with_backtrace(mismatch.backtrace.clone())
 }
 
 /// To a thousandth, without what adding up leaves behind that.

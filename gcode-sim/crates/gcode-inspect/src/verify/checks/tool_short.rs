@@ -66,7 +66,7 @@ pub(in crate::verify) fn check(
                 "check that the length in the machine file runs from the spindle gauge line to the tip; \
                  otherwise use a longer tool",
             )
-            .at(place.clone());
+            .with_backtrace(place.clone());
         objections.push(HoleFinding::of_nominal(wanted, finding));
     }
 }

@@ -38,7 +38,7 @@ pub(super) fn check(comparison: &Comparison<'_>, objections: &mut Vec<HoleFindin
             );
             let finding = Diagnostic::warning("hole-tools", message)
                 .help("check for a missing call")
-                .at(comparison.actual[pair.actual].backtrace.clone());
+                .with_backtrace(comparison.actual[pair.actual].backtrace.clone());
             objections.push(HoleFinding::of_nominal(pair.nominal, finding));
         }
     }

@@ -32,7 +32,9 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
         let extra = &inspection.actual.passes[pass];
         let middle = extra.trace.samples.get(extra.trace.samples.len() / 2);
         findings.push(
-            finding.at(extra.backtrace.clone()).on(middle.map(|sample| Site::new(Some(pass), sample.point))),
+            finding
+                .with_backtrace(extra.backtrace.clone())
+                .with_sites(middle.map(|sample| Site::new(Some(pass), sample.point))),
         );
     }
 }
@@ -63,8 +65,8 @@ fn missing(inspection: &Inspection<'_>, found: usize, wanted: usize) -> Diagnost
         };
         return missing(format!("{found} flutes, {wanted} specified: {which} made in rapid motion"))
             .help("grind with G01: G00 stays in force until another motion code")
-            .at(first.backtrace.clone())
-            .on(sites);
+            .with_backtrace(first.backtrace.clone())
+            .with_sites(sites);
     }
     if found == 0 {
         return missing(format!("0 flutes, {wanted} specified: no feed rotates A"))
@@ -87,16 +89,16 @@ fn missing(inspection: &Inspection<'_>, found: usize, wanted: usize) -> Diagnost
                 "the widest gap round the burr is {:.3}°, nominal {pitch:.3}°, after the flute that begins here",
                 gap.actual.0
             ))
-            .at(inspection.actual.passes[pass].backtrace.clone());
+            .with_backtrace(inspection.actual.passes[pass].backtrace.clone());
     }
     match again.first() {
         Some(first) => finding
-            .at(inspection.actual.passes[first.pass].backtrace.clone())
+            .with_backtrace(inspection.actual.passes[first.pass].backtrace.clone())
             .help("check the index of that pass")
-            .on(sites),
+            .with_sites(sites),
         None => finding
             .help("check for a loop over the flutes that ends too early, or a missing index move")
-            .on(sites),
+            .with_sites(sites),
     }
 }
 

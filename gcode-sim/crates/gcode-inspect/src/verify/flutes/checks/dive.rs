@@ -69,7 +69,10 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
             | CollisionKind::Sideways(_)
             | CollisionKind::PlungeWithoutPass => Diagnostic::error("wheel-into-burr", message),
         };
-        let finding = finding.help(help).at(dive.backtrace.clone()).on([Site::new(None, dive.point)]);
+        let finding = finding
+            .help(help)
+            .with_backtrace(dive.backtrace.clone())
+            .with_sites([Site::new(None, dive.point)]);
         findings.push(note.into_iter().fold(finding, Diagnostic::note));
     }
 }

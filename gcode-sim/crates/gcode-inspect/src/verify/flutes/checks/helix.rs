@@ -37,7 +37,7 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
     let place = worst.backtrace(&pass.trace, inspection.nominal.gauge).unwrap_or(&pass.backtrace);
     all.sort_by(|one, other| other.error().0.total_cmp(&one.error().0));
     let sites = all.into_iter().map(|worst| Site::new(Some(worst.pass), worst.point));
-    findings.push(finding.at(place.clone()).on(sites));
+    findings.push(finding.with_backtrace(place.clone()).with_sites(sites));
 }
 
 /// What all flutes have instead, all along, and what to look at.

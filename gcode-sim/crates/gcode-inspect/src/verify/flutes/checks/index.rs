@@ -25,7 +25,7 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
             Diagnostic::error("flute-index", message)
                 .note(format!("{:.3}° are left from the last flute to the first", gap.actual.0))
                 .help("check the index of A: 360° divided by the number of flutes")
-                .at(inspection.actual.passes[step.pass].backtrace.clone())
+                .with_backtrace(inspection.actual.passes[step.pass].backtrace.clone())
         }
         None => {
             let message = format!(
@@ -45,9 +45,9 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
             };
             let finding = Diagnostic::error("flute-index", message)
                 .help("check A in this block, and the start of the flute")
-                .at(trace.backtrace(&trace.samples[gap.first_sample]).clone());
+                .with_backtrace(trace.backtrace(&trace.samples[gap.first_sample]).clone());
             note.into_iter().fold(finding, Diagnostic::note)
         }
     };
-    findings.push(finding.on([Site::new(Some(gap.pass), trace.samples[gap.sample].point)]));
+    findings.push(finding.with_sites([Site::new(Some(gap.pass), trace.samples[gap.sample].point)]));
 }

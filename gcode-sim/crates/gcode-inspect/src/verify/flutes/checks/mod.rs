@@ -48,10 +48,10 @@ fn report_passes<'g, T>(
     let mut all = passes.filter_map(|(index, pass)| Some((index, fault(pass)?)));
     let (index, (what, FirstOccurrence { backtrace: place, point: at })) = all.next()?;
     let others: Vec<Site> = all.map(|(index, (_, begun))| Site::new(Some(index), begun.point)).collect();
-    let finding = finding(what).at(place);
+    let finding = finding(what).with_backtrace(place);
     let finding = match others.len() {
         0 => finding,
         more => finding.note(format!("the same applies to {more} more passes")),
     };
-    Some(finding.on([Site::new(Some(index), at)]).on(others))
+    Some(finding.with_sites([Site::new(Some(index), at)]).with_sites(others))
 }

@@ -14,6 +14,6 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
             ),
         )
         .help("use fewer flutes, or a larger tip angle")
-        .on([Site::new(Some(near.pass), near.point)]),
+        .with_sites([Site::new(Some(near.pass), near.point)]),
     );
 }

@@ -31,8 +31,8 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
                 "check F in this block, and that the code it is written for is in force: G93 (F moves a \
                  minute) or G94",
             )
-            .at(place.clone())
-            .on(wrong.iter().map(|worst| Site::new(Some(worst.pass), worst.point))),
+            .with_backtrace(place.clone())
+            .with_sites(wrong.iter().map(|worst| Site::new(Some(worst.pass), worst.point))),
     );
 }
 

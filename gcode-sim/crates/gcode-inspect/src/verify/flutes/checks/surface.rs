@@ -19,7 +19,7 @@ pub(super) fn check<'g>(inspection: &Inspection<'g>, findings: &mut Vec<Diagnost
     let finding = surface_finding(inspection, pass, worst);
     let pass = &inspection.actual.passes[pass];
     let sites = all.iter().map(|(pass, sample)| Site::new(Some(*pass), sample.point));
-    findings.push(finding.at(pass.trace.backtrace(worst).clone()).on(sites));
+    findings.push(finding.with_backtrace(pass.trace.backtrace(worst).clone()).with_sites(sites));
 }
 
 fn surface_finding(inspection: &Inspection<'_>, pass: usize, worst: &Sample) -> Diagnostic {

@@ -40,7 +40,9 @@ pub(super) fn check(inspection: &Inspection<'_>, findings: &mut Vec<Diagnostic>)
         let samples = &inspection.actual.passes[again.pass].trace.samples;
         Some(Site::new(Some(again.pass), samples.get(samples.len() / 2)?.point))
     });
-    findings.push(finding.at(inspection.actual.passes[first.pass].backtrace.clone()).on(sites));
+    findings.push(
+        finding.with_backtrace(inspection.actual.passes[first.pass].backtrace.clone()).with_sites(sites),
+    );
 }
 
 /// In words which pass goes over which flute.

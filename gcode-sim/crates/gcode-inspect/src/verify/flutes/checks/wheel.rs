@@ -62,5 +62,5 @@ fn report_worst(
         0 => finding,
         more => finding.note(format!("the same or a smaller difference occurs {more} more times")),
     };
-    Some(finding.at(first.place.clone()).on(wrong.iter().map(|done| done.site)))
+    Some(finding.with_backtrace(first.place.clone()).with_sites(wrong.iter().map(|done| done.site)))
 }

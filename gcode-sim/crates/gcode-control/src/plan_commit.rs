@@ -1,9 +1,9 @@
 //! Carries out what a block has planned, and tells the machine.
-use super::drill::CyclePlan;
+use super::cycle_expansion::CyclePlan;
 use super::plan::{BlockPlan, TableWrite};
 use super::run::RunEnd;
-use super::vars::VariableClass;
-use super::{Executor, OperatorStop, STOPS};
+use super::variables::VariableClass;
+use super::{Executor, MAX_STOPS, OperatorStop};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{Event, EventKind, EventSink, StopKind};
 use gcode_lang::units::Seconds;
@@ -12,20 +12,21 @@ impl Executor {
     /// Everything a plan says, in the order it says it.
     pub(super) fn commit<S: EventSink>(&mut self, plan: &mut BlockPlan, sink: &mut S) {
         std::mem::swap(&mut self.state, &mut plan.state);
-        self.note_work(plan.state.modal.work, plan.commands_axes);
+        self.record_work_use(plan.state.modal.work, plan.commands_axes);
         let before = plan.state.work_zero_unknown;
         // What a cycle does along its axis it tells itself.
-        let still = before & plan.drill.as_ref().map_or(self.state.work_zero_unknown, CyclePlan::unplaced);
+        let still =
+            before & plan.cycle_plan.as_ref().map_or(self.state.work_zero_unknown, CyclePlan::unknown_axes);
         if still != before {
             self.emit(&EventKind::WorkZeroUnknown { axes: still }, 0.0, sink);
         }
-        if plan.reads_ahead {
-            self.advance(&mut plan.ahead, sink);
+        if plan.uses_lookahead {
+            self.take_lookahead(&mut plan.lookahead, sink);
         }
         for (kind, seconds) in &plan.events {
             self.emit(kind, *seconds, sink);
         }
-        if let Some(drill) = plan.drill.take() {
+        if let Some(drill) = plan.cycle_plan.take() {
             self.emit_cycle(&drill, sink);
         }
         for (kind, seconds) in &plan.events_after_motion {
@@ -35,29 +36,31 @@ impl Executor {
             match *write {
                 TableWrite::Work { system, axis, value } => {
                     self.offsets.work_mut(system)[axis] = value;
-                    self.note_set(system);
+                    self.record_system_set(system);
                 }
                 TableWrite::Tool { register, number, value } => {
                     self.offsets.register(register)[number as usize] = value;
                 }
-                TableWrite::Parameter { place, value, kept } => self.set_parameter(place, value, kept),
+                TableWrite::Parameter { id: place, value, has_no_effect: kept } => {
+                    self.set_parameter(place, value, kept)
+                }
                 TableWrite::Variable { number, value } => {
-                    if let VariableClass::Common(place) = self.vars.kind(number) {
+                    if let VariableClass::Common(place) = self.vars.classify(number) {
                         self.vars.set(place, value);
                     }
                 }
             }
-            self.offsets_changed();
+            self.update_after_offset_change();
         }
         for kind in &plan.stops {
-            let stop = EventKind::Stop { kind: *kind, text: String::new(), named: Vec::new() };
+            let stop = EventKind::Stop { kind: *kind, text: String::new(), variables: Vec::new() };
             self.emit(&stop, 0.0, sink);
         }
         for note in &plan.notes {
             self.notes.entry(*note).or_insert(self.block);
         }
-        for code in &plan.passed_on {
-            self.passed_on.entry(*code).or_insert(self.block);
+        for code in &plan.auxiliary_codes {
+            self.auxiliary_codes.entry(*code).or_insert(self.block);
         }
         self.update_is_plain();
     }
@@ -78,17 +81,17 @@ impl Executor {
     /// Tells the machine one thing and counts it.
     #[inline(always)]
     pub(super) fn emit<S: EventSink>(&mut self, kind: &EventKind, seconds: f64, sink: &mut S) {
-        self.count(kind, seconds);
+        self.count_event(kind, seconds);
         let block = self.block;
         sink.event(&Event { kind, seconds: Seconds(seconds), block, calls: &self.frame.calls });
     }
 
     /// Counts what is told.
     #[inline(always)]
-    pub(super) fn count(&mut self, kind: &EventKind, seconds: f64) {
+    pub(super) fn count_event(&mut self, kind: &EventKind, seconds: f64) {
         self.seconds += seconds;
         self.count_moves(u64::from(kind.end().is_some()));
-        if let EventKind::Stop { kind, text, named } = kind {
+        if let EventKind::Stop { kind, text, variables: named } = kind {
             self.count_stop(*kind, text, named);
         }
     }
@@ -103,15 +106,15 @@ impl Executor {
     #[inline(always)]
     fn count_moves(&mut self, moves: u64) {
         self.moves += moves;
-        if self.moves > self.most_moves {
-            self.aftermath.end_run(RunEnd::MoveLimit);
+        if self.moves > self.max_moves {
+            self.block_effects.end_run(RunEnd::MoveLimit);
         }
     }
 
     #[inline(never)]
     fn count_stop(&mut self, kind: StopKind, text: &str, named: &[(u32, f64)]) {
-        if self.stops.len() < STOPS {
-            self.stops.push(OperatorStop { kind, text: text.to_owned(), named: named.to_vec() });
+        if self.stops.len() < MAX_STOPS {
+            self.stops.push(OperatorStop { kind, text: text.to_owned(), variables: named.to_vec() });
         }
     }
 
@@ -131,7 +134,7 @@ impl Executor {
         Ok(())
     }
 
-    pub(super) fn named(&self, name: &str) -> Result<u32, Alarm> {
+    pub(super) fn named_variable(&self, name: &str) -> Result<u32, Alarm> {
         let unknown = || Alarm::NoVariableName { name: name.to_owned() };
         self.names.get(name).copied().ok_or_else(unknown)
     }
@@ -150,7 +153,7 @@ mod tests {
         let outcome = control.run(Limits::default(), &mut NoLibrary, &mut ());
         assert!(matches!(outcome, Outcome::Alarm(_)), "550 has no name");
         let named: Vec<_> =
-            control.core.names.iter().map(|(name, number)| (name.as_str(), *number)).collect();
+            control.executor.names.iter().map(|(name, number)| (name.as_str(), *number)).collect();
         assert_eq!(named, [("A", 548), ("B", 549)]);
     }
 }

@@ -2,25 +2,25 @@
 use super::Executor;
 use super::notes::Note;
 use super::offsets::Register;
-use super::vars::Value;
+use super::variables::Value;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::OffsetVariables;
 use gcode_lang::motion::AxisIndex;
-use gcode_lang::program::codes;
+use gcode_lang::program::g_codes;
 use gcode_lang::program::modes::WorkSystem;
 
-type Read = fn(&Executor, u32) -> Result<f64, Alarm>;
-type Write = fn(&mut Executor, u32, f64) -> Result<(), Alarm>;
+type ReadVariable = fn(&Executor, u32) -> Result<f64, Alarm>;
+type WriteVariable = fn(&mut Executor, u32, f64) -> Result<(), Alarm>;
 
 /// A range of variables; reading and writing take the place in the range, counted from 0.
 struct VariableRow {
     from: u32,
     to: u32,
-    read: Option<Read>,
-    write: Option<Write>,
+    read: Option<ReadVariable>,
+    write: Option<WriteVariable>,
 }
 
-const fn row(from: u32, to: u32, read: Option<Read>, write: Option<Write>) -> VariableRow {
+const fn row(from: u32, to: u32, read: Option<ReadVariable>, write: Option<WriteVariable>) -> VariableRow {
     VariableRow { from, to, read, write }
 }
 
@@ -29,9 +29,9 @@ const fn row(from: u32, to: u32, read: Option<Read>, write: Option<Write>) -> Va
 const ROWS: &[VariableRow] = &[
     // Interface signals.
     row(1000, 1031, Some(|c, n| Ok(f64::from(c.settings.inputs >> n & 1))), None),
-    row(1032, 1035, Some(|c, n| first_signals(n).map(|()| f64::from(c.settings.inputs as i32))), None),
+    row(1032, 1035, Some(|c, n| check_signal_word(n).map(|()| f64::from(c.settings.inputs as i32))), None),
     row(1100, 1131, Some(|c, n| Ok(f64::from(c.outputs >> n & 1))), Some(|c, n, v| { c.set_output(n, v != 0.0); Ok(()) })),
-    row(1132, 1135, Some(|c, n| first_signals(n).map(|()| f64::from(c.outputs as i32))), Some(|c, n, v| c.set_outputs(n, v))),
+    row(1132, 1135, Some(|c, n| check_signal_word(n).map(|()| f64::from(c.outputs as i32))), Some(|c, n, v| c.set_outputs(n, v))),
     // Tool offsets, memory C.
     row(2001, 2200, Some(|c, n| c.tool_offset(Register::HWear, n)), Some(|c, n, v| c.set_tool_offset(Register::HWear, n, v))),
     row(2201, 2400, Some(|c, n| c.tool_offset(Register::HGeometry, n)), Some(|c, n, v| c.set_tool_offset(Register::HGeometry, n, v))),
@@ -42,9 +42,9 @@ const ROWS: &[VariableRow] = &[
     row(2800, 2806, Some(|c, n| c.work_offset(n as usize, 3)), Some(|c, n, v| c.set_work_offset(n as usize, 3, v))),
     // Alarm, clocks, switches, message.
     row(3000, 3000, None, None),
-    row(3001, 3001, Some(|c, _| Ok(c.clock_1())), Some(|c, _, v| { c.clocks.0 = v - (c.seconds + c.idle) * 1000.0; Ok(()) })),
-    row(3002, 3002, Some(|c, _| Ok(c.clocks.1 + c.now() / 3600.0)), Some(|c, _, v| { c.clocks.1 = v - (c.seconds + c.idle) / 3600.0; Ok(()) })),
-    row(3003, 3004, Some(|c, n| Ok(c.switches[n as usize])), Some(|c, n, v| c.set_switch(n, v))),
+    row(3001, 3001, Some(|c, _| Ok(c.millisecond_clock())), Some(|c, _, v| { c.clocks.0 = v - (c.seconds + c.idle_seconds) * 1000.0; Ok(()) })),
+    row(3002, 3002, Some(|c, _| Ok(c.clocks.1 + c.clock_seconds() / 3600.0)), Some(|c, _, v| { c.clocks.1 = v - (c.seconds + c.idle_seconds) / 3600.0; Ok(()) })),
+    row(3003, 3004, Some(|c, n| Ok(c.control_switches[n as usize])), Some(|c, n, v| c.set_switch(n, v))),
     // Setting data: of its bits only INI (2), inch input, has an effect here.
     row(3005, 3005, Some(|c, _| Ok(if c.state.modal.unit == gcode_lang::program::modes::Unit::Inch { 4.0 } else { 0.0 })), Some(|_, _, _| Err(Alarm::NotSimulated { what: "writing #3005".into() }))),
     row(3006, 3006, None, None),
@@ -55,16 +55,16 @@ const ROWS: &[VariableRow] = &[
     row(3012, 3012, Some(|c, _| Ok(c.time_of_day())), None),
     row(3101, 3101, Some(|_, _| Ok(std::f64::consts::PI)), None),
     row(3102, 3102, Some(|_, _| Ok(std::f64::consts::E)), None),
-    row(3901, 3902, Some(|c, n| Ok(c.parts[n as usize])), Some(|c, n, v| c.set_parts(n, v))),
+    row(3901, 3902, Some(|c, n| Ok(c.part_counters[n as usize])), Some(|c, n, v| c.set_parts(n, v))),
     // Modal information: of the block before, and of the block at work. Here they are the same.
     row(4001, 4130, Some(|c, n| c.modal_information(n + 1)), None),
     row(4201, 4330, Some(|c, n| c.modal_information(n + 1)), None),
     // Positions.
     row(5001, 5020, Some(|c, n| c.position(n, |c, axis| c.end_point()[axis])), None),
-    row(5021, 5040, Some(|c, n| c.position(n, |c, axis| c.rolled(axis, c.centre(axis)))), None),
-    row(5041, 5060, Some(|c, n| c.position(n, |c, axis| c.in_work(axis, c.centre(axis)))), None),
-    row(5061, 5080, Some(|c, n| c.position(n, |c, axis| c.in_work(axis, c.state.skip[axis]))), None),
-    row(5081, 5100, Some(|c, n| c.position(n, |c, axis| c.state.length[axis])), None),
+    row(5021, 5040, Some(|c, n| c.position(n, |c, axis| c.wrap_angle(axis, c.tool_centre(axis)))), None),
+    row(5041, 5060, Some(|c, n| c.position(n, |c, axis| c.work_coordinate(axis, c.tool_centre(axis)))), None),
+    row(5061, 5080, Some(|c, n| c.position(n, |c, axis| c.work_coordinate(axis, c.state.skip_position[axis]))), None),
+    row(5081, 5100, Some(|c, n| c.position(n, |c, axis| c.state.length_offset[axis])), None),
     row(5101, 5140, Some(|c, n| c.position(n % 20, |_, _| 0.0)), None),
     row(5181, 5200, Some(|c, n| c.position(n, |_, _| 0.0)), None),
     // Work offsets.
@@ -91,7 +91,7 @@ const HAAS: &[VariableRow] = &[
     row(2201, 2400, Some(|c, n| c.tool_offset(Register::HWear, n)), Some(|c, n, v| c.set_tool_offset(Register::HWear, n, v))),
     row(2401, 2600, Some(|c, n| Ok(2.0 * c.tool_offset(Register::DGeometry, n)?)), Some(|c, n, v| c.set_tool_offset(Register::DGeometry, n, v / 2.0))),
     row(2601, 2800, Some(|c, n| Ok(2.0 * c.tool_offset(Register::DWear, n)?)), Some(|c, n, v| c.set_tool_offset(Register::DWear, n, v / 2.0))),
-    row(5201, 5220, Some(|c, n| c.position(n, |c, axis| c.state.local[axis])), Some(|c, n, v| c.set_local(n, v))),
+    row(5201, 5220, Some(|c, n| c.position(n, |c, axis| c.state.local_offset[axis])), Some(|c, n, v| c.set_local(n, v))),
 ];
 
 /// What a Haas has and this one has not, where a Fanuc has something else or nothing.
@@ -133,17 +133,17 @@ fn find(number: u32, offsets: OffsetVariables) -> Result<&'static VariableRow, A
 }
 
 /// The alarm of reading a number on any control with these offsets.
-pub(super) fn readable(number: u32, offsets: OffsetVariables) -> Result<(), Alarm> {
+pub(super) fn check_readable(number: u32, offsets: OffsetVariables) -> Result<(), Alarm> {
     find(number, offsets)?.read.map(|_| ()).ok_or(Alarm::ReadProtected { number })
 }
 
 /// The alarm of writing a number on any control with these offsets.
-pub(super) fn writable(number: u32, offsets: OffsetVariables) -> Result<(), Alarm> {
+pub(super) fn check_writable(number: u32, offsets: OffsetVariables) -> Result<(), Alarm> {
     find(number, offsets)?.write.map(|_| ()).ok_or(Alarm::WriteProtected { number })
 }
 
 /// A control may have up to 128 signals each way; here are the first 32.
-fn first_signals(word: u32) -> Result<(), Alarm> {
+fn check_signal_word(word: u32) -> Result<(), Alarm> {
     if word > 0 {
         return Err(Alarm::NotSimulated { what: "more than 32 interface signals".into() });
     }
@@ -151,7 +151,7 @@ fn first_signals(word: u32) -> Result<(), Alarm> {
 }
 
 /// An axis that the control doesn't have has no variables.
-fn of_no_axis(alarm: Alarm, number: u32) -> Alarm {
+fn variable_alarm(alarm: Alarm, number: u32) -> Alarm {
     match alarm {
         Alarm::AxisNumber { .. } => Alarm::NoSuchVariable { number: i64::from(number) },
         other => other,
@@ -165,7 +165,7 @@ impl Executor {
         }
         let row = find(number, self.settings.offset_variables)?;
         let read = row.read.ok_or(Alarm::ReadProtected { number })?;
-        read(self, number - row.from).map(Value::Number).map_err(|alarm| of_no_axis(alarm, number))
+        read(self, number - row.from).map(Value::Number).map_err(|alarm| variable_alarm(alarm, number))
     }
 
     pub(super) fn write_system(&mut self, number: u32, value: f64) -> Result<(), Alarm> {
@@ -174,7 +174,7 @@ impl Executor {
         }
         let row = find(number, self.settings.offset_variables)?;
         let write = row.write.ok_or(Alarm::WriteProtected { number })?;
-        write(self, number - row.from, value).map_err(|alarm| of_no_axis(alarm, number))
+        write(self, number - row.from, value).map_err(|alarm| variable_alarm(alarm, number))
     }
 
     fn set_output(&mut self, bit: u32, on: bool) {
@@ -182,8 +182,8 @@ impl Executor {
     }
 
     fn set_outputs(&mut self, word: u32, value: f64) -> Result<(), Alarm> {
-        let bits = super::eval::integer(value)?;
-        first_signals(word)?;
+        let bits = super::evaluation::integer(value)?;
+        check_signal_word(word)?;
         // 32 bits, signed or not.
         if !(i64::from(i32::MIN)..=i64::from(u32::MAX)).contains(&bits) {
             return Err(Alarm::OutOfRange { function: "#1132".into(), value });
@@ -193,20 +193,21 @@ impl Executor {
     }
 
     /// Seconds since the start, as the clocks read them.
-    fn now(&self) -> f64 {
-        self.clock_read.set(true);
-        self.seconds + self.idle
+    fn clock_seconds(&self) -> f64 {
+        self.has_read_clock.set(true);
+        self.seconds + self.idle_seconds
     }
 
     /// #3001: milliseconds; wraps as the control's does.
-    fn clock_1(&self) -> f64 {
-        (self.now() * 1000.0 + self.clocks.0 + 1e-6).trunc().rem_euclid(2_147_483_648.0)
+    fn millisecond_clock(&self) -> f64 {
+        (self.clock_seconds() * 1000.0 + self.clocks.0 + 1e-6).trunc().rem_euclid(2_147_483_648.0)
     }
 
     /// #3012 as hhmmss: the setting's time and what the run has taken since.
     fn time_of_day(&self) -> f64 {
         let start = self.settings.time;
-        let seconds = f64::from(start / 10_000 * 3600 + start / 100 % 100 * 60 + start % 100) + self.now();
+        let seconds =
+            f64::from(start / 10_000 * 3600 + start / 100 % 100 * 60 + start % 100) + self.clock_seconds();
         let seconds = seconds.rem_euclid(86_400.0) as u32;
         f64::from(seconds / 3600 * 10_000 + seconds / 60 % 60 * 100 + seconds % 60)
     }
@@ -217,7 +218,7 @@ impl Executor {
         if !(0.0..=most).contains(&value.round()) {
             return Err(Alarm::OutOfRange { function: format!("#{}", 3003 + switch), value });
         }
-        self.switches[switch as usize] = value.round();
+        self.control_switches[switch as usize] = value.round();
         Ok(())
     }
 
@@ -225,7 +226,7 @@ impl Executor {
         if value < 0.0 {
             return Err(Alarm::OutOfRange { function: format!("#{}", 3901 + counter), value });
         }
-        self.parts[counter as usize] = value.round();
+        self.part_counters[counter as usize] = value.round();
         Ok(())
     }
 
@@ -246,7 +247,7 @@ impl Executor {
                 WorkSystem::Additional(p) => f64::from(p),
                 WorkSystem::Standard(_) => 0.0,
             },
-            14 if codes::find(541).on(self.settings.codes).is_none()
+            14 if g_codes::find(541).row_for(self.settings.codes).is_none()
                 && matches!(self.state.modal.work, WorkSystem::Additional(_)) =>
             {
                 return Err(Alarm::NotSimulated { what: "#4014 in G154 and G110 to G129".into() });
@@ -260,11 +261,11 @@ impl Executor {
 
     /// Where the last block ended: as programmed, or after mirror, scaling and rotation.
     fn end_point(&self) -> gcode_lang::motion::Position {
-        match self.settings.unsure.shows_transformed {
+        match self.settings.undocumented.shows_transformed {
             true => self.state.transform.forward(self.state.programmed),
             false => {
-                if self.state.ended.is_some() {
-                    self.aftermath.record_note(Note::EndPointBeforeTransform);
+                if self.state.last_end_point.is_some() {
+                    self.block_effects.record_note(Note::EndPointBeforeTransform);
                 }
                 self.move_end(&self.state)
             }
@@ -272,24 +273,24 @@ impl Executor {
     }
 
     /// An axis of the control by its number from 0 on.
-    fn known_axis(&self, axis: u32) -> Result<AxisIndex, Alarm> {
+    fn check_axis(&self, axis: u32) -> Result<AxisIndex, Alarm> {
         let known = Some(axis as usize).filter(|axis| *axis < self.settings.axes.len());
         known.ok_or(Alarm::AxisNumber { number: i64::from(axis) + 1 })
     }
 
     /// A position of an axis, in the unit of the program.
     fn position(&self, axis: u32, of: impl Fn(&Self, AxisIndex) -> f64) -> Result<f64, Alarm> {
-        let axis = self.known_axis(axis)?;
-        Ok(self.shown(&self.state, Some(axis), of(self, axis)))
+        let axis = self.check_axis(axis)?;
+        Ok(self.to_program_unit(&self.state, Some(axis), of(self, axis)))
     }
 
     /// A machine position in the work coordinate system, tool length included.
-    fn in_work(&self, axis: AxisIndex, machine: f64) -> f64 {
-        self.rolled(axis, self.clean(machine - self.zero(&self.state, axis)))
+    fn work_coordinate(&self, axis: AxisIndex, machine: f64) -> f64 {
+        self.wrap_angle(axis, self.remove_residue(machine - self.zero(&self.state, axis)))
     }
 
     /// The control has so many work coordinate systems; 6 are G54 to G59.
-    fn known_system(&self, system: usize) -> Result<(), Alarm> {
+    fn check_system(&self, system: usize) -> Result<(), Alarm> {
         if system > 6 + self.offsets.additional.len() {
             return Err(Alarm::OffsetNumber { number: system as i64 - 6 });
         }
@@ -298,31 +299,32 @@ impl Executor {
 
     /// The offset of G52.
     fn set_local(&mut self, axis: u32, value: f64) -> Result<(), Alarm> {
-        let axis = self.known_axis(axis)?;
-        self.state.local[axis] = self.offset_in_range(self.stored(&self.state, Some(axis), value))?;
-        self.offsets_changed();
+        let axis = self.check_axis(axis)?;
+        self.state.local_offset[axis] =
+            self.check_offset_range(self.to_stored(&self.state, Some(axis), value))?;
+        self.update_after_offset_change();
         Ok(())
     }
 
     fn work_offset(&self, system: usize, axis: u32) -> Result<f64, Alarm> {
-        self.known_system(system)?;
+        self.check_system(system)?;
         self.position(axis, |core, axis| core.offsets.work(system)[axis])
     }
 
     fn set_work_offset(&mut self, system: usize, axis: u32, value: f64) -> Result<(), Alarm> {
-        self.known_system(system)?;
-        let axis = self.known_axis(axis)?;
-        let value = self.offset_in_range(self.stored(&self.state, Some(axis), value))?;
+        self.check_system(system)?;
+        let axis = self.check_axis(axis)?;
+        let value = self.check_offset_range(self.to_stored(&self.state, Some(axis), value))?;
         self.offsets.work_mut(system)[axis] = value;
-        self.note_set(system);
-        self.offsets_changed();
+        self.record_system_set(system);
+        self.update_after_offset_change();
         Ok(())
     }
 
     /// The active system's zero has moved, the machine hasn't.
-    pub(super) fn offsets_changed(&mut self) {
+    pub(super) fn update_after_offset_change(&mut self) {
         let mut state = *self.state;
-        self.recompute(&mut state);
+        self.recompute_position(&mut state);
         *self.state = state;
         self.update_is_plain();
     }
@@ -339,13 +341,13 @@ impl Executor {
 
     fn tool_offset(&self, register: Register, place: u32) -> Result<f64, Alarm> {
         let value = self.offsets.tool(self.register(register), place + 1)?;
-        Ok(self.shown(&self.state, None, value))
+        Ok(self.to_program_unit(&self.state, None, value))
     }
 
     fn set_tool_offset(&mut self, register: Register, place: u32, value: f64) -> Result<(), Alarm> {
         let register = self.register(register);
         self.offsets.tool(register, place + 1)?;
-        let value = self.offset_in_range(self.stored(&self.state, None, value))?;
+        let value = self.check_offset_range(self.to_stored(&self.state, None, value))?;
         self.offsets.register(register)[place as usize + 1] = value;
         Ok(())
     }
@@ -359,8 +361,8 @@ impl Executor {
 
     /// Where the tool's centre stands, in machine coordinates; a move that waits for the next counts as done, as if
     /// nothing followed.
-    pub(super) fn centre(&self, axis: AxisIndex) -> f64 {
-        self.state.machine[axis] + self.ahead.offset(axis)
+    pub(super) fn tool_centre(&self, axis: AxisIndex) -> f64 {
+        self.state.machine[axis] + self.lookahead.offset(axis)
     }
 }
 

@@ -9,7 +9,7 @@ use gcode_lang::source::{SourceId, Span};
 use gcode_lang::syntax::{self, ast};
 
 use super::calls::{self, CallSite};
-use super::flow::ControlFlowGraph;
+use super::control_flow::ControlFlowGraph;
 
 /// Everything a rule may look at.
 #[derive(Debug)]
@@ -19,7 +19,7 @@ pub(crate) struct CheckContext<'a> {
     pub units: Vec<ProgramUnit<'a>>,
     /// The names of all rules, as CHECK-OFF may have them.
     pub rules: Vec<&'static str>,
-    places: BTreeMap<ProgramId, usize>,
+    unit_indices: BTreeMap<ProgramId, usize>,
 }
 
 /// One program.
@@ -34,9 +34,9 @@ pub(crate) struct ProgramUnit<'a> {
     /// Who calls it: unit and place in its calls.
     pub callers: Vec<(usize, usize)>,
     /// The first block, and those where calls with Q start.
-    pub starts: Vec<OpIndex>,
+    pub entry_blocks: Vec<OpIndex>,
     /// Whether anything reaches each block.
-    pub reached: Vec<bool>,
+    pub is_reached: Vec<bool>,
     pub role: Role,
 }
 
@@ -67,61 +67,62 @@ impl<'a> CheckContext<'a> {
                 ProgramUnit {
                     blocks: trees.remove(id).unwrap_or_default(),
                     flow: ControlFlowGraph::new(program),
-                    calls: calls::sites(program, settings),
+                    calls: calls::call_sites(program, settings),
                     callers: Vec::new(),
-                    starts: vec![0],
-                    reached: Vec::new(),
+                    entry_blocks: vec![0],
+                    is_reached: Vec::new(),
                     role: Role::Main,
                     program,
                 }
             })
             .collect();
-        let mut subject = Self { memory, settings, units, rules, places };
-        subject.connect();
+        let mut subject = Self { memory, settings, units, rules, unit_indices: places };
+        subject.link_calls();
         subject
     }
 
     /// Tells each program who calls it, each call where it may return to, and what is reached.
-    fn connect(&mut self) {
+    fn link_calls(&mut self) {
         for caller in 0..self.units.len() {
             for site in 0..self.units[caller].calls.len() {
                 let call = &self.units[caller].calls[site];
                 let block = call.block;
                 // M98 Q alone starts in the same program.
-                let own = call.target == calls::CalledAs::Nothing && call.start.is_some();
-                let Some(called) = self.called(call).or(own.then_some(caller)) else {
-                    self.units[caller].flow.may_return_anywhere(block);
+                let own = call.target == calls::CalledProgramName::Missing && call.start.is_some();
+                let Some(called) = self.called_unit(call).or(own.then_some(caller)) else {
+                    self.units[caller].flow.add_return_anywhere(block);
                     continue;
                 };
                 if let Some(number) = call.start {
                     let start = self.units[called].program.find_number(number, 0);
-                    self.units[called].starts.extend(start);
+                    self.units[called].entry_blocks.extend(start);
                 }
                 let returns = &self.units[called].flow;
-                let anywhere = returns.ways.iter().any(|ways| ways.is_exit && ways.anywhere);
+                let anywhere =
+                    returns.block_successors.iter().any(|ways| ways.is_exit && ways.jumps_anywhere);
                 let numbers: Vec<u32> =
-                    returns.jumps.iter().filter(|jump| jump.returns).map(|jump| jump.number).collect();
+                    returns.jumps.iter().filter(|jump| jump.is_return).map(|jump| jump.number).collect();
                 let to: Vec<_> =
                     numbers.iter().filter_map(|n| self.units[caller].program.find_number(*n, 0)).collect();
                 if !own {
                     self.units[called].callers.push((caller, site));
                 }
-                self.units[caller].flow.may_return(block, to);
+                self.units[caller].flow.add_return_targets(block, to);
                 if anywhere {
-                    self.units[caller].flow.may_return_anywhere(block);
+                    self.units[caller].flow.add_return_anywhere(block);
                 }
             }
         }
         for unit in &mut self.units {
-            unit.role = unit.role();
-            unit.reached = unit.flow.reachable(unit.starts.iter().copied());
+            unit.role = unit.determine_role();
+            unit.is_reached = unit.flow.reachable(unit.entry_blocks.iter().copied());
         }
     }
 
     /// The unit that a call goes to, where it is here.
-    pub(crate) fn called(&self, call: &CallSite) -> Option<usize> {
+    pub(crate) fn called_unit(&self, call: &CallSite) -> Option<usize> {
         let id = call.target.find(self.memory)?;
-        self.places.get(&id).copied()
+        self.unit_indices.get(&id).copied()
     }
 }
 
@@ -142,7 +143,7 @@ fn trees(memory: &Memory, programs: &[ProgramId]) -> BTreeMap<ProgramId, Vec<ast
 }
 
 impl ProgramUnit<'_> {
-    fn role(&self) -> Role {
+    fn determine_role(&self) -> Role {
         if !self.callers.is_empty() {
             return Role::Called;
         }
@@ -150,7 +151,7 @@ impl ProgramUnit<'_> {
             OpKind::Words(words) => words.call().is_some_and(|call| call.kind == CallCode::Return),
             _ => false,
         });
-        let ends = self.flow.ways.iter().zip(self.program.ops()).any(|(ways, op)| {
+        let ends = self.flow.block_successors.iter().zip(self.program.ops()).any(|(ways, op)| {
             let returns = matches!(op.kind(), OpKind::Words(words) if words.call().is_some());
             ways.is_exit && matches!(op.kind(), OpKind::Words(_)) && !returns
         });
@@ -176,7 +177,7 @@ impl ProgramUnit<'_> {
         message: impl Into<String>,
     ) -> RuleFinding {
         let place = Backtrace { block: self.op(block).span, calls: None };
-        RuleFinding { block, diagnostic: Diagnostic::new(severity, code, message).at(place) }
+        RuleFinding { block, diagnostic: Diagnostic::new(severity, code, message).with_backtrace(place) }
     }
 
     pub(crate) fn error(
@@ -211,7 +212,7 @@ pub(crate) struct RuleFinding {
 
 impl RuleFinding {
     /// The exact part of the block.
-    pub(crate) fn on(mut self, span: Span) -> Self {
+    pub(crate) fn with_span(mut self, span: Span) -> Self {
         self.diagnostic.span = Some(span);
         self
     }

@@ -12,7 +12,7 @@ pub(crate) struct Successors {
     /// By a jump, a loop, or a return from a call.
     pub jumps: Vec<OpIndex>,
     /// A computed jump: to any numbered block.
-    pub anywhere: bool,
+    pub jumps_anywhere: bool,
     /// The program ends here, returns, or stops with an alarm of its own (`#3000`).
     pub is_exit: bool,
 }
@@ -24,64 +24,64 @@ pub(crate) struct Jump {
     pub number: u32,
     pub to: Option<OpIndex>,
     /// `M99 P`: in a called program the number is the caller's.
-    pub returns: bool,
+    pub is_return: bool,
 }
 
 #[derive(Debug)]
 pub(crate) struct ControlFlowGraph {
-    pub ways: Vec<Successors>,
+    pub block_successors: Vec<Successors>,
     pub jumps: Vec<Jump>,
     numbered: Vec<OpIndex>,
 }
 
 impl ControlFlowGraph {
     pub(super) fn new(program: &Program) -> Self {
-        let mut flow = Self { ways: Vec::new(), jumps: Vec::new(), numbered: Vec::new() };
+        let mut flow = Self { block_successors: Vec::new(), jumps: Vec::new(), numbered: Vec::new() };
         for (block, op) in program.ops().iter().enumerate() {
             if op.number.is_some() {
                 flow.numbered.push(block);
             }
-            let mut ways = flow.of_block(program, block, op.kind());
+            let mut ways = flow.block_successors_of(program, block, op.kind());
             if op.skip().is_some() {
                 ways.falls_through = true;
             }
-            flow.ways.push(ways);
+            flow.block_successors.push(ways);
         }
         flow
     }
 
-    fn of_block(&mut self, program: &Program, block: OpIndex, kind: &OpKind) -> Successors {
+    fn block_successors_of(&mut self, program: &Program, block: OpIndex, kind: &OpKind) -> Successors {
         match kind {
             // An alarm stops the control; what stands behind it is looked at as if it had been mended.
-            OpKind::Empty | OpKind::Compute(_) | OpKind::Alarm(_) => {
+            OpKind::Empty | OpKind::AssignFree(_) | OpKind::Alarm(_) => {
                 Successors { falls_through: true, ..Successors::default() }
             }
             OpKind::Words(words) => {
-                let mut ways = self.of_words(program, block, words);
-                if let Some((_, short)) = words.short() {
-                    let other = self.of_words(program, block, short);
+                let mut ways = self.word_successors(program, block, words);
+                if let Some((_, short)) = words.skipped_form() {
+                    let other = self.word_successors(program, block, short);
                     ways.falls_through |= other.falls_through;
                     ways.is_exit |= other.is_exit;
                     ways.jumps.extend(other.jumps);
                 }
                 ways
             }
-            OpKind::Statement(statement) => self.of_statement(program, block, statement),
+            OpKind::Statement(statement) => self.statement_successors(program, block, statement),
             OpKind::If { then, .. } => {
-                Successors { falls_through: true, ..self.of_block(program, block, then) }
+                Successors { falls_through: true, ..self.block_successors_of(program, block, then) }
             }
         }
     }
 
-    fn of_words(&mut self, program: &Program, block: OpIndex, words: &Words) -> Successors {
+    fn word_successors(&mut self, program: &Program, block: OpIndex, words: &Words) -> Successors {
         let mut ways = Successors { falls_through: true, ..Successors::default() };
-        let codes = || words.list.iter().filter(|w| w.letter == b'M').filter_map(literal::count);
+        let codes = || words.list.iter().filter(|w| w.letter == b'M').filter_map(literal::word_count);
         if codes().any(|m| matches!(m, 2 | 30)) {
             ways = Successors { is_exit: true, ..Successors::default() };
         }
         // Haas: a subprogram at a sequence number of the same program.
         if codes().any(|m| m == 97)
-            && let Some(number) = words.list.iter().find(|w| w.letter == b'P').and_then(literal::count)
+            && let Some(number) = words.list.iter().find(|w| w.letter == b'P').and_then(literal::word_count)
         {
             ways.jumps.extend(program.find_number(number, block + 1));
         }
@@ -89,41 +89,46 @@ impl ControlFlowGraph {
             ways.falls_through = false;
             ways.is_exit = true;
             if let CallTarget::Number(word) = &call.target {
-                match literal::count(word) {
+                match literal::word_count(word) {
                     Some(number) => {
                         let to = program.find_number(number, 0);
                         ways.jumps.extend(to);
-                        self.jumps.push(Jump { block, number, to, returns: true });
+                        self.jumps.push(Jump { block, number, to, is_return: true });
                     }
-                    None => ways.anywhere = true,
+                    None => ways.jumps_anywhere = true,
                 }
             }
         }
         ways
     }
 
-    fn of_statement(&mut self, program: &Program, block: OpIndex, statement: &Statement) -> Successors {
+    fn statement_successors(
+        &mut self,
+        program: &Program,
+        block: OpIndex,
+        statement: &Statement,
+    ) -> Successors {
         match statement {
-            Statement::Goto(to) => self.goto(program, block, &to.node),
+            Statement::Goto(to) => self.jump_successors(program, block, &to.node),
             Statement::IfGoto { to, .. } => {
-                Successors { falls_through: true, ..self.goto(program, block, &to.node) }
+                Successors { falls_through: true, ..self.jump_successors(program, block, &to.node) }
             }
             Statement::IfThen { then, .. } => {
-                Successors { falls_through: true, ..self.of_statement(program, block, then) }
+                Successors { falls_through: true, ..self.statement_successors(program, block, then) }
             }
             Statement::While { end, .. } => {
                 Successors { falls_through: true, jumps: vec![end + 1], ..Successors::default() }
             }
             Statement::End { start, .. } => Successors { jumps: vec![*start], ..Successors::default() },
-            Statement::Assign { target, .. } if target.is(3000) => {
+            Statement::Assign { target, .. } if target.is_variable(3000) => {
                 Successors { is_exit: true, ..Successors::default() }
             }
-            Statement::Several(all) if all.iter().any(is_raise) => {
+            Statement::Assignments(all) if all.iter().any(is_raise) => {
                 Successors { is_exit: true, ..Successors::default() }
             }
             Statement::Assign { .. }
-            | Statement::Compute(_)
-            | Statement::Several(_)
+            | Statement::AssignFree(_)
+            | Statement::Assignments(_)
             | Statement::Do { .. }
             | Statement::SetNames { .. }
             | Statement::Print { .. }
@@ -133,39 +138,39 @@ impl ControlFlowGraph {
         }
     }
 
-    fn goto(&mut self, program: &Program, block: OpIndex, to: &Operand) -> Successors {
-        let Some(number) = literal::of_operand(to).and_then(literal::whole) else {
-            let computed = literal::of_operand(to).is_none();
-            return Successors { anywhere: computed, ..Successors::default() };
+    fn jump_successors(&mut self, program: &Program, block: OpIndex, to: &Operand) -> Successors {
+        let Some(number) = literal::operand_number(to).and_then(literal::to_whole) else {
+            let computed = literal::operand_number(to).is_none();
+            return Successors { jumps_anywhere: computed, ..Successors::default() };
         };
         let to = program.find_number(number, block + 1);
-        self.jumps.push(Jump { block, number, to, returns: false });
+        self.jumps.push(Jump { block, number, to, is_return: false });
         // A jump to nowhere is told by a rule; what stands behind it is no second fault.
         Successors { falls_through: to.is_none(), jumps: to.into_iter().collect(), ..Successors::default() }
     }
 
     /// A called program may return to these blocks.
-    pub(super) fn may_return(&mut self, block: OpIndex, to: impl IntoIterator<Item = OpIndex>) {
-        self.ways[block].jumps.extend(to);
+    pub(super) fn add_return_targets(&mut self, block: OpIndex, to: impl IntoIterator<Item = OpIndex>) {
+        self.block_successors[block].jumps.extend(to);
     }
 
-    pub(super) fn may_return_anywhere(&mut self, block: OpIndex) {
-        self.ways[block].anywhere = true;
+    pub(super) fn add_return_anywhere(&mut self, block: OpIndex) {
+        self.block_successors[block].jumps_anywhere = true;
     }
 
     /// How many places there are: the blocks, the end of the program one past the last of them, and behind it one that
     /// computed jumps lead to and that leads to every numbered block, which keeps the ways few.
     pub(crate) fn block_count(&self) -> usize {
-        self.ways.len() + 2
+        self.block_successors.len() + 2
     }
 
     /// The places that can follow a place.
     pub(crate) fn successors(&self, place: OpIndex) -> impl Iterator<Item = OpIndex> + '_ {
-        let anywhere = self.ways.len() + 1;
-        let ways = self.ways.get(place);
+        let anywhere = self.block_successors.len() + 1;
+        let ways = self.block_successors.get(place);
         let jumps = ways.map_or(&[][..], |ways| &ways.jumps);
         let next = ways.filter(|ways| ways.falls_through).map(|_| place + 1);
-        let computed = ways.filter(|ways| ways.anywhere).map(|_| anywhere);
+        let computed = ways.filter(|ways| ways.jumps_anywhere).map(|_| anywhere);
         let numbered = if place == anywhere { &self.numbered[..] } else { &[] };
         jumps.iter().copied().chain(next).chain(computed).chain(numbered.iter().copied())
     }
@@ -179,13 +184,13 @@ impl ControlFlowGraph {
                 open.extend(self.successors(place));
             }
         }
-        reached.truncate(self.ways.len());
+        reached.truncate(self.block_successors.len());
         reached
     }
 }
 
 /// Whether a block is `#3000=…`, alone or behind IF … THEN.
-pub(crate) fn raises(kind: &OpKind) -> bool {
+pub(crate) fn raises_alarm(kind: &OpKind) -> bool {
     match kind {
         OpKind::Statement(Statement::IfThen { then, .. }) => is_raise(then),
         OpKind::Statement(statement) => is_raise(statement),
@@ -195,8 +200,8 @@ pub(crate) fn raises(kind: &OpKind) -> bool {
 
 fn is_raise(statement: &Statement) -> bool {
     match statement {
-        Statement::Assign { target, .. } => target.is(3000),
-        Statement::Several(all) => all.iter().any(is_raise),
+        Statement::Assign { target, .. } => target.is_variable(3000),
+        Statement::Assignments(all) => all.iter().any(is_raise),
         _ => false,
     }
 }

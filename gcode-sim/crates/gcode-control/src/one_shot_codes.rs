@@ -1,7 +1,7 @@
 //! What a block does instead of moving by its modal codes, code by code: dwell, coordinate systems, G53, G60.
 use super::Executor;
 
-use super::eval::Checked;
+use super::evaluation::ExecResult;
 use super::modal_codes::{AxisWordUse, not_simulated};
 use super::notes::Note;
 use super::plan::BlockPlan;
@@ -9,48 +9,54 @@ use super::state::State;
 use super::words::BlockWords;
 use gcode_lang::alarm::Alarm;
 use gcode_lang::motion::{EventKind, Position};
-use gcode_lang::program::codes::OneShot;
+use gcode_lang::program::g_codes::OneShot;
 use gcode_lang::program::modes::{Distance, WorkSystem};
 use gcode_lang::source::Span;
 use gcode_lang::units::Seconds;
 
 impl Executor {
     /// 4. What a block does instead of moving by its modal codes.
-    pub(super) fn act(
+    pub(super) fn execute_axis_use(
         &self,
         act: AxisWordUse,
         given: &BlockWords,
         plan: &mut BlockPlan,
         span: Span,
-    ) -> Checked<()> {
+    ) -> ExecResult<()> {
         if !self.names_axis(given) {
-            plan.notes.extend(without_axis(act));
+            plan.notes.extend(note_without_axis(act));
         }
         match act {
-            AxisWordUse::OneShot(one) => self.one_shot(one, given, plan, span),
+            AxisWordUse::OneShot(one) => self.execute_one_shot(one, given, plan, span),
             AxisWordUse::AdditionalWork => {
                 let number = given.count(b'P')?.unwrap_or(1);
                 if number == 0 || number as usize > self.offsets.additional.len() {
-                    return Err(Alarm::OffsetNumber { number: i64::from(number) }.at(span));
+                    return Err(Alarm::OffsetNumber { number: i64::from(number) }.located_at(span));
                 }
                 plan.state.modal.work = WorkSystem::Additional(number as u16);
-                self.recompute(&mut plan.state);
-                self.motion(given, plan, false, span)
+                self.recompute_position(&mut plan.state);
+                self.plan_motion(given, plan, false, span)
             }
-            AxisWordUse::Scale => self.scale(given, plan, span),
-            AxisWordUse::Rotate => self.rotate(given, plan, span),
-            AxisWordUse::Tilt => self.tilt(given, plan, span),
+            AxisWordUse::Scale => self.plan_scaling(given, plan, span),
+            AxisWordUse::Rotate => self.plan_rotation(given, plan, span),
+            AxisWordUse::Tilt => self.plan_tilt(given, plan, span),
             AxisWordUse::MirrorOn | AxisWordUse::MirrorOff => {
-                self.mirror(act == AxisWordUse::MirrorOn, given, plan)
+                self.plan_mirror(act == AxisWordUse::MirrorOn, given, plan)
             }
         }
     }
 
-    fn one_shot(&self, one: OneShot, given: &BlockWords, plan: &mut BlockPlan, span: Span) -> Checked<()> {
+    fn execute_one_shot(
+        &self,
+        one: OneShot,
+        given: &BlockWords,
+        plan: &mut BlockPlan,
+        span: Span,
+    ) -> ExecResult<()> {
         let cycle = plan.state.modal.cycle.is_some();
         match one {
-            OneShot::Dwell => self.dwell(given, plan),
-            OneShot::DataInput => self.data_input(given, plan, span),
+            OneShot::Dwell => self.plan_dwell(given, plan),
+            OneShot::DataInput => self.plan_data_input(given, plan, span),
             OneShot::DataInputEnd => Ok(()),
             OneShot::CheckReference
             | OneShot::Reference
@@ -58,66 +64,72 @@ impl Executor {
             | OneShot::SecondReference
                 if cycle =>
             {
-                Err(Alarm::ReferenceReturnInCycle.at(span))
+                Err(Alarm::ReferenceReturnInCycle.located_at(span))
             }
-            OneShot::CheckReference => self.check_reference(given, plan, span),
-            OneShot::Reference if self.settings.home_all && !self.names_axis(given) => {
-                self.home_all(plan);
+            OneShot::CheckReference => self.plan_reference_check(given, plan, span),
+            OneShot::Reference if self.settings.homes_all_axes && !self.names_axis(given) => {
+                self.plan_home_all(plan);
                 Ok(())
             }
-            OneShot::Reference => self.reference(given, plan, Position::default()),
+            OneShot::Reference => self.plan_reference_return(given, plan, Position::default()),
             OneShot::SecondReference => {
                 let p = given.count(b'P')?.unwrap_or(2);
                 match p {
-                    2..=4 => self.reference(given, plan, self.settings.references[p as usize - 2]),
-                    _ => Err(Alarm::ReferenceReturnP { p: i64::from(p) }.at(span)),
+                    2..=4 => self.plan_reference_return(
+                        given,
+                        plan,
+                        self.settings.reference_positions[p as usize - 2],
+                    ),
+                    _ => Err(Alarm::ReferenceReturnP { p: i64::from(p) }.located_at(span)),
                 }
             }
-            OneShot::FromReference => self.leave_reference(given, plan, span),
-            OneShot::Skip => self.skip(given, plan, span),
+            OneShot::FromReference => self.plan_return_from_reference(given, plan, span),
+            OneShot::Skip => self.plan_skip(given, plan, span),
             OneShot::LocalSystem => {
-                self.each_axis(given, plan, |_, state, axis, value| state.local[axis] = value)?;
-                self.recompute(&mut plan.state);
+                self.for_each_axis(given, plan, |_, state, axis, value| state.local_offset[axis] = value)?;
+                self.recompute_position(&mut plan.state);
                 Ok(())
             }
             OneShot::SetSystem => {
                 // The point where the program stands gets these coordinates; the length offset stays out of it, and
                 // G52 ends on these axes.
-                self.each_axis(given, plan, |core, state, axis, value| {
+                self.for_each_axis(given, plan, |core, state, axis, value| {
                     let work = state.transform.forward(state.programmed)[axis];
-                    state.shift[axis] = core.clean(state.shift[axis] + state.local[axis] + work - value);
-                    state.local[axis] = 0.0;
+                    state.coordinate_shift[axis] = core.remove_residue(
+                        state.coordinate_shift[axis] + state.local_offset[axis] + work - value,
+                    );
+                    state.local_offset[axis] = 0.0;
                 })?;
-                self.recompute(&mut plan.state);
+                self.recompute_position(&mut plan.state);
                 Ok(())
             }
             OneShot::PresetSystem => {
-                self.each_axis(given, plan, |_, state, axis, _| {
-                    state.shift[axis] = 0.0;
-                    state.local[axis] = 0.0;
+                self.for_each_axis(given, plan, |_, state, axis, _| {
+                    state.coordinate_shift[axis] = 0.0;
+                    state.local_offset[axis] = 0.0;
                 })?;
-                self.recompute(&mut plan.state);
+                self.recompute_position(&mut plan.state);
                 Ok(())
             }
-            OneShot::OneSide if cycle => Err(not_simulated(600, "in a drilling cycle").at(span)),
-            OneShot::OneSide => self.one_side(given, plan),
-            OneShot::CirclePocket(turn) => self.circle_pocket(turn, given, plan, span),
-            OneShot::BoltHoles(holes) => self.bolt_holes(holes, given, plan, span),
-            OneShot::MachineSystem => self.machine_system(given, plan),
-            OneShot::CornerArc if self.ahead.is_on() => Ok(()),
+            OneShot::OneSide if cycle => Err(not_simulated(600, "in a drilling cycle").located_at(span)),
+            OneShot::OneSide => self.plan_one_side(given, plan),
+            OneShot::CirclePocket(turn) => self.plan_circle_pocket(turn, given, plan, span),
+            OneShot::BoltHoles(holes) => self.plan_bolt_holes(holes, given, plan, span),
+            OneShot::MachineSystem => self.plan_machine_move(given, plan),
+            OneShot::CornerArc if self.lookahead.is_on() => Ok(()),
             OneShot::CornerArc => {
-                Err(Alarm::NotSimulated { what: "G39 without cutter compensation".into() }.at(span))
+                Err(Alarm::NotSimulated { what: "G39 without cutter compensation".into() }.located_at(span))
             }
         }
     }
 
     /// Every axis the block names, with its value.
-    fn each_axis(
+    fn for_each_axis(
         &self,
         given: &BlockWords,
         plan: &mut BlockPlan,
         mut with: impl FnMut(&Self, &mut State, usize, f64),
-    ) -> Checked<()> {
+    ) -> ExecResult<()> {
         for (axis, letter) in self.settings.axes.iter() {
             if let Some(value) = self.dimension(given, letter as u8, &plan.state)? {
                 with(self, &mut plan.state, axis, value);
@@ -126,12 +138,12 @@ impl Executor {
         Ok(())
     }
 
-    fn dwell(&self, given: &BlockWords, plan: &mut BlockPlan) -> Checked<()> {
-        self.skip_signals(given, b'Q')?;
+    fn plan_dwell(&self, given: &BlockWords, plan: &mut BlockPlan) -> ExecResult<()> {
+        self.check_skip_signal_set(given, b'Q')?;
         if given.has(b'Q') {
-            return Err(not_simulated(40, "dwell until a skip signal").at(given.span(b'Q')));
+            return Err(not_simulated(40, "dwell until a skip signal").located_at(given.span(b'Q')));
         }
-        let seconds = if let Some(seconds) = self.pause(given)? {
+        let seconds = if let Some(seconds) = self.dwell_seconds(given)? {
             seconds
         } else if self.settings.dwell_in_seconds {
             0.0
@@ -147,27 +159,27 @@ impl Executor {
     }
 
     /// G60: by rapid to a point before the end by 5440, whose sign is the side, and on to the end.
-    fn one_side(&self, given: &BlockWords, plan: &mut BlockPlan) -> Checked<()> {
-        let goal = self.goal(given, &mut plan.state)?;
+    fn plan_one_side(&self, given: &BlockWords, plan: &mut BlockPlan) -> ExecResult<()> {
+        let goal = self.resolve_endpoint(given, &mut plan.state)?;
         let mut before = goal.machine;
         for (axis, letter) in self.settings.axes.iter() {
             if given.has(letter as u8) {
-                before[axis] = self.clean(before[axis] - self.settings.overrun[axis]);
+                before[axis] = self.remove_residue(before[axis] - self.settings.one_side_overrun[axis]);
             }
         }
-        self.rapid(plan, &before);
-        self.rapid(plan, &goal.machine);
+        self.push_rapid(plan, &before);
+        self.push_rapid(plan, &goal.machine);
         plan.state.programmed = goal.programmed;
         plan.commands_axes = self.names_axis(given);
         Ok(())
     }
 
     /// G53: by rapid to machine coordinates, without the length offset.
-    fn machine_system(&self, given: &BlockWords, plan: &mut BlockPlan) -> Checked<()> {
+    fn plan_machine_move(&self, given: &BlockWords, plan: &mut BlockPlan) -> ExecResult<()> {
         let mut to = plan.state.machine;
         let incremental = plan.state.modal.distance == Distance::Incremental;
-        if incremental && !self.settings.unsure.g53_moves_in_g91 {
-            given.accept(b"ABCUVWXYZ");
+        if incremental && !self.settings.undocumented.g53_moves_in_g91 {
+            given.mark_read(b"ABCUVWXYZ");
             plan.notes.push(Note::MachineMoveIgnored);
             return Ok(());
         }
@@ -176,21 +188,21 @@ impl Executor {
             if let Some(value) = self.dimension(given, letter as u8, &plan.state)? {
                 named |= u8::from(!incremental) << axis;
                 to[axis] = match incremental {
-                    true => self.clean(to[axis] + value),
-                    false => self.turned_to(axis, to[axis], value),
+                    true => self.remove_residue(to[axis] + value),
+                    false => self.rollover_target(axis, to[axis], value),
                 };
             }
         }
-        self.leave_work(plan, named);
-        self.rapid(plan, &to);
-        self.recompute(&mut plan.state);
+        self.note_unknown_work_zero(plan, named);
+        self.push_rapid(plan, &to);
+        self.recompute_position(&mut plan.state);
         plan.commands_axes = true;
         Ok(())
     }
 }
 
 /// What there is to tell of a code in a block that names no axis.
-fn without_axis(act: AxisWordUse) -> Option<Note> {
+fn note_without_axis(act: AxisWordUse) -> Option<Note> {
     let code = match act {
         AxisWordUse::Scale => return Some(Note::CentreDefaulted { code: 510 }),
         AxisWordUse::Rotate => return Some(Note::CentreDefaulted { code: 680 }),

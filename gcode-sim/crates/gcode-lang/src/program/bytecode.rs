@@ -42,15 +42,15 @@ impl Slot {
 
 /// The variable that an assignment writes.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Target {
+pub enum AssignmentTarget {
     Slot(Slot),
     /// Its number is computed, or no variable's.
     Computed(Operand),
 }
 
-impl Target {
+impl AssignmentTarget {
     /// Whether it is the variable of this number, written out.
-    pub fn is(&self, number: u32) -> bool {
+    pub fn is_variable(&self, number: u32) -> bool {
         *self == Self::Slot(Slot::of(number))
     }
 }
@@ -70,11 +70,11 @@ pub enum OperandSource {
     /// A variable of [`Slot::Free`].
     Free(u16),
     Number(f64),
-    Computed(Computed),
+    Computed(ComputedSource),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Computed {
+pub enum ComputedSource {
     /// What the instruction before has given.
     Last,
     /// The last of the values that wait, which it takes away.
@@ -95,7 +95,7 @@ pub enum Operation {
     Function(Function, OperandSource),
     /// ATAN of two values.
     Atan2([OperandSource; 2]),
-    Rare(UncommonOp),
+    Uncommon(UncommonOp),
 }
 
 /// What only some expressions contain.
@@ -103,14 +103,14 @@ pub enum Operation {
 pub enum UncommonOp {
     Load(OperandSource),
     /// Lets the last value wait for its operator.
-    Wait,
+    Push,
     /// A variable that may not be read.
     Read(u32),
     /// Takes a variable's number, gives its value.
     LoadIndirect,
     Negate,
     /// The sign between an address and its value: `X-#1`. Unlike a minus in an expression it keeps vacancy.
-    Reverse,
+    NegateWord,
     Plus,
     Bracket,
     /// An operator on whole numbers.
@@ -137,7 +137,7 @@ pub enum UncommonOp {
 
 impl From<UncommonOp> for Operation {
     fn from(rare: UncommonOp) -> Self {
-        Self::Rare(rare)
+        Self::Uncommon(rare)
     }
 }
 

@@ -1,9 +1,9 @@
 //! A drilling block, checked: where its holes are, and its moves one by one, the steps of the cycle at every hole.
 use super::Executor;
-use super::patterns::Pattern;
+use super::patterns::BoltHolePattern;
 use super::state::{PolarPoint, State};
 use gcode_lang::motion::{AxisIndex, EventKind, Position, SpindleDirection, StopKind};
-use gcode_lang::program::cycles::{Cycle, Step};
+use gcode_lang::program::cycles::{Cycle, CycleStep};
 use gcode_lang::program::modes::ReturnTo;
 use gcode_lang::units::{Deg, MmPerMin, Rpm, Seconds};
 
@@ -12,12 +12,12 @@ use gcode_lang::units::{Deg, MmPerMin, Rpm, Seconds};
 pub(super) struct CyclePlan {
     pub(super) cycle: &'static Cycle,
     /// Where the block begins; after it the plan's state stands where it ends.
-    pub(super) from: State,
+    pub(super) start_state: State,
     /// The first hole, as programmed, and from hole to hole.
-    pub(super) hole: Position,
-    pub(super) step: Position,
-    pub(super) circle: Option<PolarRepeats>,
-    pub(super) pattern: Option<Pattern>,
+    pub(super) first_hole: Position,
+    pub(super) hole_step: Position,
+    pub(super) polar_repeats: Option<PolarRepeats>,
+    pub(super) pattern: Option<BoltHolePattern>,
     pub(super) repeats: u32,
     pub(super) axis: AxisIndex,
     pub(super) shift: (AxisIndex, f64),
@@ -40,19 +40,19 @@ pub(super) struct PolarRepeats {
 impl Executor {
     /// Tells a drilling block move by move.
     pub(super) fn expand_cycle(&self, drill: &CyclePlan, tell: &mut impl FnMut(EventKind, f64)) {
-        let state = &drill.from;
+        let state = &drill.start_state;
         let mut way = CycleMotion {
-            core: self,
+            executor: self,
             at: state.machine,
-            unplaced: state.work_zero_unknown,
+            unknown_axes: state.work_zero_unknown,
             rate: drill.rate,
-            tell,
+            emit: tell,
         };
-        let data = &state.drilling;
+        let data = &state.cycle;
         let (r, z) = (data.r_level(), data.z_level());
-        let mut hole = drill.hole;
+        let mut hole = drill.first_hole;
         for turn in 0..drill.repeats {
-            drill.advance(self, turn, &mut hole);
+            drill.move_to_hole(self, turn, &mut hole);
             let level = |value: f64| {
                 let mut point = hole;
                 point[drill.axis] = value;
@@ -62,7 +62,7 @@ impl Executor {
             over[drill.axis] = way.at[drill.axis];
             way.rapid(over);
             if drill.cycle.starts_at_r {
-                way.set_work_zero(drill.axis, data.r_unplaced());
+                way.set_work_zero(drill.axis, data.is_r_unknown());
                 way.rapid(level(r));
             }
             for step in drill.cycle.steps {
@@ -73,28 +73,28 @@ impl Executor {
 
     fn drill_step<T: FnMut(EventKind, f64)>(
         &self,
-        step: Step,
+        step: CycleStep,
         drill: &CyclePlan,
         level: &impl Fn(f64) -> Position,
         (r, z): (f64, f64),
         way: &mut CycleMotion<'_, T>,
     ) {
-        let state = &drill.from;
-        let initial = state.drilling.initial;
+        let state = &drill.start_state;
+        let initial = state.cycle.initial;
         let to_initial = state.modal.return_to == ReturnTo::Initial;
-        let turning = |turning| EventKind::Spindle { turning, speed: Rpm(state.codes.s) };
+        let turning = |turning| EventKind::Spindle { direction: turning, speed: Rpm(state.codes.s) };
         let goes_back = match step {
-            Step::RapidBack | Step::RapidToInitial => to_initial,
-            Step::RapidToInitialAlways => true,
+            CycleStep::RapidBack | CycleStep::RapidToInitial => to_initial,
+            CycleStep::RapidToInitialAlways => true,
             _ => false,
         };
         if goes_back {
-            way.set_work_zero(drill.axis, state.drilling.initial_unplaced);
+            way.set_work_zero(drill.axis, state.cycle.is_initial_unknown);
         }
         match step {
-            Step::FeedToBottom => way.feed(level(z)),
-            Step::PeckFull => {
-                self.peck((r, z), &state.drilling.unscaled(drill.stretch), |last, next, done| {
+            CycleStep::FeedToBottom => way.feed(level(z)),
+            CycleStep::PeckFull => {
+                self.for_each_peck((r, z), &state.cycle.unscaled(drill.stretch), |last, next, done| {
                     if last != r {
                         let clearance = (self.settings.g83_clearance / drill.stretch).min((r - last).abs());
                         way.rapid(level(last + clearance.copysign(r - z)));
@@ -105,44 +105,46 @@ impl Executor {
                     }
                 });
             }
-            Step::PeckShort => {
+            CycleStep::PeckShort => {
                 let retract = (self.settings.g73_retract / drill.stretch).copysign(r - z);
-                self.peck((r, z), &state.drilling.unscaled(drill.stretch), |_, next, done| {
+                self.for_each_peck((r, z), &state.cycle.unscaled(drill.stretch), |_, next, done| {
                     way.feed(level(next));
                     if !done {
                         way.rapid(level(next + retract));
                     }
                 });
             }
-            Step::Dwell => way.dwell(drill.dwell),
-            Step::DwellAtR if self.settings.unsure.tap_dwells_at_r => way.dwell(drill.dwell),
-            Step::DwellAtR => {}
-            Step::FeedToR => way.feed(level(r)),
-            Step::RapidBack => way.shifted_to(level(if to_initial { initial } else { r }), drill.axis),
-            Step::RapidToInitial if to_initial => way.rapid(level(initial)),
-            Step::RapidToInitial => {}
-            Step::RapidToInitialAlways => way.shifted_to(level(initial), drill.axis),
-            Step::RapidToR => way.shifted_to(level(r), drill.axis),
-            Step::Shift => {
+            CycleStep::Dwell => way.dwell(drill.dwell),
+            CycleStep::DwellAtR if self.settings.undocumented.tap_dwells_at_r => way.dwell(drill.dwell),
+            CycleStep::DwellAtR => {}
+            CycleStep::FeedToR => way.feed(level(r)),
+            CycleStep::RapidBack => {
+                way.rapid_along_axis(level(if to_initial { initial } else { r }), drill.axis)
+            }
+            CycleStep::RapidToInitial if to_initial => way.rapid(level(initial)),
+            CycleStep::RapidToInitial => {}
+            CycleStep::RapidToInitialAlways => way.rapid_along_axis(level(initial), drill.axis),
+            CycleStep::RapidToR => way.rapid_along_axis(level(r), drill.axis),
+            CycleStep::Shift => {
                 let mut to = way.at;
-                to[drill.shift.0] = self.clean(to[drill.shift.0] + drill.shift.1);
+                to[drill.shift.0] = self.remove_residue(to[drill.shift.0] + drill.shift.1);
                 way.rapid(to);
             }
-            Step::ShiftBack => {
+            CycleStep::ShiftBack => {
                 let mut to = way.at;
-                to[drill.shift.0] = self.clean(to[drill.shift.0] - drill.shift.1);
+                to[drill.shift.0] = self.remove_residue(to[drill.shift.0] - drill.shift.1);
                 way.rapid(to);
             }
-            Step::SpindleStop => (way.tell)(turning(SpindleDirection::Off), 0.0),
-            Step::SpindleForward => (way.tell)(turning(SpindleDirection::Clockwise), 0.0),
-            Step::SpindleReverse => (way.tell)(turning(SpindleDirection::Counterclockwise), 0.0),
-            Step::ManualRetract => {
+            CycleStep::SpindleStop => (way.emit)(turning(SpindleDirection::Off), 0.0),
+            CycleStep::SpindleForward => (way.emit)(turning(SpindleDirection::Clockwise), 0.0),
+            CycleStep::SpindleReverse => (way.emit)(turning(SpindleDirection::Counterclockwise), 0.0),
+            CycleStep::ManualRetract => {
                 let stop = EventKind::Stop {
                     kind: StopKind::M00,
                     text: "retract by hand to R".into(),
-                    named: Vec::new(),
+                    variables: Vec::new(),
                 };
-                (way.tell)(stop, 0.0);
+                (way.emit)(stop, 0.0);
                 way.rapid(level(r));
             }
         }
@@ -151,11 +153,11 @@ impl Executor {
 
 impl CyclePlan {
     /// From a hole to the one that K repeats as number `turn`; 0 is the block's own.
-    fn advance(&self, core: &Executor, turn: u32, hole: &mut Position) {
-        if let Some(Pattern { radius, start, turn: angle, .. }) = self.pattern {
+    fn move_to_hole(&self, core: &Executor, turn: u32, hole: &mut Position) {
+        if let Some(BoltHolePattern { radius, start, angle_step: angle, .. }) = self.pattern {
             let angle = Deg(start + f64::from(turn) * angle);
-            hole[0] = core.clean(self.hole[0] + radius * angle.cos());
-            hole[1] = core.clean(self.hole[1] + radius * angle.sin());
+            hole[0] = core.remove_residue(self.first_hole[0] + radius * angle.cos());
+            hole[1] = core.remove_residue(self.first_hole[1] + radius * angle.sin());
             return;
         }
         if turn == 0 {
@@ -163,9 +165,10 @@ impl CyclePlan {
         }
         let from = *hole;
         for (place, _) in core.settings.axes.iter() {
-            hole[place] = core.clean(self.hole[place] + f64::from(turn) * self.step[place]);
+            hole[place] =
+                core.remove_residue(self.first_hole[place] + f64::from(turn) * self.hole_step[place]);
         }
-        if let Some(PolarRepeats { plane, first, angle_step: angle }) = self.circle {
+        if let Some(PolarRepeats { plane, first, angle_step: angle }) = self.polar_repeats {
             (hole[plane.0], hole[plane.1]) = (from[plane.0], from[plane.1]);
             let here = PolarPoint { angle: first.angle + f64::from(turn) * angle, ..first };
             core.polar_point(&here, plane, hole);
@@ -173,20 +176,20 @@ impl CyclePlan {
     }
 
     /// The axes whose place on the part isn't known when it begins.
-    pub(super) fn unplaced(&self) -> u8 {
-        self.from.work_zero_unknown
+    pub(super) fn unknown_axes(&self) -> u8 {
+        self.start_state.work_zero_unknown
     }
 
     /// The tool comes from here.
-    pub(super) fn begins_at(&mut self, machine: Position) {
-        self.from.machine = machine;
+    pub(super) fn set_start(&mut self, machine: Position) {
+        self.start_state.machine = machine;
     }
 
     /// Where the last hole is.
-    pub(super) fn last(&self, core: &Executor) -> Position {
-        let mut hole = self.hole;
+    pub(super) fn last_hole(&self, core: &Executor) -> Position {
+        let mut hole = self.first_hole;
         for turn in 0..self.repeats {
-            self.advance(core, turn, &mut hole);
+            self.move_to_hole(core, turn, &mut hole);
         }
         hole
     }
@@ -194,32 +197,32 @@ impl CyclePlan {
 
 /// The tool on its way through a cycle, in machine coordinates.
 struct CycleMotion<'c, T> {
-    core: &'c Executor,
+    executor: &'c Executor,
     at: Position,
-    unplaced: u8,
+    unknown_axes: u8,
     rate: MmPerMin,
-    tell: &'c mut T,
+    emit: &'c mut T,
 }
 
 impl<T: FnMut(EventKind, f64)> CycleMotion<'_, T> {
     /// From the next move's end on the axis stands where its place on the part is known, or isn't.
     fn set_work_zero(&mut self, axis: AxisIndex, unplaced: bool) {
-        let axes = self.unplaced & !(1 << axis) | u8::from(unplaced) << axis;
-        if axes != self.unplaced {
-            self.unplaced = axes;
-            (self.tell)(EventKind::WorkZeroUnknown { axes }, 0.0);
+        let axes = self.unknown_axes & !(1 << axis) | u8::from(unplaced) << axis;
+        if axes != self.unknown_axes {
+            self.unknown_axes = axes;
+            (self.emit)(EventKind::WorkZeroUnknown { axes }, 0.0);
         }
     }
 
     fn rapid(&mut self, to: Position) {
         if to != self.at {
-            (self.tell)(EventKind::Rapid { to }, self.core.rapid_seconds(&self.at, &to));
+            (self.emit)(EventKind::Rapid { to }, self.executor.rapid_seconds(&self.at, &to));
             self.at = to;
         }
     }
 
     /// Along the drilling axis only: the plane keeps its shift.
-    fn shifted_to(&mut self, to: Position, axis: AxisIndex) {
+    fn rapid_along_axis(&mut self, to: Position, axis: AxisIndex) {
         let mut there = self.at;
         there[axis] = to[axis];
         self.rapid(there);
@@ -228,14 +231,14 @@ impl<T: FnMut(EventKind, f64)> CycleMotion<'_, T> {
     fn feed(&mut self, to: Position) {
         if to != self.at {
             let squares: f64 = (0..to.0.len()).map(|a| (to[a] - self.at[a]) * (to[a] - self.at[a])).sum();
-            (self.tell)(EventKind::Feed { to, rate: self.rate }, squares.sqrt() / self.rate.0 * 60.0);
+            (self.emit)(EventKind::Feed { to, rate: self.rate }, squares.sqrt() / self.rate.0 * 60.0);
             self.at = to;
         }
     }
 
     fn dwell(&mut self, seconds: f64) {
         if seconds > 0.0 {
-            (self.tell)(EventKind::Dwell { time: Seconds(seconds) }, seconds);
+            (self.emit)(EventKind::Dwell { time: Seconds(seconds) }, seconds);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! G33: a straight cut that keeps step with the spindle.
 use super::Executor;
-use super::eval::Checked;
+use super::evaluation::ExecResult;
 use super::plan::BlockPlan;
 use super::words::{BlockWords, WordNumber};
 use gcode_lang::alarm::Alarm;
@@ -11,15 +11,15 @@ use gcode_lang::units::MmPerMin;
 
 impl Executor {
     /// F is the lead along the axis with the longest way, in every feed mode; Q, the angle it starts at, moves nothing.
-    pub(super) fn thread(
+    pub(super) fn plan_thread(
         &self,
         plan: &mut BlockPlan,
         to: Position,
         given: &BlockWords,
         span: Span,
-    ) -> Checked<()> {
-        given.accept(b"Q");
-        let refused = |what: &str, span| Err(Alarm::NotSimulated { what: what.into() }.at(span));
+    ) -> ExecResult<()> {
+        given.mark_read(b"Q");
+        let refused = |what: &str, span| Err(Alarm::NotSimulated { what: what.into() }.located_at(span));
         if let Some((WordNumber::Literal(lead), _)) = given.get(b'F')
             && lead.places.is_none()
         {
@@ -35,7 +35,7 @@ impl Executor {
         let inch = plan.state.modal.unit == Unit::Inch;
         let lead = plan.state.codes.f * if inch { 25.4 } else { 1.0 };
         if lead <= 0.0 {
-            return Err(Alarm::FeedZero.at(span));
+            return Err(Alarm::FeedZero.located_at(span));
         }
         let from = plan.state.machine;
         if to == from {

@@ -1,6 +1,6 @@
 //! The modal state: one typed field per group, so that it cannot contradict itself; `Default` is power-on.
-use gcode_lang::program::codes::{Effect, GCodeRow};
 use gcode_lang::program::cycles::Cycle;
+use gcode_lang::program::g_codes::{Effect, GCodeRow};
 use gcode_lang::program::modes::{
     CutterSide, CuttingMode, Distance, FeedMode, Length, Mirror, ModalCall, Motion, Plane, Polar, ReturnTo,
     Rotation, Scaling, SpindleMode, StrokeCheck, Unit, WorkSystem,

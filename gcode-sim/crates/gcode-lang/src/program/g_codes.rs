@@ -126,27 +126,27 @@ pub struct GCodeRow {
     pub effect: Effect,
     pub help: &'static str,
     /// The controls that have it so.
-    pub on: &'static [CodeSet],
+    pub code_sets: &'static [CodeSet],
 }
 
 /// A code that all controls have.
 const fn row(code: u32, effect: Effect, help: &'static str) -> GCodeRow {
-    GCodeRow { code, effect, help, on: CodeSet::EVERY }
+    GCodeRow { code, effect, help, code_sets: CodeSet::ALL_CONTROLS }
 }
 
 /// A code that a Haas hasn't, or has as something else.
 const fn fanuc(code: u32, effect: Effect, help: &'static str) -> GCodeRow {
-    GCodeRow { code, effect, help, on: CodeSet::FANUC }
+    GCodeRow { code, effect, help, code_sets: CodeSet::FANUC }
 }
 
 /// A code of controls that move five axes at once: the 0i-F moves four.
-const fn five(code: u32, effect: Effect, help: &'static str) -> GCodeRow {
-    GCodeRow { code, effect, help, on: CodeSet::FIVE_AXES }
+const fn five_axis(code: u32, effect: Effect, help: &'static str) -> GCodeRow {
+    GCodeRow { code, effect, help, code_sets: CodeSet::FIVE_AXES }
 }
 
 /// A code of a Haas alone.
 const fn haas(code: u32, effect: Effect, help: &'static str) -> GCodeRow {
-    GCodeRow { code, effect, help, on: CodeSet::HAAS }
+    GCodeRow { code, effect, help, code_sets: CodeSet::HAAS }
 }
 
 const fn cycle(index: usize) -> GCodeRow {
@@ -155,7 +155,7 @@ const fn cycle(index: usize) -> GCodeRow {
 }
 
 const fn fanuc_cycle(index: usize) -> GCodeRow {
-    GCodeRow { on: CodeSet::FANUC, ..cycle(index) }
+    GCodeRow { code_sets: CodeSet::FANUC, ..cycle(index) }
 }
 
 /// All codes in ascending order; a code that is another thing on another control has a row for each.
@@ -221,8 +221,8 @@ pub const CODES: &[GCodeRow] = &[
     fanuc(426, Effect::NotSimulated, "cutter compensation in space"),
     row(430, Effect::Length(Length::Plus), "tool length compensation"),
     fanuc(431, Effect::NotSimulated, "tool length compensation along the tool"),
-    five(434, Effect::NotSimulated, "tool centre point control"),
-    five(435, Effect::NotSimulated, "tool centre point control with tool vectors"),
+    five_axis(434, Effect::NotSimulated, "tool centre point control"),
+    five_axis(435, Effect::NotSimulated, "tool centre point control with tool vectors"),
     fanuc(437, Effect::NotSimulated, "tool offset"),
     row(440, Effect::Length(Length::Minus), "tool length compensation, negative"),
     fanuc(450, Effect::NotSimulated, "tool offset"),
@@ -353,15 +353,15 @@ pub const CODES: &[GCodeRow] = &[
 
 /// What a code × 10 is on each group of controls: the place of its row; 255 where they don't have it.
 #[derive(Clone, Copy, Debug)]
-pub struct RowLookup([u8; CodeSet::EVERY.len()]);
+pub struct RowLookup([u8; CodeSet::ALL_CONTROLS.len()]);
 
 impl RowLookup {
     const NONE: u8 = u8::MAX;
-    const NOWHERE: Self = Self([Self::NONE; CodeSet::EVERY.len()]);
+    const NOT_FOUND: Self = Self([Self::NONE; CodeSet::ALL_CONTROLS.len()]);
 
     /// What the code is on a control.
     #[inline]
-    pub fn on(&self, set: CodeSet) -> Option<&'static GCodeRow> {
+    pub fn row_for(&self, set: CodeSet) -> Option<&'static GCodeRow> {
         CODES.get(usize::from(self.0[set as usize]))
     }
 }
@@ -369,19 +369,19 @@ impl RowLookup {
 /// What is known of a code × 10.
 #[inline]
 pub fn find(code: u32) -> RowLookup {
-    FOUND.get(code as usize).copied().unwrap_or(RowLookup::NOWHERE)
+    LOOKUP.get(code as usize).copied().unwrap_or(RowLookup::NOT_FOUND)
 }
 
 /// The same of each code × 10 up to the last one.
-const FOUND: [RowLookup; LAST_CODE + 1] = {
+const LOOKUP: [RowLookup; LAST_CODE + 1] = {
     assert!(CODES.len() <= RowLookup::NONE as usize);
-    let mut all = [RowLookup::NOWHERE; LAST_CODE + 1];
+    let mut all = [RowLookup::NOT_FOUND; LAST_CODE + 1];
     let mut place = 0;
     while place < CODES.len() {
         let row = &CODES[place];
         let mut set = 0;
-        while set < row.on.len() {
-            all[row.code as usize].0[row.on[set] as usize] = place as u8;
+        while set < row.code_sets.len() {
+            all[row.code as usize].0[row.code_sets[set] as usize] = place as u8;
             set += 1;
         }
         place += 1;
@@ -403,16 +403,16 @@ mod tests {
     #[test]
     fn rows_ascend_and_a_control_has_one_for_each_code() {
         for pair in CODES.windows(2) {
-            let once = pair[0].on.iter().all(|set| !pair[1].on.contains(set));
+            let once = pair[0].code_sets.iter().all(|set| !pair[1].code_sets.contains(set));
             let ascends = pair[0].code < pair[1].code || pair[0].code == pair[1].code && once;
             assert!(ascends, "G{}", spelled(pair[1].code));
         }
-        assert!(find(143).on(CodeSet::Fanuc31i).is_none());
+        assert!(find(143).row_for(CodeSet::Fanuc31i).is_none());
     }
 
     #[test]
     fn a_code_is_what_its_control_makes_of_it() {
-        let effect = |code, set| find(code).on(set).map(|row| row.effect);
+        let effect = |code, set| find(code).row_for(set).map(|row| row.effect);
         assert_eq!(effect(1540, CodeSet::Haas), Some(Effect::AdditionalWork));
         assert_eq!(effect(1540, CodeSet::Fanuc31i), None);
         assert_eq!(effect(510, CodeSet::Fanuc31i), Some(Effect::Scaling(Scaling::On)));

@@ -2,7 +2,7 @@
 use std::collections::BTreeMap;
 
 use super::state::State;
-use super::vars::{Value, Vars};
+use super::variables::{Value, Vars};
 use super::{Control, OperatorStop, Outcome};
 use gcode_lang::alarm::Alarm;
 use gcode_lang::control::Settings;
@@ -17,7 +17,7 @@ impl Control {
     }
 
     pub fn settings(&self) -> &Settings {
-        &self.core.settings
+        &self.executor.settings
     }
 
     /// How the run ended, or `None` while it goes on.
@@ -27,79 +27,79 @@ impl Control {
 
     /// What isn't vacant, by number: the main program's locals as they stood before M30's reset, and the commons.
     pub fn variables(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
-        self.core.vars.nonvacant()
+        self.executor.vars.nonvacant()
     }
 
     /// A variable of any kind by its number, as a program would read it now.
     pub fn variable(&self, number: u32) -> Result<Value, Alarm> {
-        self.core.without_side_effects(|core| core.read(number))
+        self.executor.without_side_effects(|core| core.read_variable(number))
     }
 
     /// Local and common variables as they stand.
     pub fn vars(&self) -> &Vars {
-        &self.core.vars
+        &self.executor.vars
     }
 
     /// The coordinate of an axis in the active work coordinate system, as #5001… show it.
     pub fn work_position(&self, axis: AxisIndex) -> f64 {
-        let state = &self.core.state;
-        self.core.shown(state, Some(axis), state.programmed[axis])
+        let state = &self.executor.state;
+        self.executor.to_program_unit(state, Some(axis), state.programmed[axis])
     }
 
     /// The tool's centre in machine coordinates, mm and degrees.
     pub fn machine_position(&self) -> Position {
-        let mut centre = self.core.state.machine;
-        for axis in 0..self.core.settings.axes.len() {
-            centre[axis] = self.core.centre(axis);
+        let mut centre = self.executor.state.machine;
+        for axis in 0..self.executor.settings.axes.len() {
+            centre[axis] = self.executor.tool_centre(axis);
         }
         centre
     }
 
     pub fn state(&self) -> &State {
-        &self.core.state
+        &self.executor.state
     }
 
     /// The block last begun, and the calls that led to it.
-    pub fn place(&self) -> Backtrace {
-        let calls = self.core.frame.calls.clone();
-        Backtrace { block: self.core.block, calls }
+    pub fn backtrace(&self) -> Backtrace {
+        let calls = self.executor.frame.calls.clone();
+        Backtrace { block: self.executor.block, calls }
     }
 
     /// Blocks executed so far.
     pub fn blocks(&self) -> u64 {
-        self.core.blocks
+        self.executor.blocks
     }
 
     /// Moves so far.
     pub fn moves(&self) -> u64 {
-        self.core.moves
+        self.executor.moves
     }
 
     /// What the motion takes, without acceleration.
     pub fn seconds(&self) -> Seconds {
-        Seconds(self.core.seconds)
+        Seconds(self.executor.seconds)
     }
 
     /// M codes that the control has no use for: they went to the machine builder's logic, which isn't simulated. Each
     /// with the first block that has it.
-    pub fn passed_on(&self) -> &BTreeMap<u32, Span> {
-        &self.core.passed_on
+    pub fn auxiliary_codes(&self) -> &BTreeMap<u32, Span> {
+        &self.executor.auxiliary_codes
     }
 
     /// The lines of DPRNT and BPRNT, without their ends; BPRNT prints bytes that are no text.
     pub fn output(&self) -> &[Vec<u8>] {
-        &self.core.printed.lines
+        &self.executor.printed.lines
     }
 
     /// The first and the last block of the loop that was found never to end, where that ended the run.
     pub fn endless_loop(&self) -> Option<(Span, Span)> {
-        let found = self.watch.endless()?;
-        let first = self.memory.place_of(found.program, found.to)?;
+        let found = self.loop_detector.endless_loop()?;
+        let first = self.memory.block_span(found.program, found.to)?;
         Some((first, found.from))
     }
 
     /// Operator stops in order; the first ten thousand.
     pub fn stops(&self) -> &[OperatorStop] {
-        &self.core.stops
+        &self.executor.stops
     }
 }
