@@ -73,10 +73,8 @@ fn uses_only(dir: &str, root: &str, may: &[&str]) {
 
 #[test]
 fn every_module_of_a_line_is_seen() {
-    let seen = named(
-        "use gcode_sim::{job::{Burr, Nose}, part, verify::checks}; gcode_inspect::holes::X",
-        "gcode_sim::",
-    );
+    let seen =
+        named("use gcode_sim::{job::{Burr, Nose}, part, verify::checks}; gcode_sim::holes::X", "gcode_sim::");
     assert_eq!(seen, ["job", "part", "verify", "holes"]);
     assert_eq!(named("use crate::units::Deg;", "crate::"), ["units"]);
 }

@@ -15,8 +15,8 @@ impl Executor {
     pub(super) fn plan_arc(
         &self,
         plan: &mut BlockPlan,
-        given: &BlockWords,
-        goal: &Endpoint,
+        block_words: &BlockWords,
+        endpoint: &Endpoint,
         span: Span,
     ) -> ExecResult<()> {
         let state = &plan.state;
@@ -27,26 +27,26 @@ impl Executor {
             Plane::Yz => (b'J', b'K', b'I'),
         };
         let start = (state.programmed[plane.0], state.programmed[plane.1]);
-        let end = (goal.programmed[plane.0], goal.programmed[plane.1]);
+        let end = (endpoint.programmed[plane.0], endpoint.programmed[plane.1]);
         let clockwise = state.modal.motion == Motion::Clockwise;
-        let centre = if let Some(radius) = self.dimension(given, b'R', state)? {
+        let centre = if let Some(radius) = self.dimension(block_words, b'R', state)? {
             // R goes before I J K.
-            given.mark_read(b"IJK");
+            block_words.mark_read(b"IJK");
             if start == end {
                 // The start is the end: with R there is nothing to go round.
-                if goal.programmed != state.programmed {
+                if endpoint.programmed != state.programmed {
                     let what = "an arc by R that ends at its start while another axis moves".into();
                     return Err(Alarm::NotSimulated { what }.located_at(span));
                 }
                 return Ok(());
             }
-            locate(self.centre_by_radius(start, end, radius, clockwise), given.span(b'R'))?
+            locate(self.centre_by_radius(start, end, radius, clockwise), block_words.span(b'R'))?
         } else {
-            if self.dimension(given, stray, state)?.unwrap_or(0.0) != 0.0 {
-                return Err(Alarm::PlaneSelect.located_at(given.span(stray)));
+            if self.dimension(block_words, stray, state)?.unwrap_or(0.0) != 0.0 {
+                return Err(Alarm::PlaneSelect.located_at(block_words.span(stray)));
             }
-            let i = self.dimension(given, first, state)?;
-            let j = self.dimension(given, second, state)?;
+            let i = self.dimension(block_words, first, state)?;
+            let j = self.dimension(block_words, second, state)?;
             if i.is_none() && j.is_none() {
                 return Err(Alarm::NoRadiusOrCentre.located_at(span));
             }
@@ -57,7 +57,7 @@ impl Executor {
             (start.0 + i, start.1 + j)
         };
         let (radius, sweep) = self.radius_and_sweep(start, end, centre, clockwise, span)?;
-        self.push_programmed_arc(plan, given, goal, plane, centre, sweep, radius, span)
+        self.push_programmed_arc(plan, block_words, endpoint, plane, centre, sweep, radius, span)
     }
 
     /// The mean radius and the sweep of an arc, if its end is near enough to the circle of its start.
@@ -83,8 +83,8 @@ impl Executor {
     fn push_programmed_arc(
         &self,
         plan: &mut BlockPlan,
-        given: &BlockWords,
-        goal: &Endpoint,
+        block_words: &BlockWords,
+        endpoint: &Endpoint,
         plane: (usize, usize),
         centre: (f64, f64),
         sweep: f64,
@@ -96,33 +96,33 @@ impl Executor {
         if state.transform.tilt.is_some() {
             return Err(Alarm::NotSimulated { what: "an arc in a tilted plane".into() }.located_at(span));
         }
-        let mut middle = state.programmed;
-        (middle[plane.0], middle[plane.1]) = centre;
-        let middle = self.to_machine(state, &middle);
+        let mut centre_point = state.programmed;
+        (centre_point[plane.0], centre_point[plane.1]) = centre;
+        let middle = self.to_machine(state, &centre_point);
         let centre = (middle[plane.0], middle[plane.1]);
         let (radius, sweep) = if round {
             let factor = state.transform.scaling.as_ref().map_or(1.0, |s| s.factor[plane.0].abs());
             (radius * factor, if mirrored { -sweep } else { sweep })
         } else {
-            if given.has(b'R') {
+            if block_words.has(b'R') {
                 return Err(
                     Alarm::NotSimulated { what: "an arc by R under unequal scaling".into() }.located_at(span)
                 );
             }
-            let (start, end) = (&state.machine, &goal.machine);
+            let (start, end) = (&state.machine, &endpoint.machine);
             let (start, end) = ((start[plane.0], start[plane.1]), (end[plane.0], end[plane.1]));
             self.radius_and_sweep(start, end, centre, (sweep < 0.0) != mirrored, span)?
         };
         let length = radius * sweep.abs().to_radians();
         // F is along the arc; all other axes follow (1403#5 HTG = 0).
-        let timed = self.path_time(state, length, given.has(b'F'));
+        let timed = self.path_time(state, length, block_words.has(b'F'));
         let (rate, seconds) = timed.map_err(|alarm| match alarm {
             Alarm::FeedZero | Alarm::NoSpeedForFeed => Alarm::ArcFeedZero.located_at(span),
             other => other.located_at(span),
         })?;
         let arc = PlanarArc { plane, centre, sweep: Deg(sweep) };
-        plan.events.push((EventKind::Arc { to: goal.machine, arc, rate }, seconds));
-        plan.state.machine = goal.machine;
+        plan.events.push((EventKind::Arc { to: endpoint.machine, arc, rate }, seconds));
+        plan.state.machine = endpoint.machine;
         Ok(())
     }
 
@@ -156,8 +156,8 @@ fn sweep(start: (f64, f64), end: (f64, f64), centre: (f64, f64), clockwise: bool
         return if clockwise { -360.0 } else { 360.0 };
     }
     let angle = |p: (f64, f64)| Deg::atan2(p.1 - centre.1, p.0 - centre.0).0;
-    let turn = (angle(end) - angle(start)).rem_euclid(360.0);
-    match (clockwise, turn) {
+    let rotation = (angle(end) - angle(start)).rem_euclid(360.0);
+    match (clockwise, rotation) {
         (true, 0.0) => -360.0,
         (false, 0.0) => 360.0,
         (true, turn) => turn - 360.0,

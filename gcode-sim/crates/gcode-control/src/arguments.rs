@@ -16,10 +16,10 @@ impl Executor {
         &self,
         words: &Words,
         list: &[LoweredWord],
-        every: bool,
+        is_every_block: bool,
     ) -> ExecResult<Locals> {
         let mut locals = VACANT;
-        let mut letters = ArgumentLocals::new(self.settings.reads_ijk_plainly, every);
+        let mut letters = ArgumentLocals::new(self.settings.reads_ijk_plainly, is_every_block);
         for word in list {
             if word.comma {
                 return Err(Alarm::ImproperAddress { letter: char::from(word.letter) }.located_at(word.span));

@@ -28,20 +28,20 @@ impl Executor {
     pub(super) fn plan_words(
         &self,
         words: &Words,
-        given: &mut BlockWords,
+        block_words: &mut BlockWords,
         plan: &mut BlockPlan,
     ) -> ExecResult<()> {
         let words = self.without_skipped(words);
         plan.reset(&self.state);
-        let mut calling = None;
+        let mut calling_word = None;
         if !self.settings.code_calls.is_empty() {
             if self.plan_macro_by_code(words, plan)? {
                 return Ok(());
             }
-            calling = self.subprogram_by_code(words)?;
+            calling_word = self.subprogram_by_code(words)?;
         }
-        self.evaluate_words(words, calling.as_ref(), given)?;
-        self.plan_block(words, calling, given, plan)
+        self.evaluate_words(words, calling_word.as_ref(), block_words)?;
+        self.plan_block(words, calling_word, block_words, plan)
     }
 
     /// The words of a block but for those behind a block skip that is on.
@@ -57,41 +57,41 @@ impl Executor {
     fn plan_block(
         &self,
         words: &Words,
-        calling: Option<CallingWord>,
-        given: &BlockWords,
+        calling_word: Option<CallingWord>,
+        block_words: &BlockWords,
         plan: &mut BlockPlan,
     ) -> ExecResult<()> {
         let span = self.block;
         self.check_words_with_return(words)?;
-        let act = self.apply_modal_codes(given, plan, span)?;
-        if self.has_codes(given, &plan.state) {
-            self.plan_coded_words(given, plan, span)?;
-            self.plan_m_codes(given, plan)?;
+        let axis_use = self.apply_modal_codes(block_words, plan, span)?;
+        if self.has_codes(block_words, &plan.state) {
+            self.plan_coded_words(block_words, plan, span)?;
+            self.plan_m_codes(block_words, plan)?;
         }
-        let lengthened = self.plan_length(given, plan, span)?;
-        match act {
+        let has_new_length = self.plan_length(block_words, plan, span)?;
+        match axis_use {
             Some(act) => {
-                if lengthened {
+                if has_new_length {
                     self.recompute_position(&mut plan.state);
                 }
-                self.execute_axis_use(act, given, plan, span)?;
+                self.execute_axis_use(act, block_words, plan, span)?;
             }
-            None => self.plan_motion(given, plan, lengthened, span)?,
+            None => self.plan_motion(block_words, plan, has_new_length, span)?,
         }
         if let Some(call) = words.call() {
             self.plan_call(words, call, plan)?;
         }
-        if let Some(calling) = calling {
+        if let Some(calling) = calling_word {
             self.plan_calling_word(words, &calling, plan)?;
         }
         if plan.commands_axes {
             plan.state.last_end_point = None;
             self.check_flow_after_move(&plan.flow, span)?;
         }
-        if self.needs_lookahead(given, &plan.state) {
-            self.plan_lookahead(act, given, plan, span)?;
+        if self.needs_lookahead(block_words, &plan.state) {
+            self.plan_lookahead(axis_use, block_words, plan, span)?;
         }
-        self.check_unread(given, plan)?;
+        self.check_unread(block_words, plan)?;
         match &self.settings.stroke_limits {
             Some(stroke) => self.check_stroke(stroke, plan, span),
             None => Ok(()),
@@ -100,19 +100,19 @@ impl Executor {
 
     /// Whether a block has anything else than axis words and codes of group 01, or the state depends on D and F alone.
     #[inline]
-    fn has_codes(&self, given: &BlockWords, state: &State) -> bool {
-        given.has_letters(!self.settings.axes.letter_bits())
-            || given.has_non_motion_words()
-            || given.m_code_count > 0
+    fn has_codes(&self, block_words: &BlockWords, state: &State) -> bool {
+        block_words.has_letters(!self.settings.axes.letter_bits())
+            || block_words.has_non_motion_words()
+            || block_words.m_code_count > 0
             || state.modal.cutter != CutterSide::Off
     }
 
     /// What nothing has read may still mean something to a control: it isn't passed over in silence. In a block
     /// without axes such words go to the machine builder's logic with his M code.
     #[inline(always)]
-    fn check_unread(&self, given: &BlockWords, plan: &mut BlockPlan) -> ExecResult<()> {
-        match given.first_unread() {
-            Some(unread) => self.pass_to_machine_builder(unread, given, plan),
+    fn check_unread(&self, block_words: &BlockWords, plan: &mut BlockPlan) -> ExecResult<()> {
+        match block_words.first_unread() {
+            Some(unread) => self.pass_to_machine_builder(unread, block_words, plan),
             None => Ok(()),
         }
     }
@@ -121,11 +121,11 @@ impl Executor {
     fn pass_to_machine_builder(
         &self,
         (letter, span): (char, Span),
-        given: &BlockWords,
+        block_words: &BlockWords,
         plan: &mut BlockPlan,
     ) -> ExecResult<()> {
         match plan.auxiliary_codes.last() {
-            Some(code) if !self.names_axis(given) => {
+            Some(code) if !self.names_axis(block_words) => {
                 plan.notes.push(Note::WordsPassedOn { code: *code, letter });
                 Ok(())
             }

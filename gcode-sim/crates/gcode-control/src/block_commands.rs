@@ -21,21 +21,21 @@ pub struct BlockCommands {
 impl Control {
     /// What [`Control::next_block`] commands; nothing for a block that is skipped.
     pub fn next_commands(&self) -> BlockCommands {
-        let mut commanded = BlockCommands::default();
+        let mut commands = BlockCommands::default();
         self.inspect_next(|core, op| {
             if core.is_skipped(op) {
                 return;
             }
             if let OpKind::Words(words) = core.guarded_operation(op.kind()) {
-                core.collect_commands(words, &mut commanded);
+                core.collect_commands(words, &mut commands);
             }
         });
-        commanded
+        commands
     }
 
     /// Whether [`Control::next_block`] will do all that it says: it isn't skipped, and no condition stands in the way.
     pub fn is_next_unconditional(&self) -> bool {
-        let is_whole = self.inspect_next(|core, op| {
+        let is_unconditional = self.inspect_next(|core, op| {
             let condition = match op.kind() {
                 OpKind::If { condition, .. }
                 | OpKind::Statement(
@@ -47,10 +47,11 @@ impl Control {
                 | OpKind::AssignFree(_)
                 | OpKind::Alarm(_) => None,
             };
-            let holds = condition.is_none_or(|condition| core.evaluate_condition(condition).unwrap_or(true));
-            holds && !core.is_skipped(op)
+            let is_true =
+                condition.is_none_or(|condition| core.evaluate_condition(condition).unwrap_or(true));
+            is_true && !core.is_skipped(op)
         });
-        is_whole.unwrap_or(true)
+        is_unconditional.unwrap_or(true)
     }
 }
 
@@ -65,12 +66,12 @@ impl Executor {
             _ => words,
         };
         let mut distance = self.state.modal.distance;
-        let mut act = None;
+        let mut one_shot = None;
         for word in words.list.iter().filter(|word| word.letter == b'G') {
             let Ok(Some(raw)) = self.evaluate_word(words, word) else { continue };
             let Ok(row) = computed_row(raw, self.settings.codes) else { continue };
             match row.effect {
-                Effect::OneShot(one) => act = Some(one),
+                Effect::OneShot(one) => one_shot = Some(one),
                 Effect::Distance(new) => distance = new,
                 _ => {}
             }
@@ -79,12 +80,12 @@ impl Executor {
         let values = words.list.iter().filter(|word| b"FST".contains(&word.letter) && !word.comma);
         let values = values.filter(|word| matches!(self.evaluate_word(words, word), Ok(Some(_))));
         commanded.valued_letters.extend(values.map(|word| char::from(word.letter)));
-        if act == Some(OneShot::DataInput) {
+        if one_shot == Some(OneShot::DataInput) {
             self.collect_written_offsets(words, commanded);
-        } else if is_axis_positioned(act, distance) {
+        } else if is_axis_positioned(one_shot, distance) {
             let letters = words.list.iter().filter(|word| !word.comma && word.axis.is_none());
-            let given = letters.filter(|word| matches!(self.evaluate_word(words, word), Ok(Some(_))));
-            let axes = given.filter(|word| self.settings.axes.find(word.letter).is_some());
+            let valued = letters.filter(|word| matches!(self.evaluate_word(words, word), Ok(Some(_))));
+            let axes = valued.filter(|word| self.settings.axes.find(word.letter).is_some());
             commanded.axes.extend(axes.map(|word| char::from(word.letter)));
         }
     }
@@ -105,8 +106,8 @@ impl Executor {
 }
 
 /// Whether the axes of a block end where it says, wherever they stood.
-fn is_axis_positioned(act: Option<OneShot>, distance: Distance) -> bool {
-    match act {
+fn is_axis_positioned(one_shot: Option<OneShot>, distance: Distance) -> bool {
+    match one_shot {
         Some(OneShot::Reference | OneShot::SecondReference | OneShot::CheckReference) => true,
         None
         | Some(

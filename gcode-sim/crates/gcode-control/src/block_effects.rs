@@ -23,8 +23,8 @@ impl BlockEffects {
         self.has_effects.set(true);
     }
 
-    pub(super) fn end_run(&self, over: RunEnd) {
-        self.run_end.set(Some(over));
+    pub(super) fn end_run(&self, run_end: RunEnd) {
+        self.run_end.set(Some(run_end));
         self.has_effects.set(true);
     }
 
@@ -40,12 +40,12 @@ impl BlockEffects {
     }
 
     /// Does what leaves nothing behind.
-    pub(super) fn without_effects<T>(&self, look: impl FnOnce() -> T) -> T {
+    pub(super) fn without_effects<T>(&self, inspect: impl FnOnce() -> T) -> T {
         let before = (self.has_effects.get(), self.note.get(), self.run_end.get());
-        let seen = look();
+        let result = inspect();
         self.has_effects.set(before.0);
         self.note.set(before.1);
         self.run_end.set(before.2);
-        seen
+        result
     }
 }

@@ -58,9 +58,11 @@ impl Executor {
             Some(word) => self.count_of_word(words, word)?,
             None => None,
         };
-        let unsure = &self.settings.undocumented;
+        let undocumented = &self.settings.undocumented;
         let missing = match kind {
-            CallKind::Subprogram if unsure.missing_p_is_311 => Alarm::NoNameInCall.located_at(call.span),
+            CallKind::Subprogram if undocumented.missing_p_is_311 => {
+                Alarm::NoNameInCall.located_at(call.span)
+            }
             _ => Alarm::ProgramNotNamed.located_at(call.span),
         };
         let mut repeats = match &call.repeats {
@@ -87,10 +89,11 @@ impl Executor {
                 }
             }
         };
-        let every = kind == CallKind::EveryBlock;
-        let locals = self.evaluate_arguments(words, &call.arguments, every)?;
-        let own = self.settings.undocumented.every_block_calls_itself && !call.arguments.is_empty();
-        let calls_now = !every || own;
+        let is_every_block = kind == CallKind::EveryBlock;
+        let locals = self.evaluate_arguments(words, &call.arguments, is_every_block)?;
+        let has_own_arguments =
+            self.settings.undocumented.every_block_calls_itself && !call.arguments.is_empty();
+        let calls_now = !is_every_block || has_own_arguments;
         let repeats = repeats.unwrap_or(1);
         plan.flow = BlockFlow::Call(Box::new(CallPlan {
             kind,
@@ -181,8 +184,8 @@ impl Executor {
         if kind == FrameKind::Macro {
             self.vars.push_level(&call.locals);
         }
-        let again = self.settings.undocumented.repeats_reset_locals && call.repeats > 1;
-        let arguments = again.then(|| Box::new(call.locals));
+        let resets_arguments = self.settings.undocumented.repeats_reset_locals && call.repeats > 1;
+        let arguments = resets_arguments.then(|| Box::new(call.locals));
         let modal = self.frame.modal_call_count;
         self.push(Frame {
             arguments,

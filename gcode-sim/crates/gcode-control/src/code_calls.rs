@@ -52,8 +52,9 @@ impl Executor {
 
     fn macro_call(&self, called: CalledProgram, words: &Words, code: &LoweredWord) -> ExecResult<CallPlan> {
         let arguments = &words.list[1..];
-        let every = called.kind == CodeCallKind::Modal && self.settings.code_calls.modal_is_every_block;
-        for word in arguments.iter().filter(|_| !every) {
+        let is_every_block =
+            called.kind == CodeCallKind::Modal && self.settings.code_calls.modal_is_every_block;
+        for word in arguments.iter().filter(|_| !is_every_block) {
             match word.letter {
                 b'G' => return Err(Alarm::GAsArgument.located_at(word.span)),
                 // An option of some controls makes an argument of it.
@@ -71,15 +72,15 @@ impl Executor {
         let own = self.settings.undocumented.every_block_calls_itself && !arguments.is_empty();
         Ok(CallPlan {
             kind: match called.kind {
-                CodeCallKind::Modal if every => CallKind::EveryBlock,
+                CodeCallKind::Modal if is_every_block => CallKind::EveryBlock,
                 CodeCallKind::Modal => CallKind::Modal,
                 CodeCallKind::Macro | CodeCallKind::Subprogram => CallKind::Macro,
             },
             target: ProgramRef::Number(called.program),
             repeats,
             start: None,
-            locals: self.evaluate_arguments(words, arguments, every)?,
-            is_immediate: !every || own,
+            locals: self.evaluate_arguments(words, arguments, is_every_block)?,
+            is_immediate: !is_every_block || own,
             origins: call_origins(code.letter),
             is_external: false,
             span: code.span,

@@ -16,13 +16,13 @@ use gcode_lang::source::Span;
 
 impl Executor {
     /// Whether a block drills: it names an axis or R.
-    pub(super) fn is_drilling_block(&self, given: &BlockWords) -> bool {
-        given.has(b'R') || self.names_axis(given)
+    pub(super) fn is_drilling_block(&self, block_words: &BlockWords) -> bool {
+        block_words.has(b'R') || self.names_axis(block_words)
     }
 
     /// Z; with FXY 5101#0 the plane's normal or the axis beside it that the block names, which stays the same until
     /// G80.
-    pub(super) fn drilling_axis(&self, given: &BlockWords, state: &State) -> Result<AxisIndex, Alarm> {
+    pub(super) fn drilling_axis(&self, block_words: &BlockWords, state: &State) -> Result<AxisIndex, Alarm> {
         let find = |letter: u8| {
             let missing = Alarm::ImproperAddress { letter: char::from(letter) };
             self.settings.axes.find(letter).ok_or(missing)
@@ -30,18 +30,18 @@ impl Executor {
         if !self.settings.drills_by_plane {
             return find(b'Z');
         }
-        let along = match state.modal.plane {
+        let letters = match state.modal.plane {
             Plane::Xy => b"ZW",
             Plane::Zx => b"YV",
             Plane::Yz => b"XU",
         };
-        let mut named = along.iter().filter(|letter| given.has(**letter));
+        let mut named = letters.iter().filter(|letter| block_words.has(**letter));
         match (state.cycle.axis, named.next(), named.next()) {
             (_, Some(_), Some(_)) => Err(Alarm::DrillingAxis),
-            (None, named, None) => find(*named.unwrap_or(&along[0])),
+            (None, named, None) => find(*named.unwrap_or(&letters[0])),
             (Some(axis), named, None) => {
                 let letter = self.settings.axes.letter(axis) as u8;
-                let same = along.contains(&letter) && named.is_none_or(|named| *named == letter);
+                let same = letters.contains(&letter) && named.is_none_or(|named| *named == letter);
                 if same { Ok(axis) } else { Err(Alarm::DrillingAxis) }
             }
             (_, None, Some(_)) => Err(Alarm::DrillingAxis),
@@ -52,21 +52,21 @@ impl Executor {
     pub(super) fn plan_cycle(
         &self,
         plan: &mut BlockPlan,
-        given: &BlockWords,
+        block_words: &BlockWords,
         cycle: &'static Cycle,
         pattern: Option<BoltHolePattern>,
         span: Span,
     ) -> ExecResult<()> {
-        let axis = locate(self.drilling_axis(given, &plan.state), span)?;
+        let axis = locate(self.drilling_axis(block_words, &plan.state), span)?;
         let stretch = locate(stretch_along(plan, cycle, axis), span)?;
-        let repeats = self.cycle_repeats(given, pattern)?;
+        let repeats = self.cycle_repeats(block_words, pattern)?;
         let incremental = plan.state.modal.distance == Distance::Incremental;
         let from = *plan.state;
         // The block's own depth words are not a move.
-        let mut goal = self.resolve_endpoint(given, &mut plan.state)?.programmed;
-        goal[axis] = from.programmed[axis];
+        let mut endpoint = self.resolve_endpoint(block_words, &mut plan.state)?.programmed;
+        endpoint[axis] = from.programmed[axis];
         plan.state.set_work_zero_unknown(axis, from.work_zero_unknown >> axis & 1 == 1);
-        self.read_cycle_words(plan, given, axis, incremental)?;
+        self.read_cycle_words(plan, block_words, axis, incremental)?;
         let data = &plan.state.cycle;
         for (level, letter) in [(data.r, 'R'), (data.z, self.settings.axes.letter(axis))] {
             if !level.is_commanded {
@@ -77,17 +77,18 @@ impl Executor {
             plan.notes.push(Note::DrillsAlongZ { code: plan.state.modal.plane.code() });
         }
         if cycle.needs_q {
-            self.check_peck_words(plan, given, pattern, span)?;
+            self.check_peck_words(plan, block_words, pattern, span)?;
         }
-        let (rate, _) = locate(self.path_time(&plan.state, 1.0, given.has(b'F')), span)?;
+        let (rate, _) = locate(self.path_time(&plan.state, 1.0, block_words.has(b'F')), span)?;
         plan.commands_axes = true;
         if cycle.needs_q && has_too_many_pecks(&plan.state.cycle.unscaled(stretch), repeats) {
             let what = "more than a million pecks in one block".into();
             return Err(Alarm::NotSimulated { what }.located_at(span));
         }
-        let rolls =
-            |(axis, letter): (AxisIndex, char)| self.settings.rolls_over[axis] && given.has(letter as u8);
-        if incremental && self.settings.axes.iter().any(rolls) {
+        let is_rollover_word = |(axis, letter): (AxisIndex, char)| {
+            self.settings.rolls_over[axis] && block_words.has(letter as u8)
+        };
+        if incremental && self.settings.axes.iter().any(is_rollover_word) {
             let what = "a drilling cycle with an incremental axis that rolls over".into();
             return Err(Alarm::NotSimulated { what }.located_at(span));
         }
@@ -98,18 +99,18 @@ impl Executor {
         let mut step = Position::default();
         if incremental {
             for (place, _) in self.settings.axes.iter() {
-                step[place] = goal[place] - from.programmed[place];
+                step[place] = endpoint[place] - from.programmed[place];
             }
         }
         let first = self.plane_axes(plan.state.modal.plane).map_or(0, |(first, _)| first);
         let shift = plan.state.cycle.q.unwrap_or(0.0).abs();
-        let circle = self.polar_repeats(plan, given, incremental, repeats)?;
-        let drill = CyclePlan {
+        let polar_repeats = self.polar_repeats(plan, block_words, incremental, repeats)?;
+        let cycle_plan = CyclePlan {
             cycle,
             start_state: State { machine: from.machine, ..*plan.state },
-            first_hole: goal,
+            first_hole: endpoint,
             hole_step: step,
-            polar_repeats: circle,
+            polar_repeats,
             pattern,
             repeats: repeats.max(1),
             axis,
@@ -118,7 +119,7 @@ impl Executor {
             dwell: plan.state.cycle.p,
             stretch,
         };
-        plan.state.programmed = drill.last_hole(self);
+        plan.state.programmed = cycle_plan.last_hole(self);
         if repeats == 0 {
             // Positions only.
             let mut to = self.to_machine(&plan.state, &plan.state.programmed);
@@ -136,29 +137,33 @@ impl Executor {
         plan.state.set_work_zero_unknown(axis, unplaced);
         plan.state.programmed[axis] = level;
         plan.state.machine = self.to_machine(&plan.state, &plan.state.programmed);
-        plan.cycle_plan = Some(drill);
+        plan.cycle_plan = Some(cycle_plan);
         Ok(())
     }
 
-    fn cycle_repeats(&self, given: &BlockWords, pattern: Option<BoltHolePattern>) -> ExecResult<u32> {
+    fn cycle_repeats(&self, block_words: &BlockWords, pattern: Option<BoltHolePattern>) -> ExecResult<u32> {
         let letter = self.settings.cycle_repeat_letter;
         let repeats = match pattern {
             Some(pattern) => pattern.count,
-            None => given.count(letter)?.unwrap_or(1),
+            None => block_words.count(letter)?.unwrap_or(1),
         };
-        if repeats > 9999 { Err(Alarm::TooManyDigits.located_at(given.span(letter))) } else { Ok(repeats) }
+        if repeats > 9999 {
+            Err(Alarm::TooManyDigits.located_at(block_words.span(letter)))
+        } else {
+            Ok(repeats)
+        }
     }
 
     /// A cycle with pecks needs their depth.
     fn check_peck_words(
         &self,
         plan: &mut BlockPlan,
-        given: &BlockWords,
+        block_words: &BlockWords,
         pattern: Option<BoltHolePattern>,
         span: Span,
     ) -> ExecResult<()> {
         if self.settings.has_shrinking_pecks && pattern.is_none() {
-            self.read_peck_schedule(plan, given, span)?;
+            self.read_peck_schedule(plan, block_words, span)?;
         }
         let data = &plan.state.cycle;
         let none = data.pecks.is_none() && data.q.is_none_or(|q| q == 0.0);
@@ -170,7 +175,7 @@ impl Executor {
     fn polar_repeats(
         &self,
         plan: &mut BlockPlan,
-        given: &BlockWords,
+        block_words: &BlockWords,
         incremental: bool,
         repeats: u32,
     ) -> ExecResult<Option<PolarRepeats>> {
@@ -179,10 +184,10 @@ impl Executor {
         if state.modal.polar == Polar::Off || !incremental {
             return Ok(None);
         }
-        let turn = self.angle(given, self.settings.axes.letter(plane.1) as u8)?.unwrap_or(0.0);
+        let angle_step = self.angle(block_words, self.settings.axes.letter(plane.1) as u8)?.unwrap_or(0.0);
         let first = state.polar;
-        state.polar.angle += f64::from(repeats.max(1) - 1) * turn;
-        Ok(Some(PolarRepeats { plane, first, angle_step: turn }))
+        state.polar.angle += f64::from(repeats.max(1) - 1) * angle_step;
+        Ok(Some(PolarRepeats { plane, first, angle_step }))
     }
 
     fn other_axis(&self, axis: AxisIndex) -> AxisIndex {
@@ -193,23 +198,23 @@ impl Executor {
     fn read_cycle_words(
         &self,
         plan: &mut BlockPlan,
-        given: &BlockWords,
+        block_words: &BlockWords,
         axis: AxisIndex,
         incremental: bool,
     ) -> ExecResult<()> {
         let state = &plan.state;
         let mut data = state.cycle;
-        if let Some(value) = self.dimension(given, b'R', state)? {
+        if let Some(value) = self.dimension(block_words, b'R', state)? {
             data.r = CycleLevel { value, is_incremental: incremental, is_commanded: true };
         }
-        if let Some(value) = self.dimension(given, self.settings.axes.letter(axis) as u8, state)? {
+        if let Some(value) = self.dimension(block_words, self.settings.axes.letter(axis) as u8, state)? {
             data.z = CycleLevel { value, is_incremental: incremental, is_commanded: true };
         }
-        if let Some(value) = self.dimension(given, b'Q', state)? {
+        if let Some(value) = self.dimension(block_words, b'Q', state)? {
             // Its sign is ignored.
             data.q = Some(value.abs());
         }
-        if let Some(seconds) = self.dwell_seconds(given)? {
+        if let Some(seconds) = self.dwell_seconds(block_words)? {
             data.p = seconds;
         }
         plan.state.cycle = data;
@@ -221,10 +226,10 @@ impl Executor {
 fn stretch_along(plan: &BlockPlan, cycle: &Cycle, axis: AxisIndex) -> Result<f64, Alarm> {
     let transform = &plan.state.transform;
     let stretch = transform.scaling.map_or(1.0, |s| s.factor[axis]);
-    let turned = stretch < 0.0 || transform.mirrored_axes >> axis & 1 == 1;
+    let is_mirrored = stretch < 0.0 || transform.mirrored_axes >> axis & 1 == 1;
     // Of cycles with a shift the manual says that G51 leaves them out, not how far.
-    let shifts = stretch != 1.0 && cycle.steps.contains(&CycleStep::Shift);
-    if transform.tilt.is_some() || turned || shifts {
+    let has_scaled_shift = stretch != 1.0 && cycle.steps.contains(&CycleStep::Shift);
+    if transform.tilt.is_some() || is_mirrored || has_scaled_shift {
         let what = "a drilling cycle whose axis is tilted or mirrored, or one with a shift that is scaled";
         return Err(Alarm::NotSimulated { what: what.into() });
     }

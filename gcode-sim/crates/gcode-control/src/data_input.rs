@@ -14,20 +14,22 @@ impl Executor {
     /// variables.
     pub(super) fn plan_data_input(
         &self,
-        given: &BlockWords,
+        block_words: &BlockWords,
         plan: &mut BlockPlan,
         span: Span,
     ) -> ExecResult<()> {
         let format = |what: &str| format(what).located_at(span);
-        let p = given.count(b'P')?;
-        let l = given.count(b'L')?.ok_or_else(|| format("L is missing"))?;
+        let p = block_words.count(b'P')?;
+        let l = block_words.count(b'L')?.ok_or_else(|| format("L is missing"))?;
         match l {
             3 | 14 | 50 | 52 | 85 if !self.settings.allows_parameter_input => {
                 Err(format(&format!("L{l} is not available")))
             }
-            2 | 20 => self.plan_work_offset(l, p.ok_or_else(|| format("P is missing"))?, given, plan, span),
+            2 | 20 => {
+                self.plan_work_offset(l, p.ok_or_else(|| format("P is missing"))?, block_words, plan, span)
+            }
             1 | 10..=13 => {
-                self.plan_tool_offset(l, p.ok_or_else(|| format("P is missing"))?, given, plan, span)
+                self.plan_tool_offset(l, p.ok_or_else(|| format("P is missing"))?, block_words, plan, span)
             }
             50 | 52 => {
                 plan.state.is_in_parameter_input = true;
@@ -35,7 +37,7 @@ impl Executor {
             }
             85 => {
                 let number = p.ok_or_else(|| format("P, the variable, is missing"))?;
-                self.plan_punched_variable(number, given, plan, span)
+                self.plan_punched_variable(number, block_words, plan, span)
             }
             3 => Err(Alarm::NotSimulated { what: "G10 L3 (tool life management)".into() }.located_at(span)),
             14 => Err(Alarm::NotSimulated { what: "G10 L14 (tool geometry)".into() }.located_at(span)),
@@ -48,20 +50,20 @@ impl Executor {
         &self,
         l: u32,
         p: u32,
-        given: &BlockWords,
+        block_words: &BlockWords,
         plan: &mut BlockPlan,
         span: Span,
     ) -> ExecResult<()> {
         let p = p as usize;
-        let adds = plan.state.modal.distance == Distance::Incremental;
+        let is_incremental = plan.state.modal.distance == Distance::Incremental;
         let system = match l {
             2 if p <= 6 => p,
             20 if (1..=self.offsets.additional.len()).contains(&p) => 6 + p,
             _ => return Err(Alarm::OffsetNumber { number: p as i64 }.located_at(span)),
         };
         for (axis, letter) in self.settings.axes.iter() {
-            let Some(value) = self.dimension(given, letter as u8, &plan.state)? else { continue };
-            let old = if adds { self.offsets.work(system)[axis] } else { 0.0 };
+            let Some(value) = self.dimension(block_words, letter as u8, &plan.state)? else { continue };
+            let old = if is_incremental { self.offsets.work(system)[axis] } else { 0.0 };
             plan.writes.push(TableWrite::Work {
                 system,
                 axis,
@@ -76,7 +78,7 @@ impl Executor {
         &self,
         l: u32,
         number: u32,
-        given: &BlockWords,
+        block_words: &BlockWords,
         plan: &mut BlockPlan,
         span: Span,
     ) -> ExecResult<()> {
@@ -86,16 +88,16 @@ impl Executor {
             13 => Register::DWear,
             _ => Register::HWear,
         };
-        let adds = plan.state.modal.distance == Distance::Incremental;
+        let is_incremental = plan.state.modal.distance == Distance::Incremental;
         let old = locate(self.offsets.tool(register, number), span)?;
         if number == 0 {
             return Err(Alarm::OffsetNumber { number: 0 }.located_at(span));
         }
         let value = self
-            .dimension(given, b'R', &plan.state)?
+            .dimension(block_words, b'R', &plan.state)?
             .ok_or_else(|| format("R is missing").located_at(span))?;
         let value = locate(
-            self.check_offset_range(self.remove_residue(if adds { old + value } else { value })),
+            self.check_offset_range(self.remove_residue(if is_incremental { old + value } else { value })),
             span,
         )?;
         plan.writes.push(TableWrite::Tool { register, number, value });
@@ -106,14 +108,16 @@ impl Executor {
     fn plan_punched_variable(
         &self,
         number: u32,
-        given: &BlockWords,
+        block_words: &BlockWords,
         plan: &mut BlockPlan,
         span: Span,
     ) -> ExecResult<()> {
         if !matches!(self.vars.classify(number), VariableClass::Common(_)) {
-            return Err(Alarm::NoSuchVariable { number: i64::from(number) }.located_at(given.span(b'P')));
+            return Err(
+                Alarm::NoSuchVariable { number: i64::from(number) }.located_at(block_words.span(b'P'))
+            );
         }
-        let bits = given
+        let bits = block_words
             .punched_value
             .ok_or_else(|| format("L85 needs sixteen digits in brackets").located_at(span))?;
         let value = match f64::from_bits(bits) {

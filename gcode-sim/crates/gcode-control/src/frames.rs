@@ -49,8 +49,8 @@ impl CallOrigins {
     }
 
     /// Whether a code still calls: GMP 6008#6 lets G codes call where another kind has called, and the other way round.
-    pub(super) fn allows_call(self, g: bool, inside_others: bool) -> bool {
-        match (inside_others, g) {
+    pub(super) fn allows_call(self, is_g_code: bool, allows_nested_calls: bool) -> bool {
+        match (allows_nested_calls, is_g_code) {
             (false, _) => self == Self::default(),
             (true, true) => !self.has_g_code,
             (true, false) => !self.has_other_code,
@@ -219,16 +219,16 @@ impl Control {
 
     /// M99, and M99 P with its number and the place that [`Control::find_return`] has found.
     pub(super) fn return_to(&mut self, to: Option<(u32, OpIndex)>) -> Option<RunEnd> {
-        let main = self.executor.frame.kind == FrameKind::Main;
-        let ends = self.is_last_cycle();
-        if main {
+        let is_main = self.executor.frame.kind == FrameKind::Main;
+        let ends_run = self.is_last_cycle();
+        if is_main {
             self.executor.cycles += 1;
         }
-        if ends {
+        if ends_run {
             return Some(RunEnd::ProgramEnd);
         }
         let Some((number, target)) = to else {
-            if main {
+            if is_main {
                 self.executor.frame.jump(0);
             } else {
                 self.executor.repeat_or_pop();
@@ -236,7 +236,7 @@ impl Control {
             return None;
         };
         let program = self.memory.get(self.return_frame().program);
-        if !main {
+        if !is_main {
             self.executor.pop();
         }
         self.executor.note_ambiguous_jump(program, number, target);

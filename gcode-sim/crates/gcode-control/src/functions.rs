@@ -17,7 +17,7 @@ fn check_finite(value: f64) -> Result<f64, Alarm> {
 }
 
 #[inline(never)]
-pub fn binary(op: BinaryOp, left: f64, right: f64, unsure: &UndocumentedChoices) -> Result<f64, Alarm> {
+pub fn binary(op: BinaryOp, left: f64, right: f64, undocumented: &UndocumentedChoices) -> Result<f64, Alarm> {
     check_finite(match op {
         BinaryOp::Add => left + right,
         BinaryOp::Sub => left - right,
@@ -25,7 +25,7 @@ pub fn binary(op: BinaryOp, left: f64, right: f64, unsure: &UndocumentedChoices)
         BinaryOp::Div if right != 0.0 => left / right,
         BinaryOp::Div => return Err(Alarm::DivideByZero),
         BinaryOp::Mod | BinaryOp::And | BinaryOp::Or | BinaryOp::Xor => {
-            integer_operation(op, left, right, unsure)?
+            integer_operation(op, left, right, undocumented)?
         }
     })
 }
@@ -36,14 +36,14 @@ fn integer_operation(
     op: BinaryOp,
     left: f64,
     right: f64,
-    unsure: &UndocumentedChoices,
+    undocumented: &UndocumentedChoices,
 ) -> Result<f64, Alarm> {
     if op == BinaryOp::Mod {
         let (left, right) = (round(left), round(right));
         // The remainder has the sign of the dividend.
         return if right == 0.0 { Err(Alarm::DivideByZero) } else { Ok(left % right) };
     }
-    let (left, right) = (bits(left, unsure)?, bits(right, unsure)?);
+    let (left, right) = (bits(left, undocumented)?, bits(right, undocumented)?);
     Ok(f64::from(match op {
         BinaryOp::And => left & right,
         BinaryOp::Or => left | right,
@@ -52,9 +52,9 @@ fn integer_operation(
 }
 
 /// AND, OR and XOR work on 32-bit integers.
-fn bits(value: f64, unsure: &UndocumentedChoices) -> Result<i32, Alarm> {
+fn bits(value: f64, undocumented: &UndocumentedChoices) -> Result<i32, Alarm> {
     let value = round(value);
-    if value < 0.0 && unsure.negative_bits_alarm {
+    if value < 0.0 && undocumented.negative_bits_alarm {
         return Err(Alarm::OutOfRange { function: "AND, OR, XOR".into(), value });
     }
     if (-2_147_483_648.0..=2_147_483_647.0).contains(&value) {

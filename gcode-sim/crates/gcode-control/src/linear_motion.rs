@@ -44,11 +44,11 @@ pub(super) struct SquaredTravel {
 
 impl SquaredTravel {
     #[inline(always)]
-    pub(super) fn add(&mut self, way: f64, turns: bool) {
-        if turns {
-            self.rotary += way * way;
+    pub(super) fn add(&mut self, distance: f64, is_rotary: bool) {
+        if is_rotary {
+            self.rotary += distance * distance;
         } else {
-            self.linear += way * way;
+            self.linear += distance * distance;
         }
     }
 
@@ -72,8 +72,8 @@ impl Endpoint {
 
 impl Executor {
     /// Whether a block names an axis.
-    pub(super) fn names_axis(&self, given: &BlockWords) -> bool {
-        given.has_letters(self.settings.axes.letter_bits())
+    pub(super) fn names_axis(&self, block_words: &BlockWords) -> bool {
+        block_words.has_letters(self.settings.axes.letter_bits())
     }
 
     /// The two axes of the plane, first axis first.
@@ -91,28 +91,34 @@ impl Executor {
     }
 
     /// The end point of the block's axis words, from where `state` stands.
-    pub(super) fn resolve_endpoint(&self, given: &BlockWords, state: &mut State) -> ExecResult<Endpoint> {
-        let mut goal = Endpoint::at_current_position(state);
-        let counting = self.coordinate_basis(state);
-        self.resolve_axes(given, state, &counting, &mut goal)?;
-        state.work_zero_unknown = goal.work_zero_unknown;
+    pub(super) fn resolve_endpoint(
+        &self,
+        block_words: &BlockWords,
+        state: &mut State,
+    ) -> ExecResult<Endpoint> {
+        let mut endpoint = Endpoint::at_current_position(state);
+        let basis = self.coordinate_basis(state);
+        self.resolve_axes(block_words, state, &basis, &mut endpoint)?;
+        state.work_zero_unknown = endpoint.work_zero_unknown;
         if state.modal.polar == Polar::On {
-            self.resolve_polar(given, state, &mut goal.programmed)?;
+            self.resolve_polar(block_words, state, &mut endpoint.programmed)?;
         }
         if state.last_end_point.is_some() && state.modal.distance == Distance::Absolute {
-            self.note_axes_left_out(given, state);
+            self.note_axes_left_out(block_words, state);
         }
-        let machine = self.to_machine(state, &goal.programmed);
-        let turned = std::mem::replace(&mut goal.machine, machine);
-        for axis in
-            self.settings.rollover_axes().filter(|axis| given.has(self.settings.axes.letter(*axis) as u8))
+        let machine = self.to_machine(state, &endpoint.programmed);
+        let rolled_machine = std::mem::replace(&mut endpoint.machine, machine);
+        for axis in self
+            .settings
+            .rollover_axes()
+            .filter(|axis| block_words.has(self.settings.axes.letter(*axis) as u8))
         {
-            goal.machine[axis] = turned[axis];
+            endpoint.machine[axis] = rolled_machine[axis];
         }
-        if goal.machine.0.iter().any(|at| at.abs() > counting.max_coordinate) {
-            self.check_coordinate_range(given, &goal.machine, counting.max_coordinate)?;
+        if endpoint.machine.0.iter().any(|at| at.abs() > basis.max_coordinate) {
+            self.check_coordinate_range(block_words, &endpoint.machine, basis.max_coordinate)?;
         }
-        Ok(goal)
+        Ok(endpoint)
     }
 
     /// What axis words count from where `state` stands.
@@ -131,24 +137,24 @@ impl Executor {
     /// Takes a goal to where the block's axis words lead, but for those of a plane in which G16 is on.
     fn resolve_axes(
         &self,
-        given: &BlockWords,
+        block_words: &BlockWords,
         state: &State,
-        counting: &CoordinateBasis,
-        goal: &mut Endpoint,
+        basis: &CoordinateBasis,
+        endpoint: &mut Endpoint,
     ) -> ExecResult<()> {
-        let polar = state.modal.polar == Polar::On;
+        let is_polar = state.modal.polar == Polar::On;
         for (axis, letter) in self.settings.axes.letters() {
-            if polar && self.in_plane(state, axis) {
+            if is_polar && self.in_plane(state, axis) {
                 continue;
             }
-            let Some((raw, span)) = given.get(letter) else { continue };
-            let value = locate(self.dimension_of(&raw, letter, &counting.measure), span)?;
-            (goal.programmed[axis], goal.machine[axis]) = match self.settings.rolls_over[axis] {
-                true => self.rollover_axis_end(axis, value, state, counting),
-                false => self.axis_end(axis, value, state, counting),
+            let Some((raw, span)) = block_words.get(letter) else { continue };
+            let value = locate(self.dimension_of(&raw, letter, &basis.measure), span)?;
+            (endpoint.programmed[axis], endpoint.machine[axis]) = match self.settings.rolls_over[axis] {
+                true => self.rollover_axis_end(axis, value, state, basis),
+                false => self.axis_end(axis, value, state, basis),
             };
-            if !counting.is_incremental {
-                goal.work_zero_unknown &= !(1 << axis);
+            if !basis.is_incremental {
+                endpoint.work_zero_unknown &= !(1 << axis);
             }
         }
         Ok(())
@@ -162,9 +168,9 @@ impl Executor {
         axis: AxisIndex,
         value: f64,
         state: &State,
-        counting: &CoordinateBasis,
+        basis: &CoordinateBasis,
     ) -> (f64, f64) {
-        let programmed = if counting.is_incremental {
+        let programmed = if basis.is_incremental {
             // Else the compiler computes it in G90 too, for nothing.
             cold_path();
             self.remove_residue(state.programmed[axis] + value)
@@ -172,9 +178,9 @@ impl Executor {
             value
         };
         // What is clean needn't be cleaned where nothing is added to it.
-        let machine = match counting.unshifted_axes >> axis & 1 == 1 {
+        let machine = match basis.unshifted_axes >> axis & 1 == 1 {
             true => programmed + 0.0,
-            false => self.on_machine(programmed, counting.zero[axis], state.length_offset[axis]),
+            false => self.on_machine(programmed, basis.zero[axis], state.length_offset[axis]),
         };
         (programmed, machine)
     }
@@ -185,32 +191,41 @@ impl Executor {
         axis: AxisIndex,
         value: f64,
         state: &State,
-        counting: &CoordinateBasis,
+        basis: &CoordinateBasis,
     ) -> (f64, f64) {
         let from = state.programmed[axis];
-        let way = if counting.is_incremental { value } else { shortest_rotation(from, value) };
-        (self.wrap_angle(axis, from + way), self.remove_residue(state.machine[axis] + way))
+        let travel = if basis.is_incremental { value } else { shortest_rotation(from, value) };
+        (self.wrap_angle(axis, from + travel), self.remove_residue(state.machine[axis] + travel))
     }
 
     /// An axis that the block doesn't name keeps still, though its coordinate is another since a transform was switched.
     #[cold]
-    fn note_axes_left_out(&self, given: &BlockWords, state: &State) {
-        let stays = |(axis, letter): (AxisIndex, char)| {
-            !given.has(letter as u8) && self.move_end(state)[axis] != state.programmed[axis]
+    fn note_axes_left_out(&self, block_words: &BlockWords, state: &State) {
+        let is_left_out = |(axis, letter): (AxisIndex, char)| {
+            !block_words.has(letter as u8) && self.move_end(state)[axis] != state.programmed[axis]
         };
-        if self.settings.axes.iter().any(stays) {
+        if self.settings.axes.iter().any(is_left_out) {
             self.block_effects.record_note(Note::AxisLeftOut);
         }
     }
 
     /// The alarm of an axis beyond the largest coordinate, if one is there; one that rolls over begins anew with each turn.
     #[cold]
-    fn check_coordinate_range(&self, given: &BlockWords, machine: &Position, most: f64) -> ExecResult<()> {
+    fn check_coordinate_range(
+        &self,
+        block_words: &BlockWords,
+        machine: &Position,
+        most: f64,
+    ) -> ExecResult<()> {
         for (axis, letter) in self.settings.axes.iter() {
             if machine[axis].abs() > most && !self.settings.rolls_over[axis] {
                 let alarm = Alarm::PositionOverflow { letter, value: machine[axis] };
-                let named = given.has(letter as u8);
-                return Err(alarm.located_at(if named { given.span(letter as u8) } else { self.block }));
+                let named = block_words.has(letter as u8);
+                return Err(alarm.located_at(if named {
+                    block_words.span(letter as u8)
+                } else {
+                    self.block
+                }));
             }
         }
         Ok(())
@@ -221,11 +236,16 @@ impl Executor {
     }
 
     /// G16: the plane's first axis is the radius, the second the angle.
-    fn resolve_polar(&self, given: &BlockWords, state: &mut State, point: &mut Position) -> ExecResult<()> {
+    fn resolve_polar(
+        &self,
+        block_words: &BlockWords,
+        state: &mut State,
+        point: &mut Position,
+    ) -> ExecResult<()> {
         let Ok((first, second)) = self.plane_axes(state.modal.plane) else { return Ok(()) };
         let letter = |axis| self.settings.axes.letter(axis) as u8;
-        let radius = self.dimension(given, letter(first), state)?;
-        let angle = self.angle(given, letter(second))?;
+        let radius = self.dimension(block_words, letter(first), state)?;
+        let angle = self.angle(block_words, letter(second))?;
         if radius.is_none() && angle.is_none() {
             return Ok(());
         }
@@ -239,7 +259,7 @@ impl Executor {
         }
         if state.polar.radius.is_none() {
             let what = "an angle in G16 before any radius (write both in its first block)".into();
-            return Err(Alarm::NotSimulated { what }.located_at(given.span(letter(second))));
+            return Err(Alarm::NotSimulated { what }.located_at(block_words.span(letter(second))));
         }
         if let Some(angle) = angle {
             state.polar.angle = if incremental { state.polar.angle + angle } else { angle };
@@ -275,10 +295,10 @@ impl Executor {
         &self,
         plan: &mut BlockPlan,
         to: &Position,
-        given: &BlockWords,
+        block_words: &BlockWords,
     ) -> Result<(), Alarm> {
         let from = &plan.state.machine;
-        let (rate, seconds) = self.feed_seconds(&plan.state, from, to, given.has(b'F'))?;
+        let (rate, seconds) = self.feed_seconds(&plan.state, from, to, block_words.has(b'F'))?;
         if to != from {
             plan.events.push((EventKind::Feed { to: *to, rate }, seconds));
             plan.state.machine = *to;
@@ -318,8 +338,8 @@ impl Executor {
         to: &Position,
         f_in_block: bool,
     ) -> Result<(MmPerMin, f64), Alarm> {
-        let way = self.squared_travel(0..self.settings.axes.len(), from, to);
-        self.travel_time(state, state.codes.f, way, f_in_block)
+        let travel = self.squared_travel(0..self.settings.axes.len(), from, to);
+        self.travel_time(state, state.codes.f, travel, f_in_block)
     }
 
     /// How far some axes move.
@@ -401,8 +421,8 @@ fn inch_length(sliding: f64, turning: f64) -> f64 {
 
 /// How an axis that rolls over gets from one angle to another: the shorter way, half a turn in the plus direction.
 pub(super) fn shortest_rotation(from: f64, to: f64) -> f64 {
-    let way = (to - from).rem_euclid(360.0);
-    if way > 180.0 { way - 360.0 } else { way }
+    let rotation = (to - from).rem_euclid(360.0);
+    if rotation > 180.0 { rotation - 360.0 } else { rotation }
 }
 
 #[cfg(test)]

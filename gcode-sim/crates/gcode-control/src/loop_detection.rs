@@ -101,57 +101,58 @@ impl LoopDetector {
 
     /// Told of every jump back; ends the run where the program is now known never to leave the loop.
     #[inline(always)]
-    pub(super) fn record_jump(&mut self, core: &mut Executor) {
-        if self.is_waiting || core.has_read_clock.get() {
-            self.advance_clock(core);
+    pub(super) fn record_jump(&mut self, executor: &mut Executor) {
+        if self.is_waiting || executor.has_read_clock.get() {
+            self.advance_clock(executor);
         }
         if self.snapshot.is_some() {
-            self.record_outer_jump(core);
+            self.record_outer_jump(executor);
         }
-        if self.remaining_jumps > 0 && self.fingerprint.as_ref().is_some_and(|seen| !seen.may_match(core)) {
+        if self.remaining_jumps > 0 && self.fingerprint.as_ref().is_some_and(|seen| !seen.may_match(executor))
+        {
             self.remaining_jumps -= 1;
         } else {
-            self.check(core);
+            self.check(executor);
         }
     }
 
     /// Looks closely whether the control has come back, and keeps this moment when it is time.
     #[inline(never)]
-    fn check(&mut self, core: &mut Executor) {
+    fn check(&mut self, executor: &mut Executor) {
         self.endless_loop = None;
-        if self.fingerprint.as_mut().is_some_and(|seen| seen.matches(core)) {
-            self.check_revisit(core);
+        if self.fingerprint.as_mut().is_some_and(|seen| seen.matches(executor)) {
+            self.check_revisit(executor);
             if self.endless_loop.is_some() {
-                core.block_effects.end_run(RunEnd::EndlessLoop);
+                executor.block_effects.end_run(RunEnd::EndlessLoop);
                 return;
             }
         }
         if self.remaining_jumps == 0 {
-            self.store_fingerprint(core);
+            self.store_fingerprint(executor);
         }
         self.remaining_jumps -= 1;
     }
 
     /// Keeps this moment instead of an earlier one, for longer.
     #[cold]
-    fn store_fingerprint(&mut self, core: &Executor) {
+    fn store_fingerprint(&mut self, executor: &Executor) {
         self.clear();
-        self.fingerprint = Some(Fingerprint::of(core));
+        self.fingerprint = Some(Fingerprint::of(executor));
         self.iterations = (self.iterations * 2).max(4);
         self.remaining_jumps = self.iterations;
     }
 
     /// The control has come to the moment that was kept.
     #[cold]
-    fn check_revisit(&mut self, core: &Executor) {
+    fn check_revisit(&mut self, executor: &Executor) {
         match &self.snapshot {
-            None => self.snapshot = Some(Box::new(ControlSnapshot::of(core))),
+            None => self.snapshot = Some(Box::new(ControlSnapshot::of(executor))),
             // It waits for the clock, which only motion has moved so far.
-            Some(copy) if copy.equals(core) && self.has_read_clock => {
-                (self.seconds, self.is_waiting) = (core.seconds, true);
+            Some(copy) if copy.equals(executor) && self.has_read_clock => {
+                (self.seconds, self.is_waiting) = (executor.seconds, true);
                 self.clear();
             }
-            Some(copy) if copy.equals(core) => {
+            Some(copy) if copy.equals(executor) => {
                 let found =
                     |jump: BackJump| EndlessLoop { program: jump.program, to: jump.to, from: jump.from };
                 self.endless_loop = self.outermost_jump.map(found);
@@ -162,24 +163,24 @@ impl LoopDetector {
 
     /// Takes note of a jump that leads further out, or further up, than those since the control was copied.
     #[cold]
-    fn record_outer_jump(&mut self, core: &Executor) {
-        let Frame { program, next: to, .. } = core.frame;
-        let callers = core.callers.len();
+    fn record_outer_jump(&mut self, executor: &Executor) {
+        let Frame { program, next: to, .. } = executor.frame;
+        let callers = executor.callers.len();
         if self.outermost_jump.is_none_or(|w| (callers, to) < (w.callers, w.to)) {
-            self.outermost_jump = Some(BackJump { callers, to, program, from: core.block });
+            self.outermost_jump = Some(BackJump { callers, to, program, from: executor.block });
         }
     }
 
     /// A program that does nothing but wait for a clock is given a millisecond a jump, so that the wait ends.
     #[cold]
-    fn advance_clock(&mut self, core: &mut Executor) {
-        let read = core.has_read_clock.take();
+    fn advance_clock(&mut self, executor: &mut Executor) {
+        let read = executor.has_read_clock.take();
         self.has_read_clock |= read;
-        if core.seconds != self.seconds {
-            (self.seconds, self.is_waiting) = (core.seconds, false);
+        if executor.seconds != self.seconds {
+            (self.seconds, self.is_waiting) = (executor.seconds, false);
         }
         if read && self.is_waiting {
-            core.idle_seconds += 0.001;
+            executor.idle_seconds += 0.001;
         }
     }
 
@@ -190,79 +191,79 @@ impl LoopDetector {
 }
 
 impl Fingerprint {
-    fn of(core: &Executor) -> Self {
+    fn of(executor: &Executor) -> Self {
         Self {
-            program: core.frame.program,
-            next: core.frame.next,
-            callers: core.callers.len(),
-            machine: core.state.machine,
-            vars: core.vars.clone(),
+            program: executor.frame.program,
+            next: executor.frame.next,
+            callers: executor.callers.len(),
+            machine: executor.state.machine,
+            vars: executor.vars.clone(),
             differing_place: 0,
         }
     }
 
     /// Whether nothing that is looked at first differs. What counts turns tells nearly all moments apart.
     #[inline]
-    fn may_match(&self, core: &Executor) -> bool {
-        self.machine[0].to_bits() == core.state.machine[0].to_bits()
-            && self.next == core.frame.next
-            && !self.vars.differs_at(self.differing_place, &core.vars)
+    fn may_match(&self, executor: &Executor) -> bool {
+        self.machine[0].to_bits() == executor.state.machine[0].to_bits()
+            && self.next == executor.frame.next
+            && !self.vars.differs_at(self.differing_place, &executor.vars)
     }
 
     /// Whether the control has come to this moment again.
-    fn matches(&mut self, core: &Executor) -> bool {
-        if !self.may_match(core)
-            || self.program != core.frame.program
-            || self.callers != core.callers.len()
-            || self.machine.0.iter().zip(core.state.machine.0).any(|(a, b)| a.to_bits() != b.to_bits())
+    fn matches(&mut self, executor: &Executor) -> bool {
+        if !self.may_match(executor)
+            || self.program != executor.frame.program
+            || self.callers != executor.callers.len()
+            || self.machine.0.iter().zip(executor.state.machine.0).any(|(a, b)| a.to_bits() != b.to_bits())
         {
             return false;
         }
-        let difference = self.vars.difference(&core.vars);
+        let difference = self.vars.difference(&executor.vars);
         self.differing_place = difference.unwrap_or(self.differing_place);
         difference.is_none()
     }
 }
 
 impl ControlSnapshot {
-    fn of(core: &Executor) -> Self {
+    fn of(executor: &Executor) -> Self {
         Self {
-            state: *core.state,
-            vars: core.vars.clone(),
-            offsets: core.offsets.clone(),
-            lookahead: core.lookahead.clone(),
-            frame: core.frame.clone(),
-            callers: core.callers.clone(),
-            modal_calls: core.modal_calls.clone(),
-            names: core.names.clone(),
-            outputs: core.outputs,
-            clocks: core.clocks,
-            idle: core.idle_seconds,
-            switches: core.control_switches,
-            part_counters: core.part_counters,
-            cycles: core.cycles,
-            is_output_open: core.printed.is_open,
-            settings: core.settings.clone(),
-            parameters: core.parameters.clone(),
+            state: *executor.state,
+            vars: executor.vars.clone(),
+            offsets: executor.offsets.clone(),
+            lookahead: executor.lookahead.clone(),
+            frame: executor.frame.clone(),
+            callers: executor.callers.clone(),
+            modal_calls: executor.modal_calls.clone(),
+            names: executor.names.clone(),
+            outputs: executor.outputs,
+            clocks: executor.clocks,
+            idle: executor.idle_seconds,
+            switches: executor.control_switches,
+            part_counters: executor.part_counters,
+            cycles: executor.cycles,
+            is_output_open: executor.printed.is_open,
+            settings: executor.settings.clone(),
+            parameters: executor.parameters.clone(),
         }
     }
 
-    fn equals(&self, core: &Executor) -> bool {
-        let frames = self.frame.continues_like(&core.frame)
-            && self.callers.len() == core.callers.len()
-            && self.callers.iter().zip(&core.callers).all(|(a, b)| a.continues_like(b));
+    fn equals(&self, executor: &Executor) -> bool {
+        let frames = self.frame.continues_like(&executor.frame)
+            && self.callers.len() == executor.callers.len()
+            && self.callers.iter().zip(&executor.callers).all(|(a, b)| a.continues_like(b));
         frames
-            && self.state == *core.state
-            && self.vars.has_same_values(&core.vars)
-            && self.offsets == core.offsets
-            && self.lookahead == core.lookahead
-            && self.modal_calls == core.modal_calls
-            && self.names == core.names
-            && (self.outputs, self.clocks, self.idle) == (core.outputs, core.clocks, core.idle_seconds)
-            && (self.switches, self.part_counters) == (core.control_switches, core.part_counters)
-            && self.is_output_open == core.printed.is_open
-            && (&self.settings, &self.parameters) == (&core.settings, &core.parameters)
+            && self.state == *executor.state
+            && self.vars.has_same_values(&executor.vars)
+            && self.offsets == executor.offsets
+            && self.lookahead == executor.lookahead
+            && self.modal_calls == executor.modal_calls
+            && self.names == executor.names
+            && (self.outputs, self.clocks, self.idle) == (executor.outputs, executor.clocks, executor.idle_seconds)
+            && (self.switches, self.part_counters) == (executor.control_switches, executor.part_counters)
+            && self.is_output_open == executor.printed.is_open
+            && (&self.settings, &self.parameters) == (&executor.settings, &executor.parameters)
             // M99 of the main program counts only where the count ends the run.
-            && (core.settings.main_program_cycles.is_none() || self.cycles == core.cycles)
+            && (executor.settings.main_program_cycles.is_none() || self.cycles == executor.cycles)
     }
 }

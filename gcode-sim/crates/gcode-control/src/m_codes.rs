@@ -11,9 +11,9 @@ use gcode_lang::units::Rpm;
 
 impl Executor {
     /// 2., 5. and 6. What M codes do, each at its time.
-    pub(super) fn plan_m_codes(&self, given: &BlockWords, plan: &mut BlockPlan) -> ExecResult<()> {
-        plan.notes.extend(given.replaced_m_codes.iter().map(|code| Note::MCodeLost { code: *code }));
-        for (code, span) in given.m_codes[..given.m_code_count].iter().flatten().copied() {
+    pub(super) fn plan_m_codes(&self, block_words: &BlockWords, plan: &mut BlockPlan) -> ExecResult<()> {
+        plan.notes.extend(block_words.replaced_m_codes.iter().map(|code| Note::MCodeLost { code: *code }));
+        for (code, span) in block_words.m_codes[..block_words.m_code_count].iter().flatten().copied() {
             plan.state.codes.m = code;
             let speed = Rpm(plan.state.codes.s);
             let Some(effect) = m_codes::find(code, self.settings.codes) else {
@@ -35,15 +35,15 @@ impl Executor {
                 }
                 MCodeEffect::SpindleStop | MCodeEffect::Orient => {
                     if effect == MCodeEffect::Orient {
-                        given.mark_read(b"PR");
+                        block_words.mark_read(b"PR");
                     }
                     plan.state.spindle = SpindleDirection::Off;
                     plan.events_after_motion
                         .push((EventKind::Spindle { direction: SpindleDirection::Off, speed }, 0.0));
                 }
                 MCodeEffect::ToolChange => {
-                    let stops = self.settings.undocumented.tool_change_stops_spindle;
-                    if stops && plan.state.spindle != SpindleDirection::Off {
+                    let stops_spindle = self.settings.undocumented.tool_change_stops_spindle;
+                    if stops_spindle && plan.state.spindle != SpindleDirection::Off {
                         self.set_spindle(plan, SpindleDirection::Off, speed);
                     }
                     plan.state.tool = plan.state.codes.t;
@@ -58,7 +58,7 @@ impl Executor {
                     plan.events_after_motion.push((EventKind::Coolant { is_on: false, code }, 0.0));
                 }
                 MCodeEffect::InterruptOn => {
-                    given.mark_read(b"P");
+                    block_words.mark_read(b"P");
                     plan.notes.push(Note::InterruptNotSimulated);
                 }
                 MCodeEffect::InterruptOff => {}
@@ -67,15 +67,16 @@ impl Executor {
                 }
             }
         }
-        let told = || plan.events.iter().any(|(kind, _)| matches!(kind, EventKind::Spindle { .. }));
-        if given.has(b'S') && plan.state.spindle != SpindleDirection::Off && !told() {
+        let changes_spindle =
+            || plan.events.iter().any(|(kind, _)| matches!(kind, EventKind::Spindle { .. }));
+        if block_words.has(b'S') && plan.state.spindle != SpindleDirection::Off && !changes_spindle() {
             self.set_spindle(plan, plan.state.spindle, Rpm(plan.state.codes.s));
         }
         Ok(())
     }
 
-    fn set_spindle(&self, plan: &mut BlockPlan, turning: SpindleDirection, speed: Rpm) {
-        plan.state.spindle = turning;
-        plan.push_event(EventKind::Spindle { direction: turning, speed });
+    fn set_spindle(&self, plan: &mut BlockPlan, direction: SpindleDirection, speed: Rpm) {
+        plan.state.spindle = direction;
+        plan.push_event(EventKind::Spindle { direction, speed });
     }
 }

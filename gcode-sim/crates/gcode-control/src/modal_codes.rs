@@ -27,14 +27,14 @@ impl Executor {
     #[inline]
     pub(super) fn apply_modal_codes(
         &self,
-        given: &BlockWords,
+        block_words: &BlockWords,
         plan: &mut BlockPlan,
         span: Span,
     ) -> ExecResult<Option<AxisWordUse>> {
-        if given.has_non_motion_words() {
-            return self.apply_all_codes(given, plan, span);
+        if block_words.has_non_motion_words() {
+            return self.apply_all_codes(block_words, plan, span);
         }
-        if let Some(motion) = given.motion {
+        if let Some(motion) = block_words.motion {
             plan.state.set_motion_mode(motion);
         }
         Ok(None)
@@ -44,30 +44,30 @@ impl Executor {
     #[inline(never)]
     fn apply_all_codes(
         &self,
-        given: &BlockWords,
+        block_words: &BlockWords,
         plan: &mut BlockPlan,
         span: Span,
     ) -> ExecResult<Option<AxisWordUse>> {
         let state = &mut plan.state;
         let before = state.modal;
-        let mut act = None;
-        let mut latched = before.cycle.is_some();
-        for row in given.g_codes() {
+        let mut axis_use = None;
+        let mut is_cycle_active = before.cycle.is_some();
+        for row in block_words.g_codes() {
             if let Effect::Motion(motion) = row.effect {
                 state.set_motion_mode(motion);
-                latched = false;
+                is_cycle_active = false;
                 continue;
             }
-            let new = locate(axis_use_of(row, given, state.modal.cutter), span)?;
-            if new.is_some() && act.is_some() && new != act {
+            let new = locate(axis_use_of(row, block_words, state.modal.cutter), span)?;
+            if new.is_some() && axis_use.is_some() && new != axis_use {
                 let what = "several one-shot G codes in one block".into();
                 return Err(Alarm::NotSimulated { what }.located_at(span));
             }
-            act = new.or(act);
+            axis_use = new.or(axis_use);
             state.modal.apply(row);
             if row.effect == Effect::Cycle(None) {
                 state.cycle = CycleState::default();
-                latched = false;
+                is_cycle_active = false;
             }
         }
         let modal = state.modal;
@@ -79,11 +79,11 @@ impl Executor {
         }
         if before.scaling == Scaling::On
             && modal.scaling == Scaling::On
-            && let Some(row) = given.g_codes().find(|row| row.effect.needs_plain_coordinates())
+            && let Some(row) = block_words.g_codes().find(|row| row.effect.needs_plain_coordinates())
         {
             return Err(Alarm::CodeInScaling { code: spelled(row.code) }.located_at(span));
         }
-        locate(transform_order::check(given, &before, state, self.names_axis(given)), span)?;
+        locate(transform_order::check(block_words, &before, state, self.names_axis(block_words)), span)?;
         if modal.scaling == Scaling::Off {
             state.transform.scaling = None;
         }
@@ -100,34 +100,38 @@ impl Executor {
         } else if state.transform != self.state.transform {
             self.apply_transform_change(state);
         }
-        if modal.cycle.is_some() && !latched {
-            let axis = locate(self.drilling_axis(given, state), span)?;
+        if modal.cycle.is_some() && !is_cycle_active {
+            let axis = locate(self.drilling_axis(block_words, state), span)?;
             state.cycle.axis = Some(axis);
             state.cycle.initial = state.programmed[axis];
             state.cycle.is_initial_unknown = state.work_zero_unknown >> axis & 1 == 1;
         }
         // G54 P is G54.1 P.
-        let additional = given.has(b'P')
-            && act.is_none()
+        let selects_additional_work = block_words.has(b'P')
+            && axis_use.is_none()
             && modal.cycle.is_none()
-            && given.has_non_motion_code(|effect| effect == Effect::Work(1));
-        Ok(if additional { Some(AxisWordUse::AdditionalWork) } else { act })
+            && block_words.has_non_motion_code(|effect| effect == Effect::Work(1));
+        Ok(if selects_additional_work { Some(AxisWordUse::AdditionalWork) } else { axis_use })
     }
 }
 
 /// What uses the axis words because of a code, if anything.
-fn axis_use_of(row: &GCodeRow, given: &BlockWords, cutter: CutterSide) -> Result<Option<AxisWordUse>, Alarm> {
+fn axis_use_of(
+    row: &GCodeRow,
+    block_words: &BlockWords,
+    cutter: CutterSide,
+) -> Result<Option<AxisWordUse>, Alarm> {
     Ok(match row.effect {
         Effect::NotSimulated if (450..=480).contains(&row.code) && cutter != CutterSide::Off => {
             return Err(Alarm::ToolOffsetInCompensation);
         }
         Effect::NotSimulated | Effect::Call => return Err(not_simulated(row.code, row.help)),
         Effect::NoEffect => {
-            given.mark_read(b"IPQR");
+            block_words.mark_read(b"IPQR");
             None
         }
         Effect::Smoothness => {
-            given.mark_read(b"EP");
+            block_words.mark_read(b"EP");
             None
         }
         Effect::OneShot(one) => Some(AxisWordUse::OneShot(one)),

@@ -15,24 +15,30 @@ impl Executor {
     #[inline]
     pub(super) fn plan_length(
         &self,
-        given: &BlockWords,
+        block_words: &BlockWords,
         plan: &mut BlockPlan,
         span: Span,
     ) -> ExecResult<bool> {
-        let commanded =
-            given.has(b'H') || given.has_non_motion_code(|effect| matches!(effect, Effect::Length(_)));
+        let commanded = block_words.has(b'H')
+            || block_words.has_non_motion_code(|effect| matches!(effect, Effect::Length(_)));
         if !commanded || (plan.state.modal.length == Length::Off && self.state.modal.length == Length::Off) {
             return Ok(false);
         }
-        self.plan_length_offset(given, plan, span)
+        self.plan_length_offset(block_words, plan, span)
     }
 
     #[inline(never)]
-    fn plan_length_offset(&self, given: &BlockWords, plan: &mut BlockPlan, span: Span) -> ExecResult<bool> {
-        let on = |row: &&GCodeRow| matches!(row.effect, Effect::Length(Length::Plus | Length::Minus));
-        if let Some(row) = given.g_codes().find(on)
+    fn plan_length_offset(
+        &self,
+        block_words: &BlockWords,
+        plan: &mut BlockPlan,
+        span: Span,
+    ) -> ExecResult<bool> {
+        let is_compensation_on =
+            |row: &&GCodeRow| matches!(row.effect, Effect::Length(Length::Plus | Length::Minus));
+        if let Some(row) = block_words.g_codes().find(is_compensation_on)
             && plan.state.codes.h == 0
-            && !given.has(b'H')
+            && !block_words.has(b'H')
         {
             plan.notes.push(Note::LengthOffsetZero { code: row.code });
         }
@@ -48,58 +54,62 @@ impl Executor {
     /// 4. A move by the modal codes: a drilling cycle, or group 01.
     pub(super) fn plan_motion(
         &self,
-        given: &BlockWords,
+        block_words: &BlockWords,
         plan: &mut BlockPlan,
-        lengthened: bool,
+        has_new_length: bool,
         span: Span,
     ) -> ExecResult<()> {
         if let Some(cycle) = plan.state.modal.cycle {
-            if self.is_drilling_block(given) {
-                return self.plan_cycle(plan, given, cycle, None, span);
+            if self.is_drilling_block(block_words) {
+                return self.plan_cycle(plan, block_words, cycle, None, span);
             }
             // P and Q are stored by blocks that drill only.
-            if given.has_any(b"PQ") {
-                given.mark_read(b"PQ");
+            if block_words.has_any(b"PQ") {
+                block_words.mark_read(b"PQ");
                 plan.notes.push(Note::CycleDataLost);
             }
-            if lengthened {
+            if has_new_length {
                 self.recompute_position(&mut plan.state);
             }
             return Ok(());
         }
         let motion = plan.state.modal.motion;
-        let arcs = matches!(motion, Motion::Clockwise | Motion::Counterclockwise);
-        let named = self.names_axis(given);
+        let is_arc = matches!(motion, Motion::Clockwise | Motion::Counterclockwise);
+        let names_axis = self.names_axis(block_words);
         // A code of group 01 behind that of a cycle: a plain move, the cycle's own words are nothing.
-        let overruled = given.has_non_motion_code(|effect| matches!(effect, Effect::Cycle(Some(_))));
-        if overruled {
-            given.mark_read(b"KPQR");
+        let overrules_cycle =
+            block_words.has_non_motion_code(|effect| matches!(effect, Effect::Cycle(Some(_))));
+        if overrules_cycle {
+            block_words.mark_read(b"KPQR");
         }
-        if !(named || arcs && given.has_any(b"IJKR")) {
-            return self.move_by_length_change(given, plan, lengthened, span);
+        if !(names_axis || is_arc && block_words.has_any(b"IJKR")) {
+            return self.move_by_length_change(block_words, plan, has_new_length, span);
         }
         // Some controls round corners by R or read I J K here; the end of cutter compensation takes a vector.
-        let vector = given.has_non_motion_code(|effect| effect == Effect::Cutter(CutterSide::Off));
-        if !(arcs || vector || overruled)
-            && let Some(letter) = given.first_letter_of(letters(b"IJKR"))
+        let takes_vector =
+            block_words.has_non_motion_code(|effect| effect == Effect::Cutter(CutterSide::Off));
+        if !(is_arc || takes_vector || overrules_cycle)
+            && let Some(letter) = block_words.first_letter_of(letters(b"IJKR"))
         {
             let what = format!("{} in a block with a straight move", char::from(letter));
-            return Err(Alarm::NotSimulated { what }.located_at(given.span(letter)));
+            return Err(Alarm::NotSimulated { what }.located_at(block_words.span(letter)));
         }
-        let goal = self.resolve_endpoint(given, &mut plan.state)?;
-        if motion == Motion::Thread && given.has_corner() {
+        let endpoint = self.resolve_endpoint(block_words, &mut plan.state)?;
+        if motion == Motion::Thread && block_words.has_corner() {
             return Err(Alarm::CornerInThread.located_at(span));
         }
-        if motion != Motion::Rapid && given.has_corner() {
-            plan.corner = self.corner_word(given, &plan.state)?;
+        if motion != Motion::Rapid && block_words.has_corner() {
+            plan.corner = self.corner_word(block_words, &plan.state)?;
         }
         match motion {
-            Motion::Rapid => self.push_rapid(plan, &goal.machine),
-            Motion::Thread => self.plan_thread(plan, goal.machine, given, span)?,
-            Motion::Linear => locate(self.push_feed(plan, &goal.machine, given), span)?,
-            Motion::Clockwise | Motion::Counterclockwise => self.plan_arc(plan, given, &goal, span)?,
+            Motion::Rapid => self.push_rapid(plan, &endpoint.machine),
+            Motion::Thread => self.plan_thread(plan, endpoint.machine, block_words, span)?,
+            Motion::Linear => locate(self.push_feed(plan, &endpoint.machine, block_words), span)?,
+            Motion::Clockwise | Motion::Counterclockwise => {
+                self.plan_arc(plan, block_words, &endpoint, span)?
+            }
         }
-        plan.state.programmed = goal.programmed;
+        plan.state.programmed = endpoint.programmed;
         plan.commands_axes = true;
         Ok(())
     }
@@ -107,12 +117,12 @@ impl Executor {
     /// The tool length changed in a block without an axis: the axis moves by the offset at once, or keeps still.
     fn move_by_length_change(
         &self,
-        given: &BlockWords,
+        block_words: &BlockWords,
         plan: &mut BlockPlan,
-        lengthened: bool,
+        has_new_length: bool,
         span: Span,
     ) -> ExecResult<()> {
-        if !lengthened {
+        if !has_new_length {
             return Ok(());
         }
         if !self.settings.undocumented.length_moves_at_once {
@@ -124,6 +134,6 @@ impl Executor {
             self.push_rapid(plan, &to);
             return Ok(());
         }
-        locate(self.push_feed(plan, &to, given), span)
+        locate(self.push_feed(plan, &to, block_words), span)
     }
 }

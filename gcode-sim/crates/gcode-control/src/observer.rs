@@ -77,20 +77,20 @@ impl Control {
     }
 
     /// What `look` sees in the operation of [`Control::next_block`]; `None` where there is none that is ready.
-    pub(super) fn inspect_next<T>(&self, look: impl FnOnce(&Executor, &Op) -> T) -> Option<T> {
+    pub(super) fn inspect_next<T>(&self, inspect: impl FnOnce(&Executor, &Op) -> T) -> Option<T> {
         let Frame { program, next, .. } = self.executor.frame;
         let op = self.memory.get(program).op(next)?;
-        Some(self.executor.without_side_effects(|core| look(core, op)))
+        Some(self.executor.without_side_effects(|core| inspect(core, op)))
     }
 }
 
 impl Executor {
     /// Does what is no part of the run: what it leaves behind is forgotten.
-    pub(super) fn without_side_effects<T>(&self, look: impl FnOnce(&Self) -> T) -> T {
+    pub(super) fn without_side_effects<T>(&self, inspect: impl FnOnce(&Self) -> T) -> T {
         let clock_read = self.has_read_clock.get();
-        let seen = self.block_effects.without_effects(|| look(self));
+        let result = self.block_effects.without_effects(|| inspect(self));
         self.has_read_clock.set(clock_read);
-        seen
+        result
     }
 
     /// Whether the switch of a block skip before a block is on.

@@ -204,10 +204,10 @@ impl Executor {
 
     /// What is stored of an offset that is written in the unit in force: mm, a multiple of the increment.
     pub(super) fn to_stored(&self, state: &State, axis: Option<AxisIndex>, value: f64) -> f64 {
-        let turns = axis.is_some_and(|axis| self.settings.axes.is_rotary(axis));
+        let is_rotary = axis.is_some_and(|axis| self.settings.axes.is_rotary(axis));
         let increment = self.settings.increment;
         match state.modal.unit {
-            Unit::Inch if !turns => {
+            Unit::Inch if !is_rotary => {
                 let tenths = increment.per_unit() * 10.0;
                 self.remove_residue(round_scaled(value, tenths) / tenths * 25.4)
             }
@@ -217,14 +217,14 @@ impl Executor {
 
     /// An offset has as many digits as a position.
     pub(super) fn check_offset_range(&self, value: f64) -> Result<f64, Alarm> {
-        let fits = value.abs() * self.settings.increment.per_unit() <= 999_999_999.0;
-        if fits { Ok(value) } else { Err(Alarm::OffsetValue { value }) }
+        let is_in_range = value.abs() * self.settings.increment.per_unit() <= 999_999_999.0;
+        if is_in_range { Ok(value) } else { Err(Alarm::OffsetValue { value }) }
     }
 
     /// A length in mm as a program reads it: in the unit in force.
     pub(super) fn to_program_unit(&self, state: &State, axis: Option<AxisIndex>, value: f64) -> f64 {
-        let turns = axis.is_some_and(|axis| self.settings.axes.is_rotary(axis));
-        if state.modal.unit == Unit::Inch && !turns { value / 25.4 } else { value }
+        let is_rotary = axis.is_some_and(|axis| self.settings.axes.is_rotary(axis));
+        if state.modal.unit == Unit::Inch && !is_rotary { value / 25.4 } else { value }
     }
 
     /// The length offset that the modal state asks for on its axis, Z.

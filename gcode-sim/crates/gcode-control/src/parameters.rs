@@ -22,15 +22,15 @@ impl Executor {
         let format = || Alarm::ArgumentFormat { function: "PRM".into() };
         let known = integer(number)?;
         let unknown = || Alarm::NotSimulated { what: format!("PRM[{known}]") };
-        let place = ParameterId {
+        let id = ParameterId {
             number: u16::try_from(known).map_err(|_| unknown())?,
             bit: bit.map(|bit| self.parameter_bit(bit).ok_or_else(format)).transpose()?,
             axis: axis.map(|axis| self.axis_of(axis).map_err(|_| format())).transpose()?,
         };
-        if let Some(written) = self.parameters.get(&place) {
+        if let Some(written) = self.parameters.get(&id) {
             return Ok(*written);
         }
-        self.settings.parameter(place).map_err(|error| match error {
+        self.settings.parameter(id).map_err(|error| match error {
             ParameterError::MissingAxis | ParameterError::UnexpectedAxis | ParameterError::UnexpectedBit => {
                 format()
             }
@@ -53,65 +53,68 @@ impl Executor {
     pub(super) fn plan_parameter(
         &self,
         (words, number): (&Words, Option<u32>),
-        given: &mut BlockWords,
+        block_words: &mut BlockWords,
         plan: &mut BlockPlan,
         span: Span,
     ) -> ExecResult<()> {
         plan.reset(&self.state);
-        let wrong = |what: &str| Alarm::ParameterFormat { what: what.to_owned() }.located_at(span);
-        self.evaluate_words(words, None, given)?;
-        let mut codes = given.g_codes();
+        let format_alarm = |what: &str| Alarm::ParameterFormat { what: what.to_owned() }.located_at(span);
+        self.evaluate_words(words, None, block_words)?;
+        let mut codes = block_words.g_codes();
         match (codes.next(), codes.next()) {
             (None, _) => {}
             (Some(code), None) if code.effect == Effect::OneShot(OneShot::DataInputEnd) => {
                 plan.state.is_in_parameter_input = false;
-                return match given.first_unread() {
+                return match block_words.first_unread() {
                     None if words.call().is_none() => Ok(()),
-                    _ => Err(wrong("words in a block with G11")),
+                    _ => Err(format_alarm("words in a block with G11")),
                 };
             }
-            _ => return Err(wrong("another G code before G11")),
+            _ => return Err(format_alarm("another G code before G11")),
         }
-        if given.m_code_count > 0 || words.call().is_some() {
-            return Err(wrong("an M code before G11"));
+        if block_words.m_code_count > 0 || words.call().is_some() {
+            return Err(format_alarm("an M code before G11"));
         }
         let number = number.and_then(|number| u16::try_from(number).ok());
-        let number = number.ok_or_else(|| wrong("N, the parameter's number, is missing or too large"))?;
-        let (raw, _) = given.get(b'R').ok_or_else(|| wrong("R is missing"))?;
-        let axis = match given.count(b'P')? {
+        let number =
+            number.ok_or_else(|| format_alarm("N, the parameter's number, is missing or too large"))?;
+        let (raw, _) = block_words.get(b'R').ok_or_else(|| format_alarm("R is missing"))?;
+        let axis = match block_words.count(b'P')? {
             None => None,
-            Some(axis) => Some(self.axis_of(f64::from(axis)).map_err(|_| wrong("P is not an axis"))?),
+            Some(axis) => Some(self.axis_of(f64::from(axis)).map_err(|_| format_alarm("P is not an axis"))?),
         };
-        let bit = match given.count(b'Q')? {
+        let bit = match block_words.count(b'Q')? {
             None => None,
-            Some(bit) => Some(self.parameter_bit(f64::from(bit)).ok_or_else(|| wrong("Q is not 0 to 7"))?),
+            Some(bit) => {
+                Some(self.parameter_bit(f64::from(bit)).ok_or_else(|| format_alarm("Q is not 0 to 7"))?)
+            }
         };
-        if given.first_unread().is_some() {
-            return Err(wrong("other words than N P Q R"));
+        if block_words.first_unread().is_some() {
+            return Err(format_alarm("other words than N P Q R"));
         }
-        let place = ParameterId { number, bit, axis };
+        let id = ParameterId { number, bit, axis };
         if let WordNumber::Literal(literal) = raw
             && literal.places.is_none()
             && literal.digits != 0
-            && Settings::is_length_parameter(place)
+            && Settings::is_length_parameter(id)
         {
             let what = format!("R without a decimal point for parameter {number}, a length");
-            return Err(Alarm::NotSimulated { what }.located_at(given.span(b'R')));
+            return Err(Alarm::NotSimulated { what }.located_at(block_words.span(b'R')));
         }
         let value = match raw {
             WordNumber::Literal(literal) => literal.value(),
             WordNumber::Computed(value) => value,
         };
-        let known = self.settings.clone().set_parameter(place, value);
-        let kept = known == Err(ParameterError::Unknown) && is_without_effect(number);
-        match known {
+        let result = self.settings.clone().set_parameter(id, value);
+        let has_no_effect = result == Err(ParameterError::Unknown) && is_without_effect(number);
+        match result {
             Ok(()) => {}
-            Err(_) if kept => plan.notes.push(Note::ParameterWithoutEffect { number }),
-            Err(ParameterError::MissingAxis) => return Err(wrong("P, the axis, is missing")),
-            Err(ParameterError::UnexpectedAxis) => return Err(wrong("the parameter has no axis P")),
-            Err(ParameterError::UnexpectedBit) => return Err(wrong("the parameter has no bit Q")),
+            Err(_) if has_no_effect => plan.notes.push(Note::ParameterWithoutEffect { number }),
+            Err(ParameterError::MissingAxis) => return Err(format_alarm("P, the axis, is missing")),
+            Err(ParameterError::UnexpectedAxis) => return Err(format_alarm("the parameter has no axis P")),
+            Err(ParameterError::UnexpectedBit) => return Err(format_alarm("the parameter has no bit Q")),
             Err(ParameterError::InvalidValue) => {
-                return Err(wrong("the value is not allowed for this parameter"));
+                return Err(format_alarm("the value is not allowed for this parameter"));
             }
             Err(ParameterError::MissingBit) => {
                 let what = format!("parameter {number} without Q, as a whole byte");
@@ -122,18 +125,18 @@ impl Executor {
                 return Err(Alarm::NotSimulated { what }.located_at(span));
             }
         }
-        plan.writes.push(TableWrite::Parameter { id: place, value, has_no_effect: kept });
+        plan.writes.push(TableWrite::Parameter { id, value, has_no_effect });
         Ok(())
     }
 
     /// Carries out what [`Executor::prepare_parameter`] has checked.
-    pub(super) fn set_parameter(&mut self, place: ParameterId, value: f64, kept: bool) {
-        self.parameters.insert(place, value);
-        if kept {
+    pub(super) fn set_parameter(&mut self, id: ParameterId, value: f64, has_no_effect: bool) {
+        self.parameters.insert(id, value);
+        if has_no_effect {
             return;
         }
         // It was tried on a copy when the block was checked.
-        let set = self.settings.set_parameter(place, value);
+        let set = self.settings.set_parameter(id, value);
         debug_assert_eq!(set, Ok(()));
     }
 }

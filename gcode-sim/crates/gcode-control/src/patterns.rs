@@ -25,7 +25,7 @@ impl Executor {
     pub(super) fn plan_bolt_holes(
         &self,
         holes: HolePattern,
-        given: &BlockWords,
+        block_words: &BlockWords,
         plan: &mut BlockPlan,
         span: Span,
     ) -> ExecResult<()> {
@@ -40,21 +40,21 @@ impl Executor {
             return Err(Alarm::NotSimulated { what: format!("{code} outside plane G17") }.located_at(span));
         }
         let missing = |letter| Alarm::MissingWord { code, letter }.located_at(span);
-        let radius = self.dimension(given, b'I', &plan.state)?.ok_or_else(|| missing('I'))?;
-        let start = self.angle(given, b'J')?.ok_or_else(|| missing('J'))?;
-        let count = given.count(b'L')?.filter(|count| *count > 0).ok_or_else(|| missing('L'))?;
-        let turn = match holes {
+        let radius = self.dimension(block_words, b'I', &plan.state)?.ok_or_else(|| missing('I'))?;
+        let start = self.angle(block_words, b'J')?.ok_or_else(|| missing('J'))?;
+        let count = block_words.count(b'L')?.filter(|count| *count > 0).ok_or_else(|| missing('L'))?;
+        let angle_step = match holes {
             // A negative radius goes round clockwise.
             HolePattern::Circle => (360.0 / f64::from(count)).copysign(radius),
-            HolePattern::Arc => self.angle(given, b'K')?.ok_or_else(|| missing('K'))?,
+            HolePattern::Arc => self.angle(block_words, b'K')?.ok_or_else(|| missing('K'))?,
         };
         if radius == 0.0 || radius < 0.0 && holes == HolePattern::Arc {
             return Err(
                 Alarm::OutOfRange { function: format!("I of {code}"), value: radius }.located_at(span)
             );
         }
-        let pattern = BoltHolePattern { count, radius: radius.abs(), start, angle_step: turn };
-        self.plan_cycle(plan, given, cycle, Some(pattern), span)
+        let pattern = BoltHolePattern { count, radius: radius.abs(), start, angle_step };
+        self.plan_cycle(plan, block_words, cycle, Some(pattern), span)
     }
 }
 

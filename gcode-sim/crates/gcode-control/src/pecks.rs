@@ -15,14 +15,14 @@ impl Executor {
     pub(super) fn read_peck_schedule(
         &self,
         plan: &mut BlockPlan,
-        given: &BlockWords,
+        block_words: &BlockWords,
         span: Span,
     ) -> ExecResult<()> {
         let state = &plan.state;
-        let first = self.dimension(given, b'I', state)?;
-        let less = self.dimension(given, b'J', state)?;
-        let least = self.dimension(given, b'K', state)?;
-        let pecks = match (first, less, least) {
+        let first = self.dimension(block_words, b'I', state)?;
+        let decrement = self.dimension(block_words, b'J', state)?;
+        let minimum = self.dimension(block_words, b'K', state)?;
+        let pecks = match (first, decrement, minimum) {
             (None, None, None) => return Ok(()),
             (Some(first), None, None) => PeckSchedule { first, decrement: 0.0, minimum: first },
             (Some(first), Some(less), Some(least)) => PeckSchedule { first, decrement: less, minimum: least },
@@ -31,7 +31,7 @@ impl Executor {
                 return Err(Alarm::NotSimulated { what }.located_at(span));
             }
         };
-        if given.has(b'Q') {
+        if block_words.has(b'Q') {
             return Err(Alarm::NotSimulated { what: "G73 and G83 with I and Q".into() }.located_at(span));
         }
         if pecks.first <= 0.0 || pecks.decrement < 0.0 || pecks.minimum <= 0.0 || pecks.minimum > pecks.first
@@ -47,15 +47,15 @@ impl Executor {
         &self,
         (r, z): (f64, f64),
         data: &CycleState,
-        mut each: impl FnMut(f64, f64, bool),
+        mut emit: impl FnMut(f64, f64, bool),
     ) {
         let pecks = peck_count(r, z, data);
         let mut last = r;
         let mut count = 1.0;
         while count <= pecks {
-            let done = count == pecks;
-            let next = if done { z } else { r + peck_depth(data, count).copysign(z - r) };
-            each(last, next, done);
+            let is_last = count == pecks;
+            let next = if is_last { z } else { r + peck_depth(data, count).copysign(z - r) };
+            emit(last, next, is_last);
             last = next;
             count += 1.0;
         }
@@ -68,22 +68,22 @@ fn peck_depth(data: &CycleState, count: f64) -> f64 {
         return count * data.q.unwrap_or(0.0).abs();
     };
     // As many pecks as are longer than the shortest, then all as short as that.
-    let longer = if less > 0.0 { ((first - least) / less + 1e-9).floor() + 1.0 } else { count };
-    let shrinking = count.min(longer);
+    let longer_count = if less > 0.0 { ((first - least) / less + 1e-9).floor() + 1.0 } else { count };
+    let shrinking = count.min(longer_count);
     shrinking * first - less * shrinking * (shrinking - 1.0) / 2.0 + (count - shrinking) * least
 }
 
 /// How many pecks a hole from R to Z takes.
 fn peck_count(r: f64, z: f64, data: &CycleState) -> f64 {
-    let deep = (z - r).abs();
+    let total_depth = (z - r).abs();
     if data.pecks.is_none() {
         return match data.q {
-            Some(q) if q != 0.0 => (deep / q.abs() - 1e-9).ceil().max(1.0),
+            Some(q) if q != 0.0 => (total_depth / q.abs() - 1e-9).ceil().max(1.0),
             _ => 1.0,
         };
     }
     let mut count = 1.0;
-    while peck_depth(data, count) < deep - 1e-9 && count <= MAX_PECKS {
+    while peck_depth(data, count) < total_depth - 1e-9 && count <= MAX_PECKS {
         count += 1.0;
     }
     count

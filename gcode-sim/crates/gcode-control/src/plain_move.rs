@@ -68,42 +68,47 @@ impl Executor {
     /// the steps of a block know where and why.
     #[inline(never)]
     pub(super) fn plain_move<S: EventSink>(&mut self, op: &Op, words: &Words, sink: &mut S) -> Option<()> {
-        let counting = self.plain_basis.as_ref()?;
+        let basis = self.plain_basis.as_ref()?;
         if !words.is_plain() || words.list.len() > G_CODES || !self.modal_calls.is_empty() {
             return None;
         }
         let state = &*self.state;
-        let mut ends = PlainEndpoint::default();
-        let mut led = PlainMove {
+        let mut endpoint = PlainEndpoint::default();
+        let mut resolved_move = PlainMove {
             motion: state.modal.motion,
             f: None,
             named: AxisSet::NONE,
             travel: SquaredTravel::default(),
         };
-        self.resolve_plain(words, counting, &mut led, &mut ends)?;
-        if !led.named.is_ascending {
+        self.resolve_plain(words, basis, &mut resolved_move, &mut endpoint)?;
+        if !resolved_move.named.is_ascending {
             // A sum depends on its order, a way must not on that of the words.
-            led.travel = self.squared_travel(led.named.iter(), &state.machine, &ends.machine);
+            resolved_move.travel =
+                self.squared_travel(resolved_move.named.iter(), &state.machine, &endpoint.machine);
         }
-        let f = led.f.unwrap_or(state.codes.f);
-        let (rate, seconds) = match led.motion {
-            Motion::Rapid => {
-                (MmPerMin::ZERO, self.rapid_seconds_of(led.named.iter(), &state.machine, &ends.machine))
+        let f = resolved_move.f.unwrap_or(state.codes.f);
+        let (rate, seconds) = match resolved_move.motion {
+            Motion::Rapid => (
+                MmPerMin::ZERO,
+                self.rapid_seconds_of(resolved_move.named.iter(), &state.machine, &endpoint.machine),
+            ),
+            Motion::Linear => {
+                self.travel_time(state, f, resolved_move.travel, resolved_move.f.is_some()).ok()?
             }
-            Motion::Linear => self.travel_time(state, f, led.travel, led.f.is_some()).ok()?,
             _ => return None,
         };
 
         let state = &mut *self.state;
-        for axis in led.named.iter() {
-            (state.programmed[axis], state.machine[axis]) = (ends.programmed[axis], ends.machine[axis]);
+        for axis in resolved_move.named.iter() {
+            (state.programmed[axis], state.machine[axis]) =
+                (endpoint.programmed[axis], endpoint.machine[axis]);
         }
-        (state.modal.motion, state.codes.f) = (led.motion, f);
+        (state.modal.motion, state.codes.f) = (resolved_move.motion, f);
         state.codes.n = op.number.unwrap_or(state.codes.n);
         self.record_work_use(self.state.modal.work, true);
         let to = &self.state.machine;
-        match led.motion {
-            _ if !led.travel.is_some() => {}
+        match resolved_move.motion {
+            _ if !resolved_move.travel.is_some() => {}
             _ if !sink.is_active() => self.count_move(seconds),
             Motion::Rapid => self.emit(&EventKind::Rapid { to: *to }, seconds, sink),
             _ => self.emit(&EventKind::Feed { to: *to, rate }, seconds, sink),
@@ -116,9 +121,9 @@ impl Executor {
     fn resolve_plain(
         &self,
         words: &Words,
-        counting: &CoordinateBasis,
-        led: &mut PlainMove,
-        ends: &mut PlainEndpoint,
+        basis: &CoordinateBasis,
+        resolved_move: &mut PlainMove,
+        endpoint: &mut PlainEndpoint,
     ) -> Option<()> {
         let state = &*self.state;
         for word in &words.list {
@@ -128,17 +133,17 @@ impl Executor {
             let Some(axis) = self.settings.axes.find(word.letter) else {
                 match &word.value {
                     WordOperand::G(_, found) => match found.row_for(self.settings.codes)?.effect {
-                        Effect::Motion(code) => led.motion = code,
+                        Effect::Motion(code) => resolved_move.motion = code,
                         _ => return None,
                     },
-                    _ if word.letter != b'F' || led.f.is_some() => return None,
-                    _ => led.f = self.evaluate_feed(words, word)?,
+                    _ if word.letter != b'F' || resolved_move.f.is_some() => return None,
+                    _ => resolved_move.f = self.evaluate_feed(words, word)?,
                 }
                 continue;
             };
             let value = match &word.value {
                 WordOperand::Literal(number) => {
-                    self.literal_dimension(number, word.letter, &counting.measure)?
+                    self.literal_dimension(number, word.letter, &basis.measure)?
                 }
                 value => {
                     let value = match value {
@@ -146,18 +151,18 @@ impl Executor {
                         value => self.evaluate_axis_value(words, value)?,
                     };
                     let Value::Number(value) = value else { continue };
-                    self.computed_dimension(value, word.letter, &counting.measure)?
+                    self.computed_dimension(value, word.letter, &basis.measure)?
                 }
             };
-            led.named.add(axis)?;
-            let to = &mut ends.machine[axis];
-            (ends.programmed[axis], *to) = self.axis_end(axis, value, state, counting);
-            if to.abs() > counting.max_coordinate {
+            resolved_move.named.add(axis)?;
+            let to = &mut endpoint.machine[axis];
+            (endpoint.programmed[axis], *to) = self.axis_end(axis, value, state, basis);
+            if to.abs() > basis.max_coordinate {
                 return None;
             }
-            led.travel.add(*to - state.machine[axis], self.settings.axes.is_rotary(axis));
+            resolved_move.travel.add(*to - state.machine[axis], self.settings.axes.is_rotary(axis));
         }
-        (led.named.axes != 0).then_some(())
+        (resolved_move.named.axes != 0).then_some(())
     }
 
     /// What is behind the address of an axis that is neither a literal nor any control's variable; `None` where it alarms.

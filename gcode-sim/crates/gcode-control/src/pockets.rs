@@ -19,40 +19,40 @@ impl Executor {
     pub(super) fn plan_circle_pocket(
         &self,
         motion: Motion,
-        given: &BlockWords,
+        block_words: &BlockWords,
         plan: &mut BlockPlan,
         span: Span,
     ) -> ExecResult<()> {
         let clockwise = motion == Motion::Clockwise;
         let code = if clockwise { "G12" } else { "G13" };
         let modal = &plan.state.modal;
-        let plain = modal.plane == Plane::Xy
+        let is_allowed = modal.plane == Plane::Xy
             && modal.cycle.is_none()
             && modal.cutter == CutterSide::Off
             && plan.state.transform.is_none();
-        if !plain || given.has_any(b"XY") {
+        if !is_allowed || block_words.has_any(b"XY") {
             let what = format!("{code} with X, Y, another plane, compensation, rotation or a drilling cycle");
             return Err(Alarm::NotSimulated { what }.located_at(span));
         }
-        let radii = self.radii(code, given, plan, span)?;
-        let passes = given.count(b'L')?.unwrap_or(1);
+        let radii = self.radii(code, block_words, plan, span)?;
+        let passes = block_words.count(b'L')?.unwrap_or(1);
         if f64::from(passes) * radii.len() as f64 > MAX_CIRCLES {
             return Err(
                 Alarm::NotSimulated { what: format!("{code} with this number of circles") }.located_at(span)
             );
         }
         for _ in 0..passes {
-            let goal = self.resolve_endpoint(given, &mut plan.state)?;
-            locate(self.push_feed(plan, &goal.machine, given), span)?;
-            plan.state.programmed = goal.programmed;
+            let endpoint = self.resolve_endpoint(block_words, &mut plan.state)?;
+            locate(self.push_feed(plan, &endpoint.machine, block_words), span)?;
+            plan.state.programmed = endpoint.programmed;
             for radius in &radii {
                 let sense = if clockwise { -1.0 } else { 1.0 };
                 let centre = (plan.state.machine[0], plan.state.machine[1]);
                 let half = (centre.0 + radius / 2.0, centre.1);
                 let edge = self.remove_residue(centre.0 + radius);
-                self.push_xy_arc(plan, given, edge, half, radius / 2.0, 180.0 * sense, span)?;
-                self.push_xy_arc(plan, given, edge, centre, *radius, 360.0 * sense, span)?;
-                self.push_xy_arc(plan, given, centre.0, half, radius / 2.0, 180.0 * sense, span)?;
+                self.push_xy_arc(plan, block_words, edge, half, radius / 2.0, 180.0 * sense, span)?;
+                self.push_xy_arc(plan, block_words, edge, centre, *radius, 360.0 * sense, span)?;
+                self.push_xy_arc(plan, block_words, centre.0, half, radius / 2.0, 180.0 * sense, span)?;
             }
         }
         plan.commands_axes = true;
@@ -63,19 +63,20 @@ impl Executor {
     fn radii(
         &self,
         code: &'static str,
-        given: &BlockWords,
+        block_words: &BlockWords,
         plan: &BlockPlan,
         span: Span,
     ) -> ExecResult<Vec<f64>> {
         let missing = |letter| Alarm::MissingWord { code, letter }.located_at(span);
         let state = &plan.state;
-        let first = self.dimension(given, b'I', state)?.ok_or_else(|| missing('I'))?;
-        let (last, step) = match (self.dimension(given, b'K', state)?, self.dimension(given, b'Q', state)?) {
-            (None, None) => (first, 0.0),
-            (Some(last), Some(step)) => (last, step),
-            (Some(_), None) => return Err(missing('Q')),
-            (None, Some(_)) => return Err(missing('K')),
-        };
+        let first = self.dimension(block_words, b'I', state)?.ok_or_else(|| missing('I'))?;
+        let (last, step) =
+            match (self.dimension(block_words, b'K', state)?, self.dimension(block_words, b'Q', state)?) {
+                (None, None) => (first, 0.0),
+                (Some(last), Some(step)) => (last, step),
+                (Some(_), None) => return Err(missing('Q')),
+                (None, Some(_)) => return Err(missing('K')),
+            };
         let number = state.codes.d;
         let unknown = || Alarm::OffsetNumber { number: i64::from(number) }.located_at(span);
         let tool = self.offset_radius(number).ok_or_else(unknown)?;
@@ -106,7 +107,7 @@ impl Executor {
     fn push_xy_arc(
         &self,
         plan: &mut BlockPlan,
-        given: &BlockWords,
+        block_words: &BlockWords,
         to: f64,
         centre: (f64, f64),
         radius: f64,
@@ -114,7 +115,7 @@ impl Executor {
         span: Span,
     ) -> ExecResult<()> {
         let length = radius * sweep.abs().to_radians();
-        let timed = self.path_time(&plan.state, length, given.has(b'F'));
+        let timed = self.path_time(&plan.state, length, block_words.has(b'F'));
         let (rate, seconds) = timed.map_err(|_| Alarm::ArcFeedZero.located_at(span))?;
         let mut end = plan.state.machine;
         end[0] = to;

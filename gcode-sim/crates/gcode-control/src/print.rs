@@ -22,8 +22,8 @@ pub(super) struct PrintedLines {
 }
 
 impl Executor {
-    pub(super) fn set_output_open(&mut self, open: bool) {
-        self.printed.is_open = open;
+    pub(super) fn set_output_open(&mut self, is_open: bool) {
+        self.printed.is_open = is_open;
     }
 
     /// DPRNT and BPRNT: one line.
@@ -82,10 +82,10 @@ fn decimal(
     let unit = 10_u64.pow(u32::from(decimals));
     let scaled = scaled as u64;
     let width = usize::from(whole);
-    let mut before = (scaled / unit).to_string();
-    let mut all = true;
-    if before.len() > width && !settings.print_expands {
-        all = before.drain(..before.len() - width).all(|digit| digit == '0');
+    let mut whole_digits = (scaled / unit).to_string();
+    let mut is_complete = true;
+    if whole_digits.len() > width && !settings.print_expands {
+        is_complete = whole_digits.drain(..whole_digits.len() - width).all(|digit| digit == '0');
     }
     let negative = number < 0.0 && scaled > 0;
     if negative {
@@ -94,15 +94,15 @@ fn decimal(
         line.push(b' ');
     }
     if !settings.omits_print_blanks {
-        line.extend(std::iter::repeat_n(b' ', width.saturating_sub(before.len())));
+        line.extend(std::iter::repeat_n(b' ', width.saturating_sub(whole_digits.len())));
     }
-    line.extend(before.bytes());
+    line.extend(whole_digits.bytes());
     if decimals > 0 {
-        let behind = scaled % unit;
+        let fraction = scaled % unit;
         line.push(b'.');
-        line.extend(format!("{behind:0width$}", width = usize::from(decimals)).bytes());
+        line.extend(format!("{fraction:0width$}", width = usize::from(decimals)).bytes());
     }
-    Ok(all)
+    Ok(is_complete)
 }
 
 /// `#n[d]`: the value × 10^d as two words, the highest byte first.

@@ -14,34 +14,40 @@ use gcode_lang::units::Seconds;
 impl Executor {
     /// G31: a straight cut that ends where the skip signal comes. It is planned to its end; whether the signal comes
     /// is asked when everything is known to be in order.
-    pub(super) fn plan_skip(&self, given: &BlockWords, plan: &mut BlockPlan, span: Span) -> ExecResult<()> {
+    pub(super) fn plan_skip(
+        &self,
+        block_words: &BlockWords,
+        plan: &mut BlockPlan,
+        span: Span,
+    ) -> ExecResult<()> {
         if plan.state.modal.cutter != CutterSide::Off || self.lookahead.is_offset() {
             return Err(Alarm::SkipInCompensation.located_at(span));
         }
-        self.check_skip_signal_set(given, b'P')?;
-        if given.count(b'Q')?.is_some_and(|torque| !(1..=99).contains(&torque)) {
-            return Err(Alarm::SkipTorque.located_at(given.span(b'Q')));
+        self.check_skip_signal_set(block_words, b'P')?;
+        if block_words.count(b'Q')?.is_some_and(|torque| !(1..=99).contains(&torque)) {
+            return Err(Alarm::SkipTorque.located_at(block_words.span(b'Q')));
         }
-        if given.has_any(b"PQ") {
+        if block_words.has_any(b"PQ") {
             return Err(not_simulated(310, "multi-step and torque limit skip").located_at(span));
         }
-        let goal = self.resolve_endpoint(given, &mut plan.state)?;
-        let (from, to) = (plan.state.machine, goal.machine);
-        let (rate, seconds) = locate(self.feed_seconds(&plan.state, &from, &to, given.has(b'F')), span)?;
+        let endpoint = self.resolve_endpoint(block_words, &mut plan.state)?;
+        let (from, to) = (plan.state.machine, endpoint.machine);
+        let (rate, seconds) =
+            locate(self.feed_seconds(&plan.state, &from, &to, block_words.has(b'F')), span)?;
         plan.skip_plan = Some(SkipPlan { event: plan.events.len(), from, to, rate, seconds, span });
         plan.events.push((EventKind::Skip { to, rate, has_signal: false }, seconds));
         plan.state.machine = to;
         plan.state.skip_position = to;
-        plan.state.programmed = goal.programmed;
+        plan.state.programmed = endpoint.programmed;
         plan.commands_axes = true;
         Ok(())
     }
 
     /// G31 P and G04 Q name a set of skip signals.
-    pub(super) fn check_skip_signal_set(&self, given: &BlockWords, letter: u8) -> ExecResult<()> {
-        match given.count(letter)? {
+    pub(super) fn check_skip_signal_set(&self, block_words: &BlockWords, letter: u8) -> ExecResult<()> {
+        match block_words.count(letter)? {
             Some(set) if !(1..=4).contains(&set) => {
-                Err(Alarm::SkipSignals { letter: char::from(letter) }.located_at(given.span(letter)))
+                Err(Alarm::SkipSignals { letter: char::from(letter) }.located_at(block_words.span(letter)))
             }
             _ => Ok(()),
         }
@@ -53,8 +59,8 @@ impl Executor {
         plan: &mut BlockPlan,
         sink: &mut S,
     ) -> Option<LocatedAlarm> {
-        let probing = plan.skip_plan.take()?;
-        let SkipPlan { from, to, rate, seconds, span, .. } = probing;
+        let skip_plan = plan.skip_plan.take()?;
+        let SkipPlan { from, to, rate, seconds, span, .. } = skip_plan;
         let signal = match self.settings.skip_signal {
             Some(part) => SkipSignal::Received { latched: part, stop_fraction: part },
             None => {
@@ -82,16 +88,17 @@ impl Executor {
                 Some(Alarm::StylusBroken { deflection: pushed, overtravel_limit: give }.located_at(span)),
             ),
         };
-        let after = |part: f64| {
+        let point_at = |part: f64| {
             let mut place = Position::default();
             for axis in 0..MAX_AXES {
                 place[axis] = self.remove_residue(from[axis] + part * (to[axis] - from[axis]));
             }
             place
         };
-        let end = after(stopped);
-        plan.events[probing.event] = (EventKind::Skip { to: end, rate, has_signal: true }, stopped * seconds);
-        plan.state.skip_position = after(noted);
+        let end = point_at(stopped);
+        plan.events[skip_plan.event] =
+            (EventKind::Skip { to: end, rate, has_signal: true }, stopped * seconds);
+        plan.state.skip_position = point_at(noted);
         plan.state.machine = end;
         if !self.settings.undocumented.skip_keeps_end {
             self.recompute_position(&mut plan.state);

@@ -111,8 +111,13 @@ impl Executor {
     }
 
     /// A length in mm or an angle in degrees, a multiple of the increment of its address.
-    pub(super) fn dimension(&self, given: &BlockWords, letter: u8, state: &State) -> ExecResult<Option<f64>> {
-        let Some((raw, span)) = given.get(letter) else { return Ok(None) };
+    pub(super) fn dimension(
+        &self,
+        block_words: &BlockWords,
+        letter: u8,
+        state: &State,
+    ) -> ExecResult<Option<f64>> {
+        let Some((raw, span)) = block_words.get(letter) else { return Ok(None) };
         locate(self.dimension_of(&raw, letter, &self.measure(state.modal.unit)), span).map(Some)
     }
 
@@ -155,15 +160,15 @@ impl Executor {
     }
 
     /// An angle at an address that is a length elsewhere: R of G68.
-    pub(super) fn angle(&self, given: &BlockWords, letter: u8) -> ExecResult<Option<f64>> {
-        let Some((raw, span)) = given.get(letter) else { return Ok(None) };
+    pub(super) fn angle(&self, block_words: &BlockWords, letter: u8) -> ExecResult<Option<f64>> {
+        let Some((raw, span)) = block_words.get(letter) else { return Ok(None) };
         let decimals = self.decimals(b'A', Unit::Metric);
         Ok(Some(locate(self.increments(&raw, decimals), span)? / POWERS[decimals]))
     }
 
     /// `,R` or `,C` of a cutting move.
-    pub(super) fn corner_word(&self, given: &BlockWords, state: &State) -> ExecResult<Option<Blend>> {
-        let Some((letter, raw, span)) = given.corner else { return Ok(None) };
+    pub(super) fn corner_word(&self, block_words: &BlockWords, state: &State) -> ExecResult<Option<Blend>> {
+        let Some((letter, raw, span)) = block_words.corner else { return Ok(None) };
         let decimals = self.decimals(b'X', state.modal.unit);
         let value = locate(self.increments(&raw, decimals), span)? / POWERS[decimals];
         if value < 0.0 {
@@ -174,8 +179,8 @@ impl Executor {
     }
 
     /// A whole number with a sign: I J K of G51.
-    pub(super) fn factor(&self, given: &BlockWords, letter: u8) -> ExecResult<Option<f64>> {
-        let Some((raw, span)) = given.get(letter) else { return Ok(None) };
+    pub(super) fn factor(&self, block_words: &BlockWords, letter: u8) -> ExecResult<Option<f64>> {
+        let Some((raw, span)) = block_words.get(letter) else { return Ok(None) };
         match raw {
             WordNumber::Literal(number) if number.places.is_some() => {
                 Err(Alarm::IllegalPoint { letter: Some(char::from(letter)) }.located_at(span))
@@ -186,8 +191,8 @@ impl Executor {
     }
 
     /// A time in seconds: X and U count increments of 0.001 s without a point.
-    pub(super) fn seconds(&self, given: &BlockWords, letter: u8) -> ExecResult<Option<f64>> {
-        let Some((raw, span)) = given.get(letter) else { return Ok(None) };
+    pub(super) fn seconds(&self, block_words: &BlockWords, letter: u8) -> ExecResult<Option<f64>> {
+        let Some((raw, span)) = block_words.get(letter) else { return Ok(None) };
         let decimals = self.decimals(b'A', Unit::Metric);
         let value = locate(self.increments(&raw, decimals), span)? / POWERS[decimals];
         if value < 0.0 {
@@ -197,8 +202,8 @@ impl Executor {
     }
 
     /// P of a dwell in seconds: milliseconds, or on some controls seconds where it has a point.
-    pub(super) fn dwell_seconds(&self, given: &BlockWords) -> ExecResult<Option<f64>> {
-        let Some((raw, span)) = given.get(b'P') else { return Ok(None) };
+    pub(super) fn dwell_seconds(&self, block_words: &BlockWords) -> ExecResult<Option<f64>> {
+        let Some((raw, span)) = block_words.get(b'P') else { return Ok(None) };
         match raw {
             WordNumber::Literal(number) if self.settings.dwell_in_seconds && number.places.is_some() => {
                 if number.negative {
@@ -210,13 +215,13 @@ impl Executor {
             WordNumber::Computed(_) if self.settings.dwell_in_seconds => {
                 Err(Alarm::NotSimulated { what: "a computed P of a dwell".into() }.located_at(span))
             }
-            _ => Ok(given.count(b'P')?.map(|milliseconds| f64::from(milliseconds) / 1000.0)),
+            _ => Ok(block_words.count(b'P')?.map(|milliseconds| f64::from(milliseconds) / 1000.0)),
         }
     }
 
     /// F in the unit of the feed mode.
-    pub(super) fn feed_word(&self, given: &BlockWords, state: &State) -> ExecResult<Option<f64>> {
-        let Some((raw, span)) = given.get(b'F') else { return Ok(None) };
+    pub(super) fn feed_word(&self, block_words: &BlockWords, state: &State) -> ExecResult<Option<f64>> {
+        let Some((raw, span)) = block_words.get(b'F') else { return Ok(None) };
         locate(self.feed_of(&raw, state), span).map(Some)
     }
 

@@ -12,15 +12,15 @@ use gcode_lang::source::Span;
 impl Executor {
     pub(super) fn plan_reference_check(
         &self,
-        given: &BlockWords,
+        block_words: &BlockWords,
         plan: &mut BlockPlan,
         span: Span,
     ) -> ExecResult<()> {
-        let goal = self.resolve_endpoint(given, &mut plan.state)?;
-        self.push_rapid(plan, &goal.machine);
-        plan.state.programmed = goal.programmed;
+        let endpoint = self.resolve_endpoint(block_words, &mut plan.state)?;
+        self.push_rapid(plan, &endpoint.machine);
+        plan.state.programmed = endpoint.programmed;
         for (axis, letter) in self.settings.axes.iter() {
-            if given.has(letter as u8) && self.wrap_angle(axis, plan.state.machine[axis]) != 0.0 {
+            if block_words.has(letter as u8) && self.wrap_angle(axis, plan.state.machine[axis]) != 0.0 {
                 return Err(Alarm::NotAtReference { letter }.located_at(span));
             }
         }
@@ -31,22 +31,22 @@ impl Executor {
     /// G28 and G30: by rapid over the intermediate point to the reference position, the named axes only.
     pub(super) fn plan_reference_return(
         &self,
-        given: &BlockWords,
+        block_words: &BlockWords,
         plan: &mut BlockPlan,
         reference: Position,
     ) -> ExecResult<()> {
-        if !self.names_axis(given) {
-            let code = given.g_codes().find(|row| row.code == 300).map_or(280, |row| row.code);
+        if !self.names_axis(block_words) {
+            let code = block_words.g_codes().find(|row| row.code == 300).map_or(280, |row| row.code);
             plan.notes.push(Note::NoAxis { code });
         }
-        let goal = self.resolve_endpoint(given, &mut plan.state)?;
-        self.push_rapid(plan, &goal.machine);
+        let endpoint = self.resolve_endpoint(block_words, &mut plan.state)?;
+        self.push_rapid(plan, &endpoint.machine);
         let mut home = plan.state.machine;
         let mut named = 0;
         for (axis, letter) in self.settings.axes.iter() {
-            if given.has(letter as u8) {
+            if block_words.has(letter as u8) {
                 named |= 1 << axis;
-                plan.state.intermediate[axis] = goal.machine[axis] - self.zero(&plan.state, axis);
+                plan.state.intermediate[axis] = endpoint.machine[axis] - self.zero(&plan.state, axis);
                 plan.state.has_intermediate |= 1 << axis;
                 home[axis] = self.rollover_target(axis, home[axis], reference[axis]);
             }
@@ -55,7 +55,7 @@ impl Executor {
         self.push_rapid(plan, &home);
         // The length offset is cancelled where its axis reaches the reference position.
         let z = self.settings.axes.find(b'Z');
-        if z.is_some() && given.has(b'Z') && plan.state.modal.length != Length::Off {
+        if z.is_some() && block_words.has(b'Z') && plan.state.modal.length != Length::Off {
             cancel_length(plan);
         }
         self.recompute_position(&mut plan.state);
@@ -82,26 +82,27 @@ impl Executor {
     /// G29: over the intermediate point of the last G28 to the given point.
     pub(super) fn plan_return_from_reference(
         &self,
-        given: &BlockWords,
+        block_words: &BlockWords,
         plan: &mut BlockPlan,
         span: Span,
     ) -> ExecResult<()> {
-        let mut over = plan.state.machine;
+        let mut intermediate = plan.state.machine;
         for (axis, letter) in self.settings.axes.iter() {
-            if !given.has(letter as u8) {
+            if !block_words.has(letter as u8) {
                 continue;
             }
             if plan.state.has_intermediate >> axis & 1 == 0 {
                 return Err(Alarm::NoIntermediatePoint.located_at(span));
             }
-            over[axis] = self.remove_residue(plan.state.intermediate[axis] + self.zero(&plan.state, axis));
+            intermediate[axis] =
+                self.remove_residue(plan.state.intermediate[axis] + self.zero(&plan.state, axis));
             plan.state.work_zero_unknown &= !(1 << axis);
         }
-        self.push_rapid(plan, &over);
+        self.push_rapid(plan, &intermediate);
         self.recompute_position(&mut plan.state);
-        let goal = self.resolve_endpoint(given, &mut plan.state)?;
-        self.push_rapid(plan, &goal.machine);
-        plan.state.programmed = goal.programmed;
+        let endpoint = self.resolve_endpoint(block_words, &mut plan.state)?;
+        self.push_rapid(plan, &endpoint.machine);
+        plan.state.programmed = endpoint.programmed;
         plan.commands_axes = true;
         Ok(())
     }

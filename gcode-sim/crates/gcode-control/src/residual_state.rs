@@ -39,35 +39,35 @@ impl Control {
     pub fn residual_values(&self) -> Vec<ResidualValue> {
         let core = &self.executor;
         let mut all = Vec::new();
-        let mut leave = |kind, name: String, value: f64| all.push(ResidualValue { kind, name, value });
+        let mut push = |kind, name: String, value: f64| all.push(ResidualValue { kind, name, value });
         for (number, value) in self.variables().filter(|(number, _)| *number >= 100) {
-            leave(ResidualKind::Variable, format!("#{number}"), value);
+            push(ResidualKind::Variable, format!("#{number}"), value);
         }
         for group in 1..=22 {
             if let Ok(value) = core.read_variable(4000 + group) {
-                leave(ResidualKind::Mode, mode_name(group), value.number());
+                push(ResidualKind::Mode, mode_name(group), value.number());
             }
         }
         let shifts =
             [("G52".to_owned(), &core.state.local_offset), ("G92".to_owned(), &core.state.coordinate_shift)];
         for (system, values) in core.offsets.systems().chain(shifts) {
             for (axis, letter) in core.settings.axes.iter().filter(|(axis, _)| values[*axis] != 0.0) {
-                leave(ResidualKind::WorkOffset, format!("{system} {letter}"), values[axis]);
+                push(ResidualKind::WorkOffset, format!("{system} {letter}"), values[axis]);
             }
         }
         for (name, values) in core.offsets.tools() {
             for (number, value) in values.iter().enumerate().filter(|(_, value)| **value != 0.0) {
-                leave(ResidualKind::ToolOffset, name(number), *value);
+                push(ResidualKind::ToolOffset, name(number), *value);
             }
         }
         for (place, value) in &core.parameters {
-            leave(ResidualKind::Parameter, core.parameter_name(*place), *value);
+            push(ResidualKind::Parameter, core.parameter_name(*place), *value);
         }
         if core.outputs != 0 {
-            leave(ResidualKind::Output, "#1132".to_owned(), f64::from(core.outputs));
+            push(ResidualKind::Output, "#1132".to_owned(), f64::from(core.outputs));
         }
         for (number, value) in [3901, 3902].into_iter().zip(core.part_counters) {
-            leave(ResidualKind::Counter, format!("#{number}"), value);
+            push(ResidualKind::Counter, format!("#{number}"), value);
         }
         all
     }
@@ -89,8 +89,8 @@ impl super::Offsets {
     fn systems(&self) -> impl Iterator<Item = (String, &Position)> {
         let external = std::iter::once(("the external work offset".to_owned(), self.external()));
         let standard = self.standard().iter().enumerate().map(|(n, values)| (format!("G{}", 54 + n), values));
-        let more = self.additional.iter().enumerate();
-        external.chain(standard).chain(more.map(|(n, values)| (format!("G54.1 P{}", n + 1), values)))
+        let additional = self.additional.iter().enumerate();
+        external.chain(standard).chain(additional.map(|(n, values)| (format!("G54.1 P{}", n + 1), values)))
     }
 
     /// Every table of tool offsets, and how one of its rows is called.

@@ -40,7 +40,7 @@ impl Control {
         limits: Limits,
         library: &mut impl Library,
         sink: &mut S,
-        watcher: &mut impl Observer,
+        observer: &mut impl Observer,
     ) -> Outcome {
         if let Some(outcome) = self.final_outcome() {
             return outcome;
@@ -53,16 +53,16 @@ impl Control {
             }
             let until = limits.blocks.min((self.executor.blocks / PROGRESS_INTERVAL + 1) * PROGRESS_INTERVAL);
             while self.executor.blocks < until {
-                watcher.before_block(self);
-                let until = if watcher.is_active() { self.executor.blocks + 1 } else { until };
-                let done = self.execute_block(until, library, sink);
-                if !self.is_uneventful(&done)
-                    && let Some(outcome) = self.conclude(done, sink)
+                observer.before_block(self);
+                let until = if observer.is_active() { self.executor.blocks + 1 } else { until };
+                let result = self.execute_block(until, library, sink);
+                if !self.is_uneventful(&result)
+                    && let Some(outcome) = self.conclude(result, sink)
                 {
-                    watcher.after_block(self);
+                    observer.after_block(self);
                     return *outcome;
                 }
-                watcher.after_block(self);
+                observer.after_block(self);
             }
         }
         self.outcome = Some(Outcome::Limit);
@@ -83,8 +83,8 @@ impl Control {
             return Some(outcome);
         }
         self.executor.max_moves = u64::MAX;
-        let done = self.execute_block(self.executor.blocks + 1, library, sink);
-        self.conclude(done, sink).map(|outcome| *outcome)
+        let result = self.execute_block(self.executor.blocks + 1, library, sink);
+        self.conclude(result, sink).map(|outcome| *outcome)
     }
 
     /// How the run ended, if it can't go on; a limit is no end.
@@ -94,23 +94,23 @@ impl Control {
 
     /// Whether a block has ended nothing and has nothing to tell, as most.
     #[inline(always)]
-    fn is_uneventful(&self, done: &ExecResult<()>) -> bool {
-        done.is_ok() && self.executor.block_effects.is_none()
+    fn is_uneventful(&self, result: &ExecResult<()>) -> bool {
+        result.is_ok() && self.executor.block_effects.is_none()
     }
 
     /// Takes note of what a block has to tell, and of the end of the run.
     #[inline(never)]
-    fn conclude<S: EventSink>(&mut self, mut done: ExecResult<()>, sink: &mut S) -> Option<Box<Outcome>> {
+    fn conclude<S: EventSink>(&mut self, mut result: ExecResult<()>, sink: &mut S) -> Option<Box<Outcome>> {
         let (note, over) = self.executor.block_effects.take();
         if over == Some(RunEnd::ProgramEnd)
             && let Err(alarm) = self.executor.finish_lookahead(sink)
         {
-            done = Err(alarm);
+            result = Err(alarm);
         }
         if let Some(note) = note {
             self.executor.notes.entry(note).or_insert(self.executor.block);
         }
-        let outcome = match done {
+        let outcome = match result {
             Ok(()) => match over? {
                 RunEnd::ProgramEnd => Outcome::End,
                 RunEnd::EndlessLoop | RunEnd::MoveLimit => Outcome::Limit,
@@ -222,9 +222,9 @@ impl Control {
             }
             BlockFlow::Next | BlockFlow::CancelModal | BlockFlow::End => {}
         }
-        let broken_off = self.executor.resolve_skip_signal(&mut self.plan, sink);
+        let skip_alarm = self.executor.resolve_skip_signal(&mut self.plan, sink);
         self.executor.commit(&mut self.plan, sink);
-        if let Some(alarm) = broken_off {
+        if let Some(alarm) = skip_alarm {
             return Err(alarm);
         }
         match flow {
@@ -274,15 +274,15 @@ impl Executor {
 
     /// Block skip, and ways of writing that not every control reads; whether the block isn't done.
     #[inline(never)]
-    fn check_guards(&mut self, asked: &GuardedOp) -> ExecResult<bool> {
-        if let Some(switch) = asked.skip {
+    fn check_guards(&mut self, guarded: &GuardedOp) -> ExecResult<bool> {
+        if let Some(switch) = guarded.skip {
             let is_on = self.is_skip_on(switch);
             self.notes.entry(Note::BlockSkip { switch: switch.max(1), is_on }).or_insert(self.block);
             if is_on {
                 return Ok(true);
             }
         }
-        for form in &asked.dialect_syntax {
+        for form in &guarded.dialect_syntax {
             if !form.node.is_accepted(&self.settings) {
                 return Err(form.node.alarm().located_at(form.span));
             }

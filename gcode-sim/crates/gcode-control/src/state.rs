@@ -46,8 +46,8 @@ pub struct State {
 
 impl State {
     /// Notes whether the place of an axis on the part is known.
-    pub(super) fn set_work_zero_unknown(&mut self, axis: AxisIndex, unplaced: bool) {
-        self.work_zero_unknown = self.work_zero_unknown & !(1 << axis) | u8::from(unplaced) << axis;
+    pub(super) fn set_work_zero_unknown(&mut self, axis: AxisIndex, is_unknown: bool) {
+        self.work_zero_unknown = self.work_zero_unknown & !(1 << axis) | u8::from(is_unknown) << axis;
     }
 
     /// Puts a code of group 01 in force, which ends a drilling cycle (operator's manual, canned cycle for drilling).

@@ -34,19 +34,19 @@ impl Executor {
         &mut self,
         program: &Program,
         statement: &Statement,
-        watch: &mut LoopDetector,
+        loop_detector: &mut LoopDetector,
         sink: &mut S,
     ) -> ExecResult<()> {
         match statement {
             Statement::While { condition, number, end } => {
-                let holds = self.evaluate_condition(condition)?;
-                self.begin_iteration(*number, *end, holds);
+                let is_true = self.evaluate_condition(condition)?;
+                self.begin_iteration(*number, *end, is_true);
             }
             Statement::End { number, start } => {
                 self.end_iteration(*number, *start)?;
-                watch.record_jump(self);
+                loop_detector.record_jump(self);
             }
-            _ => return self.any_statement(program, statement, watch, sink),
+            _ => return self.any_statement(program, statement, loop_detector, sink),
         }
         Ok(())
     }
@@ -57,7 +57,7 @@ impl Executor {
         &mut self,
         program: &Program,
         statement: &Statement,
-        watch: &mut LoopDetector,
+        loop_detector: &mut LoopDetector,
         sink: &mut S,
     ) -> ExecResult<()> {
         let next = self.frame.next;
@@ -70,7 +70,7 @@ impl Executor {
             }
             Statement::Assignments(assignments) => {
                 for one in assignments {
-                    self.any_statement(program, one, watch, sink)?;
+                    self.any_statement(program, one, loop_detector, sink)?;
                 }
             }
             Statement::Goto(to) => self.goto(program, to)?,
@@ -82,12 +82,12 @@ impl Executor {
             Statement::IfThen { condition, then } => {
                 if self.evaluate_condition(condition)? {
                     // An assignment or a GOTO: lowering lets nothing else stand here.
-                    return self.any_statement(program, then, watch, sink);
+                    return self.any_statement(program, then, loop_detector, sink);
                 }
             }
             Statement::While { condition, number, end } => {
-                let holds = self.evaluate_condition(condition)?;
-                self.begin_iteration(*number, *end, holds);
+                let is_true = self.evaluate_condition(condition)?;
+                self.begin_iteration(*number, *end, is_true);
             }
             Statement::Do { number, end } => self.begin_iteration(*number, *end, true),
             Statement::End { number, start } => self.end_iteration(*number, *start)?,
@@ -98,17 +98,17 @@ impl Executor {
             Statement::Alarm(alarm) => return Err(alarm.clone()),
         }
         if self.frame.next < next {
-            watch.record_jump(self);
+            loop_detector.record_jump(self);
         }
         Ok(())
     }
 
     /// The DO or WHILE of a loop, `end` the operation of its END.
     #[inline]
-    fn begin_iteration(&mut self, number: u8, end: OpIndex, goes_on: bool) {
+    fn begin_iteration(&mut self, number: u8, end: OpIndex, is_true: bool) {
         let frame = &mut self.frame;
         let open = &mut frame.loops[usize::from(number) - 1];
-        if goes_on {
+        if is_true {
             *open = Some((frame.next - 1, end));
         } else {
             *open = None;
@@ -237,24 +237,24 @@ impl Executor {
             }
             self.notes.entry(Note::LargeAlarmNumber { number, max: most }).or_insert(self.block);
         }
-        let plain = base != 3000;
-        Alarm::UserAlarm { number: if plain { number + base } else { number }, text, has_no_base: plain }
+        let has_no_base = base != 3000;
+        Alarm::UserAlarm { number: if has_no_base { number + base } else { number }, text, has_no_base }
     }
 
     /// `#3006=1(TEXT)`: the program waits, and the operator reads the text and the variables it names; a vacant
     /// one shows nothing.
     fn stop_with_message<S: EventSink>(&mut self, text: &str, sink: &mut S) {
-        let mut named = Vec::new();
+        let mut variables = Vec::new();
         for part in text.split('#').skip(1) {
             let digits: String = part.chars().take_while(char::is_ascii_digit).collect();
             if let Some(number) = digits.parse().ok()
                 && let Ok(Value::Number(value)) = self.read_variable(number)
             {
-                named.push((number, value));
+                variables.push((number, value));
             }
         }
         let text = text.to_owned();
-        let stop = EventKind::Stop { kind: StopKind::Message, text, variables: named };
+        let stop = EventKind::Stop { kind: StopKind::Message, text, variables };
         if self.lookahead.has_pending_move() {
             let place = Backtrace { block: self.block, calls: self.frame.calls.clone() };
             return self.lookahead.push_pending(stop, place);

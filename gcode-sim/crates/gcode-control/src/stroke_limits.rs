@@ -18,20 +18,20 @@ impl Executor {
         if plan.uses_lookahead {
             self.check_ready_moves(&plan.lookahead)?;
         }
-        let mut beyond = Ok(());
+        let mut result = Ok(());
         if let Some(drill) = &plan.cycle_plan {
             self.expand_cycle(drill, &mut |kind, _| {
-                if beyond.is_ok() {
-                    beyond = self.check_event(stroke, &kind);
+                if result.is_ok() {
+                    result = self.check_event(stroke, &kind);
                 }
             });
         }
-        locate(beyond, span)
+        locate(result, span)
     }
 
     /// What no longer waits: each with its own block.
-    pub(super) fn check_ready_moves(&self, ahead: &Lookahead) -> ExecResult<()> {
-        ahead.ready_events().try_for_each(|(kind, place)| locate(self.check_move(kind), place.block))
+    pub(super) fn check_ready_moves(&self, lookahead: &Lookahead) -> ExecResult<()> {
+        lookahead.ready_events().try_for_each(|(kind, place)| locate(self.check_move(kind), place.block))
     }
 
     /// Whether a move stays within the stroke, if the control has limits.

@@ -144,8 +144,8 @@ impl Transform {
         let bit = |axis: AxisIndex| self.mirrored_axes >> axis & 1 == 1;
         let factor = |axis: AxisIndex| self.scaling.as_ref().map_or(1.0, |s| s.factor[axis]);
         let (a, b) = (factor(plane.0), factor(plane.1));
-        let turned = bit(plane.0) ^ bit(plane.1) ^ (a < 0.0) ^ (b < 0.0);
-        (turned, a.abs() == b.abs())
+        let is_reversed = bit(plane.0) ^ bit(plane.1) ^ (a < 0.0) ^ (b < 0.0);
+        (is_reversed, a.abs() == b.abs())
     }
 }
 

@@ -15,16 +15,17 @@ impl Executor {
     /// G68: the plane turns about a point.
     pub(super) fn plan_rotation(
         &self,
-        given: &BlockWords,
+        block_words: &BlockWords,
         plan: &mut BlockPlan,
         span: Span,
     ) -> ExecResult<()> {
         let state = &mut plan.state;
         let plane = locate(self.plane_axes(state.modal.plane), span)?;
         let letter = |axis| self.settings.axes.letter(axis) as u8;
-        let first = self.dimension(given, letter(plane.0), state)?.unwrap_or(state.programmed[plane.0]);
-        let second = self.dimension(given, letter(plane.1), state)?.unwrap_or(state.programmed[plane.1]);
-        let angle = self.angle(given, b'R')?;
+        let first = self.dimension(block_words, letter(plane.0), state)?.unwrap_or(state.programmed[plane.0]);
+        let second =
+            self.dimension(block_words, letter(plane.1), state)?.unwrap_or(state.programmed[plane.1]);
+        let angle = self.angle(block_words, b'R')?;
         if angle.is_none() {
             plan.notes.push(Note::NoAngle);
         }
@@ -41,16 +42,21 @@ impl Executor {
     }
 
     /// G68.2 by Euler angles; its other forms have a P.
-    pub(super) fn plan_tilt(&self, given: &BlockWords, plan: &mut BlockPlan, span: Span) -> ExecResult<()> {
-        if given.has_any(b"PQR") {
+    pub(super) fn plan_tilt(
+        &self,
+        block_words: &BlockWords,
+        plan: &mut BlockPlan,
+        span: Span,
+    ) -> ExecResult<()> {
+        if block_words.has_any(b"PQR") {
             return Err(not_simulated(682, "tilted plane other than by Euler angles").located_at(span));
         }
         let (mut axes, mut origin, mut angles) = ([0; 3], [0.0; 3], [0.0; 3]);
         for (place, (letter, angle)) in [(b'X', b'I'), (b'Y', b'J'), (b'Z', b'K')].into_iter().enumerate() {
             let missing = Alarm::ImproperAddress { letter: char::from(letter) };
             axes[place] = locate(self.settings.axes.find(letter).ok_or(missing), span)?;
-            origin[place] = self.dimension(given, letter, &plan.state)?.unwrap_or(0.0);
-            angles[place] = self.angle(given, angle)?.unwrap_or(0.0);
+            origin[place] = self.dimension(block_words, letter, &plan.state)?.unwrap_or(0.0);
+            angles[place] = self.angle(block_words, angle)?.unwrap_or(0.0);
         }
         plan.state.transform.tilt = Some(Tilt::new(axes, origin, angles));
         self.apply_transform_change(&mut plan.state);
@@ -60,23 +66,23 @@ impl Executor {
     /// G51: by P, or by I J K for X Y Z, in 0.001 or 0.00001.
     pub(super) fn plan_scaling(
         &self,
-        given: &BlockWords,
+        block_words: &BlockWords,
         plan: &mut BlockPlan,
         span: Span,
     ) -> ExecResult<()> {
         let unit = if self.settings.has_coarse_scaling { 1000.0 } else { 100_000.0 };
         let mut scale = Scale { centre: plan.state.programmed, factor: Position([1.0; MAX_AXES]) };
         for (axis, letter) in self.settings.axes.iter() {
-            if let Some(value) = self.dimension(given, letter as u8, &plan.state)? {
+            if let Some(value) = self.dimension(block_words, letter as u8, &plan.state)? {
                 scale.centre[axis] = value;
             }
             let own = match letter {
-                'X' => self.factor(given, b'I')?,
-                'Y' => self.factor(given, b'J')?,
-                'Z' => self.factor(given, b'K')?,
+                'X' => self.factor(block_words, b'I')?,
+                'Y' => self.factor(block_words, b'J')?,
+                'Z' => self.factor(block_words, b'K')?,
                 _ => continue,
             };
-            let common = given.count(b'P')?.map(f64::from);
+            let common = block_words.count(b'P')?.map(f64::from);
             let factor = own.or(common).ok_or_else(|| {
                 Alarm::NotSimulated { what: "G51 without P (parameter 5411)".into() }.located_at(span)
             })?;
@@ -91,15 +97,20 @@ impl Executor {
     }
 
     /// G51.1 mirrors the named axes, G50.1 no longer; G50.1 alone ends all of it.
-    pub(super) fn plan_mirror(&self, on: bool, given: &BlockWords, plan: &mut BlockPlan) -> ExecResult<()> {
+    pub(super) fn plan_mirror(
+        &self,
+        is_on: bool,
+        block_words: &BlockWords,
+        plan: &mut BlockPlan,
+    ) -> ExecResult<()> {
         let state = &mut plan.state;
-        if !on && !self.names_axis(given) {
+        if !is_on && !self.names_axis(block_words) {
             state.transform.mirrored_axes = 0;
         }
         for (axis, letter) in self.settings.axes.iter() {
-            let Some(value) = self.dimension(given, letter as u8, state)? else { continue };
+            let Some(value) = self.dimension(block_words, letter as u8, state)? else { continue };
             state.transform.mirrored_axes &= !(1 << axis);
-            if on {
+            if is_on {
                 state.transform.mirrored_axes |= 1 << axis;
                 state.transform.mirror_position[axis] = value;
             }

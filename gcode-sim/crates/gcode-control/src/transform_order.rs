@@ -10,33 +10,34 @@ use gcode_lang::program::modes::{Mirror, Rotation, Scaling};
 /// Holds a block's codes against what was in force before it; `state` has its modal codes, not yet its transform. G53
 /// without an axis only waits.
 pub(super) fn check(
-    given: &BlockWords,
+    block_words: &BlockWords,
     before: &Modal,
     state: &State,
     names_axis: bool,
 ) -> Result<(), Alarm> {
     let modal = &state.modal;
-    let turned = before.rotation == Rotation::On && modal.rotation == Rotation::On;
-    let mirrored = before.mirror == Mirror::On;
-    let scaled = before.scaling == Scaling::On && modal.scaling == Scaling::On;
-    let waits = |effect| effect == Effect::OneShot(OneShot::MachineSystem) && !names_axis;
-    for row in given.g_codes().filter(|row| !waits(row.effect)) {
-        let on = match row.effect {
-            effect if changes_coordinates(effect) && turned => "G68",
-            effect if changes_coordinates(effect) && mirrored => "G51.1",
-            Effect::Mirror(Mirror::On) | Effect::Scaling(Scaling::On) if turned => "G68",
-            Effect::Mirror(Mirror::On) if scaled => "G51",
-            Effect::Mirror(Mirror::Off) if mirrored && turned => "G68",
-            Effect::Mirror(Mirror::Off) if mirrored && scaled => "G51",
-            Effect::Scaling(Scaling::Off) if before.scaling == Scaling::On && turned => "G68",
+    let is_rotated = before.rotation == Rotation::On && modal.rotation == Rotation::On;
+    let is_mirrored = before.mirror == Mirror::On;
+    let is_scaled = before.scaling == Scaling::On && modal.scaling == Scaling::On;
+    let is_wait = |effect| effect == Effect::OneShot(OneShot::MachineSystem) && !names_axis;
+    for row in block_words.g_codes().filter(|row| !is_wait(row.effect)) {
+        let active_code = match row.effect {
+            effect if changes_coordinates(effect) && is_rotated => "G68",
+            effect if changes_coordinates(effect) && is_mirrored => "G51.1",
+            Effect::Mirror(Mirror::On) | Effect::Scaling(Scaling::On) if is_rotated => "G68",
+            Effect::Mirror(Mirror::On) if is_scaled => "G51",
+            Effect::Mirror(Mirror::Off) if is_mirrored && is_rotated => "G68",
+            Effect::Mirror(Mirror::Off) if is_mirrored && is_scaled => "G51",
+            Effect::Scaling(Scaling::Off) if before.scaling == Scaling::On && is_rotated => "G68",
             _ => continue,
         };
-        let off = match on {
+        let cancel_code = match active_code {
             "G68" => "G69",
             "G51" => "G50",
             _ => "G50.1",
         };
-        let what = format!("G{} while {on} is on (command {off} before it)", spelled(row.code));
+        let what =
+            format!("G{} while {active_code} is on (command {cancel_code} before it)", spelled(row.code));
         return Err(Alarm::NotSimulated { what });
     }
     Ok(())

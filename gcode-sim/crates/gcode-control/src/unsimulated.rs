@@ -25,21 +25,21 @@ pub struct UnsimulatedCodes {
 impl Control {
     /// What [`Control::next_block`] says so; nothing for a block that is skipped.
     pub fn next_unsimulated(&self) -> UnsimulatedCodes {
-        let mut silent = UnsimulatedCodes::default();
+        let mut unsimulated = UnsimulatedCodes::default();
         self.inspect_next(|core, op| {
             if core.is_skipped(op) {
                 return;
             }
-            silent.block_skips.extend(op.skip().map(skip_text));
+            unsimulated.block_skips.extend(op.skip().map(skip_text));
             match core.guarded_operation(op.kind()) {
-                OpKind::Words(words) => core.collect_unsimulated(words, &mut silent),
+                OpKind::Words(words) => core.collect_unsimulated(words, &mut unsimulated),
                 OpKind::Statement(_) => {
-                    silent.writes = self.next_assigned_variables().iter().any(|number| *number >= 1000);
+                    unsimulated.writes = self.next_assigned_variables().iter().any(|number| *number >= 1000);
                 }
                 OpKind::Empty | OpKind::AssignFree(_) | OpKind::If { .. } | OpKind::Alarm(_) => {}
             }
         });
-        silent
+        unsimulated
     }
 }
 

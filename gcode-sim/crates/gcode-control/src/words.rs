@@ -129,9 +129,9 @@ impl BlockWords {
 
     /// Without M3B the last M code of a block counts; a stop or an end isn't lost in silence.
     fn put_m(&mut self, code: u32, span: Span, settings: &Settings) -> Result<(), Alarm> {
-        let most = if settings.allows_three_m_codes { M_CODES } else { 1 };
-        let place = self.m_code_count.min(most - 1);
-        if self.m_code_count == most
+        let max = if settings.allows_three_m_codes { M_CODES } else { 1 };
+        let place = self.m_code_count.min(max - 1);
+        if self.m_code_count == max
             && let Some((first, _)) = self.m_codes[place]
         {
             if m_codes::ends_or_stops(first) || settings.plural_m_alarms {
@@ -203,8 +203,8 @@ impl BlockWords {
 
     /// Whether the block has a G code of an effect; those of group 01 are not asked.
     #[inline(always)]
-    pub(super) fn has_non_motion_code(&self, is_it: impl Fn(Effect) -> bool) -> bool {
-        self.has_other_g_codes && self.g_codes().any(|row| is_it(row.effect))
+    pub(super) fn has_non_motion_code(&self, predicate: impl Fn(Effect) -> bool) -> bool {
+        self.has_other_g_codes && self.g_codes().any(|row| predicate(row.effect))
     }
 
     /// A count or a number: no point, no minus; a computed value is rounded.
@@ -231,8 +231,8 @@ pub(super) fn count(raw: WordNumber, letter: u8) -> Result<u32, Alarm> {
         return Err(Alarm::IllegalMinus { letter });
     }
     // Operator's manual, range of command values: eight digits, S five.
-    let most = if letter == 'S' { 99_999 } else { 99_999_999 };
-    if number > most { Err(Alarm::TooManyDigits) } else { Ok(number as u32) }
+    let max = if letter == 'S' { 99_999 } else { 99_999_999 };
+    if number > max { Err(Alarm::TooManyDigits) } else { Ok(number as u32) }
 }
 
 impl Executor {
@@ -241,30 +241,35 @@ impl Executor {
         &self,
         words: &Words,
         calling: Option<&CallingWord>,
-        given: &mut BlockWords,
+        block_words: &mut BlockWords,
     ) -> ExecResult<()> {
-        given.clear();
-        given.punched_value = words.punched_value();
+        block_words.clear();
+        block_words.punched_value = words.punched_value();
         match calling {
-            None => words.list.iter().try_for_each(|word| self.evaluate_into(words, word, given)),
+            None => words.list.iter().try_for_each(|word| self.evaluate_into(words, word, block_words)),
             Some(calling) => {
                 let mut others =
                     words.list.iter().enumerate().filter(|(place, word)| !calling.contains(*place, word));
-                others.try_for_each(|(_, word)| self.evaluate_into(words, word, given))
+                others.try_for_each(|(_, word)| self.evaluate_into(words, word, block_words))
             }
         }
     }
 
     /// Evaluates a word and puts it to those of its block.
     #[inline(always)]
-    fn evaluate_into(&self, words: &Words, word: &LoweredWord, given: &mut BlockWords) -> ExecResult<()> {
+    fn evaluate_into(
+        &self,
+        words: &Words,
+        word: &LoweredWord,
+        block_words: &mut BlockWords,
+    ) -> ExecResult<()> {
         let raw = match &word.value {
             WordOperand::Literal(number) => WordNumber::Literal(*number),
             WordOperand::G(code, found) if !word.comma => {
                 let row = found.row_for(self.settings.codes);
                 let improper =
                     || Alarm::ImproperGCode { code: g_codes::spelled(*code) }.located_at(word.span);
-                return locate(given.put_g(row.ok_or_else(improper)?), word.span);
+                return locate(block_words.put_g(row.ok_or_else(improper)?), word.span);
             }
             value => match self.evaluate_operand(words, value)? {
                 Value::Number(value) => WordNumber::Computed(value),
@@ -272,9 +277,9 @@ impl Executor {
             },
         };
         if word.comma || word.axis.is_some() || matches!(word.letter, b'G' | b'M') {
-            return self.put(words, word, raw, given);
+            return self.put(words, word, raw, block_words);
         }
-        self.put_value(word.letter, word.span, raw, given)
+        self.put_value(word.letter, word.span, raw, block_words)
     }
 
     /// Puts a word that is more than a value at an address to those of its block.
@@ -284,10 +289,10 @@ impl Executor {
         words: &Words,
         word: &LoweredWord,
         raw: WordNumber,
-        given: &mut BlockWords,
+        block_words: &mut BlockWords,
     ) -> ExecResult<()> {
         if word.comma {
-            return locate(given.put_corner(word, raw), word.span);
+            return locate(block_words.put_corner(word, raw), word.span);
         }
         let letter = match word.axis.and_then(|place| words.axis(place)) {
             Some(axis) => {
@@ -299,23 +304,29 @@ impl Executor {
         match letter {
             b'G' => {
                 let row = locate(computed_row(raw, self.settings.codes), word.span)?;
-                locate(given.put_g(row), word.span)
+                locate(block_words.put_g(row), word.span)
             }
             b'M' => {
                 let code = locate(count(raw, b'M'), word.span)?;
-                locate(given.put_m(code, word.span, &self.settings), word.span)
+                locate(block_words.put_m(code, word.span, &self.settings), word.span)
             }
-            letter => self.put_value(letter, word.span, raw, given),
+            letter => self.put_value(letter, word.span, raw, block_words),
         }
     }
 
     #[inline(always)]
-    fn put_value(&self, letter: u8, span: Span, raw: WordNumber, given: &mut BlockWords) -> ExecResult<()> {
-        if self.settings.alarms_on_repeated_address && given.has(letter) {
+    fn put_value(
+        &self,
+        letter: u8,
+        span: Span,
+        raw: WordNumber,
+        block_words: &mut BlockWords,
+    ) -> ExecResult<()> {
+        if self.settings.alarms_on_repeated_address && block_words.has(letter) {
             return Err(Alarm::RepeatedAddress { letter: char::from(letter) }.located_at(span));
         }
-        given.present_letters |= 1 << (letter - b'A');
-        given.values[usize::from(letter - b'A')] = (raw, span);
+        block_words.present_letters |= 1 << (letter - b'A');
+        block_words.values[usize::from(letter - b'A')] = (raw, span);
         Ok(())
     }
 

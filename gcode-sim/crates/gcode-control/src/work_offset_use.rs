@@ -34,20 +34,20 @@ impl Executor {
 
     /// A block has been carried out. G54 is what counts where nothing is selected: its zero is the part's.
     #[inline]
-    pub(super) fn record_work_use(&mut self, before: WorkSystem, moved: bool) {
+    pub(super) fn record_work_use(&mut self, before: WorkSystem, has_moved: bool) {
         let work = self.state.modal.work;
         if work != WorkSystem::default() {
-            self.record_other_work(work, before, moved);
+            self.record_other_work(work, before, has_moved);
         }
     }
 
     #[inline(never)]
-    fn record_other_work(&mut self, work: WorkSystem, before: WorkSystem, moved: bool) {
+    fn record_other_work(&mut self, work: WorkSystem, before: WorkSystem, has_moved: bool) {
         if work != before {
             self.work_offset_use.selected = Backtrace { block: self.block, calls: self.frame.calls.clone() };
         }
-        let known = self.work_offset_use.unset_uses.iter().any(|(other, _)| *other == work);
-        if moved && !known && !self.work_offset_use.set_systems.contains(&number(work)) {
+        let is_recorded = self.work_offset_use.unset_uses.iter().any(|(other, _)| *other == work);
+        if has_moved && !is_recorded && !self.work_offset_use.set_systems.contains(&number(work)) {
             self.work_offset_use.unset_uses.push((work, self.work_offset_use.selected.clone()));
         }
     }

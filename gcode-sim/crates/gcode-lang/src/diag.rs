@@ -83,8 +83,8 @@ impl Diagnostic {
     }
 
     #[must_use]
-    pub fn with_backtrace(mut self, place: Backtrace) -> Self {
-        self.backtrace = Some(place);
+    pub fn with_backtrace(mut self, backtrace: Backtrace) -> Self {
+        self.backtrace = Some(backtrace);
         self
     }
 

@@ -30,20 +30,26 @@ impl Axes {
     /// At most [`MAX_AXES`] letters; more are an error of the machine file and refused there.
     pub fn new(letters: &str) -> Option<Self> {
         let bytes = letters.as_bytes();
-        let fits = bytes.len() <= MAX_AXES && bytes.iter().all(|b| b"XYZABCUVW".contains(b));
-        let once = bytes.iter().enumerate().all(|(i, b)| !bytes[..i].contains(b));
-        (fits && once).then(|| Self::from_letters(bytes))
+        let has_valid_letters = bytes.len() <= MAX_AXES && bytes.iter().all(|b| b"XYZABCUVW".contains(b));
+        let has_unique_letters = bytes.iter().enumerate().all(|(i, b)| !bytes[..i].contains(b));
+        (has_valid_letters && has_unique_letters).then(|| Self::from_letters(bytes))
     }
 
-    fn from_letters(some: &[u8]) -> Self {
+    fn from_letters(axis_letters: &[u8]) -> Self {
         let (mut letters, mut places, mut mask, mut rotary) = ([0; MAX_AXES], [Self::NO_AXIS; 256], 0, 0);
-        for (axis, letter) in some.iter().enumerate() {
+        for (axis, letter) in axis_letters.iter().enumerate() {
             letters[axis] = *letter;
             places[usize::from(*letter)] = axis as u8;
             mask |= 1 << (letter - b'A');
             rotary |= u32::from(matches!(letter, b'A' | b'B' | b'C')) << axis;
         }
-        Self { letters, count: some.len(), axis_of_letter: places, letter_bits: mask, rotary_bits: rotary }
+        Self {
+            letters,
+            count: axis_letters.len(),
+            axis_of_letter: places,
+            letter_bits: mask,
+            rotary_bits: rotary,
+        }
     }
 
     /// The axis of an address.
@@ -341,8 +347,8 @@ impl<A: EventSink, B: EventSink> EventSink for (A, B) {
         self.0.is_active() || self.1.is_active()
     }
 
-    fn skip_signal(&mut self, feed: &SkipMove<'_>) -> Option<SkipSignal> {
-        self.0.skip_signal(feed).or_else(|| self.1.skip_signal(feed))
+    fn skip_signal(&mut self, skip_move: &SkipMove<'_>) -> Option<SkipSignal> {
+        self.0.skip_signal(skip_move).or_else(|| self.1.skip_signal(skip_move))
     }
 }
 
@@ -359,8 +365,8 @@ impl<S: EventSink> EventSink for Option<S> {
         self.as_ref().is_some_and(S::is_active)
     }
 
-    fn skip_signal(&mut self, feed: &SkipMove<'_>) -> Option<SkipSignal> {
-        self.as_mut().and_then(|sink| sink.skip_signal(feed))
+    fn skip_signal(&mut self, skip_move: &SkipMove<'_>) -> Option<SkipSignal> {
+        self.as_mut().and_then(|sink| sink.skip_signal(skip_move))
     }
 }
 
@@ -374,7 +380,7 @@ impl<S: EventSink + ?Sized> EventSink for &mut S {
         (**self).event(event);
     }
 
-    fn skip_signal(&mut self, feed: &SkipMove<'_>) -> Option<SkipSignal> {
-        (**self).skip_signal(feed)
+    fn skip_signal(&mut self, skip_move: &SkipMove<'_>) -> Option<SkipSignal> {
+        (**self).skip_signal(skip_move)
     }
 }

@@ -88,8 +88,9 @@ impl Source {
         let ends = starts.iter().skip(1).map(|end| *end as usize).chain([self.bytes.len()]);
         starts.iter().zip(ends).map(|(start, end)| {
             let line = &self.bytes[*start as usize..end];
-            let ended = line.iter().rposition(|b| !matches!(b, b'\n' | b'\r')).map_or(0, |last| last + 1);
-            String::from_utf8_lossy(&line[..ended]).into_owned()
+            let content_end =
+                line.iter().rposition(|b| !matches!(b, b'\n' | b'\r')).map_or(0, |last| last + 1);
+            String::from_utf8_lossy(&line[..content_end]).into_owned()
         })
     }
 
@@ -121,9 +122,9 @@ fn line_starts(bytes: &[u8]) -> Vec<u32> {
 #[inline]
 pub fn line_length(text: &[u8]) -> usize {
     const ONES: u64 = u64::from_ne_bytes([1; 8]);
-    let ends = |byte: &u8| matches!(byte, b'\n' | b'\r');
+    let is_line_end = |byte: &u8| matches!(byte, b'\n' | b'\r');
     // The top bit of each byte up to CR, LF among them; behind such a one a byte may get it as well.
-    let small = |word: u64| word.wrapping_sub(ONES * u64::from(b'\r' + 1)) & !word & ONES << 7;
+    let low_byte_bits = |word: u64| word.wrapping_sub(ONES * u64::from(b'\r' + 1)) & !word & ONES << 7;
     let (chunks, rest) = text.as_chunks::<16>();
     for (place, chunk) in chunks.iter().enumerate() {
         if !chunk.iter().fold(false, |any, byte| any | (*byte <= b'\r')) {
@@ -132,17 +133,17 @@ pub fn line_length(text: &[u8]) -> usize {
         let (words, _) = chunk.as_chunks::<8>();
         for (half, word) in words.iter().enumerate() {
             let word = u64::from_le_bytes(*word);
-            let mut found = small(word);
+            let mut found = low_byte_bits(word);
             while found != 0 {
                 let bits = found.trailing_zeros() & !7;
-                if ends(&((word >> bits) as u8)) {
+                if is_line_end(&((word >> bits) as u8)) {
                     return 16 * place + 8 * half + bits as usize / 8;
                 }
                 found &= found - 1;
             }
         }
     }
-    16 * chunks.len() + rest.iter().position(ends).unwrap_or(rest.len())
+    16 * chunks.len() + rest.iter().position(is_line_end).unwrap_or(rest.len())
 }
 
 /// No sender puts more CRs than this around a LF; the limit keeps reading linear in a file of nothing but CRs.

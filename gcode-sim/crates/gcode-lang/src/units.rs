@@ -13,10 +13,10 @@ pub fn round_scaled(value: f64, scale: f64) -> f64 {
 
 /// As [`nearest`], up to a largest size; `None` beyond it.
 #[inline]
-pub fn round_scaled_within(value: f64, scale: f64, most: f64) -> Option<f64> {
-    debug_assert!(most < FRACTION_LIMIT, "{most} has no room for a fraction");
+pub fn round_scaled_within(value: f64, scale: f64, max: f64) -> Option<f64> {
+    debug_assert!(max < FRACTION_LIMIT, "{max} has no room for a fraction");
     let rounded = round_small(value * scale * HALF_CORRECTION);
-    (rounded.abs() <= most).then_some(rounded)
+    (rounded.abs() <= max).then_some(rounded)
 }
 
 /// What lifts a half that binary numbers miss.
@@ -136,11 +136,11 @@ pub fn round(value: f64) -> f64 {
 /// The same of numbers that have room for a fraction; the others are only near to what they were.
 #[inline]
 fn round_small(value: f64) -> f64 {
-    let size = value.abs();
+    let magnitude = value.abs();
     // In the sum there is no room for a fraction: it is the nearest whole number, of two the even one.
-    let even = (size + FRACTION_LIMIT) - FRACTION_LIMIT;
-    let up = if size - even == 0.5 { 1.0 } else { 0.0 };
-    (even + up).copysign(value)
+    let even = (magnitude + FRACTION_LIMIT) - FRACTION_LIMIT;
+    let half_step = if magnitude - even == 0.5 { 1.0 } else { 0.0 };
+    (even + half_step).copysign(value)
 }
 
 /// The natural logarithm, the same bits everywhere like the sines.

@@ -96,7 +96,7 @@ fn code_call_site(block: OpIndex, words: &Words, settings: &Settings) -> Option<
     if settings.code_calls.is_empty() {
         return None;
     }
-    let site = |word: &LoweredWord, program, own_locals, modal, arguments| CallSite {
+    let new_site = |word: &LoweredWord, program, own_locals, modal, arguments| CallSite {
         block,
         has_own_locals: own_locals,
         is_modal: modal,
@@ -111,28 +111,29 @@ fn code_call_site(block: OpIndex, words: &Words, settings: &Settings) -> Option<
             (b'M', _) => settings.code_calls.find_call(b'M', literal::word_count(word)?.checked_mul(10)?),
             (letter, _) => {
                 let called = settings.code_calls.address_call(letter)?;
-                return Some(site(word, called.program, false, false, Vec::new()));
+                return Some(new_site(word, called.program, false, false, Vec::new()));
             }
         }?;
         match called.kind {
-            CodeCallKind::Subprogram => Some(site(word, called.program, false, false, Vec::new())),
+            CodeCallKind::Subprogram => Some(new_site(word, called.program, false, false, Vec::new())),
             CodeCallKind::Macro | CodeCallKind::Modal if place == 0 => {
-                let every = called.kind == CodeCallKind::Modal && settings.code_calls.modal_is_every_block;
-                let arguments = arguments(&words.list[1..], every, settings);
-                Some(site(word, called.program, true, called.kind == CodeCallKind::Modal, arguments))
+                let is_every_block =
+                    called.kind == CodeCallKind::Modal && settings.code_calls.modal_is_every_block;
+                let arguments = arguments(&words.list[1..], is_every_block, settings);
+                Some(new_site(word, called.program, true, called.kind == CodeCallKind::Modal, arguments))
             }
             CodeCallKind::Macro | CodeCallKind::Modal => None,
         }
     })
 }
 
-fn arguments(words: &[LoweredWord], every: bool, settings: &Settings) -> Vec<Argument> {
-    let mut letters = ArgumentLocals::new(settings.reads_ijk_plainly, every);
-    let dealt = words.iter().filter_map(|word| {
+fn arguments(words: &[LoweredWord], is_every_block: bool, settings: &Settings) -> Vec<Argument> {
+    let mut letters = ArgumentLocals::new(settings.reads_ijk_plainly, is_every_block);
+    let arguments = words.iter().filter_map(|word| {
         let local = letters.next(word.letter).ok().flatten()?;
         Some(Argument { local, is_number: literal::word_number(word).is_some() })
     });
-    dealt.collect()
+    arguments.collect()
 }
 
 impl CalledProgramName {

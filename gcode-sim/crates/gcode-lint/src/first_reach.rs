@@ -59,38 +59,38 @@ impl<'a> FirstReach<'a> {
     /// Whether a local is still unset when a block is reached for the first time: no way to the block that doesn't pass
     /// it sets the local.
     pub(super) fn is_unset(&self, block: OpIndex, local: u32) -> bool {
-        let here = self.bits(block, local);
-        if !is_unclear(here) {
-            return here == UNSET;
+        let bits = self.bits(block, local);
+        if !is_unclear(bits) {
+            return bits == UNSET;
         }
-        let alone = || self.trace(self.component[block], local, &BTreeSet::from([block]));
-        !self.set_reads.contains(&(block, local)) && alone().get(&block) == Some(&UNSET)
+        let traced = || self.trace(self.component[block], local, &BTreeSet::from([block]));
+        !self.set_reads.contains(&(block, local)) && traced().get(&block) == Some(&UNSET)
     }
 
     /// Follows a local once more round a circle, with some blocks as ends: what it may be at each place that is reached.
     fn trace(&self, circle: usize, local: u32, ends: &BTreeSet<OpIndex>) -> BTreeMap<OpIndex, u8> {
-        let mut around = ComponentState {
+        let mut component_state = ComponentState {
             components: &self.component,
             component: circle,
             known: BTreeMap::new(),
             pending: Vec::new(),
         };
         for start in self.unit.entry_blocks.iter().filter(|start| self.component[**start] == circle) {
-            around.join(*start, self.bits(*start, local));
+            component_state.join(*start, self.bits(*start, local));
         }
         for entry in self.entries.get(&circle).into_iter().flatten() {
             let Some(state) = &self.states[*entry] else { continue };
-            self.propagate(*entry, state, local, &mut around);
+            self.propagate(*entry, state, local, &mut component_state);
         }
-        while let Some(at) = around.pending.pop() {
+        while let Some(at) = component_state.pending.pop() {
             if ends.contains(&at) {
                 continue;
             }
             let Some(mut state) = self.states[at] else { continue };
-            state.0[local as usize] = around.known[&at];
-            self.propagate(at, &state, local, &mut around);
+            state.0[local as usize] = component_state.known[&at];
+            self.propagate(at, &state, local, &mut component_state);
         }
-        around.known
+        component_state.known
     }
 
     fn propagate(&self, from: OpIndex, state: &Locals, local: u32, around: &mut ComponentState<'_>) {

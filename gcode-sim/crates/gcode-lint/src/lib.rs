@@ -55,8 +55,8 @@ pub fn check(
 /// As [`check`], of programs that have been loaded.
 pub fn check_loaded(mut memory: Memory, settings: &Settings, library: &mut impl Library) -> CheckResult {
     let programs = load_called_programs(&mut memory, settings, library);
-    let subject = CheckContext::new(&memory, settings, &programs, rules::names());
-    let findings = rules::findings(&subject);
+    let context = CheckContext::new(&memory, settings, &programs, rules::names());
+    let findings = rules::findings(&context);
     CheckResult { programs: programs.len(), memory, findings }
 }
 

@@ -18,13 +18,13 @@ pub(super) struct Suppressions {
 impl Suppressions {
     pub(super) fn new(unit: &ProgramUnit<'_>) -> Self {
         let mut off = Vec::new();
-        let mut head = true;
+        let mut is_in_head = true;
         for (index, (block, op)) in unit.blocks.iter().zip(unit.program.ops()).enumerate() {
-            head &= matches!(op.kind(), OpKind::Empty) && op.number.is_none();
+            is_in_head &= matches!(op.kind(), OpKind::Empty) && op.number.is_none();
             for comment in &block.comments {
                 let text = String::from_utf8_lossy(&comment.text).to_ascii_uppercase();
                 let Some(names) = text.trim().strip_prefix(KEYWORD) else { continue };
-                let place = (!head).then_some(index);
+                let place = (!is_in_head).then_some(index);
                 let mut names: Vec<&str> =
                     names.split([' ', ',', '\t']).filter(|name| !name.is_empty()).collect();
                 if names.is_empty() {

@@ -76,8 +76,8 @@ pub(crate) fn states(unit: &ProgramUnit<'_>, entry: Locals) -> States {
 /// Where a place leads and with which state.
 pub(super) fn steps(unit: &ProgramUnit<'_>, block: OpIndex, state: &Locals) -> Vec<(OpIndex, Locals)> {
     let to = || unit.flow.successors(block);
-    let both = |state: Locals| to().map(|to| (to, state)).collect::<Vec<_>>();
-    let Some(op) = unit.program.ops().get(block) else { return both(*state) };
+    let to_all = |state: Locals| to().map(|to| (to, state)).collect::<Vec<_>>();
+    let Some(op) = unit.program.ops().get(block) else { return to_all(*state) };
     let mut after = *state;
     let statement = variables::statement(&unit.blocks, block);
     let mut steps = match (op.kind(), statement) {
@@ -86,10 +86,10 @@ pub(super) fn steps(unit: &ProgramUnit<'_>, block: OpIndex, state: &Locals) -> V
             Some(Statement::IfGoto { condition, .. } | Statement::While { condition, .. }),
         ) => {
             let on_true = truth(condition, state);
-            let jumping = matches!(statement, Some(Statement::IfGoto { .. }));
+            let is_jump = matches!(statement, Some(Statement::IfGoto { .. }));
             let split = |to: OpIndex| {
                 // IF jumps when it is true, WHILE when it is not.
-                let taken = (to == block + 1) != jumping;
+                let taken = (to == block + 1) != is_jump;
                 let sure = to != block + 1 || !unit.flow.block_successors[block].jumps.contains(&to);
                 if sure && on_true == Some(!taken) {
                     return None;
@@ -128,25 +128,25 @@ pub(super) fn steps(unit: &ProgramUnit<'_>, block: OpIndex, state: &Locals) -> V
             for (target, value) in unit.blocks[block].items.iter().filter_map(variables::item_assignment) {
                 assign(target, value, &mut after);
             }
-            both(after)
+            to_all(after)
         }
         (OpKind::Statement(_) | OpKind::AssignFree(_), Some(Statement::Assign { target, value })) => {
             assign(target, value, &mut after);
-            both(after)
+            to_all(after)
         }
         (OpKind::If { .. }, _) => {
             // What stands behind the condition may have written any of them, or none.
             after.add_bits(ANY_VALUE);
-            both(after)
+            to_all(after)
         }
         (OpKind::Words(_), _) => {
             // A subprogram works on the same locals.
             if unit.call_in(block).is_some_and(|call| !call.has_own_locals) {
                 after.add_bits(ANY_VALUE);
             }
-            both(after)
+            to_all(after)
         }
-        _ => both(after),
+        _ => to_all(after),
     };
     if op.skip().is_some() {
         steps.push((block + 1, *state));

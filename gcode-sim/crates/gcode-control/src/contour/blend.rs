@@ -31,16 +31,16 @@ impl Blend {
     /// Puts itself between two segments; `None` where they hardly make a corner.
     pub(crate) fn blend_between(self, a: &Segment, b: &Segment) -> Result<Option<BlendedCorner>, TooShort> {
         let (arriving, leaving) = (a.end_direction(), b.start_direction());
-        let turn = Deg::atan2(cross(arriving, leaving), arriving.dot(leaving));
+        let rotation = Deg::atan2(cross(arriving, leaving), arriving.dot(leaving));
         let size = match self {
             Self::Round(size) | Self::Chamfer(size) => size,
         };
-        if turn.abs() <= MIN_CORNER_ANGLE || size == 0.0 {
+        if rotation.abs() <= MIN_CORNER_ANGLE || size == 0.0 {
             return Ok(None);
         }
         let (from, to, centre) = match self {
             Self::Round(radius) => {
-                let inside = radius * turn.0.signum();
+                let inside = radius * rotation.0.signum();
                 let middle = nearest_crossing(a.curve_at_end(inside), b.curve_at_start(inside), a.end());
                 let middle = middle.ok_or(TooShort)?;
                 (nearest_point(a, a.end(), middle), nearest_point(b, b.start(), middle), Some(middle))
@@ -80,13 +80,13 @@ fn point_along(segment: &Segment, end: Point, distance: f64) -> Result<Point, To
         Segment::Line { .. } => Ok(end + segment.start_direction() * distance),
         Segment::Arc { centre, sweep, .. } => {
             // The chord is the distance: from the corner to the end of the chamfer.
-            let spoke = end - centre;
-            let half = distance / (2.0 * spoke.norm());
+            let radius_vector = end - centre;
+            let half = distance / (2.0 * radius_vector.norm());
             if half.abs() > 1.0 {
                 return Err(TooShort);
             }
             let turn = Deg::asin(half) * (2.0 * sweep.0.signum());
-            Ok(centre + spoke * turn.cos() + left_normal(spoke) * turn.sin())
+            Ok(centre + radius_vector * turn.cos() + left_normal(radius_vector) * turn.sin())
         }
     }
 }

@@ -9,8 +9,12 @@ pub(crate) struct NoCrossing;
 /// Whether the tool goes round the outside of a corner, at a distance to the left.
 pub(crate) fn is_outside(a: &Segment, b: &Segment, distance: f64) -> bool {
     let (before, after) = (a.end_direction(), b.start_direction());
-    let turn = cross(before, after);
-    if turn.abs() < SAME_DIRECTION { before.dot(after) < 0.0 } else { turn * distance <= 0.0 }
+    let cross_product = cross(before, after);
+    if cross_product.abs() < SAME_DIRECTION {
+        before.dot(after) < 0.0
+    } else {
+        cross_product * distance <= 0.0
+    }
 }
 
 /// The points that the centre goes through at the corner between two segments, one to four. The first is the end of
@@ -30,8 +34,8 @@ pub(crate) fn corner_points(
     }
     let (arriving, leaving) = (a.end_direction(), b.start_direction());
     let (end, start) = (a.parallel_end(before), b.parallel_start(after));
-    let same = cross(arriving, leaving).abs() < SAME_DIRECTION && arriving.dot(leaving) > 0.0;
-    if same {
+    let is_straight_on = cross(arriving, leaving).abs() < SAME_DIRECTION && arriving.dot(leaving) > 0.0;
+    if is_straight_on {
         return Ok(vec![end]);
     }
     if !is_outside(a, b, before) {

@@ -40,14 +40,15 @@ fn crossings(a: Curve, b: Curve) -> [Option<Point>; 2] {
             chord_points(foot, direction, radius, (foot - centre).norm())
         }
         (Curve::Circle { centre, radius }, Curve::Circle { centre: other, radius: second }) => {
-            let way = other - centre;
-            let apart = way.norm();
-            if apart < TOUCH_TOLERANCE {
+            let centre_offset = other - centre;
+            let centre_distance = centre_offset.norm();
+            if centre_distance < TOUCH_TOLERANCE {
                 return [None, None];
             }
-            let axis = way / apart;
+            let axis = centre_offset / centre_distance;
             // The line through both crossings is this far from the first centre.
-            let along = (apart * apart + radius * radius - second * second) / (2.0 * apart);
+            let along = (centre_distance * centre_distance + radius * radius - second * second)
+                / (2.0 * centre_distance);
             chord_points(centre + axis * along, left_normal(axis), radius, along.abs())
         }
     }

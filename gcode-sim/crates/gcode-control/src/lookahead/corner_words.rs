@@ -28,19 +28,19 @@ impl Lookahead {
     /// Takes the next move of the programmed path.
     pub(super) fn process_corner(
         &mut self,
-        core: &Executor,
-        piece: PathMove,
-        order: &LookaheadRequest,
+        executor: &Executor,
+        path_move: PathMove,
+        request: &LookaheadRequest,
     ) -> ExecResult<()> {
         let piece = match self.pending_corner.take() {
-            None => piece,
-            Some(corner) => self.blend_corner(core, corner, piece, order)?,
+            None => path_move,
+            Some(corner) => self.blend_corner(executor, corner, path_move, request)?,
         };
-        let Some(blend) = order.blend else { return self.compensate(core, piece, order) };
-        if let (Some(segment), Some(distance)) = (&piece.segment, order.distance) {
+        let Some(blend) = request.blend else { return self.compensate(executor, piece, request) };
+        if let (Some(segment), Some(distance)) = (&piece.segment, request.distance) {
             self.set_offset(segment.parallel_end(distance) - segment.end());
         }
-        let (order, behind) = (order.clone(), Vec::new());
+        let (order, behind) = (request.clone(), Vec::new());
         self.pending_corner = Some(PendingCorner {
             path_move: piece,
             request: order,
@@ -54,43 +54,44 @@ impl Lookahead {
     /// Puts the corner's shape between two moves; the answer is what is left of the second.
     fn blend_corner(
         &mut self,
-        core: &Executor,
+        executor: &Executor,
         corner: PendingCorner,
-        piece: PathMove,
-        order: &LookaheadRequest,
+        path_move: PathMove,
+        request: &LookaheadRequest,
     ) -> ExecResult<PathMove> {
-        let block = piece.backtrace.block;
-        let (Some(first), Some(second)) = (&corner.path_move.segment, &piece.segment) else {
+        let block = path_move.backtrace.block;
+        let (Some(first), Some(second)) = (&corner.path_move.segment, &path_move.segment) else {
             return Err(corner.no_move_alarm().located_at(block));
         };
-        if !order.is_cut {
+        if !request.is_cut {
             return Err(Alarm::NoCutAfterCorner.located_at(block));
         }
-        if corner.request.plane != order.plane {
+        if corner.request.plane != request.plane {
             return Err(corner.no_move_alarm().located_at(block));
         }
-        let side = |order: &LookaheadRequest| order.distance.map(f64::is_sign_negative);
-        if side(&corner.request) != side(order) || corner.request.distance.is_some() && !self.is_compensating
+        let is_right_side = |request: &LookaheadRequest| request.distance.map(f64::is_sign_negative);
+        if is_right_side(&corner.request) != is_right_side(request)
+            || corner.request.distance.is_some() && !self.is_compensating
         {
             return Err(Alarm::CornerInStartUp.located_at(corner.path_move.backtrace.block));
         }
         let too_long = |_| Alarm::CornerTooLarge.located_at(corner.path_move.backtrace.block);
         let Some(blended) = corner.blend.blend_between(first, second).map_err(too_long)? else {
-            self.compensate(core, corner.path_move, &corner.request)?;
-            corner.pending_items.into_iter().for_each(|held| self.defer(core, held));
-            return Ok(piece);
+            self.compensate(executor, corner.path_move, &corner.request)?;
+            corner.pending_items.into_iter().for_each(|held| self.defer(executor, held));
+            return Ok(path_move);
         };
-        self.compensate(core, self.on_segment(&corner.path_move, blended.before), &corner.request)?;
-        let calm = LookaheadRequest { is_restated: false, ..corner.request };
-        self.compensate(core, self.on_segment(&corner.path_move, blended.between), &calm)?;
-        corner.pending_items.into_iter().for_each(|held| self.defer(core, held));
-        Ok(self.on_segment(&piece, blended.after))
+        self.compensate(executor, self.on_segment(&corner.path_move, blended.before), &corner.request)?;
+        let unrestated = LookaheadRequest { is_restated: false, ..corner.request };
+        self.compensate(executor, self.on_segment(&corner.path_move, blended.between), &unrestated)?;
+        corner.pending_items.into_iter().for_each(|held| self.defer(executor, held));
+        Ok(self.on_segment(&path_move, blended.after))
     }
 
     /// A piece that goes along another segment of its plane.
-    fn on_segment(&self, piece: &PathMove, segment: Segment) -> PathMove {
-        let to: Position = self.with_plane_point(piece.end_position(), segment.end());
-        let rate = match piece.kind {
+    fn on_segment(&self, path_move: &PathMove, segment: Segment) -> PathMove {
+        let to: Position = self.with_plane_point(path_move.end_position(), segment.end());
+        let rate = match path_move.kind {
             EventKind::Feed { rate, .. } | EventKind::Arc { rate, .. } => rate,
             EventKind::Rapid { .. }
             | EventKind::Skip { .. }
@@ -101,7 +102,7 @@ impl Lookahead {
             | EventKind::Spindle { .. }
             | EventKind::Coolant { .. }
             | EventKind::Auxiliary { .. }
-            | EventKind::Stop { .. } => return piece.clone(),
+            | EventKind::Stop { .. } => return path_move.clone(),
         };
         let kind = match segment {
             Segment::Line { .. } => EventKind::Feed { to, rate },
@@ -111,6 +112,6 @@ impl Lookahead {
             }
         };
         let segment = segment.has_length().then_some(segment);
-        PathMove { kind, segment, backtrace: piece.backtrace.clone() }
+        PathMove { kind, segment, backtrace: path_move.backtrace.clone() }
     }
 }

@@ -49,24 +49,25 @@ impl Lookahead {
     /// Takes the next move of the shaped path.
     pub(super) fn compensate(
         &mut self,
-        core: &Executor,
-        piece: PathMove,
-        order: &LookaheadRequest,
+        executor: &Executor,
+        path_move: PathMove,
+        request: &LookaheadRequest,
     ) -> ExecResult<()> {
-        let Some(segment) = piece.segment else {
-            self.defer_behind_move(core, PendingItem::Move(piece));
+        let Some(segment) = path_move.segment else {
+            self.defer_behind_move(executor, PendingItem::Move(path_move));
             return Ok(());
         };
-        let restated = std::mem::take(&mut self.is_restated) || order.is_restated;
+        let restated = std::mem::take(&mut self.is_restated) || request.is_restated;
         self.blocks_without_move = 0;
-        let block = piece.backtrace.block;
+        let block = path_move.backtrace.block;
         if segment.is_arc()
-            && (self.is_compensating != order.distance.is_some() || !self.is_compensating && self.is_offset())
+            && (self.is_compensating != request.distance.is_some()
+                || !self.is_compensating && self.is_offset())
         {
             return Err(Alarm::ArcAtStartOrEnd.located_at(block));
         }
-        let Some(distance) = order.distance else {
-            return self.cancel_compensation(core, &piece, segment, order);
+        let Some(distance) = request.distance else {
+            return self.cancel_compensation(executor, &path_move, segment, request);
         };
         if segment.is_too_small(distance) {
             return Err(Alarm::Interference.located_at(block));
@@ -79,59 +80,55 @@ impl Lookahead {
                 let ends = if restated {
                     vec![open.beside_end()]
                 } else if open.is_start_up
-                    && !(core.settings.starts_up_by_type_b && is_outside_corner(&open, &segment))
+                    && !(executor.settings.starts_up_by_type_b && is_outside_corner(&open, &segment))
                 {
                     vec![segment.parallel_start(near)]
                 } else {
                     let met = contour::corner_points(&open.segment, &segment, open.distance, near);
                     met.map_err(|_| Alarm::NoIntersection.located_at(block))?
                 };
-                self.close_move(core, open, &ends)?
+                self.close_move(executor, open, &ends)?
             }
         };
         if let Some(rounding) = self.pending_corner_arc.take() {
             let end = segment.parallel_start(distance);
-            self.emit_corner_arc(core, &rounding, segment.start(), end)?;
+            self.emit_corner_arc(executor, &rounding, segment.start(), end)?;
             starts = vec![end];
         }
-        let begins = starts.last().is_some_and(|start| segment.is_parallel_start(*start, distance));
-        if !begins {
+        let begins_on_parallel =
+            starts.last().is_some_and(|start| segment.is_parallel_start(*start, distance));
+        if !begins_on_parallel {
             let what = "an arc that begins off its own parallel (a new D or G41, or blocks without a move)";
             return Err(Alarm::NotSimulated { what: what.into() }.located_at(block));
         }
         self.set_offset(segment.parallel_end(distance) - segment.end());
-        self.pending_move = Some(PendingMove {
-            path_move: piece,
-            segment,
-            start_points: starts,
-            distance,
-            is_start_up: start_up,
-        });
+        self.pending_move =
+            Some(PendingMove { path_move, segment, start_points: starts, distance, is_start_up: start_up });
         Ok(())
     }
 
     /// A move without compensation: the one that cancels it, that takes up the vector of G40 alone, or any other.
     fn cancel_compensation(
         &mut self,
-        core: &Executor,
-        piece: &PathMove,
+        executor: &Executor,
+        path_move: &PathMove,
         segment: Segment,
-        order: &LookaheadRequest,
+        request: &LookaheadRequest,
     ) -> ExecResult<()> {
         if let Some(open) = self.pending_move.take() {
-            let ends = match order.wall_direction {
+            let ends = match request.wall_direction {
                 Some(direction) => vec![contour::wall_corner(&open.segment, direction, open.distance)],
-                None if core.settings.starts_up_by_type_b
+                None if executor.settings.starts_up_by_type_b
                     && !open.is_start_up
                     && is_outside_corner(&open, &segment) =>
                 {
                     let met = contour::corner_points(&open.segment, &segment, open.distance, open.distance);
-                    met.map_err(|_| Alarm::NoIntersection.located_at(piece.backtrace.block))?
+                    met.map_err(|_| Alarm::NoIntersection.located_at(path_move.backtrace.block))?
                 }
                 None => vec![open.beside_end()],
             };
-            let rest = self.close_move(core, open, &ends)?;
-            self.emit_corner(core, piece, &rest);
+            let rest = self.close_move(executor, open, &ends)?;
+            self.emit_corner(executor, path_move, &rest);
         }
         if let Some(rounding) = self.pending_corner_arc.take() {
             let what = "G39 followed by the end of cutter compensation".into();
@@ -139,27 +136,27 @@ impl Lookahead {
         }
         self.is_compensating = false;
         self.set_offset(Point::zeros());
-        self.emit_along(core, piece, segment.end(), 0.0);
+        self.emit_along(executor, path_move, segment.end(), 0.0);
         Ok(())
     }
 
     /// A move of G28, G53 and the like: in the plane it takes the vector away, and the next move starts up anew.
-    pub(super) fn suspend(&mut self, core: &Executor, piece: &PathMove) {
+    pub(super) fn suspend(&mut self, executor: &Executor, piece: &PathMove) {
         if piece.segment.is_none() {
-            return self.emit_pending(core, PendingItem::Move(piece.clone()));
+            return self.emit_pending(executor, PendingItem::Move(piece.clone()));
         }
         self.is_compensating = false;
         self.set_offset(Point::zeros());
-        self.emit_straight(core, piece, piece.end_position());
+        self.emit_straight(executor, piece, piece.end_position());
     }
 
     /// Ends the open move with the centre beside its end, as where nothing follows.
-    pub(super) fn close_pending_move(&mut self, core: &Executor) -> ExecResult<()> {
+    pub(super) fn close_pending_move(&mut self, executor: &Executor) -> ExecResult<()> {
         self.blocks_without_move = 0;
-        if let Some(open) = self.pending_move.take() {
-            let end = open.beside_end();
-            self.set_offset(end - open.segment.end());
-            self.close_move(core, open, &[end])?;
+        if let Some(pending_move) = self.pending_move.take() {
+            let end = pending_move.beside_end();
+            self.set_offset(end - pending_move.segment.end());
+            self.close_move(executor, pending_move, &[end])?;
         }
         Ok(())
     }
@@ -167,56 +164,61 @@ impl Lookahead {
     /// Tells the open move, now that the points at its end are known, and what waited behind it. The answer is where
     /// the next move begins. A way against the programmed one would cut into the part (operator's manual,
     /// interference check).
-    fn close_move(&mut self, core: &Executor, open: PendingMove, ends: &[Point]) -> ExecResult<Vec<Point>> {
+    fn close_move(
+        &mut self,
+        executor: &Executor,
+        open: PendingMove,
+        ends: &[Point],
+    ) -> ExecResult<Vec<Point>> {
         if let (Some(start), Some(end)) = (open.start_points.last(), ends.first()) {
             if !open.is_start_up && open.segment.is_reversed(*start, *end, open.distance) {
                 return Err(Alarm::Interference.located_at(open.path_move.backtrace.block));
             }
-            self.emit_corner(core, &open.path_move, &open.start_points);
-            self.emit_along(core, &open.path_move, *end, open.distance);
+            self.emit_corner(executor, &open.path_move, &open.start_points);
+            self.emit_along(executor, &open.path_move, *end, open.distance);
         }
-        for held in std::mem::take(&mut self.pending_items) {
-            self.emit_pending(core, held);
+        for item in std::mem::take(&mut self.pending_items) {
+            self.emit_pending(executor, item);
         }
         Ok(ends.to_vec())
     }
 
     /// The moves from point to point of a corner; the first is where the centre stands.
-    fn emit_corner(&mut self, core: &Executor, piece: &PathMove, points: &[Point]) {
+    fn emit_corner(&mut self, executor: &Executor, piece: &PathMove, points: &[Point]) {
         for point in points.iter().skip(1) {
             let to = self.with_plane_point(self.tool_centre, *point);
-            self.emit_straight(core, piece, to);
+            self.emit_straight(executor, piece, to);
         }
     }
 
-    fn defer_behind_move(&mut self, core: &Executor, held: PendingItem) {
+    fn defer_behind_move(&mut self, executor: &Executor, held: PendingItem) {
         if self.pending_move.is_some() {
             self.pending_items.push(held);
         } else {
-            self.emit_pending(core, held);
+            self.emit_pending(executor, held);
         }
     }
 
     /// G39: round the corner to beside a direction at once, or to beside the next move when that is read.
     pub(super) fn start_corner_arc(
         &mut self,
-        core: &Executor,
+        executor: &Executor,
         arc: &CornerArc,
         order: &LookaheadRequest,
     ) -> ExecResult<()> {
-        self.close_pending_move(core)?;
+        self.close_pending_move(executor)?;
         let Some(distance) = order.distance else {
             let what = "G39 without an offset of the cutter (D0)".into();
             return Err(Alarm::NotSimulated { what }.located_at(order.backtrace.block));
         };
-        let rounding = PendingCornerArc { backtrace: order.backtrace.clone(), rate: arc.rate, distance };
+        let corner_arc = PendingCornerArc { backtrace: order.backtrace.clone(), rate: arc.rate, distance };
         let Some(direction) = arc.direction else {
-            self.pending_corner_arc = Some(rounding);
+            self.pending_corner_arc = Some(corner_arc);
             return Ok(());
         };
         let corner = self.plane_point(&self.programmed_position);
         let end = Segment::Line { from: corner, to: corner + direction }.parallel_start(distance);
-        self.emit_corner_arc(core, &rounding, corner, end)?;
+        self.emit_corner_arc(executor, &corner_arc, corner, end)?;
         self.set_offset(end - corner);
         Ok(())
     }

@@ -78,11 +78,11 @@ impl Lookahead {
     }
 
     /// Lets something wait behind the move that waits.
-    pub(super) fn push_pending(&mut self, kind: EventKind, place: Backtrace) {
-        let held = PendingItem::Other(kind, 0.0, place);
+    pub(super) fn push_pending(&mut self, kind: EventKind, backtrace: Backtrace) {
+        let item = PendingItem::Other(kind, 0.0, backtrace);
         match &mut self.pending_corner {
-            Some(corner) => corner.pending_items.push(held),
-            None => self.pending_items.push(held),
+            Some(corner) => corner.pending_items.push(item),
+            None => self.pending_items.push(item),
         }
     }
 
@@ -96,116 +96,120 @@ impl Lookahead {
     /// Takes a block's events, on the programmed path, and holds back what waits for the next move.
     fn process_block(
         &mut self,
-        core: &Executor,
-        order: &LookaheadRequest,
+        executor: &Executor,
+        request: &LookaheadRequest,
         events: &[(EventKind, f64)],
     ) -> ExecResult<()> {
-        self.plane = order.plane;
-        if order.suspends_compensation {
-            self.check_no_corner(order)?;
-            self.close_pending_move(core)?;
+        self.plane = request.plane;
+        if request.suspends_compensation {
+            self.check_no_corner(request)?;
+            self.close_pending_move(executor)?;
         }
-        if let Some(arc) = &order.corner_arc {
-            self.check_no_corner(order)?;
-            self.start_corner_arc(core, arc, order)?;
+        if let Some(arc) = &request.corner_arc {
+            self.check_no_corner(request)?;
+            self.start_corner_arc(executor, arc, request)?;
         }
-        let mut moved = false;
+        let mut has_moved = false;
         for (kind, seconds) in events {
-            let Some(piece) = PathMove::new(kind, self.programmed_position, order) else {
-                self.defer(core, PendingItem::Other(kind.clone(), *seconds, order.backtrace.clone()));
+            let Some(piece) = PathMove::new(kind, self.programmed_position, request) else {
+                self.defer(executor, PendingItem::Other(kind.clone(), *seconds, request.backtrace.clone()));
                 continue;
             };
             self.programmed_position = piece.end_position();
-            moved |= piece.segment.is_some();
-            if order.suspends_compensation {
-                self.suspend(core, &piece);
+            has_moved |= piece.segment.is_some();
+            if request.suspends_compensation {
+                self.suspend(executor, &piece);
             } else {
-                self.process_corner(core, piece, order)?;
+                self.process_corner(executor, piece, request)?;
             }
         }
-        if order.blend.is_some() && self.pending_corner.is_none() {
-            return Err(Alarm::CornerTooLarge.located_at(order.backtrace.block));
+        if request.blend.is_some() && self.pending_corner.is_none() {
+            return Err(Alarm::CornerTooLarge.located_at(request.backtrace.block));
         }
-        if !moved {
-            self.process_block_without_move(core, order)?;
+        if !has_moved {
+            self.process_block_without_move(executor, request)?;
         }
-        if order.blocks_lookahead {
-            self.check_no_corner(order)?;
-            self.close_pending_move(core)?;
+        if request.blocks_lookahead {
+            self.check_no_corner(request)?;
+            self.close_pending_move(executor)?;
         }
         Ok(())
     }
 
     /// A block that doesn't move in the plane is read over; several of them, one with a move of length 0, and the end
     /// of the offset mode leave the centre beside the end of the last move.
-    fn process_block_without_move(&mut self, core: &Executor, order: &LookaheadRequest) -> ExecResult<()> {
+    fn process_block_without_move(
+        &mut self,
+        executor: &Executor,
+        request: &LookaheadRequest,
+    ) -> ExecResult<()> {
         match &mut self.pending_corner {
-            Some(corner) if order.is_dwell && !corner.has_dwell => corner.has_dwell = true,
-            Some(_) if order.counts_as_block => self.check_no_corner(order)?,
+            Some(corner) if request.is_dwell && !corner.has_dwell => corner.has_dwell = true,
+            Some(_) if request.counts_as_block => self.check_no_corner(request)?,
             _ => {}
         }
-        self.is_restated |= self.is_compensating && order.is_restated;
-        if self.is_compensating && order.distance.is_none() {
-            if order.wall_direction.is_some() {
+        self.is_restated |= self.is_compensating && request.is_restated;
+        if self.is_compensating && request.distance.is_none() {
+            if request.wall_direction.is_some() {
                 let what = "G40 with I, J, K and without a move".into();
-                return Err(Alarm::NotSimulated { what }.located_at(order.backtrace.block));
+                return Err(Alarm::NotSimulated { what }.located_at(request.backtrace.block));
             }
-            self.close_pending_move(core)?;
+            self.close_pending_move(executor)?;
             self.is_compensating = false;
         }
-        if order.counts_as_block && !order.suspends_compensation {
-            self.count_block(core, order)?;
+        if request.counts_as_block && !request.suspends_compensation {
+            self.count_block(executor, request)?;
         }
         Ok(())
     }
 
     /// Counts a block without a move.
-    fn count_block(&mut self, core: &Executor, order: &LookaheadRequest) -> ExecResult<()> {
+    fn count_block(&mut self, executor: &Executor, request: &LookaheadRequest) -> ExecResult<()> {
         self.blocks_without_move += 1;
-        if order.has_zero_length || self.blocks_without_move + 2 > core.settings.lookahead_blocks {
-            self.close_pending_move(core)?;
+        if request.has_zero_length || self.blocks_without_move + 2 > executor.settings.lookahead_blocks {
+            self.close_pending_move(executor)?;
         }
         Ok(())
     }
 
     /// A block that has only a sequence number.
-    pub(super) fn count_number(&mut self, core: &Executor, block: Span) -> ExecResult<()> {
+    pub(super) fn count_number(&mut self, executor: &Executor, block: Span) -> ExecResult<()> {
         if let Some(corner) = &self.pending_corner {
             return Err(corner.no_move_alarm().located_at(block));
         }
         self.blocks_without_move += 1;
-        if self.blocks_without_move + 2 > core.settings.lookahead_blocks {
-            self.close_pending_move(core)?;
+        if self.blocks_without_move + 2 > executor.settings.lookahead_blocks {
+            self.close_pending_move(executor)?;
         }
         Ok(())
     }
 
     /// Nothing but a dwell may stand between a corner word and the next move.
-    fn check_no_corner(&self, order: &LookaheadRequest) -> ExecResult<()> {
+    fn check_no_corner(&self, request: &LookaheadRequest) -> ExecResult<()> {
         match &self.pending_corner {
-            Some(corner) => Err(corner.no_move_alarm().located_at(order.backtrace.block)),
+            Some(corner) => Err(corner.no_move_alarm().located_at(request.backtrace.block)),
             None => Ok(()),
         }
     }
 
     /// The program ends: what waits is done, if nothing is against it.
-    fn finish(&mut self, core: &Executor, block: Span) -> ExecResult<()> {
+    fn finish(&mut self, executor: &Executor, block: Span) -> ExecResult<()> {
         if let Some(corner) = &self.pending_corner {
             return Err(corner.no_move_alarm().located_at(block));
         }
-        self.close_pending_move(core)
+        self.close_pending_move(executor)
     }
 
     /// Does all that waits before the run ends by an alarm. A move that would cut into the part, or go beyond the
     /// stroke, isn't begun.
-    fn finish_before_alarm(&mut self, core: &Executor, refused: Option<Span>) {
-        let stands = self.tool_centre;
+    fn finish_before_alarm(&mut self, executor: &Executor, refused: Option<Span>) {
+        let initial_centre = self.tool_centre;
         if let Some(corner) = self.pending_corner.take()
             && refused != Some(corner.path_move.backtrace.block)
         {
             let before = self.clone();
-            match self.compensate(core, corner.path_move, &corner.request) {
-                Ok(()) => corner.pending_items.into_iter().for_each(|held| self.defer(core, held)),
+            match self.compensate(executor, corner.path_move, &corner.request) {
+                Ok(()) => corner.pending_items.into_iter().for_each(|held| self.defer(executor, held)),
                 // What can't be joined is left out: the run is over.
                 Err(_) => *self = before,
             }
@@ -213,15 +217,15 @@ impl Lookahead {
         if self.pending_move.as_ref().is_some_and(|open| refused == Some(open.path_move.backtrace.block)) {
             self.pending_move = None;
         }
-        if self.close_pending_move(core).is_err() {
+        if self.close_pending_move(executor).is_err() {
             self.pending_items.clear();
         }
-        if let Some(beyond) = self.ready.iter().position(|(kind, ..)| core.check_move(kind).is_err()) {
+        if let Some(beyond) = self.ready.iter().position(|(kind, ..)| executor.check_move(kind).is_err()) {
             self.ready.truncate(beyond);
             self.tool_centre =
-                self.ready.iter().rev().find_map(|(kind, ..)| kind.end().copied()).unwrap_or(stands);
+                self.ready.iter().rev().find_map(|(kind, ..)| kind.end().copied()).unwrap_or(initial_centre);
         }
-        for axis in 0..core.settings.axes.len() {
+        for axis in 0..executor.settings.axes.len() {
             self.offset[axis] = self.tool_centre[axis] - self.programmed_position[axis];
         }
     }

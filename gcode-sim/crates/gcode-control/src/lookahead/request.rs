@@ -45,24 +45,26 @@ pub(crate) struct LookaheadRequest {
 impl Executor {
     /// Whether compensation, a corner word or a move that waits could concern a block.
     #[inline(always)]
-    pub(crate) fn needs_lookahead(&self, given: &BlockWords, state: &State) -> bool {
-        let commanded = state.modal.cutter != CutterSide::Off || given.has_corner();
-        commanded || given.has_any(b"IJK") || !self.lookahead.is_idle()
+    pub(crate) fn needs_lookahead(&self, block_words: &BlockWords, state: &State) -> bool {
+        let is_commanded = state.modal.cutter != CutterSide::Off || block_words.has_corner();
+        is_commanded || block_words.has_any(b"IJK") || !self.lookahead.is_idle()
     }
 
     /// Lets a block's plan go by way of what is read ahead, where compensation or a corner word is in use.
     pub(crate) fn plan_lookahead(
         &self,
         act: Option<AxisWordUse>,
-        given: &BlockWords,
+        block_words: &BlockWords,
         plan: &mut BlockPlan,
         span: Span,
     ) -> ExecResult<()> {
-        if given.has_corner() && plan.corner.is_none() {
+        if block_words.has_corner() && plan.corner.is_none() {
             plan.notes.push(Note::CornerIgnored);
         }
-        let cancels = given.g_codes().any(|row| row.effect == Effect::Cutter(CutterSide::Off));
-        let towards = if cancels { self.plane_vector(given, &plan.state, span)? } else { None };
+        let cancels_compensation =
+            block_words.g_codes().any(|row| row.effect == Effect::Cutter(CutterSide::Off));
+        let towards =
+            if cancels_compensation { self.plane_vector(block_words, &plan.state, span)? } else { None };
         let distance = locate(self.cutter_distance(&plan.state), span)?;
         if self.lookahead.is_idle() && distance.is_none() && plan.corner.is_none() {
             return Ok(());
@@ -72,12 +74,12 @@ impl Executor {
             return Err(Alarm::NotSimulated { what }.located_at(span));
         }
         let motion = plan.state.modal.motion;
-        let alone = match act {
+        let refused_code = match act {
             Some(AxisWordUse::OneShot(OneShot::OneSide)) => Some("G60"),
             None if motion == Motion::Thread && plan.commands_axes => Some("G33"),
             _ => None,
         };
-        if let Some(code) = alone
+        if let Some(code) = refused_code
             && (distance.is_some() || self.lookahead.is_offset())
         {
             return Err(
@@ -85,26 +87,28 @@ impl Executor {
             );
         }
         let plane = locate(self.plane_axes(plan.state.modal.plane), span)?;
-        let named = |axis| given.has(self.settings.axes.letter(axis) as u8);
-        let sides = given.g_codes().any(|row| {
+        let names_plane_axis = |axis| block_words.has(self.settings.axes.letter(axis) as u8);
+        let restates_side = block_words.g_codes().any(|row| {
             matches!(row.effect, Effect::Cutter(side) if side != CutterSide::Off)
                 && self.state.modal.cutter == plan.state.modal.cutter
         });
         let corner_arc = match act {
-            Some(AxisWordUse::OneShot(OneShot::CornerArc)) => Some(self.corner_arc(given, plan, span)?),
+            Some(AxisWordUse::OneShot(OneShot::CornerArc)) => {
+                Some(self.corner_arc(block_words, plan, span)?)
+            }
             _ => None,
         };
-        let order = LookaheadRequest {
+        let request = LookaheadRequest {
             plane,
             distance,
             wall_direction: towards,
-            is_restated: sides,
+            is_restated: restates_side,
             suspends_compensation: plan.cycle_plan.is_some()
                 || suspends_compensation(act)
                 || plan.commands_axes && plan.state.modal.cycle.is_some(),
             blocks_lookahead: !plan.stops.is_empty() || matches!(plan.flow, BlockFlow::End),
             counts_as_block: matches!(plan.flow, BlockFlow::Next | BlockFlow::End) && corner_arc.is_none(),
-            has_zero_length: act.is_none() && (named(plane.0) || named(plane.1)),
+            has_zero_length: act.is_none() && (names_plane_axis(plane.0) || names_plane_axis(plane.1)),
             is_cut: act.is_none()
                 && matches!(motion, Motion::Linear | Motion::Clockwise | Motion::Counterclockwise),
             is_dwell: act == Some(AxisWordUse::OneShot(OneShot::Dwell)),
@@ -117,7 +121,7 @@ impl Executor {
         if plan.cycle_plan.is_none() {
             plan.events.append(&mut plan.events_after_motion);
         }
-        plan.lookahead.process_block(self, &order, &plan.events)?;
+        plan.lookahead.process_block(self, &request, &plan.events)?;
         plan.events.clear();
         plan.uses_lookahead = true;
         if let Some(drill) = &mut plan.cycle_plan {
@@ -143,14 +147,14 @@ impl Executor {
     }
 
     /// I, J, K of the plane as a direction in machine coordinates.
-    fn plane_vector(&self, given: &BlockWords, state: &State, span: Span) -> ExecResult<Option<Point>> {
+    fn plane_vector(&self, block_words: &BlockWords, state: &State, span: Span) -> ExecResult<Option<Point>> {
         let letters = match state.modal.plane {
             Plane::Xy => (b'I', b'J'),
             Plane::Zx => (b'K', b'I'),
             Plane::Yz => (b'J', b'K'),
         };
-        let first = self.dimension(given, letters.0, state)?.unwrap_or(0.0);
-        let second = self.dimension(given, letters.1, state)?.unwrap_or(0.0);
+        let first = self.dimension(block_words, letters.0, state)?.unwrap_or(0.0);
+        let second = self.dimension(block_words, letters.1, state)?.unwrap_or(0.0);
         let plane = locate(self.plane_axes(state.modal.plane), span)?;
         if first == 0.0 && second == 0.0 {
             return Ok(None);
@@ -163,15 +167,15 @@ impl Executor {
     }
 
     /// G39: a cutting feed round the corner.
-    fn corner_arc(&self, given: &BlockWords, plan: &BlockPlan, span: Span) -> ExecResult<CornerArc> {
-        let timed = self.path_time(&plan.state, 1.0, given.has(b'F'));
+    fn corner_arc(&self, block_words: &BlockWords, plan: &BlockPlan, span: Span) -> ExecResult<CornerArc> {
+        let timed = self.path_time(&plan.state, 1.0, block_words.has(b'F'));
         let (rate, _) = timed.map_err(|_| Alarm::ArcFeedZero.located_at(span))?;
-        Ok(CornerArc { direction: self.plane_vector(given, &plan.state, span)?, rate })
+        Ok(CornerArc { direction: self.plane_vector(block_words, &plan.state, span)?, rate })
     }
 
     /// Takes over what a plan has read ahead, and tells the machine what no longer waits.
-    pub(crate) fn take_lookahead<S: EventSink>(&mut self, ahead: &mut Lookahead, sink: &mut S) {
-        std::mem::swap(&mut self.lookahead, ahead);
+    pub(crate) fn take_lookahead<S: EventSink>(&mut self, lookahead: &mut Lookahead, sink: &mut S) {
+        std::mem::swap(&mut self.lookahead, lookahead);
         self.emit_ready(sink);
     }
 
@@ -180,10 +184,10 @@ impl Executor {
         if self.lookahead.is_idle() {
             return Ok(());
         }
-        let mut ahead = self.lookahead.clone();
-        ahead.count_number(self, block)?;
-        self.check_ready_moves(&ahead)?;
-        self.take_lookahead(&mut ahead, sink);
+        let mut lookahead = self.lookahead.clone();
+        lookahead.count_number(self, block)?;
+        self.check_ready_moves(&lookahead)?;
+        self.take_lookahead(&mut lookahead, sink);
         Ok(())
     }
 
@@ -192,10 +196,10 @@ impl Executor {
         if self.lookahead.is_idle() {
             return Ok(());
         }
-        let mut ahead = self.lookahead.clone();
-        ahead.finish(self, self.block)?;
-        self.check_ready_moves(&ahead)?;
-        self.take_lookahead(&mut ahead, sink);
+        let mut lookahead = self.lookahead.clone();
+        lookahead.finish(self, self.block)?;
+        self.check_ready_moves(&lookahead)?;
+        self.take_lookahead(&mut lookahead, sink);
         Ok(())
     }
 
@@ -206,14 +210,14 @@ impl Executor {
         }
         let refused = matches!(alarm.node, Alarm::Interference | Alarm::Overtravel { .. });
         let refused = refused.then_some(alarm.span);
-        let mut ahead = std::mem::take(&mut self.lookahead);
-        ahead.finish_before_alarm(self, refused);
-        self.take_lookahead(&mut ahead, sink);
+        let mut lookahead = std::mem::take(&mut self.lookahead);
+        lookahead.finish_before_alarm(self, refused);
+        self.take_lookahead(&mut lookahead, sink);
     }
 
     fn emit_ready<S: EventSink>(&mut self, sink: &mut S) {
-        let told: Vec<ReadyEvent> = std::mem::take(&mut self.lookahead.ready);
-        for (kind, seconds, place) in told {
+        let ready: Vec<ReadyEvent> = std::mem::take(&mut self.lookahead.ready);
+        for (kind, seconds, place) in ready {
             self.count_event(&kind, seconds);
             let (seconds, block) = (Seconds(seconds), place.block);
             sink.event(&Event { kind: &kind, seconds, block, calls: &place.calls });

@@ -38,12 +38,12 @@ struct AlarmLine<'a> {
 }
 
 fn without_comments(text: &str) -> String {
-    let mut inside = false;
-    let keep = |c: &char| {
-        inside = (inside || *c == '(') && *c != ')';
-        !inside && *c != ')'
+    let mut is_in_comment = false;
+    let is_kept = |c: &char| {
+        is_in_comment = (is_in_comment || *c == '(') && *c != ')';
+        !is_in_comment && *c != ')'
     };
-    text.chars().filter(keep).collect()
+    text.chars().filter(is_kept).collect()
 }
 
 /// Whether the alarm is about how something is written.
@@ -63,9 +63,9 @@ fn is_read_failure(alarm: &Alarm) -> bool {
 }
 
 /// A character that looks like one of a control's and comes from a word processor, a PDF or another keyboard.
-fn foreign_character(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
-    let found = place.rest.chars().find(|c| !c.is_ascii()).filter(|_| is_read_failure(alarm))?;
-    let instead = match found {
+fn foreign_character(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
+    let found = alarm_line.rest.chars().find(|c| !c.is_ascii()).filter(|_| is_read_failure(alarm))?;
+    let replacement = match found {
         // Bytes of another encoding: nobody knows what they show.
         '\u{fffd}' => return None,
         '\u{2010}'..='\u{2015}' | '\u{2212}' => "the minus '-'".to_owned(),
@@ -81,15 +81,18 @@ fn foreign_character(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
             return Some(format!("'{found}' (U+{number:04X}) is not a character of a control: retype it"));
         }
     };
-    Some(format!("the character U+{:04X} is not a character of a control: type {instead}", u32::from(found)))
+    Some(format!(
+        "the character U+{:04X} is not a character of a control: type {replacement}",
+        u32::from(found)
+    ))
 }
 
 /// `GO1`, `M3O`, `X1O.`: a letter O in a number.
-fn letter_o(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
+fn letter_o(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
     if !is_read_failure(alarm) && !matches!(alarm, Alarm::ImproperGCode { .. }) {
         return None;
     }
-    let line = format!("{}{}", place.before, place.rest);
+    let line = format!("{}{}", alarm_line.before, alarm_line.rest);
     let chars: Vec<char> = line.chars().collect();
     (0..chars.len()).find_map(|at| {
         let letter = chars[at];
@@ -104,28 +107,28 @@ fn letter_o(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
         let is_statement =
             letter == 'D' && number.starts_with('O') || matches!(letter, 'G' | 'T') && number == "O";
         (number.contains('O') && is_word && !is_statement).then(|| {
-            let meant = number.replace('O', "0");
-            format!("'{letter}{number}' has the letter O instead of a zero: write {letter}{meant}")
+            let corrected = number.replace('O', "0");
+            format!("'{letter}{number}' has the letter O instead of a zero: write {letter}{corrected}")
         })
     })
 }
 
 /// `GOTO N10`.
-fn number_with_n(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
+fn number_with_n(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
     let number =
-        place.rest.strip_prefix('N').filter(|_| matches!(alarm, Alarm::Expression { .. }))?.trim_start();
+        alarm_line.rest.strip_prefix('N').filter(|_| matches!(alarm, Alarm::Expression { .. }))?.trim_start();
     let digits: String = number.chars().take_while(char::is_ascii_digit).collect();
-    (place.before.trim_end().ends_with("GOTO") && !digits.is_empty())
+    (alarm_line.before.trim_end().ends_with("GOTO") && !digits.is_empty())
         .then(|| format!("write GOTO {digits}, without N"))
 }
 
 /// `X10,5` and `X10., Y5.`.
-fn misplaced_comma(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
-    let behind = place
+fn misplaced_comma(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
+    let behind = alarm_line
         .rest
         .strip_prefix(',')
         .filter(|_| is_read_failure(alarm) || matches!(alarm, Alarm::CornerWords))?;
-    let whole: String = place.before.chars().rev().take_while(char::is_ascii_digit).collect();
+    let whole: String = alarm_line.before.chars().rev().take_while(char::is_ascii_digit).collect();
     let whole: String = whole.chars().rev().collect();
     let part: String = behind.chars().take_while(char::is_ascii_digit).collect();
     if !part.is_empty() && !whole.is_empty() {
@@ -137,11 +140,11 @@ fn misplaced_comma(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
 }
 
 /// `1E3`.
-fn exponent(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
+fn exponent(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
     if !matches!(alarm, Alarm::MixedStatements | Alarm::ImproperAddress { letter: 'E' }) {
         return None;
     }
-    let line = format!("{}{}", place.before, place.rest);
+    let line = format!("{}{}", alarm_line.before, alarm_line.rest);
     line.match_indices('E').find_map(|(at, _)| {
         let number = |c: &char| matches!(c, '0'..='9' | '.');
         let mantissa: String = line[..at].chars().rev().take_while(number).collect();
@@ -155,11 +158,11 @@ fn exponent(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
 }
 
 /// `#1=5#2`.
-fn missing_operator(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
+fn missing_operator(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
     if *alarm != Alarm::MissingEquals {
         return None;
     }
-    let line = format!("{}{}", place.before, place.rest);
+    let line = format!("{}{}", alarm_line.before, alarm_line.rest);
     let at = line.rfind('#')?;
     let before = line[..at].trim_end();
     let is_value = before.ends_with(|c: char| c.is_ascii_digit() || matches!(c, '.' | ']'));
@@ -168,42 +171,42 @@ fn missing_operator(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
 }
 
 /// `IF[…]THEN #1=2 ELSE #1=3`.
-fn else_case(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
+fn else_case(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
     let is_else =
-        matches!(alarm, Alarm::NoDataAfterAddress { letter: 'E' }) && place.rest.starts_with("ELSE");
+        matches!(alarm, Alarm::NoDataAfterAddress { letter: 'E' }) && alarm_line.rest.starts_with("ELSE");
     is_else.then(|| {
         "write a second IF with the opposite condition, or GOTO past it: a control has no ELSE".to_owned()
     })
 }
 
 /// `Z--5`.
-fn two_signs(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
+fn two_signs(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
     let Alarm::IllegalMinus { letter } = alarm else { return None };
-    let value = place.rest.strip_prefix('-').filter(|_| place.before.trim_end().ends_with('-'))?;
+    let value = alarm_line.rest.strip_prefix('-').filter(|_| alarm_line.before.trim_end().ends_with('-'))?;
     let value: String = value.chars().take_while(|c| matches!(c, '0'..='9' | '.')).collect();
     Some(format!("write one sign: {letter}-{value}, or {letter}-[-{value}]"))
 }
 
 /// `10/0`.
-fn zero_divisor(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
-    let (_, divisor) = place.text.rsplit_once('/').filter(|_| *alarm == Alarm::DivideByZero)?;
+fn zero_divisor(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
+    let (_, divisor) = alarm_line.text.rsplit_once('/').filter(|_| *alarm == Alarm::DivideByZero)?;
     let is_zero = divisor.chars().all(|c| matches!(c, '0' | '.' | ' ')) && divisor.contains('0');
     is_zero.then(|| "correct the divisor: it is written as 0".to_owned())
 }
 
 /// `R5` where `R5.` was meant.
-fn radius_without_point(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
+fn radius_without_point(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
     let Alarm::RadiusTooSmall { radius, .. } = alarm else { return None };
-    let number = place.text.strip_prefix('R')?.trim();
+    let number = alarm_line.text.strip_prefix('R')?.trim();
     let written: f64 = number.parse().ok().filter(|_| !number.contains('.'))?;
     let is_other = (written.abs() - radius).abs() > 1e-9;
     is_other.then(|| format!("write R{number}.: R{number} without a decimal point is {radius} mm here"))
 }
 
 /// `G04 X1.5 P500`.
-fn dwell_with_two_times(alarm: &Alarm, place: &AlarmLine<'_>) -> Option<String> {
+fn dwell_with_two_times(alarm: &Alarm, alarm_line: &AlarmLine<'_>) -> Option<String> {
     let Alarm::NotSimulated { what } = alarm else { return None };
-    let line = format!("{}{}", place.before, place.rest);
+    let line = format!("{}{}", alarm_line.before, alarm_line.rest);
     let is_dwell = line.split(|c: char| !c.is_ascii_alphanumeric()).any(|word| matches!(word, "G4" | "G04"));
     (is_dwell && what.ends_with("in this block") && line.contains('P'))
         .then(|| "write one time for a dwell: X in seconds or P in milliseconds".to_owned())

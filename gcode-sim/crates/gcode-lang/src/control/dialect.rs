@@ -53,8 +53,8 @@ impl Settings {
         let like = own.and_then(|own| own.base).and_then(row);
         for (key, value) in like.into_iter().chain(own).flat_map(|row| row.settings) {
             // A test holds that every row can be set.
-            let taken = self.set(key, value);
-            debug_assert_eq!(taken, Ok(()));
+            let result = self.set(key, value);
+            debug_assert_eq!(result, Ok(()));
         }
     }
 }

@@ -127,16 +127,16 @@ fn set_roll_over(settings: &mut Settings, axis: AxisIndex, value: f64) -> Option
     Some(())
 }
 
-fn find_row(place: ParameterId) -> Result<&'static ParameterRow, ParameterError> {
-    let mut of_number = ROWS.iter().filter(|row| row.number == place.number).peekable();
-    let first = of_number.peek().ok_or(ParameterError::Unknown)?;
-    match (place.bit, first.bit) {
+fn find_row(id: ParameterId) -> Result<&'static ParameterRow, ParameterError> {
+    let mut rows = ROWS.iter().filter(|row| row.number == id.number).peekable();
+    let first = rows.peek().ok_or(ParameterError::Unknown)?;
+    match (id.bit, first.bit) {
         (None, Some(_)) => return Err(ParameterError::MissingBit),
         (Some(_), None) => return Err(ParameterError::UnexpectedBit),
         _ => {}
     }
-    let row = of_number.find(|row| row.bit == place.bit).ok_or(ParameterError::Unknown)?;
-    match (&row.access, place.axis) {
+    let row = rows.find(|row| row.bit == id.bit).ok_or(ParameterError::Unknown)?;
+    match (&row.access, id.axis) {
         (ParameterAccess::PerAxis(..), None) => Err(ParameterError::MissingAxis),
         (ParameterAccess::Key(..) | ParameterAccess::Fixed(_), Some(_)) => {
             Err(ParameterError::UnexpectedAxis)
@@ -147,12 +147,12 @@ fn find_row(place: ParameterId) -> Result<&'static ParameterRow, ParameterError>
 
 impl Settings {
     /// The value of a parameter; lengths in mm.
-    pub fn parameter(&self, place: ParameterId) -> Result<f64, ParameterError> {
-        if let Some(code) = self.code_calls.parameter(place.number) {
-            return check_code_call_id(place).map(|()| code as f64);
+    pub fn parameter(&self, id: ParameterId) -> Result<f64, ParameterError> {
+        if let Some(code) = self.code_calls.parameter(id.number) {
+            return check_code_call_id(id).map(|()| code as f64);
         }
-        let row = find_row(place)?;
-        Ok(match (&row.access, place.axis) {
+        let row = find_row(id)?;
+        Ok(match (&row.access, id.axis) {
             (ParameterAccess::PerAxis(read, _), Some(axis)) => read(self, axis),
             (ParameterAccess::Key(_, read) | ParameterAccess::Fixed(read), _) => read(self),
             (ParameterAccess::PerAxis(..), None) => return Err(ParameterError::MissingAxis),
@@ -160,17 +160,17 @@ impl Settings {
     }
 
     /// Sets a parameter; a length in mm.
-    pub fn set_parameter(&mut self, place: ParameterId, value: f64) -> Result<(), ParameterError> {
-        if place.bit.is_some() && value != 0.0 && value != 1.0 {
+    pub fn set_parameter(&mut self, id: ParameterId, value: f64) -> Result<(), ParameterError> {
+        if id.bit.is_some() && value != 0.0 && value != 1.0 {
             return Err(ParameterError::InvalidValue);
         }
-        if self.code_calls.parameter(place.number).is_some() {
-            check_code_call_id(place)?;
+        if self.code_calls.parameter(id.number).is_some() {
+            check_code_call_id(id)?;
             let whole = value.fract() == 0.0 && value.abs() < 1e9;
-            let set = whole.then(|| self.code_calls.set_parameter(place.number, value as i64)).flatten();
+            let set = whole.then(|| self.code_calls.set_parameter(id.number, value as i64)).flatten();
             return set.ok_or(ParameterError::InvalidValue);
         }
-        let set = match (&find_row(place)?.access, place.axis) {
+        let set = match (&find_row(id)?.access, id.axis) {
             (ParameterAccess::Key(key, _), _) => self.set(key, &value.to_string()).ok(),
             (ParameterAccess::PerAxis(_, Some(set)), Some(axis)) => set(self, axis, value),
             (ParameterAccess::PerAxis(..) | ParameterAccess::Fixed(_), _) => {
@@ -181,14 +181,14 @@ impl Settings {
     }
 
     /// Whether a parameter is a length, of which a point must say the unit.
-    pub fn is_length_parameter(place: ParameterId) -> bool {
-        find_row(place).is_ok_and(|row| row.is_length)
+    pub fn is_length_parameter(id: ParameterId) -> bool {
+        find_row(id).is_ok_and(|row| row.is_length)
     }
 }
 
 /// The parameters of calls by codes are numbers for all axes.
-fn check_code_call_id(place: ParameterId) -> Result<(), ParameterError> {
-    match (place.bit, place.axis) {
+fn check_code_call_id(id: ParameterId) -> Result<(), ParameterError> {
+    match (id.bit, id.axis) {
         (None, None) => Ok(()),
         (Some(_), _) => Err(ParameterError::UnexpectedBit),
         (None, Some(_)) => Err(ParameterError::UnexpectedAxis),

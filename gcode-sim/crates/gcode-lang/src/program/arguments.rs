@@ -13,8 +13,8 @@ pub struct ArgumentLocals {
 }
 
 impl ArgumentLocals {
-    pub fn new(plain_ijk: bool, every: bool) -> Self {
-        Self { plain_ijk, is_every_block: every, set: 0, last: 0 }
+    pub fn new(plain_ijk: bool, is_every_block: bool) -> Self {
+        Self { plain_ijk, is_every_block, set: 0, last: 0 }
     }
 
     /// The local that the next letter sets; `None` for L and P, which set none.

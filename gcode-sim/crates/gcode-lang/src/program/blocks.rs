@@ -56,9 +56,9 @@ impl Blocks {
     }
 
     /// The tree of a block, read anew.
-    pub(super) fn tree(&self, place: OpIndex) -> Option<ast::Block> {
-        let start = *self.starts.get(place)?;
-        match self.separate_trees.get(&(place as u32)) {
+    pub(super) fn tree(&self, index: OpIndex) -> Option<ast::Block> {
+        let start = *self.starts.get(index)?;
+        match self.separate_trees.get(&(index as u32)) {
             Some(block) => Some(block.clone()),
             None => block_at(self.text.source, self.text.content(), start),
         }
@@ -67,12 +67,12 @@ impl Blocks {
     /// The sequence numbers with their blocks, by number, then by place.
     pub(super) fn sequence_numbers(&self) -> Vec<(u32, u32)> {
         let mut numbers = Vec::new();
-        for (place, start) in (0..).zip(&self.starts) {
-            let number = match self.separate_trees.get(&place) {
+        for (index, start) in (0..).zip(&self.starts) {
+            let number = match self.separate_trees.get(&index) {
                 Some(block) => block.number.map(|number| number.node),
                 None => sequence_number_at(self.text.source, self.text.content(), *start),
             };
-            numbers.extend(number.map(|number| (number, place)));
+            numbers.extend(number.map(|number| (number, index)));
         }
         numbers.sort_unstable();
         numbers
@@ -80,8 +80,8 @@ impl Blocks {
 
     /// The operation of a block, if it is lowered.
     #[inline(always)]
-    pub(super) fn op(&self, place: OpIndex) -> Option<&Op> {
-        self.ops.get(place & self.index_mask).filter(|op| op.ordinal as usize == place + 1)
+    pub(super) fn op(&self, index: OpIndex) -> Option<&Op> {
+        self.ops.get(index & self.index_mask).filter(|op| op.ordinal as usize == index + 1)
     }
 
     /// All operations; to ask before all are lowered, in order, is a mistake of ours.
@@ -111,18 +111,18 @@ impl Blocks {
     pub(super) fn lower_all(&mut self, loops: &Loops) {
         self.ops.clear();
         self.index_mask = usize::MAX;
-        for place in 0..self.starts.len() {
-            self.lower(place, loops);
+        for index in 0..self.starts.len() {
+            self.lower(index, loops);
         }
     }
 
     /// Lowers a block that is more than numbers.
     #[inline(never)]
-    fn lower_tree(&mut self, place: OpIndex, loops: &Loops) -> Option<Op> {
-        let tree = self.tree(place)?;
+    fn lower_tree(&mut self, index: OpIndex, loops: &Loops) -> Option<Op> {
+        let tree = self.tree(index)?;
         let small = lower_case(&tree, &self.text.bytes);
         let mut op = self.lowering.lower_block(&tree, small);
-        link_loop(&mut op, place, loops);
+        link_loop(&mut op, index, loops);
         Some(op)
     }
 }

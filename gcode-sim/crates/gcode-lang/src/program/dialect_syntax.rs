@@ -37,16 +37,16 @@ pub enum DialectSyntax {
 impl DialectSyntax {
     /// Whether a control takes it.
     pub fn is_accepted(self, settings: &Settings) -> bool {
-        let unsure = &settings.undocumented;
+        let undocumented = &settings.undocumented;
         match self {
-            Self::LowerCase => unsure.reads_lower_case,
-            Self::ShortWord => unsure.allows_short_words,
-            Self::RelationSigns => unsure.allows_relation_signs,
-            Self::SeveralAssignments => unsure.allows_several_assignments,
+            Self::LowerCase => undocumented.reads_lower_case,
+            Self::ShortWord => undocumented.allows_short_words,
+            Self::RelationSigns => undocumented.allows_relation_signs,
+            Self::SeveralAssignments => undocumented.allows_several_assignments,
             Self::PlainIf => settings.allows_plain_if,
             Self::ThenWords => settings.then_takes_words,
-            Self::ThenGoto => unsure.then_takes_goto,
-            Self::NewFunction(_) => unsure.has_new_functions,
+            Self::ThenGoto => undocumented.then_takes_goto,
+            Self::NewFunction(_) => undocumented.has_new_functions,
             Self::MoreFunction(_) => settings.has_extended_functions,
             Self::NewWord(_) => settings.has_named_variables,
             Self::GCodeCall(code) => g_codes::find(code).row_for(settings.codes).is_some(),

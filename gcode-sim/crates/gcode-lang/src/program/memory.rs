@@ -115,8 +115,8 @@ impl Memory {
     }
 
     /// One block of a program, lowered; `None` behind the last.
-    pub fn lower_block(&mut self, id: ProgramId, place: OpIndex) -> Option<&Op> {
-        self.get_mut(id)?.lower_block(place).map(|(_, op)| op)
+    pub fn lower_block(&mut self, id: ProgramId, index: OpIndex) -> Option<&Op> {
+        self.get_mut(id)?.lower_block(index).map(|(_, op)| op)
     }
 
     /// A program with all of its blocks lowered: [`Program::ops`].
@@ -128,8 +128,8 @@ impl Memory {
     }
 
     /// The place of a block, read anew.
-    pub fn block_span(&self, id: ProgramId, place: OpIndex) -> Option<Span> {
-        self.get(id).blocks.tree(place).map(|tree| tree.span)
+    pub fn block_span(&self, id: ProgramId, index: OpIndex) -> Option<Span> {
+        self.get(id).blocks.tree(index).map(|tree| tree.span)
     }
 
     /// The program with this O number.

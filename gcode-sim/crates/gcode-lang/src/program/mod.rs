@@ -234,17 +234,17 @@ impl Program {
 
     /// Lowers one block, so that it can be executed; `None` behind the last.
     #[inline(always)]
-    pub fn lower_block(&mut self, place: OpIndex) -> Option<(&Self, &Op)> {
-        if self.blocks.op(place).is_none() {
-            self.blocks.lower(place, &self.loops)?;
+    pub fn lower_block(&mut self, index: OpIndex) -> Option<(&Self, &Op)> {
+        if self.blocks.op(index).is_none() {
+            self.blocks.lower(index, &self.loops)?;
         }
         let program = &*self;
-        program.blocks.op(place).map(|op| (program, op))
+        program.blocks.op(index).map(|op| (program, op))
     }
 
     /// An operation that was made ready: see [`Program::ready`].
-    pub fn op(&self, place: OpIndex) -> Option<&Op> {
-        self.blocks.op(place)
+    pub fn op(&self, index: OpIndex) -> Option<&Op> {
+        self.blocks.op(index)
     }
 
     fn numbers(&self) -> &[(u32, u32)] {

@@ -33,14 +33,14 @@ fn fill(list: &mut Vec<LoweredWord>, mut numbers: NumberWords<'_>) -> Option<u32
     let mut end = numbers.words_start;
     for NumberWord { letter, number, span } in numbers.by_ref() {
         end = span.end;
-        let coded = |value| LoweredWord { letter, axis: None, comma: false, value, span };
+        let lowered_word = |value| LoweredWord { letter, axis: None, comma: false, value, span };
         match letter {
             b'G' => match g_code(number)? {
                 650 | 660 | 661 | 670 => return None,
-                code => list.push(coded(WordOperand::G(code, g_codes::find(code)))),
+                code => list.push(lowered_word(WordOperand::G(code, g_codes::find(code)))),
             },
             b'M' if matches!(number.digits, 97 | 98 | 99 | 198) => return None,
-            _ => list.push(coded(WordOperand::Literal(number))),
+            _ => list.push(lowered_word(WordOperand::Literal(number))),
         }
     }
     numbers.is_at_end().then_some(end)

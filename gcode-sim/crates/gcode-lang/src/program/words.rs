@@ -352,7 +352,7 @@ fn subprogram<'a>(
     if let Some((second, _)) = calls.next() {
         return Err(Alarm::TwoSubprogramCalls.located_at(second.span));
     }
-    let mut op = CallOp {
+    let mut call_op = CallOp {
         kind: calling,
         target: CallTarget::None,
         repeats: None,
@@ -360,24 +360,24 @@ fn subprogram<'a>(
         arguments: Vec::new(),
         span: call.span,
     };
-    let mut left = Vec::with_capacity(list.len());
+    let mut other_words = Vec::with_capacity(list.len());
     for (coded, word) in list.into_iter().zip(words.clone()) {
         match (coded.letter, &word.value) {
             (b'M', _) if kind(word).is_some() => {}
-            (b'P', WordValue::Name(name)) => op.target = CallTarget::Name(name.clone()),
+            (b'P', WordValue::Name(name)) => call_op.target = CallTarget::Name(name.clone()),
             (_, WordValue::Name(_)) => {
                 return Err(Alarm::NotAWord { text: "a name without P".into() }.located_at(coded.span));
             }
-            (b'P', _) if calling == CallCode::Local => op.start = Some(coded),
-            (b'P', _) => op.target = CallTarget::Number(coded),
-            (b'L', _) if calling != CallCode::Return => op.repeats = Some(coded),
-            (b'Q', _) if calling == CallCode::Subprogram => op.start = Some(coded),
+            (b'P', _) if calling == CallCode::Local => call_op.start = Some(coded),
+            (b'P', _) => call_op.target = CallTarget::Number(coded),
+            (b'L', _) if calling != CallCode::Return => call_op.repeats = Some(coded),
+            (b'Q', _) if calling == CallCode::Subprogram => call_op.start = Some(coded),
             // M98 H alone: some controls call the subprogram at this N of the same program.
             (b'H', _) if calling == CallCode::Subprogram && !has(b'P') && !has(b'Q') => {
-                op.start = Some(coded)
+                call_op.start = Some(coded)
             }
-            _ => left.push(coded),
+            _ => other_words.push(coded),
         }
     }
-    Ok(Words::new(left, Some(op)))
+    Ok(Words::new(other_words, Some(call_op)))
 }

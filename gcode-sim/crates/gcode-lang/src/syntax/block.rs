@@ -67,17 +67,17 @@ fn unreadable(line: LineInput, from: Input<'_>, error: Err<ReadFailure>) -> Unre
 }
 
 fn read_item<'a>(line: LineInput, at: Input<'a>, block: &mut Block) -> ReadResult<'a, ()> {
-    let beginning = block.items.is_empty();
+    let is_first_item = block.items.is_empty();
     let (rest, item) = match at {
         [b'/', ..] => {
             let (rest, switch) = skip(line, at)?;
-            if beginning && block.skip.is_none() {
+            if is_first_item && block.skip.is_none() {
                 block.skip = Some(switch);
                 return Ok((rest, ()));
             }
             (rest, Item::Skip(switch))
         }
-        [b'N' | b'n', ..] if beginning && block.number.is_none() => {
+        [b'N' | b'n', ..] if is_first_item && block.number.is_none() => {
             let (rest, number) = sequence_number(line, at)?;
             block.number = Some(number);
             return Ok((rest, ()));
@@ -90,7 +90,9 @@ fn read_item<'a>(line: LineInput, at: Input<'a>, block: &mut Block) -> ReadResul
             let (rest, word) = name_word(line, at)?;
             (rest, Item::Word(word))
         }
-        [b'O' | b'o' | b':', ..] if beginning && begins_program(at) => return fail(at, Alarm::ProgramNumber),
+        [b'O' | b'o' | b':', ..] if is_first_item && begins_program(at) => {
+            return fail(at, Alarm::ProgramNumber);
+        }
         [b',' | b'A'..=b'Z' | b'a'..=b'z', ..] => match (number_word(&window(at)), keyword(at)) {
             (Some((letter, number, length)), _) if !continues_number(&at[length..]) => {
                 let rest = &at[length..];

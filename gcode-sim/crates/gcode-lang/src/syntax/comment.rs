@@ -14,11 +14,11 @@ pub(super) fn blank_out_comments(
     line: &[u8],
     code: &mut Vec<u8>,
     comments: &mut VecDeque<Comment>,
-    reads: impl Fn(&[u8]) -> bool,
+    is_block: impl Fn(&[u8]) -> bool,
 ) {
     code.clear();
     code.extend_from_slice(line);
-    let mut keep = |from: usize, to: usize, text: &[u8], mark| {
+    let mut push_comment = |from: usize, to: usize, text: &[u8], mark| {
         // At the end of a line nobody means spaces.
         let kept =
             text.iter().rposition(|b| mark == CommentMark::Round || !is_space(*b)).map_or(0, |last| last + 1);
@@ -38,7 +38,7 @@ pub(super) fn blank_out_comments(
                     None => (line.len(), CommentMark::Unclosed),
                 };
                 let inner_end = if mark == CommentMark::Round { end - 1 } else { end };
-                keep(at, end, &line[at + 1..inner_end], mark);
+                push_comment(at, end, &line[at + 1..inner_end], mark);
                 code[at..end].fill(COMMENT);
                 at = end;
                 continue;
@@ -47,14 +47,14 @@ pub(super) fn blank_out_comments(
                 let text = &rest[1..];
                 if text.iter().all(|b| is_space(*b) || *b == b';') {
                     code.truncate(at);
-                } else if !reads(text.split(|b| *b == b'(').next().unwrap_or(text)) {
-                    keep(at, line.len(), text, CommentMark::Semicolon);
+                } else if !is_block(text.split(|b| *b == b'(').next().unwrap_or(text)) {
+                    push_comment(at, line.len(), text, CommentMark::Semicolon);
                     code.truncate(at);
                 }
                 return;
             }
             b'/' if brackets + names == 0 && begins_remark(rest) => {
-                keep(at, line.len(), &rest[2..], CommentMark::Slashes);
+                push_comment(at, line.len(), &rest[2..], CommentMark::Slashes);
                 code.truncate(at);
                 return;
             }

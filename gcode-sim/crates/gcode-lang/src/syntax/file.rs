@@ -66,20 +66,24 @@ impl<C: Default, B> Programs<C, B> {
 
     /// The program that a block belongs to, `silent` if nothing in it can be read. Blocks before the first O word of a
     /// section are a program without a name.
-    pub(super) fn program_for_block(&mut self, span: Span, silent: bool) -> &mut ProgramParts<C, B> {
+    pub(super) fn program_for_block(&mut self, span: Span, is_unreadable: bool) -> &mut ProgramParts<C, B> {
         if !self.is_open {
             self.begin(ProgramName::Unnamed, span);
         }
         let last = self.list.len() - 1;
         let (program, all_silent) = &mut self.list[last];
-        *all_silent &= silent;
+        *all_silent &= is_unreadable;
         program
     }
 
     /// All of them. One in which nothing can be read is the text around a tape and left out where the file has others.
     pub(super) fn finish(self) -> Vec<ProgramParts<C, B>> {
-        let alone = self.list.len() == 1;
-        self.list.into_iter().filter(|(_, silent)| alone || !silent).map(|(program, _)| program).collect()
+        let is_only_program = self.list.len() == 1;
+        self.list
+            .into_iter()
+            .filter(|(_, silent)| is_only_program || !silent)
+            .map(|(program, _)| program)
+            .collect()
     }
 }
 

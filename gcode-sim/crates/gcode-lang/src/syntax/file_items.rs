@@ -203,9 +203,9 @@ impl<'a> FileItems<'a> {
 
     /// Gives the block its comments and its place, and what can't be read its text as written.
     fn attach_comments(&mut self, block: &mut Block, from: usize, to: usize) {
-        let last = to == self.code_end;
-        let end = if last { self.line_end } else { to };
-        if last {
+        let is_last = to == self.code_end;
+        let end = if is_last { self.line_end } else { to };
+        if is_last {
             block.comments = self.comments.drain(..).collect();
         } else if !self.comments.is_empty() {
             let own = self.comments.iter().take_while(|c| (c.span.start as usize) < to).count();

@@ -32,37 +32,37 @@ impl BlockOutline {
 pub fn outline<C: Default, B>(
     source: SourceId,
     bytes: &[u8],
-    mut each: impl FnMut(&mut C, BlockOutline) -> B,
+    mut convert: impl FnMut(&mut C, BlockOutline) -> B,
 ) -> Vec<ProgramParts<C, B>> {
     let mut programs = Programs::default();
     let mut pieces = FileItems::new(source, bytes);
     // Whether it is known that the program at hand is one: it has a name, or a block that says something.
-    let mut told = false;
+    let mut is_program_known = false;
     loop {
         let begins_line = pieces.begins_line();
         match pieces.next_item() {
             Some(FileItem::Section) => {
-                told = false;
+                is_program_known = false;
                 programs.close();
             }
             Some(FileItem::Program { name, span }) => {
-                told = true;
+                is_program_known = true;
                 programs.begin(name, span);
             }
             Some(FileItem::Block(block)) => {
                 let silent = is_unreadable_block(&block);
-                told |= !silent;
+                is_program_known |= !silent;
                 let ProgramParts { context, blocks, .. } = programs.program_for_block(block.span, silent);
                 let block = Box::new(block);
                 let outlined =
                     if begins_line { BlockOutline::Tree(block) } else { BlockOutline::WithinLine(block) };
-                blocks.push(each(context, outlined));
+                blocks.push(convert(context, outlined));
             }
             None => {
-                if told {
+                if is_program_known {
                     let ProgramParts { context, blocks, .. } =
                         programs.program_for_block(Span::default(), false);
-                    pieces.plain_lines(|span| blocks.push(each(context, BlockOutline::Words(span))));
+                    pieces.plain_lines(|span| blocks.push(convert(context, BlockOutline::Words(span))));
                 }
                 if pieces.next_line().is_none() {
                     return programs.finish();

@@ -71,9 +71,9 @@ fn written_keyword(input: Input<'_>) -> Option<StatementStart<'_>> {
 /// The statement after its keyword, and whether one of its words is cut short.
 pub(super) fn statement<'a>(
     line: LineInput,
-    begun: &StatementStart<'a>,
+    start: &StatementStart<'a>,
 ) -> ReadResult<'a, (Statement, bool)> {
-    let &StatementStart { rest, keyword, is_short: short } = begun;
+    let &StatementStart { rest, keyword, is_short: short } = start;
     let (rest, (statement, inside)) = match keyword {
         Keyword::If => if_statement(line, rest)?,
         Keyword::While => while_statement(line, rest)?,

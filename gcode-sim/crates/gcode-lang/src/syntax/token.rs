@@ -120,9 +120,9 @@ pub(super) fn next(input: Input<'_>) -> Option<(u8, Input<'_>)> {
 }
 
 /// One sign such as `[`, spaces before it.
-pub(super) fn sign<'a>(wanted: u8) -> impl Fn(Input<'a>) -> ReadResult<'a, ()> {
+pub(super) fn sign<'a>(expected: u8) -> impl Fn(Input<'a>) -> ReadResult<'a, ()> {
     move |input| match next(input) {
-        Some((byte, rest)) if byte == wanted => Ok((rest, ())),
+        Some((byte, rest)) if byte == expected => Ok((rest, ())),
         _ => no_match(input),
     }
 }

@@ -61,14 +61,14 @@ fn word_value<'a>(
         [b'+', rest @ ..] => (false, spaces(rest)),
         _ => (false, start),
     };
-    let nothing = |after| match char::from(letter) {
+    let missing_value = |after| match char::from(letter) {
         letter if comment_before(after) => round_brackets(after, Some(letter)),
         letter => fail(input, Alarm::NoDataAfterAddress { letter }),
     };
     match unsigned.first() {
         Some(b'0'..=b'9' | b'.') => match decimal(unsigned, negative, WORD_LIMIT) {
             Ok((rest, number)) => Ok((rest, WordValue::Literal(number))),
-            Err(nom::Err::Error(_)) => nothing(behind),
+            Err(nom::Err::Error(_)) => missing_value(behind),
             Err(error) => Err(error),
         },
         Some(b'#' | b'[') => {
@@ -83,7 +83,7 @@ fn word_value<'a>(
             Ok((rest, WordValue::Name(name)))
         }
         Some(b'-' | b'+') => fail(unsigned, Alarm::IllegalMinus { letter: char::from(letter) }),
-        _ => nothing(behind),
+        _ => missing_value(behind),
     }
 }
 

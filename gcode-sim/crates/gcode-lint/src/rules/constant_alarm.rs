@@ -10,14 +10,14 @@ use super::unreadable::finding;
 
 pub(super) const NAME: &str = "constant-alarm";
 
-pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut found = Vec::new();
     for (index, block) in unit.blocks.iter().enumerate().filter(|(index, _)| unit.is_reached[*index]) {
-        let mut numbers = ConstantEvaluator { settings: subject.settings, alarms: Vec::new() };
+        let mut numbers = ConstantEvaluator { settings: context.settings, alarms: Vec::new() };
         for expr in expressions::block_expressions(block) {
             numbers.value(expr);
         }
-        found.extend(numbers.alarms.iter().map(|alarm| finding(subject, unit, NAME, index, alarm)));
+        found.extend(numbers.alarms.iter().map(|alarm| finding(context, unit, NAME, index, alarm)));
     }
     found
 }
@@ -38,8 +38,9 @@ impl ConstantEvaluator<'_> {
             ExprKind::Binary(op, left, right) => {
                 let (left, right) = (self.value(left), self.value(right)?);
                 // Whatever is divided by 0, it alarms.
-                let divides = matches!(op, BinaryOp::Div | BinaryOp::Mod);
-                let value = binary(*op, left.or(divides.then_some(1.0))?, right, &self.settings.undocumented);
+                let is_division = matches!(op, BinaryOp::Div | BinaryOp::Mod);
+                let value =
+                    binary(*op, left.or(is_division.then_some(1.0))?, right, &self.settings.undocumented);
                 if left.is_none() && value.is_ok() {
                     return None;
                 }

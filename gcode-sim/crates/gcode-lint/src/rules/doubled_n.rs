@@ -8,7 +8,7 @@ use gcode_lang::source::Span;
 
 pub(super) const NAME: &str = "doubled-n";
 
-pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut first: BTreeMap<u32, (Span, bool)> = BTreeMap::new();
     let mut found = Vec::new();
     let parameters = parameters::parameter_blocks(unit.program);
@@ -20,14 +20,14 @@ pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
             }
             Some((_, told @ false)) => {
                 *told = true;
-                let line = subject.memory.sources().line_column(first[&number].0).line;
+                let line = context.memory.sources().line_column(first[&number].0).line;
                 let jump = unit.flow.jumps.iter().any(|jump| jump.number == number && !jump.is_return);
-                let so = if jump {
+                let consequence = if jump {
                     ": the control decides which of the two GOTO takes"
                 } else {
                     ": a search finds one of the two"
                 };
-                let message = format!("N{number} is already defined in line {line}{so}");
+                let message = format!("N{number} is already defined in line {line}{consequence}");
                 found.push(unit.warning(NAME, block, message).help("give one of them another number"));
             }
             Some(_) => {}

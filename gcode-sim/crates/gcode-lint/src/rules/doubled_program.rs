@@ -3,8 +3,8 @@ use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 
 pub(super) const NAME: &str = "doubled-program";
 
-pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
-    let refused = subject.memory.duplicates().any(|program| std::ptr::eq(program, unit.program));
+pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+    let refused = context.memory.duplicates().any(|program| std::ptr::eq(program, unit.program));
     if !refused || unit.program.ops().is_empty() {
         return Vec::new();
     }

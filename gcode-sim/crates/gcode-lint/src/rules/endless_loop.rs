@@ -15,45 +15,47 @@ pub(super) const NAME: &str = "endless-loop";
 /// Variables from here on are the control's own and change by themselves.
 const FIRST_SYSTEM: u32 = 1000;
 
-pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut found = Vec::new();
-    let mut told = vec![false; unit.program.ops().len()];
+    let mut reported = vec![false; unit.program.ops().len()];
     for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.is_reached[*block]) {
         use gcode_lang::program::Statement::{Do, While};
         let OpKind::Statement(While { end, .. } | Do { end, .. }) = *op.kind() else { continue };
         let inside: Vec<OpIndex> = (block..=end).filter(|b| unit.is_reached[*b]).collect();
         if never_entered(unit, block)
-            || has_exit(subject, unit, &inside, |to| (block..=end).contains(&to) && unit.is_reached[to])
+            || has_exit(context, unit, &inside, |to| (block..=end).contains(&to) && unit.is_reached[to])
         {
             continue;
         }
         found.push(loop_finding(unit, block));
-        told[block..=end].fill(true);
+        reported[block..=end].fill(true);
     }
-    found.extend(find_jump_loops(subject, unit, &told));
+    found.extend(find_jump_loops(context, unit, &reported));
     found
 }
 
 /// Circles that a GOTO closes, each looked at once.
-fn find_jump_loops(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>, told: &[bool]) -> Vec<RuleFinding> {
+fn find_jump_loops(context: &CheckContext<'_>, unit: &ProgramUnit<'_>, told: &[bool]) -> Vec<RuleFinding> {
     let mut found = Vec::new();
-    let back = |jump: &Jump| {
+    let backward_target = |jump: &Jump| {
         let to = jump.to.filter(|to| *to <= jump.block)?;
         (unit.is_reached[jump.block] && !jump.is_return && !told[jump.block]).then_some(to)
     };
-    if !unit.flow.jumps.iter().any(|jump| back(jump).is_some()) {
+    if !unit.flow.jumps.iter().any(|jump| backward_target(jump).is_some()) {
         return found;
     }
-    let circle = strongly_connected_components(&unit.flow);
+    let components = strongly_connected_components(&unit.flow);
     let mut members: BTreeMap<usize, Vec<OpIndex>> = BTreeMap::new();
-    for (block, circle) in circle[..unit.flow.block_successors.len()].iter().enumerate() {
+    for (block, circle) in components[..unit.flow.block_successors.len()].iter().enumerate() {
         members.entry(*circle).or_default().push(block);
     }
     for jump in &unit.flow.jumps {
-        let Some(to) = back(jump).filter(|to| circle[*to] == circle[jump.block]) else { continue };
-        let around = circle[to];
-        let Some(inside) = members.remove(&around) else { continue };
-        if has_exit(subject, unit, &inside, |to| circle.get(to) == Some(&around)) {
+        let Some(to) = backward_target(jump).filter(|to| components[*to] == components[jump.block]) else {
+            continue;
+        };
+        let component = components[to];
+        let Some(inside) = members.remove(&component) else { continue };
+        if has_exit(context, unit, &inside, |to| components.get(to) == Some(&component)) {
             continue;
         }
         let message = format!("GOTO {} loops forever: no block in the loop exits it", jump.number);
@@ -106,7 +108,7 @@ fn never_entered(unit: &ProgramUnit<'_>, block: OpIndex) -> bool {
 
 /// Whether anything in a set of blocks can lead out of it.
 fn has_exit(
-    subject: &CheckContext<'_>,
+    context: &CheckContext<'_>,
     unit: &ProgramUnit<'_>,
     inside: &[OpIndex],
     contains: impl Fn(OpIndex) -> bool,
@@ -132,7 +134,7 @@ fn has_exit(
                     !matches!(variables::statement(&unit.blocks, block), Some(Statement::While { .. }));
                 truth(condition, &Locals::ANYTHING) == Some(leaves_when)
                     || written
-                        .get_or_insert_with(|| WrittenVariables::collect(subject, unit, inside))
+                        .get_or_insert_with(|| WrittenVariables::collect(context, unit, inside))
                         .changes(&variables::condition_uses(condition))
             }
             None => true,
@@ -164,21 +166,21 @@ struct WrittenVariables {
 }
 
 impl WrittenVariables {
-    fn collect(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>, blocks: &[OpIndex]) -> Self {
+    fn collect(context: &CheckContext<'_>, unit: &ProgramUnit<'_>, blocks: &[OpIndex]) -> Self {
         let mut written = Self::default();
         let mut called = BTreeSet::new();
         // A modal call acts in any block that moves.
         let modal = unit.calls.iter().filter(|call| call.is_modal);
         for call in blocks.iter().filter_map(|block| unit.call_in(*block)).chain(modal) {
             // A macro has locals of its own; a subprogram has its caller's.
-            let reach = if call.has_own_locals { 100 } else { 0 };
-            match subject.called_unit(call).map(|place| (place, &subject.units[place])) {
+            let first_number = if call.has_own_locals { 100 } else { 0 };
+            match context.called_unit(call).map(|place| (place, &context.units[place])) {
                 Some((place, program)) if program.calls.is_empty() => {
-                    if called.insert((place, reach)) {
-                        written.add(program, 0..program.blocks.len(), reach);
+                    if called.insert((place, first_number)) {
+                        written.add(program, 0..program.blocks.len(), first_number);
                     }
                 }
-                _ => written.all_from(reach),
+                _ => written.all_from(first_number),
             }
         }
         written.add(unit, blocks.iter().copied(), 0);

@@ -6,10 +6,10 @@ pub(super) const NAME: &str = "jump-into-loop";
 
 pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut found = Vec::new();
-    let around = enclosing_loops(unit);
+    let enclosing = enclosing_loops(unit);
     for jump in unit.flow.jumps.iter().filter(|jump| unit.is_reached[jump.block] && !jump.is_return) {
         let Some(to) = jump.to else { continue };
-        let entered = around[to].iter().find(|(first, last)| !(*first..=*last).contains(&jump.block));
+        let entered = enclosing[to].iter().find(|(first, last)| !(*first..=*last).contains(&jump.block));
         if let Some((first, _)) = entered.copied() {
             let message = format!("PS1124: N{} is in a loop that this jump does not begin", jump.number);
             let finding =

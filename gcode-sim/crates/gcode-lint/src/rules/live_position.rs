@@ -21,11 +21,11 @@ const LIVE_VARIABLES: [RangeInclusive<u32>; 6] =
 /// Outputs.
 const OUTPUTS: RangeInclusive<u32> = 1100..=1135;
 
-pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
-    let moving = pending_moves(subject.settings, unit);
+pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+    let pending = pending_moves(context.settings, unit);
     let mut found = Vec::new();
     for (block, written) in unit.blocks.iter().enumerate().filter(|(block, _)| unit.is_reached[*block]) {
-        let Some(motion) = moving[block] else { continue };
+        let Some(motion) = pending[block] else { continue };
         let reads = variables::block_uses(written).reads.into_iter();
         let live = reads.filter(|read| LIVE_VARIABLES.iter().any(|range| range.contains(&read.number)));
         // One finding a block: a probe reads several axes at once.

@@ -12,16 +12,16 @@ use gcode_lang::syntax::ast::Statement;
 
 pub(super) const NAME: &str = "missing-argument";
 
-pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut found = Vec::new();
     let mut known: BTreeMap<(usize, Locals), Vec<MissingArgumentEffect>> = BTreeMap::new();
     for call in unit.calls.iter().filter(|call| unit.is_reached[call.block] && call.has_own_locals) {
-        let Some(called) = subject.called_unit(call) else { continue };
+        let Some(called) = context.called_unit(call) else { continue };
         let entry = entry_locals(call);
-        let lacking = known.entry((called, entry)).or_insert_with(|| {
-            missing_argument_effects(subject, &subject.units[called], entry, call.is_modal)
+        let effects = known.entry((called, entry)).or_insert_with(|| {
+            missing_argument_effects(context, &context.units[called], entry, call.is_modal)
         });
-        for lack in lacking {
+        for lack in effects {
             let finding = match lack {
                 MissingArgumentEffect::Alarm(message) => unit.error(NAME, call.block, message.clone()),
                 MissingArgumentEffect::DefaultsToZero(message) => {
@@ -44,7 +44,7 @@ enum MissingArgumentEffect {
 
 /// What a macro lacks, letter by letter.
 fn missing_argument_effects(
-    subject: &CheckContext<'_>,
+    context: &CheckContext<'_>,
     called: &ProgramUnit<'_>,
     entry: Locals,
     modal: bool,
@@ -54,42 +54,42 @@ fn missing_argument_effects(
     let missing: Vec<_> = letters.filter(|(local, _)| entry.0[*local] == UNSET).collect();
     let mut filled = entry;
     missing.iter().for_each(|(local, _)| filled.0[*local] = NUMBER);
-    let mut lacks = Vec::new();
-    let mut told = BTreeSet::new();
+    let mut effects = Vec::new();
+    let mut reported = BTreeSet::new();
     // Letters that belong together may all be left out where each alone is refused.
-    let refused = unavoidable_alarm(subject, called, &states(called, entry)).is_some();
-    for (local, letter) in missing.iter().filter(|_| refused) {
+    let can_alarm = unavoidable_alarm(context, called, &states(called, entry)).is_some();
+    for (local, letter) in missing.iter().filter(|_| can_alarm) {
         let mut without = filled;
         without.0[*local] = UNSET;
-        if let Some(alarm) = unavoidable_alarm(subject, called, &states(called, without))
-            && unavoidable_alarm(subject, called, &states(called, filled)).is_none()
+        if let Some(alarm) = unavoidable_alarm(context, called, &states(called, without))
+            && unavoidable_alarm(context, called, &states(called, filled)).is_none()
         {
-            told.insert(*local as u32);
+            reported.insert(*local as u32);
             let message = format!(
                 "{label} needs {letter} (#{local}): if it is omitted, the program stops with {alarm}"
             );
-            lacks.push(MissingArgumentEffect::Alarm(message));
+            effects.push(MissingArgumentEffect::Alarm(message));
         }
     }
     // Beyond a refusal nothing is read, and a modal macro may find what its last pass left.
-    if !lacks.is_empty() || modal {
-        return lacks;
+    if !effects.is_empty() || modal {
+        return effects;
     }
     let states = states(called, entry);
     for ((block, local), (_, usage)) in unset_reads(called, &states) {
         let Some(letter) = argument_letter(local as usize) else { continue };
-        if usage == VariableUse::Computed && told.insert(local) {
-            let line = subject.memory.sources().line_column(called.op(block).span).line;
+        if usage == VariableUse::Computed && reported.insert(local) {
+            let line = context.memory.sources().line_column(called.op(block).span).line;
             let message =
                 format!("{label} uses {letter} (#{local}) in line {line}; if it is omitted, it is 0");
-            lacks.push(MissingArgumentEffect::DefaultsToZero(message));
+            effects.push(MissingArgumentEffect::DefaultsToZero(message));
         }
     }
-    lacks
+    effects
 }
 
 /// The alarm that every way through a program ends in; `None` where it can end otherwise.
-fn unavoidable_alarm(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>, states: &States) -> Option<String> {
+fn unavoidable_alarm(context: &CheckContext<'_>, unit: &ProgramUnit<'_>, states: &States) -> Option<String> {
     let ops = unit.program.ops();
     let mut first = None;
     // One past the last block is the program's end.
@@ -99,27 +99,27 @@ fn unavoidable_alarm(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>, states:
     for (block, state) in states[..ops.len()].iter().enumerate() {
         let Some(state) = state else { continue };
         if raises_alarm(ops[block].kind()) {
-            let sure = match variables::statement(&unit.blocks, block) {
+            let is_certain = match variables::statement(&unit.blocks, block) {
                 Some(Statement::IfThen { condition, .. }) => truth(condition, state) == Some(true),
                 _ => true,
             };
-            if sure && first.is_none() {
+            if is_certain && first.is_none() {
                 first = Some(block);
             }
         } else if unit.flow.block_successors[block].is_exit || matches!(ops[block].kind(), OpKind::Alarm(_)) {
             return None;
         }
     }
-    first.map(|block| alarm_text(subject, unit, block))
+    first.map(|block| alarm_text(context, unit, block))
 }
 
 /// `MC3007 (R MISSING)`.
-fn alarm_text(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>, block: OpIndex) -> String {
+fn alarm_text(context: &CheckContext<'_>, unit: &ProgramUnit<'_>, block: OpIndex) -> String {
     let written = &unit.blocks[block];
     let number =
         variables::assignment(written).and_then(|(_, value)| crate::literal::constant(value)).map_or_else(
             || "its alarm".to_owned(),
-            |n| format!("MC{:04}", f64::from(subject.settings.macro_alarm_base) + n),
+            |n| format!("MC{:04}", f64::from(context.settings.macro_alarm_base) + n),
         );
     match written.comments.first() {
         Some(text) => format!("{number} ({})", String::from_utf8_lossy(&text.text).trim()),

@@ -11,24 +11,24 @@ pub(super) const NAME: &str = "missing-feed";
 /// G01, G02 and G03, × 10.
 const FEEDS: [u32; 3] = [10, 20, 30];
 
-pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     // Whoever calls a program may have set it before.
     if unit.role != Role::Main {
         return Vec::new();
     }
     let mut found = Vec::new();
-    for (block, fed) in feed_before(subject, unit).into_iter().enumerate() {
+    for (block, fed) in feed_before(context, unit).into_iter().enumerate() {
         let OpKind::Words(words) = unit.op(block).kind() else { continue };
-        if fed == Some(false) && !has_feed_word(words) && is_feed_move(subject, words) {
+        if fed == Some(false) && !has_feed_word(words) && is_feed_move(context, words) {
             let alarm = Alarm::FeedZero.located_at(unit.op(block).span);
-            found.push(finding(subject, unit, NAME, block, &alarm));
+            found.push(finding(context, unit, NAME, block, &alarm));
         }
     }
     found
 }
 
 /// Whether some way to each block may have passed an F; `None` where no way leads to it.
-fn feed_before(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Option<bool>> {
+fn feed_before(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Option<bool>> {
     let mut fed: Vec<Option<bool>> = vec![None; unit.flow.block_count()];
     // Where a call with Q starts, anything may have been before.
     let mut open: Vec<(OpIndex, bool)> =
@@ -39,7 +39,7 @@ fn feed_before(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Option
             continue;
         }
         *known = Some(before);
-        let after = before || block < unit.flow.block_successors.len() && may_set_feed(subject, unit, block);
+        let after = before || block < unit.flow.block_successors.len() && may_set_feed(context, unit, block);
         open.extend(unit.flow.successors(block).map(|to| (to, after)));
     }
     fed.truncate(unit.flow.block_successors.len());
@@ -47,24 +47,25 @@ fn feed_before(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Option
 }
 
 /// Whether a block has an F, or calls what may have one.
-fn may_set_feed(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>, block: OpIndex) -> bool {
-    let here = match unit.op(block).kind() {
+fn may_set_feed(context: &CheckContext<'_>, unit: &ProgramUnit<'_>, block: OpIndex) -> bool {
+    let sets_feed = match unit.op(block).kind() {
         OpKind::Words(words) => has_feed_word(words),
         OpKind::If { .. } => true,
         _ => false,
     };
-    let called = unit.call_in(block).map(|call| subject.called_unit(call));
-    here || match called {
-        None => false,
-        Some(None) => true,
-        // What it calls in its turn is not looked at: it may.
-        Some(Some(called)) => {
-            let called = &subject.units[called];
-            let written =
-                |block| matches!(called.op(block).kind(), OpKind::Words(words) if has_feed_word(words));
-            !called.calls.is_empty() || (0..called.program.ops().len()).any(written)
+    let called = unit.call_in(block).map(|call| context.called_unit(call));
+    sets_feed
+        || match called {
+            None => false,
+            Some(None) => true,
+            // What it calls in its turn is not looked at: it may.
+            Some(Some(called)) => {
+                let called = &context.units[called];
+                let written =
+                    |block| matches!(called.op(block).kind(), OpKind::Words(words) if has_feed_word(words));
+                !called.calls.is_empty() || (0..called.program.ops().len()).any(written)
+            }
         }
-    }
 }
 
 fn has_feed_word(words: &Words) -> bool {
@@ -72,13 +73,13 @@ fn has_feed_word(words: &Words) -> bool {
 }
 
 /// G01, G02 or G03 with an axis, and no other code that would take the axis words.
-fn is_feed_move(subject: &CheckContext<'_>, words: &Words) -> bool {
-    let axis = words.list.iter().any(|word| subject.settings.axes.find(word.letter).is_some());
+fn is_feed_move(context: &CheckContext<'_>, words: &Words) -> bool {
+    let axis = words.list.iter().any(|word| context.settings.axes.find(word.letter).is_some());
     let mut feeds = false;
     for word in &words.list {
         let WordOperand::G(code, row) = word.value else { continue };
         feeds |= FEEDS.contains(&code);
-        match row.row_for(subject.settings.codes).map(|row| row.effect) {
+        match row.row_for(context.settings.codes).map(|row| row.effect) {
             Some(Effect::OneShot(_) | Effect::Cycle(Some(_))) | None => return false,
             Some(_) => {}
         }

@@ -4,7 +4,7 @@ use crate::context::{CheckContext, ProgramUnit, Role, RuleFinding};
 
 pub(super) const NAME: &str = "missing-n";
 
-pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut found = Vec::new();
     for jump in unit.flow.jumps.iter().filter(|jump| unit.is_reached[jump.block]) {
         let number = jump.number;
@@ -28,9 +28,9 @@ pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
                 let lacking = unit
                     .callers
                     .iter()
-                    .find(|(caller, _)| subject.units[*caller].program.find_number(number, 0).is_none());
+                    .find(|(caller, _)| context.units[*caller].program.find_number(number, 0).is_none());
                 if let Some((caller, site)) = lacking {
-                    let caller = &subject.units[*caller];
+                    let caller = &context.units[*caller];
                     let message = format!(
                         "PS0078: sequence number N{number}, the return target, is not in {}",
                         caller.program.label()
@@ -42,8 +42,8 @@ pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
         }
     }
     for call in unit.calls.iter().filter(|call| unit.is_reached[call.block]) {
-        if let (Some(number), Some(called)) = (call.start, subject.called_unit(call)) {
-            let program = subject.units[called].program;
+        if let (Some(number), Some(called)) = (call.start, context.called_unit(call)) {
+            let program = context.units[called].program;
             if program.find_number(number, 0).is_none() {
                 let label = program.label();
                 let message = format!("PS0078: sequence number N{number}, the start, is not in {label}");

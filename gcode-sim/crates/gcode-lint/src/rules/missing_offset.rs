@@ -8,8 +8,8 @@ use super::unreadable::finding;
 
 pub(super) const NAME: &str = "missing-offset";
 
-pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
-    let most = subject.settings.tool_offsets;
+pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+    let max = context.settings.tool_offsets;
     let mut found = Vec::new();
     for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.is_reached[*block]) {
         let OpKind::Words(words) = op.kind() else { continue };
@@ -18,16 +18,15 @@ pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
             continue;
         }
         for word in words.list.iter().filter(|word| matches!(word.letter, b'H' | b'D')) {
-            let Some(number) = literal::word_count(word).filter(|number| *number as usize > most) else {
+            let Some(number) = literal::word_count(word).filter(|number| *number as usize > max) else {
                 continue;
             };
             let alarm = Alarm::OffsetNumber { number: i64::from(number) }.located_at(word.span);
-            let told = finding(subject, unit, NAME, block, &alarm);
-            found.push(
-                told.help(format!(
-                    "correct the number: this control has {most}, or give --control OFFSETS=…"
-                )),
-            );
+            let finding = finding(context, unit, NAME, block, &alarm);
+            found
+                .push(finding.help(format!(
+                    "correct the number: this control has {max}, or give --control OFFSETS=…"
+                )));
         }
     }
     found

@@ -16,12 +16,12 @@ const WITH_Q: [u32; 4] = [730, 760, 830, 870];
 /// A peck or a dwell of this many increments may be meant: many programs write `G4 X500`.
 const MIN_INTENDED_INCREMENTS: u64 = 100;
 
-pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
-    let settings = subject.settings;
+pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+    let settings = context.settings;
     if settings.uses_calculator_input || counts_in_increments(unit, settings) {
         return Vec::new();
     }
-    let inch =
+    let is_inch =
         unit.program.ops().iter().any(|op| block_words(op.kind()).is_some_and(|words| has(words, &[200])));
     let parameters = parameters::parameter_blocks(unit.program);
     let mut found = Vec::new();
@@ -29,12 +29,12 @@ pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
         let Some(words) = block_words(op.kind()).filter(|_| !parameters[block]) else { continue };
         for word in measured_words(words, settings) {
             let Some(number) = without_point(word) else { continue };
-            let counted = (word.letter == b'Q' && words.call().is_none()) || has(words, &[40]);
-            if counted && number.digits >= MIN_INTENDED_INCREMENTS {
+            let is_count = (word.letter == b'Q' && words.call().is_none()) || has(words, &[40]);
+            if is_count && number.digits >= MIN_INTENDED_INCREMENTS {
                 continue;
             }
             let written = spelled(word.letter, number);
-            let message = format!("{written} is {}", meaning(word.letter, number, words, settings, inch));
+            let message = format!("{written} is {}", meaning(word.letter, number, words, settings, is_inch));
             found.push(
                 unit.warning(NAME, block, message).with_span(word.span).help(format!("write {written}.")),
             );
@@ -113,19 +113,19 @@ fn spelled(letter: u8, number: Decimal) -> String {
 
 /// `0.003 mm`.
 fn meaning(letter: u8, number: Decimal, words: &Words, settings: &Settings, inch: bool) -> String {
-    let turns = match letter {
+    let is_angle = match letter {
         b'A' | b'B' | b'C' => true,
         b'R' => has(words, &[680]),
         b'I' | b'J' | b'K' => has(words, &[682]),
         _ => false,
     };
-    let dwell = has(words, &[40]);
-    let finer = if inch && !turns && !dwell { 10.0 } else { 1.0 };
+    let is_dwell = has(words, &[40]);
+    let finer = if inch && !is_angle && !is_dwell { 10.0 } else { 1.0 };
     let per_unit = settings.increment.per_unit() * finer;
     let unit = match () {
         () if words.call().is_some() => "for the macro",
-        () if dwell => "seconds",
-        () if turns => "degrees",
+        () if is_dwell => "seconds",
+        () if is_angle => "degrees",
         () if inch => "inch",
         () => "mm",
     };

@@ -4,17 +4,17 @@ use crate::context::{CheckContext, ProgramUnit, RuleFinding};
 
 pub(super) const NAME: &str = "missing-program";
 
-pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut found = Vec::new();
-    let mut told: Vec<&CalledProgramName> = Vec::new();
+    let mut reported: Vec<&CalledProgramName> = Vec::new();
     for call in unit.calls.iter().filter(|call| unit.is_reached[call.block]) {
         // Each program once: what is missing is one thing, however often it is called.
-        if subject.called_unit(call).is_some()
-            || call.target != CalledProgramName::Missing && told.contains(&&call.target)
+        if context.called_unit(call).is_some()
+            || call.target != CalledProgramName::Missing && reported.contains(&&call.target)
         {
             continue;
         }
-        told.push(&call.target);
+        reported.push(&call.target);
         let label = call.target.label();
         let finding = match call.target {
             CalledProgramName::Computed => continue,

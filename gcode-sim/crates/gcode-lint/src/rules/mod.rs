@@ -80,12 +80,12 @@ pub(super) fn names() -> Vec<&'static str> {
 }
 
 /// What all rules find, the silenced left out: program by program, block by block.
-pub(super) fn findings(subject: &CheckContext<'_>) -> Vec<Diagnostic> {
+pub(super) fn findings(context: &CheckContext<'_>) -> Vec<Diagnostic> {
     let mut all = Vec::new();
-    for unit in &subject.units {
-        let silence = Suppressions::new(unit);
-        let mut found: Vec<RuleFinding> = ALL.iter().flat_map(|rule| (rule.find)(subject, unit)).collect();
-        found.retain(|finding| !silence.suppresses(finding));
+    for unit in &context.units {
+        let suppressions = Suppressions::new(unit);
+        let mut found: Vec<RuleFinding> = ALL.iter().flat_map(|rule| (rule.find)(context, unit)).collect();
+        found.retain(|finding| !suppressions.suppresses(finding));
         found.sort_by_key(|finding| finding.block);
         all.extend(found.into_iter().map(|finding| finding.diagnostic));
     }

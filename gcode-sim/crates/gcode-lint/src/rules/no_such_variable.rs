@@ -8,26 +8,26 @@ use super::unreadable::finding;
 
 pub(super) const NAME: &str = "no-such-variable";
 
-pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
-    let known = VariableTable::new(subject.settings);
+pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+    let known = VariableTable::new(context.settings);
     let mut found = Vec::new();
     for (index, block) in unit.blocks.iter().enumerate().filter(|(index, _)| unit.is_reached[*index]) {
-        let mut tell = |alarm: LocatedAlarm| {
+        let mut report = |alarm: LocatedAlarm| {
             // What a run here lacks is no fault of the program.
             if !matches!(alarm.node, Alarm::NotSimulated { .. }) {
-                found.push(finding(subject, unit, NAME, index, &alarm));
+                found.push(finding(context, unit, NAME, index, &alarm));
             }
         };
         for read in variables::block_uses(block).reads {
             if let Err(alarm) = known.read(read.number) {
-                tell(alarm.located_at(read.span));
+                report(alarm.located_at(read.span));
             }
         }
         for (target, _) in block.items.iter().filter_map(variables::item_assignment) {
             if let Some(number) = literal::variable(target)
                 && let Err(alarm) = known.write(number)
             {
-                tell(alarm.located_at(target.span));
+                report(alarm.located_at(target.span));
             }
         }
     }

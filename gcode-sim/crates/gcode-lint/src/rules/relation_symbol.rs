@@ -6,11 +6,11 @@ use super::unreadable::{alarm_blocks, finding, refused_blocks};
 
 pub(super) const NAME: &str = "relation-symbol";
 
-pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let of_all = alarm_blocks(unit).map(|(block, alarm)| (block, alarm.clone()));
-    let all = of_all.chain(refused_blocks(subject, unit));
+    let all = of_all.chain(refused_blocks(context, unit));
     let signs = all.filter(|(_, alarm)| matches!(alarm.node, Alarm::RelationSymbol));
-    signs.map(|(block, alarm)| finding(subject, unit, NAME, block, &alarm)).collect()
+    signs.map(|(block, alarm)| finding(context, unit, NAME, block, &alarm)).collect()
 }
 
 #[cfg(test)]

@@ -6,9 +6,9 @@ use super::unreadable::{alarm_blocks, finding};
 
 pub(super) const NAME: &str = "round-brackets";
 
-pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let alarms = alarm_blocks(unit).filter(|(_, alarm)| matches!(alarm.node, Alarm::RoundBrackets { .. }));
-    alarms.map(|(block, alarm)| finding(subject, unit, NAME, block, alarm)).collect()
+    alarms.map(|(block, alarm)| finding(context, unit, NAME, block, alarm)).collect()
 }
 
 #[cfg(test)]

@@ -22,13 +22,13 @@ pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFind
             .into_iter()
             .for_each(|expr| collect_factors(expr, &mut factors));
         for (pi, span) in factors {
-            let off = (pi - PI) / PI * 100.0;
+            let deviation = (pi - PI) / PI * 100.0;
             let written = format!("{pi:.7}");
             let message = format!(
                 "{} is used for π: {:.4} % too {}, an error of {:.3} mm round a diameter of 500 mm",
                 written.trim_end_matches('0'),
-                off.abs(),
-                if off < 0.0 { "small" } else { "large" },
+                deviation.abs(),
+                if deviation < 0.0 { "small" } else { "large" },
                 (pi - PI).abs() * 500.0
             );
             found.push(unit.warning(NAME, index, message).with_span(span).help("write 3.14159265"));

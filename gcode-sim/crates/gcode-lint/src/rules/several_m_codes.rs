@@ -8,9 +8,9 @@ use super::unreadable::finding;
 
 pub(super) const NAME: &str = "several-m-codes";
 
-pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
-    let settings = subject.settings;
-    let most = if settings.allows_three_m_codes { 3 } else { 1 };
+pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+    let settings = context.settings;
+    let max = if settings.allows_three_m_codes { 3 } else { 1 };
     let mut found = Vec::new();
     for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.is_reached[*block]) {
         let OpKind::Words(words) = op.kind() else { continue };
@@ -20,12 +20,12 @@ pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
             let code =
                 literal::word_count(word).filter(|code| settings.code_calls.find_call(b'M', *code).is_none());
             let Some(code) = code else { continue };
-            if kept.len() == most
+            if kept.len() == max
                 && let Some(first) = kept.pop()
             {
                 if m_codes::ends_or_stops(first) || settings.plural_m_alarms {
                     let alarm = Alarm::PluralM { first, second: code }.located_at(word.span);
-                    found.push(finding(subject, unit, NAME, block, &alarm));
+                    found.push(finding(context, unit, NAME, block, &alarm));
                 } else {
                     let message =
                         format!("M{first} is lost: of several M codes in a block only the last counts");

@@ -8,32 +8,34 @@ use super::unreadable::finding;
 
 pub(super) const NAME: &str = "stray-word";
 
-pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut found = Vec::new();
     for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.is_reached[*block]) {
         let OpKind::Words(words) = op.kind() else { continue };
         if unit.call_in(block).is_some() {
             continue;
         }
-        let told = words.list.iter().filter_map(|word| Some((word, alarm(subject, words, word)?)));
-        found.extend(told.map(|(word, alarm)| {
-            let told = finding(subject, unit, NAME, block, &alarm.located_at(word.span));
+        let stray = words.list.iter().filter_map(|word| Some((word, alarm(context, words, word)?)));
+        found.extend(stray.map(|(word, alarm)| {
+            let finding = finding(context, unit, NAME, block, &alarm.located_at(word.span));
             match (word.comma, word.letter) {
-                (true, _) => told.help("remove the comma: words are not separated by commas"),
-                (_, b'E') => told.help("write the number in full, 1000. for 1E3: numbers have no exponent"),
-                _ => told,
+                (true, _) => finding.help("remove the comma: words are not separated by commas"),
+                (_, b'E') => {
+                    finding.help("write the number in full, 1000. for 1E3: numbers have no exponent")
+                }
+                _ => finding,
             }
         }));
     }
     found
 }
 
-fn alarm(subject: &CheckContext<'_>, words: &Words, word: &LoweredWord) -> Option<Alarm> {
-    let axes = &subject.settings.axes;
+fn alarm(context: &CheckContext<'_>, words: &Words, word: &LoweredWord) -> Option<Alarm> {
+    let axes = &context.settings.axes;
     let has = |effect: Effect| {
         words.list.iter().any(|word| match word.value {
             WordOperand::G(_, row) => {
-                row.row_for(subject.settings.codes).is_some_and(|row| row.effect == effect)
+                row.row_for(context.settings.codes).is_some_and(|row| row.effect == effect)
             }
             _ => false,
         })

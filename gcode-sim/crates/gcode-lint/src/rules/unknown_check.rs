@@ -4,10 +4,10 @@ use crate::suppression::Suppressions;
 
 pub(super) const NAME: &str = "unknown-check";
 
-pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
-    let silence = Suppressions::new(unit);
-    let known = |name: &str| subject.rules.iter().any(|rule| rule.eq_ignore_ascii_case(name));
-    let unknown = silence.names().filter(|(name, _)| !known(name)).map(|(name, span)| {
+pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+    let suppressions = Suppressions::new(unit);
+    let known = |name: &str| context.rules.iter().any(|rule| rule.eq_ignore_ascii_case(name));
+    let unknown = suppressions.names().filter(|(name, _)| !known(name)).map(|(name, span)| {
         let block = unit.blocks.iter().position(|b| b.comments.iter().any(|c| c.span == span)).unwrap_or(0);
         let message = match name {
             "" => "CHECK-OFF does not name a rule".to_owned(),

@@ -13,21 +13,21 @@ use super::unreadable::{alarm_blocks, finding, refused_blocks};
 
 pub(super) const NAME: &str = "unknown-code";
 
-pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let written = alarm_blocks(unit).map(|(block, alarm)| (block, alarm.clone()));
-    let all = written.chain(refused_blocks(subject, unit));
+    let all = written.chain(refused_blocks(context, unit));
     let improper = all.filter(|(_, alarm)| matches!(alarm.node, Alarm::ImproperGCode { .. }));
     let mut found: Vec<_> =
-        improper.map(|(block, alarm)| finding(subject, unit, NAME, block, &alarm)).collect();
-    let mut told = BTreeSet::new();
+        improper.map(|(block, alarm)| finding(context, unit, NAME, block, &alarm)).collect();
+    let mut reported = BTreeSet::new();
     for (block, op) in unit.program.ops().iter().enumerate().filter(|(block, _)| unit.is_reached[*block]) {
         let OpKind::Words(words) = op.kind() else { continue };
         for word in &words.list {
-            let Some((name, message, certain)) = describe_code(subject, word) else { continue };
+            let Some((name, message, certain)) = describe_code(context, word) else { continue };
             if certain {
                 let help = "correct it, or name the macro it calls with --code";
                 found.push(unit.error(NAME, block, message).with_span(word.span).help(help));
-            } else if told.insert(name) {
+            } else if reported.insert(name) {
                 found.push(unit.note(NAME, block, message).with_span(word.span));
             }
         }
@@ -36,12 +36,12 @@ pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
 }
 
 /// What is wrong with a code, and whether the control would surely alarm.
-fn describe_code(subject: &CheckContext<'_>, word: &LoweredWord) -> Option<(String, String, bool)> {
+fn describe_code(context: &CheckContext<'_>, word: &LoweredWord) -> Option<(String, String, bool)> {
     match (word.letter, word.value) {
         (b'G', WordOperand::G(code, found)) => {
-            let row = found.row_for(subject.settings.codes);
+            let row = found.row_for(context.settings.codes);
             let name = format!("G{}", spelled(code));
-            let calls = subject.settings.code_calls.find_call(b'G', code).is_some();
+            let calls = context.settings.code_calls.find_call(b'G', code).is_some();
             match row.map(|row| row.effect) {
                 _ if calls => None,
                 None => Some((name.clone(), format!("PS0010: the control has no {name}"), true)),
@@ -54,9 +54,9 @@ fn describe_code(subject: &CheckContext<'_>, word: &LoweredWord) -> Option<(Stri
         }
         (b'M', _) => {
             let code = literal::word_count(word)?;
-            let calls = subject.settings.code_calls.find_call(b'M', code.saturating_mul(10)).is_some();
+            let calls = context.settings.code_calls.find_call(b'M', code.saturating_mul(10)).is_some();
             let name = format!("M{code:02}");
-            match m_codes::find(code, subject.settings.codes) {
+            match m_codes::find(code, context.settings.codes) {
                 _ if calls => None,
                 Some(MCodeEffect::NotSimulated) => {
                     Some((name.clone(), format!("{name} is not simulated"), false))

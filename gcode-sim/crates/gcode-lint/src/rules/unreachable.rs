@@ -5,7 +5,7 @@ use gcode_lang::program::{OpIndex, OpKind, Statement};
 
 pub(super) const NAME: &str = "unreachable";
 
-pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut found: Vec<RuleFinding> = Vec::new();
     let ops = unit.program.ops();
     let mut block = 0;
@@ -17,9 +17,9 @@ pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
         let end = (block..ops.len()).find(|next| unit.is_reached[*next]).unwrap_or(ops.len());
         // Comments and numbers alone do nothing, an end behind an end or an alarm neither; an alarm that is lost is
         // told by its own rule.
-        let lost: Vec<_> = (block..end).filter(|b| !is_harmless(unit, *b)).collect();
-        if let (Some(first), Some(last)) = (lost.first(), lost.last()) {
-            let line = |block: usize| subject.memory.sources().line_column(ops[block].span).line;
+        let missed: Vec<_> = (block..end).filter(|b| !is_harmless(unit, *b)).collect();
+        if let (Some(first), Some(last)) = (missed.first(), missed.last()) {
+            let line = |block: usize| context.memory.sources().line_column(ops[block].span).line;
             let message = if first == last {
                 "this block is never reached".to_owned()
             } else {

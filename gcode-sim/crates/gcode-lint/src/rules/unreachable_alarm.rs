@@ -19,14 +19,14 @@ pub(super) fn find(_: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFind
             found.push(unit.warning(NAME, block, message).help(help));
             continue;
         }
-        let never = match (&states[block], variables::statement(&unit.blocks, block)) {
+        let is_never_raised = match (&states[block], variables::statement(&unit.blocks, block)) {
             (None, _) => true,
             (Some(state), Some(Statement::IfThen { condition, .. })) => {
                 truth(condition, state) == Some(false)
             }
             _ => false,
         };
-        if never {
+        if is_never_raised {
             let message = "this alarm is never raised: the preceding blocks decide its condition";
             let help = "test the variable before it is set";
             found.push(unit.warning(NAME, block, message).with_span(op.span).help(help));

@@ -7,22 +7,22 @@ use gcode_lang::source::Spanned;
 
 pub(super) const NAME: &str = "unreadable";
 
-pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let alarms = alarm_blocks(unit).filter(|(_, alarm)| !has_own_rule(&alarm.node));
-    let mut found: Vec<_> = alarms.map(|(block, alarm)| finding(subject, unit, NAME, block, alarm)).collect();
-    let refused = refused_blocks(subject, unit).filter(|(_, alarm)| !has_own_rule(&alarm.node));
-    found.extend(refused.map(|(block, alarm)| finding(subject, unit, NAME, block, &alarm)));
+    let mut found: Vec<_> = alarms.map(|(block, alarm)| finding(context, unit, NAME, block, alarm)).collect();
+    let refused = refused_blocks(context, unit).filter(|(_, alarm)| !has_own_rule(&alarm.node));
+    found.extend(refused.map(|(block, alarm)| finding(context, unit, NAME, block, &alarm)));
     found
 }
 
 /// The blocks that something reaches and that are written in a way this control doesn't take.
 pub(super) fn refused_blocks<'a>(
-    subject: &'a CheckContext<'_>,
+    context: &'a CheckContext<'_>,
     unit: &'a ProgramUnit<'_>,
 ) -> impl Iterator<Item = (usize, LocatedAlarm)> + 'a {
     let ops = unit.program.ops().iter().enumerate().filter(|(block, _)| unit.is_reached[*block]);
     ops.filter_map(|(block, op)| {
-        let form = op.dialect_syntax().iter().find(|form| !form.node.is_accepted(subject.settings))?;
+        let form = op.dialect_syntax().iter().find(|form| !form.node.is_accepted(context.settings))?;
         Some((block, form.node.alarm().located_at(form.span)))
     })
 }
@@ -48,7 +48,7 @@ fn has_own_rule(alarm: &Alarm) -> bool {
 
 /// An alarm as a finding: its number, its sentence, its remedy.
 pub(super) fn finding(
-    subject: &CheckContext<'_>,
+    context: &CheckContext<'_>,
     unit: &ProgramUnit<'_>,
     name: &'static str,
     block: usize,
@@ -56,7 +56,7 @@ pub(super) fn finding(
 ) -> RuleFinding {
     let row = alarm.node.row();
     let found = unit.error(name, block, format!("{}: {}", row.code, row.message)).with_span(alarm.span);
-    match remedy(&alarm.node, alarm.span, subject.memory.sources()) {
+    match remedy(&alarm.node, alarm.span, context.memory.sources()) {
         Some(help) => found.help(help),
         None => found,
     }

@@ -10,7 +10,7 @@ use gcode_lang::source::Span;
 
 pub(super) const NAME: &str = "unset-variable";
 
-pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
+pub(super) fn find(context: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<RuleFinding> {
     let mut unset: BTreeMap<(OpIndex, u32), (Span, VariableUse)> = BTreeMap::new();
     match unit.role {
         Role::Resident => {}
@@ -20,7 +20,7 @@ pub(super) fn find(subject: &CheckContext<'_>, unit: &ProgramUnit<'_>) -> Vec<Ru
         }
         Role::Called => {
             for (caller, site) in &unit.callers {
-                let call = &subject.units[*caller].calls[*site];
+                let call = &context.units[*caller].calls[*site];
                 // A subprogram has its caller's locals, and a modal call keeps its own from call to call.
                 if !call.has_own_locals || call.is_modal {
                     return Vec::new();
