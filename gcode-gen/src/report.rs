@@ -1,7 +1,7 @@
 //! What `emit` and `sheet` answer, as text and as data, and the schemas of that.
 use std::fmt::Write;
 
-use gcode_sim::report::figures::{count, near, signed_to};
+use gcode_sim::report::figures::{count, rounded, signed_to};
 use gcode_sim::schema::{Format, result};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -55,7 +55,7 @@ impl<'c> EmitReport<'c> {
             left_over: Vec::new(),
             seconds: checked.map(|checked| checked.seconds),
             verdict: checked
-                .map(|checked| &checked.judgement)
+                .map(|checked| &checked.verdict)
                 .filter(|of| !matches!(of, PackageVerdict::Measured)),
             table: checked.map_or("", |checked| &checked.report),
         }
@@ -125,7 +125,7 @@ impl SheetReport {
             run: taken.run,
             stops: taken.stops,
             tool_changes: taken.tool_changes,
-            all: taken.all(),
+            all: taken.total(),
             not_counted: taken.not_counted(),
         };
         let costs = costs.iter().map(cost).collect();
@@ -142,7 +142,7 @@ impl SheetReport {
         let mut text = String::new();
         if let Some(TimeReport { run, stops, tool_changes, all, .. }) = &self.time {
             let (stops, changes) = (count(*stops, "operator stop"), count(*tool_changes, "tool change"));
-            let (run, hours) = (near(*run, 1), near(all / 60.0, 2));
+            let (run, hours) = (rounded(*run, 1), rounded(all / 60.0, 2));
             let basis = self.basis;
             let _ = writeln!(text, "run {run} min, {stops}, {changes}: {hours} machine hours; {basis}");
         }
@@ -150,7 +150,7 @@ impl SheetReport {
             text.push_str("no rate given: the sheet shows time only\n");
         }
         for CostReport { machine, currency, cost, change } in &self.costs {
-            let price = format!("{} {currency} a part", near(*cost, 2));
+            let price = format!("{} {currency} a part", rounded(*cost, 2));
             let _ = match (machine, change) {
                 (None, _) => writeln!(text, "{price}"),
                 (Some(machine), Some(change)) => {

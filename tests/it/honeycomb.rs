@@ -52,7 +52,7 @@ fn verdict(text: &str, changes: &[(&str, &str)]) -> Verdict {
         let program = package.programs.iter_mut().find(|program| program.text.contains(from)).expect(from);
         program.text = program.text.replace(from, to);
     }
-    check(&job, &package).unwrap().judgement.into_holes().unwrap()
+    check(&job, &package).unwrap().verdict.into_holes().unwrap()
 }
 
 fn ran(package: &Package, sink: &mut impl EventSink) -> Run {
@@ -134,7 +134,7 @@ proptest! {
         let job = job(&text);
         let checked = check(&job, &families::emit(&job)).unwrap();
         prop_assert!(checked.refusals.is_empty(), "{}\n{text}", checked.refusals.concat());
-        let verdict = checked.judgement.into_holes().unwrap();
+        let verdict = checked.verdict.into_holes().unwrap();
         let (worst, rounding) = (verdict.worst.unwrap(), verdict.rounding.unwrap());
         prop_assert!(worst <= rounding + 1e-6, "Φ{worst} where rounding explains Φ{rounding}\n{text}");
         let neighbours = verdict.neighbours.unwrap();
@@ -359,7 +359,7 @@ fn a_diameter_changed_at_the_machine_closes_again() {
     let mut package = families::emit(&job(SMALL));
     package.programs[0].text = package.programs[0].text.replace("D100.", "D130.").replace("I100.", "I130.");
     package.machine = package.machine.replace("-50.0", "-65.0");
-    let verdict = check(&job(&other), &package).unwrap().judgement.into_holes().unwrap();
+    let verdict = check(&job(&other), &package).unwrap().verdict.into_holes().unwrap();
     assert_eq!(verdict.verdict, Answer::Pass, "{:?}", verdict.findings);
 }
 

@@ -1,10 +1,10 @@
 //! One cause is one entry, at the block that somebody has edited, and nothing it says is false.
 use gcode_inspect::machine::Machine;
 use gcode_review::Change;
-use gcode_tests::changes::{found_on, texts};
+use gcode_tests::changes::{find_changes_on, texts};
 
 fn found_by(machine: &str, old: &str, new: &str) -> Vec<Change> {
-    found_on(&Machine::parse(machine).unwrap(), old, new)
+    find_changes_on(&Machine::parse(machine).unwrap(), old, new)
 }
 
 fn found(old: &str, new: &str) -> Vec<Change> {

@@ -31,7 +31,7 @@ impl ExplainReport {
             code: page.code,
             title: page.title(),
             text: Some(page.text),
-            shown: page.shown(),
+            shown: page.plain_text(),
         };
         let pages: Vec<_> = explain::pages(code).map(page).collect();
         (!pages.is_empty()).then_some(Self { pages })

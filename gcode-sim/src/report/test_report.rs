@@ -5,7 +5,7 @@ use std::fmt::Write;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::changes::{change_found, counted, entries, place_in};
+use super::changes::{append_entries, change_found, counted, place_in};
 use super::sarif::{FileLocation, Finding};
 use gcode_lang::diag::Severity;
 use gcode_review::{BlockLocation, Change, Totals};
@@ -104,7 +104,7 @@ impl TestReport {
     /// The same for people: what isn't as accepted, and how many are.
     pub fn text(&self) -> String {
         let mut text = String::new();
-        self.cases.iter().for_each(|case| case.tell(&mut text));
+        self.cases.iter().for_each(|case| case.append_text(&mut text));
         for name in &self.accepted {
             let case = self.cases.iter().find(|case| case.name == *name);
             let ending = case.and_then(CaseReport::alarm);
@@ -195,7 +195,7 @@ impl CaseReport {
     }
 
     /// What isn't as it should be; nothing of a good case.
-    pub(super) fn tell(&self, text: &mut String) {
+    pub(super) fn append_text(&self, text: &mut String) {
         let name = &self.name;
         let mut totals = self.totals.as_ref().map_or_else(String::new, |totals| {
             format!("{}, {}", counted(totals.holes as u64, "hole"), counted(totals.moves, "move"))
@@ -212,9 +212,9 @@ impl CaseReport {
             CaseAnswer::Older => writeln!(text, "older    {name}: {OLDER_TEXT} ({totals})"),
             CaseAnswer::Same => Ok(()),
         };
-        entries(text, &self.changes, "    ");
+        append_entries(text, &self.changes, "    ");
         if !self.not_compared.is_empty() {
-            let _ = writeln!(text, "    {}", self.left_open());
+            let _ = writeln!(text, "    {}", self.unrecorded_text());
         }
         if let Some(FirstFailure { code, message, .. }) = &self.against {
             let _ = writeln!(text, "fails    {name}: {code}: {message}");
@@ -222,7 +222,7 @@ impl CaseReport {
     }
 
     /// What can't be held against a result of an earlier version.
-    pub(super) fn left_open(&self) -> String {
+    pub(super) fn unrecorded_text(&self) -> String {
         format!("not compared (not recorded in the accepted result): {}", self.not_compared.join(", "))
     }
 
@@ -248,7 +248,7 @@ impl CaseReport {
             CaseAnswer::Same | CaseAnswer::Changed | CaseAnswer::Older => {}
         }
         if !self.not_compared.is_empty() {
-            all.push(found("case-older", self.left_open(), None, &[]));
+            all.push(found("case-older", self.unrecorded_text(), None, &[]));
         }
         let before = format!("{}: ", self.name);
         for change in &self.changes {

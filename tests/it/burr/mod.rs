@@ -27,7 +27,7 @@ fn passed(wish: &Wish) -> FluteVerdict {
     let job = wish.job();
     let checked = check(&job, &families::emit(&job)).unwrap();
     assert!(checked.refusals.is_empty(), "{}\n{}", checked.refusals.concat(), wish.text());
-    let verdict = checked.judgement.into_flutes().unwrap();
+    let verdict = checked.verdict.into_flutes().unwrap();
     assert!(verdict.verdict == Answer::Pass);
     verdict
 }
@@ -60,7 +60,9 @@ proptest! {
 /// The verdict on an emitted program in which `from` is replaced.
 fn replaced(from: &str, to: &str) -> FluteVerdict {
     let job = two_flutes().job();
-    let NominalPart::Flutes(wanted) = NominalPart::of_job(&job).unwrap() else { panic!("a burr has flutes") };
+    let NominalPart::Flutes(wanted) = NominalPart::from_job(&job).unwrap() else {
+        panic!("a burr has flutes")
+    };
     let mut package = families::emit(&job);
     for program in &mut package.programs {
         program.text = program.text.replace(from, to);
@@ -206,7 +208,9 @@ fn there_are_as_few_moves_as_hold_the_chord_error() {
 fn each_axis_sign_counts() {
     let job = two_flutes().job();
     let package = families::emit(&job);
-    let NominalPart::Flutes(wanted) = NominalPart::of_job(&job).unwrap() else { panic!("a burr has flutes") };
+    let NominalPart::Flutes(wanted) = NominalPart::from_job(&job).unwrap() else {
+        panic!("a burr has flutes")
+    };
     for letter in ["X", "Y", "A", "B", "C"] {
         let (before, after) = package.machine.split_once(&format!("letter = \"{letter}\"")).unwrap();
         let turned = after.replacen("sign = 1", "sign = -1", 1);
@@ -220,7 +224,9 @@ fn each_axis_sign_counts() {
 #[test]
 fn without_a_wheel_there_is_no_verdict() {
     let job = example().job();
-    let NominalPart::Flutes(wanted) = NominalPart::of_job(&job).unwrap() else { panic!("a burr has flutes") };
+    let NominalPart::Flutes(wanted) = NominalPart::from_job(&job).unwrap() else {
+        panic!("a burr has flutes")
+    };
     let package = Package { machine: String::new(), ..families::emit(&job) };
     let error = grind(&request(&package), &mut Programs(&package), &wanted).unwrap_err().to_string();
     assert!(error.starts_with("the machine file has no [wheel]"), "{error}");
@@ -271,7 +277,9 @@ fn the_macro_refuses_what_can_not_be_ground() {
 /// The verdict on a program with more blocks before its end, at C 0 with the wheel clear of the burr.
 fn with(blocks: &str) -> FluteVerdict {
     let job = two_flutes().job();
-    let NominalPart::Flutes(wanted) = NominalPart::of_job(&job).unwrap() else { panic!("a burr has flutes") };
+    let NominalPart::Flutes(wanted) = NominalPart::from_job(&job).unwrap() else {
+        panic!("a burr has flutes")
+    };
     let mut package = families::emit(&job);
     let main = package.programs.iter_mut().find(|program| program.number == 8400).unwrap();
     assert!(main.text.contains(" G00 C0.\n"));
@@ -312,7 +320,7 @@ fn what_goes_into_the_blank_without_a_pass_is_told() {
 }
 
 fn example_depth() -> f64 {
-    let NominalPart::Flutes(wanted) = NominalPart::of_job(&example().job()).unwrap() else {
+    let NominalPart::Flutes(wanted) = NominalPart::from_job(&example().job()).unwrap() else {
         panic!("a burr has flutes")
     };
     wanted.tooth_depth.max(wanted.surface_tolerance)

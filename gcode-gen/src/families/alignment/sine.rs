@@ -41,7 +41,7 @@ fn write(job: &Alignment, text: &mut Text) {
     let k = control::alarm_thousands(job.control.dialect);
     let [phi, length] = [table.phi, table.length].map(number);
     let set = table.gauge_blocks;
-    let setting = gauge::setting(Mm(table.length), Deg(table.phi), &set);
+    let setting = gauge::sine_setting(Mm(table.length), Deg(table.phi), &set);
     text.remark(format!("L {length} PHI {phi}, H = L*SIN[PHI] = {:.5}", setting.height.0));
     text.remark(format!("GAUGE BLOCKS {}", set.name));
     for line in stack(&setting) {
@@ -104,7 +104,7 @@ fn stack(setting: &SineSetting) -> Vec<String> {
     }
     let names: Vec<_> = setting.stack.blocks.iter().map(ToString::to_string).collect();
     let mut lines: Vec<_> = names.chunks(8).map(|names| format!("BLOCKS {}", names.join(" + "))).collect();
-    let over = if setting.left < 0.0 { "TOO LITTLE" } else { "TOO MUCH" };
-    lines.push(format!("THEY MAKE {:.2} SECONDS OF ARC {over}", setting.left.abs()));
+    let over = if setting.remainder < 0.0 { "TOO LITTLE" } else { "TOO MUCH" };
+    lines.push(format!("THEY MAKE {:.2} SECONDS OF ARC {over}", setting.remainder.abs()));
     lines
 }

@@ -30,8 +30,13 @@ pub fn emit(job: &Honeycomb) -> Package {
 fn main(job: &Honeycomb) -> String {
     let mut text = Text::new(MAIN, "HONEYCOMB OF RADIAL HOLES ON A CYLINDER", job.control.dialect);
     // Where the rows begin round the axis is the operator's: a shift of the rotary turns the whole pattern.
-    let start =
-        Start { control: job.control, changed: 51, shifted: 52, axes: "XYZ", cancelled: String::new() };
+    let start = Start {
+        control: job.control,
+        changed_alarm: 51,
+        shifted_alarm: 52,
+        axes: "XYZ",
+        cancelled_rotaries: String::new(),
+    };
     header(job).into_iter().chain(start.remarks()).for_each(|line| text.remark(line));
     let drill = &job.drill;
     let retract = number(job.machine.retract);

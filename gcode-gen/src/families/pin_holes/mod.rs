@@ -42,10 +42,10 @@ impl<'j> Main<'j> {
         let text = Text::new(MAIN, "PIN HOLES ON AN ELLIPSOID OF REVOLUTION", job.control.dialect);
         let start = Start {
             control: job.control,
-            changed: 17,
-            shifted: 18,
+            changed_alarm: 17,
+            shifted_alarm: 18,
             axes: "XYZ",
-            cancelled: job.machine.rotary.letter.to_string(),
+            cancelled_rotaries: job.machine.rotary.letter.to_string(),
         };
         Self { job, resident: Resident::of(job), start, text }
     }

@@ -25,10 +25,10 @@ mod surface;
 mod touch_uncertainty;
 
 pub use clusters::Clusters;
-pub use distance::Nearest;
+pub use distance::NearestPoint;
 pub use flutes::Flutes;
 pub use hole::{Hole, HoleList, Origin, Unit};
-pub use indicator::tilted;
+pub use indicator::tilted_ellipsoid;
 pub use nominal::NominalPart;
 pub use overlap::overlaps;
 pub use pattern::{Pattern, azimuth};

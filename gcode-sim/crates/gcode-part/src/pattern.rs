@@ -15,7 +15,7 @@ pub struct Pattern {
     /// The distance of all neighbours once the pattern closes, mm.
     pub pitch: f64,
     /// The pitch that was asked for, mm; `None` where divisions were.
-    pub asked: Option<f64>,
+    pub specified_pitch: Option<f64>,
     /// Holes stand at 0 ≤ x ≤ length, mm.
     pub length: f64,
     /// Where the holes begin, mm.
@@ -29,12 +29,12 @@ impl Pattern {
     pub fn distance(&self, a: &Point3<f64>, b: &Point3<f64>) -> f64 {
         match self.metric {
             Metric::Chord => (b - a).norm(),
-            Metric::Arc => libm::hypot(b.x - a.x, self.arc(angle(a, b))),
+            Metric::Arc => libm::hypot(b.x - a.x, self.arc_length(angle(a, b))),
         }
     }
 
     /// So long is an angle on the cylinder, mm.
-    pub fn arc(&self, angle: Deg) -> f64 {
+    pub fn arc_length(&self, angle: Deg) -> f64 {
         self.diameter / 2.0 * angle.to_rad()
     }
 
@@ -49,29 +49,29 @@ impl Pattern {
     }
 
     /// From a hole to the one abreast of it two rows further: behind the six neighbours the nearest, mm.
-    pub fn abreast(&self) -> f64 {
+    pub fn second_neighbour_distance(&self) -> f64 {
         let radius = self.diameter / 2.0;
-        self.distance(&point(0.0, Deg::ZERO, radius), &point(0.0, self.step() * 2.0, radius))
+        self.distance(&point(0.0, Deg::ZERO, radius), &point(0.0, self.row_angle() * 2.0, radius))
     }
 
     /// The row whose azimuth is nearest to that of a point, counted from 0.
     pub fn row_of(&self, p: &Point3<f64>) -> usize {
-        let rows = (azimuth(p).0 / self.step().0).round();
+        let rows = (azimuth(p).0 / self.row_angle().0).round();
         rows.rem_euclid(f64::from(self.rows)) as usize
     }
 
     /// The pitch that so many rows of both groups close with, mm.
-    pub fn pitch_of(&self, rows: u32) -> f64 {
-        closed(self.metric, self.diameter, rows)
+    pub fn closing_pitch(&self, rows: u32) -> f64 {
+        solve_pitch(self.metric, self.diameter, rows)
     }
 
     /// The pitch that the same rows close with in the other metric, mm.
-    pub fn pitch_in(&self, metric: Metric) -> f64 {
-        closed(metric, self.diameter, self.rows)
+    pub fn pitch_in_metric(&self, metric: Metric) -> f64 {
+        solve_pitch(metric, self.diameter, self.rows)
     }
 
     /// From one row to the next.
-    pub fn step(&self) -> Deg {
+    pub fn row_angle(&self) -> Deg {
         Deg(360.0 / f64::from(self.rows))
     }
 }
@@ -93,13 +93,21 @@ pub(super) fn point(x: f64, azimuth: Deg, radius: f64) -> Point3<f64> {
 }
 
 /// The pitch at which so many rows close: a hole's neighbours in the next row are as far as those in its own, mm.
-pub(super) fn closed(metric: Metric, diameter: f64, rows: u32) -> f64 {
-    let guess =
-        Pattern { metric, diameter, rows, pitch: 0.0, asked: None, length: 0.0, outer: diameter, bore: 0.0 };
+pub(super) fn solve_pitch(metric: Metric, diameter: f64, rows: u32) -> f64 {
+    let guess = Pattern {
+        metric,
+        diameter,
+        rows,
+        pitch: 0.0,
+        specified_pitch: None,
+        length: 0.0,
+        outer: diameter,
+        bore: 0.0,
+    };
     // The neighbour in the next row stands half a pitch further: with a small pitch it is farther than the pitch.
     let next = |pitch: f64| {
         let (here, there) =
-            (point(0.0, Deg::ZERO, diameter / 2.0), point(pitch / 2.0, guess.step(), diameter / 2.0));
+            (point(0.0, Deg::ZERO, diameter / 2.0), point(pitch / 2.0, guess.row_angle(), diameter / 2.0));
         guess.distance(&here, &there)
     };
     let (mut low, mut high) = (0.0, 2.0 * next(0.0));

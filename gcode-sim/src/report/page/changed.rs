@@ -3,10 +3,10 @@ use maud::{Markup, html};
 
 use super::lines::Lines;
 use super::words::shown;
-use super::{Difference, MOST_CHANGES, Side, listed};
+use super::{Difference, MOST_CHANGES, ReviewSide, listed};
 use gcode_review::{BlockLocation, UnexecutedChange};
 
-pub(super) fn changes(difference: &Difference<'_>, sides: &[Side<'_>]) -> Markup {
+pub(super) fn changes(difference: &Difference<'_>, sides: &[ReviewSide<'_>]) -> Markup {
     let all = &difference.compared.changes;
     html! {
         @if all.is_empty() {
@@ -42,7 +42,7 @@ pub(super) fn changes(difference: &Difference<'_>, sides: &[Side<'_>]) -> Markup
 }
 
 /// The block before and now.
-fn both(old: &Option<BlockLocation>, new: &Option<BlockLocation>, sides: &[Side<'_>]) -> Markup {
+fn both(old: &Option<BlockLocation>, new: &Option<BlockLocation>, sides: &[ReviewSide<'_>]) -> Markup {
     let of = |word: &str| sides.iter().find(|side| side.word == word).map(|side| side.lines);
     html! {
         @for (word, place) in [("old", old), ("new", new)] {

@@ -100,7 +100,7 @@ fn neighbours_of(
     let here = thin_crowded_spots(on_cylinder, lines, &places, &mut near);
     let tree = PointTree::new(here.iter().map(|index| places[*index]));
     // Halfway to those that are no neighbours any more.
-    let reach = (pattern.pitch + pattern.abreast()) / 2.0;
+    let reach = (pattern.pitch + pattern.second_neighbour_distance()) / 2.0;
     // No way on the surface is shorter than the straight one: all neighbours are told.
     tree.pairs(reach, &mut |one, other| {
         let (one, other) = (here[one], here[other]);
@@ -194,7 +194,7 @@ mod tests {
         diameter: 100.0,
         rows: 30,
         pitch: 12.0,
-        asked: None,
+        specified_pitch: None,
         length: 90.0,
         outer: 100.0,
         bore: 0.0,
@@ -208,7 +208,7 @@ mod tests {
 
     /// All distances, sorted: count, the least and the sixth, and whose they are.
     fn by_looking_at_all(places: &[Point3<f64>], pattern: &Pattern) -> Vec<Option<HoleNeighbours>> {
-        let reach = (pattern.pitch + pattern.abreast()) / 2.0;
+        let reach = (pattern.pitch + pattern.second_neighbour_distance()) / 2.0;
         let round = |index: usize| {
             let others = (0..places.len()).filter(|other| *other != index);
             let mut all: Vec<_> =

@@ -15,13 +15,13 @@ const TOLERANCE: &str = "0.0001 to 1000 mm";
 pub(super) const ROTARY_LETTERS: [(&str, char); 3] = [("A", 'A'), ("B", 'B'), ("C", 'C')];
 
 /// Whether a number is within bounds, the bounds included.
-pub(super) fn within(low: f64, high: f64) -> impl Fn(f64) -> bool {
+pub(super) fn in_range(low: f64, high: f64) -> impl Fn(f64) -> bool {
     move |value| (low..=high).contains(&value)
 }
 
 /// A length of [`LENGTH`].
 pub(super) fn length(reader: &Reader<'_>, key: &str, value: &Spanned<f64>) -> Result<f64, FileError> {
-    reader.number(key, value, LENGTH, within(0.01, 99_999.0))
+    reader.number(key, value, LENGTH, in_range(0.01, 99_999.0))
 }
 
 /// `machine.clearance` and `machine.retract`: how far above the surface the tool feeds from, and how far it goes away. mm.
@@ -31,9 +31,9 @@ pub(super) fn heights(
     retract: Option<&Spanned<f64>>,
 ) -> Result<(f64, f64), FileError> {
     let clearance =
-        reader.number_or("machine.clearance", clearance, "0.01 to 9999 mm", within(0.01, 9_999.0), 2.0)?;
+        reader.number_or("machine.clearance", clearance, "0.01 to 9999 mm", in_range(0.01, 9_999.0), 2.0)?;
     let allowed = format!("{clearance} (the clearance) to 9999 mm");
-    let within = within(clearance, 9_999.0);
+    let within = in_range(clearance, 9_999.0);
     let retract = reader.number_or("machine.retract", retract, &allowed, within, clearance.max(50.0))?;
     Ok((clearance, retract))
 }
@@ -104,13 +104,13 @@ pub(super) struct FileTolerance {
 impl FileTolerance {
     /// Diameter of the zone, mm.
     pub(super) fn position(&self, reader: &Reader<'_>) -> Result<f64, FileError> {
-        reader.number("tolerance.position", &self.position, TOLERANCE, within(1e-4, 1e3))
+        reader.number("tolerance.position", &self.position, TOLERANCE, in_range(1e-4, 1e3))
     }
 
     /// Either way, mm.
     pub(super) fn depth(&self, reader: &Reader<'_>) -> Result<f64, FileError> {
         match &self.depth {
-            Some(depth) => reader.number("tolerance.depth", depth, TOLERANCE, within(1e-4, 1e3)),
+            Some(depth) => reader.number("tolerance.depth", depth, TOLERANCE, in_range(1e-4, 1e3)),
             None => Ok(0.1),
         }
     }

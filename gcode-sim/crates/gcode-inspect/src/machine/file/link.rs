@@ -56,7 +56,7 @@ impl FileLink {
         origin: Point3<f64>,
     ) -> Result<AxisLink, FileError> {
         let axis = letter(reader, "table.letter", &self.letter, axes)?;
-        if inner.has(axis) {
+        if inner.has_axis(axis) {
             let message = format!("key 'table.letter': {} is used twice", axes.letter(axis));
             return Err(reader.error(&self.letter, message));
         }
@@ -80,11 +80,11 @@ impl FileLink {
             (Some(FixedArray([x, ..])), "slides") => {
                 Err(reader.error(x, "key 'table.centre' is for 'turns' only"))
             }
-            (_, "slides") => Ok(AxisLink::slide(axis, unit, sign)),
+            (_, "slides") => Ok(AxisLink::linear(axis, unit, sign)),
             (Some(centre), _) => {
-                Ok(AxisLink::turn(axis, unit, Point3::from(lengths(reader, "table.centre", centre)?), sign))
+                Ok(AxisLink::rotary(axis, unit, Point3::from(lengths(reader, "table.centre", centre)?), sign))
             }
-            (None, _) => Ok(AxisLink::turn(axis, unit, origin, sign)),
+            (None, _) => Ok(AxisLink::rotary(axis, unit, origin, sign)),
         }
     }
 }

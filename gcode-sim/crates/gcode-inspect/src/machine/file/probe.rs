@@ -40,7 +40,7 @@ impl FileProbe {
         probe.delay = seconds("probe.delay", &self.delay)?;
         probe.overrun = seconds("probe.overrun", &self.overrun)?;
         if let Some(give) = &self.give {
-            probe.give = length("probe.give", give)?;
+            probe.overtravel_limit = length("probe.give", give)?;
         }
         Ok(probe)
     }

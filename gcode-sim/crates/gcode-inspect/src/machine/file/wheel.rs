@@ -45,7 +45,7 @@ impl FileWheel {
                     return Err(reader.error(name, "key 'wheel.letter': the wheel swivels by A, B or C"));
                 }
                 let of_head = matches!(head.kind, HeadKind::Axis { axis: other, .. } if other == axis);
-                if table.has(axis) || of_head {
+                if table.has_axis(axis) || of_head {
                     let message = format!(
                         "key 'wheel.letter' is {}, the letter of the table or the head",
                         axes.letter(axis)
@@ -56,6 +56,6 @@ impl FileWheel {
                 Some((axis, sign))
             }
         };
-        Ok(Wheel { contact, swivels })
+        Ok(Wheel { contact, swivel_axis: swivels })
     }
 }

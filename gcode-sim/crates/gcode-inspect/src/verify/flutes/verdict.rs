@@ -273,8 +273,8 @@ fn law_table(wanted: &Flutes, along: &[HelixSample]) -> Vec<LawAngles> {
         LawAngles {
             polar: theta,
             measured: nearest.map(|angles| angles.helix.0),
-            constant_helix: wanted.angle(FluteLaw::ConstantHelix, Deg(theta)).0,
-            published: wanted.angle(FluteLaw::Published, Deg(theta)).0,
+            constant_helix: wanted.helix_angle(FluteLaw::ConstantHelix, Deg(theta)).0,
+            published: wanted.helix_angle(FluteLaw::Published, Deg(theta)).0,
         }
     };
     all.map(at).collect()

@@ -8,7 +8,7 @@ use super::runout::FileRunout;
 use super::{Alignment, Chord, SineTable};
 use crate::gauge::{self, GaugeSet};
 use crate::job::pin_holes::{FileMachine, FileSurface};
-use crate::job::sections::{FileControl, length, sign, within};
+use crate::job::sections::{FileControl, in_range, length, sign};
 use crate::job::sheet::FileSheet;
 use crate::job::{FileError, Reader, Surface};
 use crate::reader::Spanned;
@@ -115,7 +115,7 @@ pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<Alignment, FileError>
     let chord = file.chord.check(reader, surface)?;
     let probe = &file.probe;
     let of_probe = |key: &str, value: &Spanned<f64>, unit: &str| {
-        reader.number(key, value, &format!("0.01 to 1000 {unit}"), within(0.01, 1000.0))
+        reader.number(key, value, &format!("0.01 to 1000 {unit}"), in_range(0.01, 1000.0))
     };
     let probe_radius = of_probe("probe.radius", &probe.radius, "mm")?;
     let probe_search = match &probe.search {
@@ -138,7 +138,7 @@ pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<Alignment, FileError>
             // The control notes a touch no finer than its increment.
             Some(noise) => {
                 let allowed = format!("{increment} (the least increment) to 1 mm");
-                reader.number("probe.noise", noise, &allowed, within(increment, 1.0))?
+                reader.number("probe.noise", noise, &allowed, in_range(increment, 1.0))?
             }
             None => f64::max(0.002, increment),
         },
@@ -160,10 +160,10 @@ impl FileSineTable {
                 "sine_table.length",
                 &self.length,
                 "10 to 2000 mm",
-                within(10.0, 2000.0),
+                in_range(10.0, 2000.0),
             )?,
             // A sine bar loses its accuracy towards the upright.
-            phi: reader.number("sine_table.phi", &self.phi, "0 to 45 degrees", within(0.0, 45.0))?,
+            phi: reader.number("sine_table.phi", &self.phi, "0 to 45 degrees", in_range(0.0, 45.0))?,
             gauge_blocks: reader.choice("sine_table.gauge_blocks", &self.gauge_blocks, &sets)?,
             sign: self.sign.as_ref().map_or(Ok(1), |value| sign(reader, "sine_table.sign", value))?,
         };
@@ -176,7 +176,7 @@ impl FileSineTable {
             );
             return Err(reader.error(&self.gauge_blocks, message));
         }
-        let setting = gauge::setting(Mm(table.length), Deg(table.phi), &table.gauge_blocks);
+        let setting = gauge::sine_setting(Mm(table.length), Deg(table.phi), &table.gauge_blocks);
         if setting.stack.blocks.is_empty() && table.phi > 0.0 {
             let message = format!(
                 "key 'sine_table.phi' is {}: L*sin(phi) is {:.4} mm, lower than any stack of '{}'; put \
@@ -192,7 +192,7 @@ impl FileSineTable {
 impl FileChord {
     fn check(&self, reader: &Reader<'_>, surface: Surface) -> Result<Chord, FileError> {
         let allowed = format!("0 to the equatorial radius a = {} mm", surface.a);
-        let radius = |key: &str, value| reader.number(key, value, &allowed, within(0.0, surface.a));
+        let radius = |key: &str, value| reader.number(key, value, &allowed, in_range(0.0, surface.a));
         let candidates = *self.candidates.as_ref();
         let e_radius = radius("chord.e_radius", &self.e_radius)?;
         let f_radius = radius("chord.f_radius", &self.f_radius)?;
@@ -215,8 +215,8 @@ impl FileChord {
                 "chord.uneven",
                 self.uneven.as_ref(),
                 "0.001 to 100 mm",
-                within(0.001, 100.0),
-                f64::max(0.05, (1.5e3 * left_uneven(surface, e_radius, f_radius)).ceil() / 1e3),
+                in_range(0.001, 100.0),
+                f64::max(0.05, (1.5e3 * chord_unevenness(surface, e_radius, f_radius)).ceil() / 1e3),
             )?,
         })
     }
@@ -224,7 +224,7 @@ impl FileChord {
 
 /// How much higher over one of E and F than over the other a part stands, mm, that is off by what the run-out may leave: 0.004°
 /// about z and 0.01 mm in x. At x it stands higher by δ·x·(1 − b²/a²) and by dx·(b²/a²)·x/y.
-fn left_uneven(surface: Surface, e: f64, f: f64) -> f64 {
+fn chord_unevenness(surface: Surface, e: f64, f: f64) -> f64 {
     let Surface { a, b } = surface;
     let squares = (b * b) / (a * a);
     let steepness = |x: f64| x / (b * (1.0 - (x / a) * (x / a)).sqrt());

@@ -3,7 +3,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::Runout;
-use crate::job::sections::within;
+use crate::job::sections::in_range;
 use crate::job::{FileError, Reader, Surface};
 use crate::reader::{FixedArray, Spanned};
 
@@ -64,7 +64,7 @@ impl FileRunout {
         }
         let shift = self.y_shift.as_ref();
         let y_shift =
-            reader.number_or("runout.y_shift", shift, "0.01 to 100 mm", within(0.01, 100.0), 0.4)?;
+            reader.number_or("runout.y_shift", shift, "0.01 to 100 mm", in_range(0.01, 100.0), 0.4)?;
         Ok(Runout { heights, from, to, readings: readings as u32, y_shift })
     }
 }

@@ -7,7 +7,9 @@ use serde_json::json;
 
 use super::tools::{FileTool, HoleToolSpec, assign, default_tools};
 use super::{AxisDirection, Head, HeadKind, HoleSpec, MacroSettings, PinHoles, PinMachine, Surface, Tool};
-use crate::job::sections::{FileControl, FileRotary, FileTolerance, ROTARY_LETTERS, heights, length, within};
+use crate::job::sections::{
+    FileControl, FileRotary, FileTolerance, ROTARY_LETTERS, heights, in_range, length,
+};
 use crate::job::sheet::FileSheet;
 use crate::job::{FileError, Reader};
 use crate::reader::{Spanned, names};
@@ -157,7 +159,7 @@ pub(in crate::job) fn parse(reader: &Reader<'_>) -> Result<PinHoles, FileError> 
         position_tolerance: file.tolerance.position(reader)?,
         depth_tolerance: file.tolerance.depth(reader)?,
         tools,
-        tools_said: file.tool.is_some(),
+        are_tools_specified: file.tool.is_some(),
         macros: MacroSettings { common },
         holes,
         sheet: FileSheet::of(file.sheet, reader)?,
@@ -178,7 +180,7 @@ impl File {
             }
             length(reader, "hole.diameter", &hole.diameter)?;
         }
-        let wanted: Vec<_> = self.hole.iter().map(FileHole::tools_wanted).collect();
+        let wanted: Vec<_> = self.hole.iter().map(FileHole::tool_spec).collect();
         let Some(tools) = &self.tool else { return default_tools(reader, &wanted) };
         if tools.is_empty() {
             return Err(reader.error(&first.id, "'tool' is empty: remove it, or add a [[tool]]"));
@@ -216,8 +218,8 @@ impl FileMachine {
             head,
             clearance,
             retract,
-            retract_said: self.retract.is_some(),
-            clearance_said: self.clearance.is_some(),
+            is_retract_specified: self.retract.is_some(),
+            is_clearance_specified: self.clearance.is_some(),
         })
     }
 }
@@ -226,7 +228,7 @@ impl FileHead {
     fn check(&self, reader: &Reader<'_>, rotary: char) -> Result<Head, FileError> {
         let pivot = match &self.pivot {
             Some(pivot) => {
-                reader.number("machine.head.pivot", pivot, "0 to 9999 mm", within(0.0, 9_999.0))?
+                reader.number("machine.head.pivot", pivot, "0 to 9999 mm", in_range(0.0, 9_999.0))?
             }
             None => 0.0,
         };
@@ -256,7 +258,7 @@ impl FileHead {
 }
 
 impl FileHole {
-    fn tools_wanted(&self) -> HoleToolSpec<'_> {
+    fn tool_spec(&self) -> HoleToolSpec<'_> {
         HoleToolSpec { id: self.id.as_ref(), diameter: &self.diameter, tools: self.tools.as_ref() }
     }
 
@@ -265,16 +267,16 @@ impl FileHole {
         let radii = format!("0 to the equatorial radius a = {a} mm");
         Ok(HoleSpec {
             id: self.id.as_ref().clone(),
-            radius: reader.number("hole.radius", &self.radius, &radii, within(0.0, a))?,
+            radius: reader.number("hole.radius", &self.radius, &radii, in_range(0.0, a))?,
             azimuth: reader.number(
                 "hole.azimuth",
                 &self.azimuth,
                 "-3600 to 3600 degrees",
-                within(-3600.0, 3600.0),
+                in_range(-3600.0, 3600.0),
             )?,
             axis: reader.choice("hole.axis", &self.axis, &DIRECTIONS)?,
             diameter: *self.diameter.as_ref(),
-            depth: reader.number("hole.depth", &self.depth, "0.01 to 9999 mm", within(0.01, 9_999.0))?,
+            depth: reader.number("hole.depth", &self.depth, "0.01 to 9999 mm", in_range(0.01, 9_999.0))?,
             tools,
         })
     }
