@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::begin::Begun;
 use super::in_force::{Aspect, Condition, Word};
+use super::older::present_words;
 use super::record::{Ending, Record, Totals, Where};
 use super::steps::{Kind, Quiet, Step, difference};
 use crate::holes::Found;
@@ -238,7 +239,8 @@ impl Record {
                 begun.text, begun.place
             )));
         }
-        let (places, ending, totals) = (file.places, file.ending, file.totals);
+        let (places, mut ending, totals) = (file.places, file.ending, file.totals);
+        ending.words = present_words(&ending.words);
         let unfinished = BTreeSet::new();
         let (begun, program) = (file.begun, file.program);
         Ok(Self {

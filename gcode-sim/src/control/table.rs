@@ -132,8 +132,7 @@ pub const ROWS: &[Row] = &[
     switch!("TCS", "6001#5: T calls O9000 with its number in #149", code_calls.by_t),
     switch!("SCS", "S calls O9029 with its number in #147", code_calls.by_s),
     switch!("BCS", "B, unless it is an axis, calls O9028 with its number in #146", code_calls.by_b),
-    switch!("CVA", "6007#4: arguments without a decimal point are converted when they are passed: ADP has \
-                    no effect", converts_arguments),
+    switch!("CVA", "6007#4: arguments without a decimal point are converted when they are passed: ADP has no effect", converts_arguments),
     switch!("FXY", "5101#0: cycles drill along the normal of the plane, not always Z", drills_by_plane),
     switch!("V15", "6000#3: geometry and wear are exchanged in tool offset variables", series_15_offsets),
     switch!("AD2", "3403#6: a repeated address in a block raises an alarm", no_repeated_address),
