@@ -186,7 +186,7 @@ impl Unrolled {
         let item = |sample: Sample, text: String| LegendItem { sample, text };
         let mut items = standings(view);
         if let Some(zone) = view.tolerance.filter(|_| marks.iter().any(|m| m.misfit.is_some())) {
-            let text = format!("{} Φ{}, seen along the hole,", view.question.misfit(), plain(zone));
+            let text = format!("{} Φ{}, axial view,", view.question.misfit(), plain(zone));
             items.push(item(Sample::Misfit, text));
         }
         items.push(item(Sample::Pen(Pen::Outline), "seam: both edges are one line".to_owned()));

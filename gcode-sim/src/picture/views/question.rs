@@ -16,7 +16,7 @@ impl Question {
     pub(super) fn word(self, standing: Standing) -> &'static str {
         match (self, standing) {
             (Self::Verdict, Standing::Good) => "in tolerance",
-            (Self::Verdict, Standing::Bad) => "out of tolerance",
+            (Self::Verdict, Standing::Bad) => "out",
             (Self::Verdict, Standing::Missing) => "missing",
             (Self::Verdict, Standing::Extra) => "extra",
             (Self::Change, Standing::Good) => "unchanged",
@@ -67,7 +67,7 @@ impl Question {
     pub(super) fn misfit(self) -> &'static str {
         match self {
             Self::Verdict => "deviation in the tolerance zone",
-            Self::Change => "displacement from the old position in a circle",
+            Self::Change => "displacement in a circle",
         }
     }
 

@@ -281,7 +281,7 @@ fn legend(view: &TopView, marks: &[Mark], has_circles: bool) -> Vec<LegendItem> 
     if marks.iter().any(|m| m.misfit.is_some())
         && let Some(zone) = view.tolerance
     {
-        let text = format!("{} Φ{}, seen along the hole,", view.question.misfit(), plain(zone));
+        let text = format!("{} Φ{}, axial view,", view.question.misfit(), plain(zone));
         add(Sample::Misfit, &text);
     }
     if marks.iter().any(|m| m.direction.is_some_and(|d| 0.02 < libm::hypot(d[0], d[1]))) {
