@@ -9,7 +9,7 @@ use crate::motion::Place;
 use crate::source::SourceId;
 use crate::syntax::parse;
 
-/// Such a block, before and now; one of them where it is new or gone.
+/// An unexecuted changed block, old and new; only one of them if it is added or removed.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Unexecuted {
     pub old: Option<Where>,

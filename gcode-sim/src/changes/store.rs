@@ -29,14 +29,14 @@ pub(crate) struct File {
     totals: Totals,
     ending: Ending,
     places: Vec<Where>,
-    /// What the program commands, each at its first time.
+    /// The first commands of the program.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     begun: Option<Vec<Begun>>,
     steps: Vec<Line>,
     holes: Vec<Hole>,
 }
 
-/// A step: what is done, where the axes that it moves stand then (mm and degrees), and the number of its block.
+/// A step: its action, the end positions of the axes it moves (mm and degrees), and the number of its block.
 #[derive(Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "do", rename_all = "lowercase", deny_unknown_fields)]
 enum Line {
@@ -95,13 +95,13 @@ enum Line {
         named: Vec<(u32, f64)>,
         place: usize,
     },
-    /// What a block says that moves nothing.
+    /// A command of a block without motion.
     Silent {
         what: Quiet,
         code: String,
         place: usize,
     },
-    /// No step: what is in force from here on. Holes don't count it among their steps.
+    /// Not a step: a modal condition from here on. Holes do not count it among their steps.
     Under {
         what: Aspect,
         code: String,
@@ -137,7 +137,7 @@ struct Hole {
     diameter: Option<f64>,
     tool: Option<u32>,
     steps: Vec<usize>,
-    /// The hole that this one makes again, counted from 0.
+    /// The hole that this one repeats, counted from 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     again: Option<usize>,
 }

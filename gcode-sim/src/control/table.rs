@@ -15,7 +15,7 @@ pub enum SettingError {
 /// One setting that has a name.
 pub struct Row {
     pub key: &'static str,
-    /// What it decides, with the parameter's number where a control has one.
+    /// Its meaning, with the parameter's number where a control has one.
     pub meaning: &'static str,
     pub values: Values,
     set: fn(&mut Settings, &str) -> Option<()>,
