@@ -20,17 +20,17 @@ pub const FORMATS: &[Format] = &[
 /// The document of `emit --format json`.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct EmitReport<'c> {
-    /// Says what kind of numbers these are.
+    /// The kind of the numbers.
     pub basis: &'static str,
-    /// Why nothing is written, in words; null where the programs hold.
+    /// Why nothing is written, in words; null if the programs pass verification.
     pub refused: Option<String>,
     /// The files.
     pub written: Vec<String>,
-    /// Macros of an earlier job in the folder, which these programs don't call.
+    /// Macros of an earlier job in the folder that these programs do not call.
     pub left_over: Vec<String>,
-    /// Running time, operator stops left out; null where nothing could be run.
+    /// Running time without operator stops; null if nothing could be run.
     pub seconds: Option<f64>,
-    /// What `verify` says of the programs; null of measurements, and where nothing could be run.
+    /// The result of `verify` for the programs; null for measurements, and if nothing could be run.
     pub verdict: Option<&'c PackageVerdict>,
     #[serde(skip)]
     table: &'c str,
@@ -76,39 +76,39 @@ impl<'c> EmitReport<'c> {
 /// The document of `sheet --format json`. Times in minutes.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct SheetReport {
-    /// Says what kind of numbers these are.
+    /// The kind of the numbers.
     pub basis: &'static str,
-    /// Why nothing is written, in words; null where the programs hold.
+    /// Why nothing is written, in words; null if the programs pass verification.
     pub refused: Option<String>,
     /// The file.
     pub written: Option<String>,
-    /// What a part takes; null where the programs don't hold.
+    /// Time of a part; null if the programs fail verification.
     pub time: Option<TimeReport>,
-    /// On the job's machine first, then on those beside it; none where no rate was given.
+    /// On the job's machine first, then on the alternative machines; empty without a rate.
     pub costs: Vec<CostReport>,
 }
 
-/// What a part takes on the job's machine.
+/// Time of a part on the job's machine.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct TimeReport {
     /// The program, minutes.
     pub run: f64,
     pub stops: usize,
     pub tool_changes: usize,
-    /// The machine is taken for so many minutes: what was given for set-up, stops and tool changes included.
+    /// Machine time in minutes, including the given times for set-up, stops and tool changes.
     pub all: f64,
-    /// The keys of the job's `[sheet]` that aren't given and so aren't counted.
+    /// The keys of the job's `[sheet]` that are not given and therefore not counted.
     pub not_counted: Vec<&'static str>,
 }
 
-/// What a part costs on one machine.
+/// Cost of a part on one machine.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct CostReport {
     /// Null for the job's own.
     pub machine: Option<String>,
     pub currency: String,
     pub cost: f64,
-    /// By how many percent of it the job's own machine is dearer, below 0 cheaper; null where that can't be compared.
+    /// Extra cost of the job's own machine in percent, below 0 cheaper; null if not comparable.
     pub change: Option<f64>,
 }
 

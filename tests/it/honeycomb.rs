@@ -186,12 +186,12 @@ fn codes(verdict: &Verdict) -> Vec<String> {
 fn a_fault_in_the_macro_is_named() {
     let faults = [
         ("#18 LT 2*#14", "#18 LT #14", "row-missing", "rows 9 to 17 are missing"),
-        ("ROUND[3.14159265", "FUP[3.14159265", "row-angle", "18° apart, 20.0000° wanted"),
+        ("ROUND[3.14159265", "FUP[3.14159265", "row-angle", "18° apart, nominal 20.0000°"),
         ("#15=180/#14", "#15=FIX[178/#14]", "row-angle", "right for a diameter of 105.26 mm"),
         ("*#16/2 (WHERE", "*0 (WHERE", "row-group", "no row is staggered: all 18 rows begin at x 0.000"),
         ("#18=#18+1", "#18=#18+2", "row-group", "all 9 rows begin at x 0.000"),
-        ("/[2*#14]/COS[30.]", "/[2*#14]/COS[31.]", "row-pitch", "the holes of a row stand 20.36"),
-        ("#18*#15]", "#18*[#15+.5]]", "row-angle", "20.5° apart, 20.0000° wanted"),
+        ("/[2*#14]/COS[30.]", "/[2*#14]/COS[31.]", "row-pitch", "the holes of a row are 20.36"),
+        ("#18*#15]", "#18*[#15+.5]]", "row-angle", "20.5° apart, nominal 20.0000°"),
     ];
     for (from, to, code, told) in faults {
         let verdict = verdict(SMALL, &[(from, to)]);

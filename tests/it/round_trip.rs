@@ -123,7 +123,7 @@ proptest! {
     fn a_random_job_makes_its_holes(wanted in random_jobs()) {
         let text = wanted.text();
         let checked = checked(&text);
-        prop_assume!(!checked.refusals.concat().contains("cut into each other"));
+        prop_assume!(!checked.refusals.concat().contains(" overlap: their axes come within "));
         prop_assert!(checked.refusals.is_empty(), "{}\n{text}", checked.refusals.concat());
         let verdict = checked.verdict.into_holes().unwrap();
         prop_assert!(verdict.verdict == Answer::Pass);

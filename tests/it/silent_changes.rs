@@ -21,7 +21,7 @@ fn a_spindle_that_is_not_started_again_behind_a_tool_change_is_told() {
 
 #[test]
 fn a_mode_that_is_no_longer_commanded_is_told_with_its_block() {
-    let relies = "the program now relies on what the control was left in";
+    let relies = "the program now depends on the previous program's modes";
     assert_eq!(
         changed("G90 G21 G54\n", ""),
         [format!("start: G90, G21 and G54 are no longer commanded before the first move: {relies}")]

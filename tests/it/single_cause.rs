@@ -173,7 +173,7 @@ fn another_length_that_all_moves_make_up_for_is_told_once_with_them() {
     let found = texts(&found_by(&machine, &old, &new));
     assert_eq!(found.len(), 2, "{found:#?}");
     assert!(found[0].starts_with("tool-length: G43 H3 instead of G43 H2 ("), "{found:#?}");
-    let made_up = "move-shifted: moves end elsewhere, by Z +5.0000 as programmed; the machine position is \
+    let made_up = "move-shifted: moves end at a different point: Z +5.0000 as programmed; the machine position is \
                    unchanged because of another length offset (";
     assert!(found[1].starts_with(made_up), "{found:#?}");
     assert!(found[1].ends_with(" rapids, 12 feeds)"), "two holes of six pecks: {found:#?}");

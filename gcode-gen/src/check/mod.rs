@@ -45,13 +45,13 @@ pub struct CheckedPackage {
     pub verdict: PackageVerdict,
 }
 
-/// The verdict, by what the part gets.
+/// The verdict, by kind of part.
 #[derive(Debug, Serialize, JsonSchema)]
 #[serde(untagged)]
 pub enum PackageVerdict {
     Holes(Verdict),
     Flutes(FluteVerdict),
-    /// Of a part that is measured and gets nothing.
+    /// For a part that is measured and not machined.
     Measured,
 }
 

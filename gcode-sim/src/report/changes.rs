@@ -12,14 +12,14 @@ use gcode_review::{BlockLocation, Change, Record, Totals, UnexecutedChange};
 /// The document of `diff --format json`.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct ChangesReport {
-    /// Says what kind of numbers these are.
+    /// The kind of the numbers.
     pub basis: &'static str,
-    /// Nothing changes on the part, nor in what the control is left with, and both ran to their ends.
+    /// No difference on the part or in the control's final state, and both ran to their ends.
     pub same: bool,
     /// mm, and degrees for axes that turn.
     pub tolerance: f64,
     pub changes: Vec<Change>,
-    /// Blocks that are written otherwise and that neither run executed: what they do isn't compared.
+    /// Changed blocks that neither run executed: their effect is not compared.
     pub unexecuted: Vec<UnexecutedChange>,
     pub old: Side,
     pub new: Side,
@@ -28,7 +28,7 @@ pub struct ChangesReport {
     stopped: Option<String>,
 }
 
-/// One revision in numbers.
+/// Totals of one revision.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct Side {
     pub name: String,

@@ -267,7 +267,7 @@ pub fn find(code: &str) -> Option<Page> {
 }
 
 impl Page {
-    /// What the code means in a few words.
+    /// The meaning of the code in a few words.
     pub fn title(&self) -> &'static str {
         let first = self.text.lines().next().unwrap_or_default();
         first.split_once(": ").map_or(first, |(_, title)| title)

@@ -18,9 +18,9 @@ pub struct ReadingsReport {
     basis: &'static str,
     /// Of the ball.
     radius: f64,
-    /// How far a reading may be from 0, where that was asked.
+    /// Tolerance of a reading, either way, if given.
     tolerance: Option<f64>,
-    /// Only of a run to its end, on which the whole path was read, can it be a pass.
+    /// A pass requires a complete run with readings on the whole path.
     verdict: Option<Answer>,
     /// As `run` has it.
     outcome: &'static str,

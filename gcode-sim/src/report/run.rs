@@ -19,17 +19,17 @@ pub struct RunReport {
     pub outcome: &'static str,
     pub alarm: Option<AlarmReport>,
     pub stops: Vec<StopReport>,
-    /// What the program printed, line by line; bytes that are no text as `\xNN`.
+    /// The program's printed output, line by line; bytes that are not text as `\xNN`.
     pub output: Vec<String>,
     /// M codes left to the machine builder's logic.
     #[serde(rename = "passed_on")]
     pub auxiliary_codes: Vec<AuxiliaryCodeReport>,
-    /// What the control did without a word.
+    /// The notes: what the control did without a message.
     pub notes: Vec<NoteReport>,
     #[serde(serialize_with = "variables")]
     #[schemars(with = "BTreeMap<String, f64>")]
     pub variables: Vec<(u32, f64)>,
-    /// What `--show` asked for; null is vacant.
+    /// The system variables of `--show`; null is vacant.
     #[serde(skip_serializing_if = "Vec::is_empty", serialize_with = "shown")]
     #[schemars(with = "BTreeMap<String, Option<f64>>")]
     pub system: Vec<(u32, Option<f64>)>,
@@ -72,7 +72,7 @@ pub struct AuxiliaryCodeReport {
     pub line: u32,
 }
 
-/// One kind of thing that is no alarm and hardly meant, and the first block that has it.
+/// A note: a condition that is not an alarm and probably not intended, and the first block that has it.
 #[derive(Debug, Serialize, JsonSchema)]
 pub struct NoteReport {
     pub code: &'static str,

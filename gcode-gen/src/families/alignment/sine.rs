@@ -48,9 +48,9 @@ fn write(job: &Alignment, text: &mut Text) {
         text.remark(line);
     }
     for line in [
-        "AFTER O8210 HAS FOUND THE TILT #583 THIS PROGRAM TELLS".to_owned(),
+        "AFTER O8210 HAS FOUND THE TILT #583 THIS PROGRAM GIVES".to_owned(),
         "#586 PHI TO SET, #587 HEIGHT OF THE BLOCKS, #588 ITS CHANGE".to_owned(),
-        "#589 SECONDS OF ARC BY WHICH #587 MAKES TOO MUCH".to_owned(),
+        "#589 ERROR OF #587 IN SECONDS OF ARC".to_owned(),
     ] {
         text.remark(line);
     }
@@ -60,7 +60,7 @@ fn write(job: &Alignment, text: &mut Text) {
     }
     for line in [
         "#596 IS PHI AS THE TABLE IS SET, VACANT AT FIRST, THEN IT IS".to_owned(),
-        format!("{phi}. WHOEVER SETS THE TABLE OTHERWISE WRITES IT THERE"),
+        format!("{phi}. IF THE TABLE IS SET DIFFERENTLY WRITE IT THERE"),
         "THE FIRST STOP ASKS WHETHER IT IS RIGHT, IF NOT RESET AND WRITE IT".to_owned(),
         "CYCLE START AT THE SECOND SAYS THAT THE TABLE IS SET, #596 IS CHANGED".to_owned(),
         "AND #583 IS USED UP. THEN O8210 AGAIN".to_owned(),

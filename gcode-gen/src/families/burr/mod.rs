@@ -214,8 +214,8 @@ fn signs(job: &Burr) -> String {
     let turned: Vec<String> =
         all.iter().filter(|(_, sign)| *sign < 0).map(|(letter, _)| letter.to_string()).collect();
     match turned.is_empty() {
-        true => "ALL AXES RUN AS THE FORMULAS HAVE THEM".to_owned(),
-        false => format!("TURNED ROUND AGAINST THE FORMULAS {}", turned.join(" ")),
+        true => "ALL AXES RUN AS IN THE FORMULAS".to_owned(),
+        false => format!("REVERSED AGAINST THE FORMULAS {}", turned.join(" ")),
     }
 }
 

@@ -59,7 +59,7 @@ fn header(job: &Honeycomb) -> Vec<String> {
     let rotary = job.machine.rotary;
     let sign = if rotary.sign < 0 { "-" } else { "" };
     let (wanted, letter) = match job.spacing {
-        Spacing::Pitch(pitch) => (format!("PITCH {} WANTED", number(pitch)), 'B'),
+        Spacing::Pitch(pitch) => (format!("PITCH {} SPECIFIED", number(pitch)), 'B'),
         Spacing::Divisions(divisions) => (format!("{divisions} ROWS OF EACH OF TWO GROUPS"), 'E'),
     };
     let measured = match job.metric {
@@ -69,7 +69,7 @@ fn header(job: &Honeycomb) -> Vec<String> {
     let clamp = job
         .machine
         .clamp
-        .map(|clamp| format!("M{} LETS THE ROTARY GO BEFORE IT TURNS, M{} HOLDS IT", clamp.off, clamp.on));
+        .map(|clamp| format!("M{} RELEASES THE ROTARY BEFORE IT TURNS, M{} CLAMPS IT", clamp.off, clamp.on));
     let k = control::alarm_thousands(job.control.dialect);
     let mut lines = vec![
         format!("DIAMETER {outer}, LENGTH {length}, DRILL {}", number(job.drill.diameter)),

@@ -57,9 +57,8 @@ impl<'j> Main<'j> {
         for (index, pass) in passes.iter().enumerate() {
             self.tool(pass, passes.get(index + 1));
         }
-        self.text.block(
-            Block::of(format!("#{}=#0", self.resident.set())).comment("HEAD SET FOR NOTHING ANY MORE"),
-        );
+        self.text
+            .block(Block::of(format!("#{}=#0", self.resident.set())).comment("HEAD ANGLE NO LONGER VALID"));
         self.text.block(Block::of("M30"));
         self.text.finish()
     }

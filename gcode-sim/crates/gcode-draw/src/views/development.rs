@@ -188,7 +188,7 @@ impl UnrolledCylinder {
         let item = |sample: Sample, text: String| LegendItem { sample, text };
         let mut items = standings(view);
         if let Some(zone) = view.tolerance.filter(|_| marks.iter().any(|m| m.deviation.is_some())) {
-            let text = format!("{} Φ{}, seen along the hole,", view.purpose.deviation_label(), plain(zone));
+            let text = format!("{} Φ{}, axial view,", view.purpose.deviation_label(), plain(zone));
             items.push(item(Sample::Deviation, text));
         }
         items.push(item(Sample::Pen(Pen::Outline), "seam: both edges are one line".to_owned()));

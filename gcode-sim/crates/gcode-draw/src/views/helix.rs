@@ -50,8 +50,7 @@ pub fn helix_graph(view: &FluteView) -> Scene {
         graphs.push(helix.deviations());
     }
     let chart = Chart {
-        x_label: "Distance along the outline from the shank end, mm; above: polar angle θ on the nose"
-            .to_owned(),
+        x_label: "Along the outline from the shank end, mm; above: polar angle θ on the nose".to_owned(),
         guides: helix.nose.clone(),
         gaps: Vec::new(),
         graphs,

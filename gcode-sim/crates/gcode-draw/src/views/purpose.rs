@@ -16,7 +16,7 @@ impl PicturePurpose {
     pub(super) fn status_word(self, standing: HoleStatus) -> &'static str {
         match (self, standing) {
             (Self::Verdict, HoleStatus::Good) => "in tolerance",
-            (Self::Verdict, HoleStatus::Bad) => "out of tolerance",
+            (Self::Verdict, HoleStatus::Bad) => "out",
             (Self::Verdict, HoleStatus::Missing) => "missing",
             (Self::Verdict, HoleStatus::Extra) => "extra",
             (Self::Change, HoleStatus::Good) => "unchanged",
@@ -67,7 +67,7 @@ impl PicturePurpose {
     pub(super) fn deviation_label(self) -> &'static str {
         match self {
             Self::Verdict => "deviation in the tolerance zone",
-            Self::Change => "displacement from the old position in a circle",
+            Self::Change => "displacement in a circle",
         }
     }
 

@@ -287,7 +287,7 @@ fn legend(view: &TopView, marks: &[Mark], has_circles: bool) -> Vec<LegendItem> 
     if marks.iter().any(|m| m.deviation.is_some())
         && let Some(zone) = view.tolerance
     {
-        let text = format!("{} Φ{}, seen along the hole,", view.purpose.deviation_label(), plain(zone));
+        let text = format!("{} Φ{}, axial view,", view.purpose.deviation_label(), plain(zone));
         add(Sample::Deviation, &text);
     }
     if marks.iter().any(|m| m.direction.is_some_and(|d| 0.02 < libm::hypot(d[0], d[1]))) {

@@ -38,7 +38,7 @@ pub struct Machine {
     pub axes: Axes,
     pub dialect: Dialect,
     pub increment: Increment,
-    /// What carries the part, from the bed outwards.
+    /// The axes that carry the part, from the bed outwards.
     pub table: Chain,
     /// What carries the tool: the slides X Y Z that don't carry the part.
     pub slides: Chain,

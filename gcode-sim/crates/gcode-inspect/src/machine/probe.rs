@@ -13,7 +13,7 @@ pub struct Probe {
     pub overrun: Seconds,
     /// How far the stylus can be pushed before it breaks, mm.
     pub overtravel_limit: f64,
-    /// How far along its way each touch is noted beyond its place, mm.
+    /// Error of each touch along its direction, mm.
     pub noise: Distribution,
     pub seed: u64,
 }

@@ -15,16 +15,17 @@ const MAX_NEIGHBOURS: usize = 6;
 /// The neighbours of all holes, lengths in mm.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Neighbours {
-    /// How distances count: `arc` or `chord`.
+    /// The metric of distances: `arc` or `chord`.
     pub metric: &'static str,
-    /// The distance wanted of all neighbours: the pitch with which the pattern closes.
+    /// The nominal distance of all neighbours: the pitch with which the pattern closes.
     #[serde(rename = "wanted")]
     pub nominal: f64,
-    /// Of the holes wanted inside the pattern, those that are drilled and have all six; how many are wanted there.
+    /// Number of inner holes that are drilled and have all six neighbours; `with_six_wanted`: their nominal
+    /// number.
     pub with_six: usize,
     #[serde(rename = "with_six_wanted")]
     pub with_six_nominal: usize,
-    /// The two neighbours that are nearest to one another, and those that are farthest apart.
+    /// The two nearest neighbours; `max`: the two farthest.
     pub min: Option<Distance>,
     pub max: Option<Distance>,
 }
@@ -33,7 +34,7 @@ pub struct Neighbours {
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Distance {
     pub distance: f64,
-    /// The holes by their ids; one nobody asked for by its place.
+    /// The holes by their ids; an extra hole by its position.
     pub between: [String; 2],
 }
 

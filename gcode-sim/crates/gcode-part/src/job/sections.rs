@@ -47,7 +47,7 @@ pub(super) fn sign(reader: &Reader<'_>, key: &str, value: &Spanned<i64>) -> Resu
     }
 }
 
-/// The control the programs are for.
+/// The control of the programs.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileControl {
@@ -75,7 +75,7 @@ pub(super) struct FileRotary {
     /// Its letter.
     #[schemars(extend("enum" = names(&ROTARY_LETTERS)))]
     letter: Spanned<String>,
-    /// 1, or -1 where a positive command turns the part the other way.
+    /// 1, or -1 if a positive command rotates the part in the opposite direction.
     #[schemars(extend("enum" = [1, -1]))]
     sign: Spanned<i64>,
 }
@@ -93,10 +93,10 @@ impl FileRotary {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileTolerance {
-    /// Diameter of the zone in which the axis of a hole has to lie (ISO 1101), mm.
+    /// Diameter of the tolerance zone of a hole's axis (ISO 1101), mm.
     #[schemars(range(min = 0.000_1, max = 1000.0))]
     position: Spanned<f64>,
-    /// How far the depth of a hole may be off, either way, mm [default: 0.1].
+    /// Tolerance of a hole's depth, either way, mm [default: 0.1].
     #[schemars(range(min = 0.000_1, max = 1000.0))]
     depth: Option<Spanned<f64>>,
 }

@@ -28,21 +28,21 @@ pub struct Minutes {
     pub tool_change: Option<f64>,
 }
 
-/// What an hour of the machine costs, and of others that could do the same.
+/// Machine-hour rates of the job's machine and of alternative machines.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rates {
-    /// Printed as it stands.
+    /// Printed unchanged.
     pub currency: String,
     /// A machine hour.
     pub rate: f64,
     pub alternatives: Vec<AlternativeMachine>,
 }
 
-/// The same part on another machine. Times that are left out are taken to be the same.
+/// The same part on another machine. Omitted times are equal to those of the job's machine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AlternativeMachine {
     pub machine: String,
-    /// A machine hour, in the same currency.
+    /// Price of a machine hour, in the same currency.
     pub rate: f64,
     /// Of the program, in minutes.
     pub run: Option<f64>,
@@ -84,30 +84,30 @@ pub(super) struct FileSheet {
     /// A tool change, minutes.
     #[schemars(range(min = 0.0, max = 1_000_000.0))]
     tool_change_minutes: Option<Spanned<f64>>,
-    /// What machine hours cost.
+    /// Machine-hour rates.
     rates: Option<FileRates>,
 }
 
-/// What an hour of the machine costs, and of others that could do the same.
+/// Machine-hour rates of the job's machine and of alternative machines.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FileRates {
-    /// Printed as it stands.
+    /// Printed unchanged.
     currency: String,
-    /// A machine hour, in that currency.
+    /// Price of a machine hour, in that currency.
     #[schemars(range(min = 0.01, max = 1e9))]
     rate: Spanned<f64>,
-    /// Other machines that the part could be made on.
+    /// Alternative machines for the part.
     beside: Option<Vec<FileBeside>>,
 }
 
-/// The same part on another machine. Times that are left out are taken to be the same.
+/// The same part on another machine. Omitted times are equal to those of the job's machine.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileBeside {
     /// Its name in the shop.
     machine: String,
-    /// A machine hour, in the same currency.
+    /// Price of a machine hour, in the same currency.
     #[schemars(range(min = 0.01, max = 1e9))]
     rate: Spanned<f64>,
     /// The program, minutes.

@@ -14,10 +14,10 @@ use gcode_part::reader::{Reader, Spanned};
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileProbe {
-    /// How far along its way each touch is noted beyond its place, mm.
+    /// Error of each touch along its direction, mm.
     #[schemars(transform = LENGTH.bounds())]
     noise: Option<Spanned<FileSpread>>,
-    /// Another seed draws other numbers [default: 0].
+    /// Seed of the random numbers [default: 0].
     seed: Option<Spanned<u64>>,
 }
 
@@ -25,9 +25,9 @@ struct FileProbe {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileErrors {
-    /// Of the axes that slide.
+    /// Of the linear axes.
     linear: Option<FileLinear>,
-    /// Of the axis that turns the part.
+    /// Of the axis that rotates the part.
     rotary: Option<FileRotary>,
     /// Of a head of kind manual or axis.
     head: Option<FileHead>,
@@ -35,16 +35,16 @@ pub(super) struct FileErrors {
     probe: Option<FileProbe>,
 }
 
-/// What set-up and machine are off by: a budget draws each of many parts anew from it.
+/// Set-up and machine errors, from which a budget draws each simulated part.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct File {
     /// Of the set-up of the part.
     part: Option<FilePart>,
-    /// Of the axes that slide.
+    /// Of the linear axes.
     #[schemars(transform = without_draws)]
     linear: Option<FileLinear>,
-    /// Of the axis that turns the part.
+    /// Of the axis that rotates the part.
     #[schemars(transform = without_draws)]
     rotary: Option<FileRotary>,
     /// Of a head of kind manual or axis.

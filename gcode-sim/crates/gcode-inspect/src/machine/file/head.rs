@@ -16,7 +16,7 @@ use gcode_part::reader::{FixedArray, Reader, Spanned, names};
 #[serde(deny_unknown_fields)]
 #[schemars(transform = by_kind)]
 pub(super) struct FileHead {
-    /// free: not known; fixed: never changes; manual: set by hand; axis: by an axis of the control.
+    /// free: unknown; fixed: constant; manual: set by hand; axis: by an axis of the control.
     #[schemars(extend("enum" = names(&KINDS)))]
     kind: Spanned<String>,
     /// From the head's pivot to the spindle's gauge line, mm [default: 0].
@@ -27,13 +27,13 @@ pub(super) struct FileHead {
     /// The axis, A, B or C.
     #[schemars(extend("enum" = ROTARY_LETTERS))]
     letter: Option<Spanned<String>>,
-    /// 1, or -1 where the axis turns the other way [default: 1].
+    /// 1, or -1 if the axis is reversed [default: 1].
     #[schemars(extend("enum" = [1, -1]))]
     sign: Option<Spanned<i64>>,
-    /// The head's angle where the axis stands at 0, degrees [default: 0].
+    /// The head's angle with the axis at 0, degrees [default: 0].
     #[schemars(range(min = -360.0, max = 360.0))]
     zero: Option<Spanned<f64>>,
-    /// How it stands before the first stop, degrees.
+    /// Its angle before the first stop, degrees.
     #[schemars(range(min = -360.0, max = 360.0))]
     angle: Option<Spanned<f64>>,
 }

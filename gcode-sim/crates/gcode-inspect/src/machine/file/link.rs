@@ -18,13 +18,14 @@ pub(super) struct FileLink {
     /// The axis.
     #[schemars(extend("enum" = AXES))]
     letter: Spanned<String>,
-    /// Turns about x, y or z: A, B and C do.
+    /// The direction x, y or z of a rotary axis: A, B and C.
     #[schemars(extend("enum" = names(&DIRECTIONS)))]
     turns: Option<Spanned<String>>,
-    /// Slides along x, y or z: all others do.
+    /// The direction x, y or z of a linear axis: all other letters.
     #[schemars(extend("enum" = names(&DIRECTIONS)))]
     slides: Option<Spanned<String>>,
-    /// 1 where a positive command turns the part right-handed, or moves it in the positive direction; else -1.
+    /// 1 if a positive command rotates the part right-handed, or moves it in the positive direction; otherwise
+    /// -1.
     #[schemars(extend("enum" = [1, -1]))]
     sign: Spanned<i64>,
     /// A point on the axis, machine coordinates, mm [default: the part's origin].

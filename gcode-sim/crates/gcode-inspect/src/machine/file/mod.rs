@@ -32,27 +32,27 @@ use gcode_lang::motion::{Axes, AxisIndex};
 use gcode_part::reader::FileError;
 use gcode_part::reader::{FixedArray, Reader, Spanned, names};
 
-/// The machine that a program runs on. Every section may be left out: without any it is that of the paper.
+/// The machine of a program. Every section is optional; without any it is the machine of the paper.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct File {
     /// The control.
     control: Option<FileControl>,
-    /// What carries the part, from the bed outwards.
+    /// The axes that carry the part, from the bed outwards.
     table: Option<Vec<FileLink>>,
     /// How the tool is inclined.
     head: Option<FileHead>,
-    /// A grinder's wheel, which stays where it is while the table moves the part.
+    /// A grinder's wheel, stationary while the table moves the part.
     wheel: Option<FileWheel>,
     /// The tools.
     tool: Option<Vec<FileTool>>,
-    /// What the work offsets G54 to G59 hold when the run begins, by axis.
+    /// The work offsets G54 to G59 at the start of the run, by axis.
     offsets: Option<Spanned<FileOffsets>>,
-    /// Where the part lies on the machine, and how far off.
+    /// Nominal position of the part on the machine, and its misalignment.
     part: Option<FilePart>,
     /// A touch probe.
     probe: Option<FileProbe>,
-    /// What the machine is off by.
+    /// The errors of the machine.
     errors: Option<FileErrors>,
 }
 

@@ -26,7 +26,7 @@ impl JsonSchema for FileOffsets {
             "type": "object",
             "patternProperties": {
                 "^G5[4-9]$": {
-                    "description": "Axes that aren't named stay at 0; mm and degrees.",
+                    "description": "Axes that are not named are 0; mm and degrees.",
                     "type": "object",
                     "patternProperties": { "^[XYZABCUVW]$": length },
                     "additionalProperties": false

@@ -13,51 +13,51 @@ use gcode_part::reader::{Reader, Spanned};
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FilePart {
-    /// How far it is shifted, mm.
+    /// Its shift, mm.
     #[schemars(transform = LENGTH.bounds())]
     pub(super) shift: Option<FileVector>,
-    /// How far it is tilted, degrees.
+    /// Its tilt, degrees.
     #[schemars(transform = ANGLE.bounds())]
     pub(super) tilt: Option<FileVector>,
-    /// How far its axis stands aside of the table's, mm, in any direction.
+    /// Offset of its axis from the table's, mm, in any direction.
     #[schemars(transform = LENGTH.bounds())]
     pub(super) runout: Option<Spanned<FileSpread>>,
 }
 
-/// Of the axes that slide.
+/// Of the linear axes.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileLinear {
-    /// How far X stands beyond its commanded place, mm.
+    /// Position error of X, mm.
     #[schemars(transform = LENGTH.bounds())]
     pub(super) x: Option<Spanned<FileSpread>>,
-    /// How far Y stands beyond its commanded place, mm.
+    /// Position error of Y, mm.
     #[schemars(transform = LENGTH.bounds())]
     pub(super) y: Option<Spanned<FileSpread>>,
-    /// How far Z stands beyond its commanded place, mm.
+    /// Position error of Z, mm.
     #[schemars(transform = LENGTH.bounds())]
     pub(super) z: Option<Spanned<FileSpread>>,
-    /// The error swings once on so many mm of the axis [default: 500].
+    /// Wavelength of the error along the axis, mm [default: 500].
     #[schemars(range(min = 1.0, max = 100_000.0))]
     pub(super) wave: Option<Spanned<f64>>,
-    /// Another seed is another machine of the same make [default: 0].
+    /// Seed of the random errors: another seed is another machine of the same type [default: 0].
     pub(super) seed: Option<Spanned<u64>>,
 }
 
-/// Of the axis that turns the part.
+/// Of the axis that rotates the part.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileRotary {
-    /// How far it stands beyond its commanded angle, degrees.
+    /// Error of its commanded angle, degrees.
     #[schemars(transform = ANGLE.bounds())]
     pub(super) index: Option<Spanned<FileSpread>>,
-    /// Where it is against its centre, mm.
+    /// Offset of the axis from its centre, mm.
     #[schemars(transform = LENGTH.bounds())]
     pub(super) centre: Option<FileVector>,
-    /// How its direction is turned, degrees.
+    /// Tilt of its direction, degrees.
     #[schemars(transform = ANGLE.bounds())]
     pub(super) tilt: Option<FileVector>,
-    /// Another seed is another machine of the same make [default: 0].
+    /// Seed of the random errors: another seed is another machine of the same type [default: 0].
     pub(super) seed: Option<Spanned<u64>>,
 }
 
@@ -65,10 +65,10 @@ pub(super) struct FileRotary {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileHead {
-    /// How far it stands beyond its angle, degrees.
+    /// Error of its angle, degrees.
     #[schemars(transform = ANGLE.bounds())]
     pub(super) angle: Option<Spanned<FileSpread>>,
-    /// Another seed is another machine of the same make [default: 0].
+    /// Seed of the random errors: another seed is another machine of the same type [default: 0].
     pub(super) seed: Option<Spanned<u64>>,
 }
 

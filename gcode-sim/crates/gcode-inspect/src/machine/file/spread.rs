@@ -13,11 +13,11 @@ use gcode_part::reader::{Reader, Spanned};
 #[serde(deny_unknown_fields)]
 #[schemars(extend("minProperties" = 1, "maxProperties" = 1))]
 pub(super) struct FileSpread {
-    /// Always this.
+    /// A constant error.
     fixed: Option<Spanned<f64>>,
     /// Gaussian round 0 with this standard deviation.
     normal: Option<Spanned<f64>>,
-    /// Anything from minus to plus this, all alike.
+    /// Uniform between minus and plus this value.
     uniform: Option<Spanned<f64>>,
 }
 

@@ -11,13 +11,14 @@ use crate::reader::Spanned;
 #[derive(Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileEllipse {
-    /// x where it begins, mm [default: that of F].
+    /// x of its start, mm [default: that of F].
     #[schemars(range(min = 0.0, max = 99_999.0))]
     from: Option<Spanned<f64>>,
-    /// x where it ends, mm [default: that of E].
+    /// x of its end, mm [default: that of E].
     #[schemars(range(min = 0.0, max = 99_999.0))]
     to: Option<Spanned<f64>>,
-    /// How far the ball may be off, mm: no less than the least increment [default: 0.002, or two increments].
+    /// Tolerance of the ball position, mm: no less than the least increment [default: 0.002, or two
+    /// increments].
     #[schemars(range(min = 0.000_1, max = 1.0))]
     chord_error: Option<Spanned<f64>>,
     /// mm/min [default: 200].

@@ -17,15 +17,15 @@ use gcode_lang::units::{Deg, Mm};
 /// The part along y that the surface's normal must have where O8202 touches it along y.
 const STEEP: f64 = 0.3;
 
-/// Measurements that tell how a part stands on its machine.
+/// Measurements of the position of a part on its machine.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::job) struct File {
-    /// What kind of part it is: decides which keys there are.
+    /// The kind of part, which decides the other keys.
     #[serde(rename = "family")]
     #[schemars(extend("enum" = ["alignment"]))]
     _family: String,
-    /// The control the programs are for.
+    /// The control of the programs.
     control: FileControl,
     /// The machine.
     machine: FileMachine,
@@ -37,15 +37,15 @@ pub(in crate::job) struct File {
     sine_table: FileSineTable,
     /// The chord between two points of the surface.
     chord: FileChord,
-    /// An indicator against the part while the table turns.
+    /// An indicator on the part while the table rotates.
     runout: FileRunout,
     /// The outline that an edge finder follows.
     #[serde(default)]
     ellipse: FileEllipse,
-    /// What a part that is set up may be off by.
+    /// Tolerances of the set-up of a part.
     #[serde(default)]
     limits: FileLimits,
-    /// What the set-up sheet says of people, time and money.
+    /// Additional data for the set-up sheet.
     sheet: Option<FileSheet>,
 }
 
@@ -59,7 +59,7 @@ struct FileProbe {
     /// Of a touch, mm/min [default: 100].
     #[schemars(range(min = 0.01, max = 1000.0))]
     feed: Option<Spanned<f64>>,
-    /// How far before and behind the surface a touch begins and ends, mm [default: 10].
+    /// Distance in front of and behind the nominal surface where a touch begins and ends, mm [default: 10].
     #[schemars(range(min = 0.01, max = 1000.0))]
     search: Option<Spanned<f64>>,
     /// Standard deviation of a touch, mm; not below the least increment [default: 0.002, or the increment].
@@ -80,7 +80,7 @@ struct FileSineTable {
     /// The set of gauge blocks.
     #[schemars(extend("enum" = GaugeSet::ALL.map(|set| set.name)))]
     gauge_blocks: Spanned<String>,
-    /// 1 where higher blocks turn the part from x towards y, -1 where they turn it back [default: 1].
+    /// 1 if higher blocks rotate the part from x towards y, -1 if they rotate it back [default: 1].
     #[schemars(extend("enum" = [1, -1]))]
     sign: Option<Spanned<i64>>,
 }
@@ -92,17 +92,17 @@ struct FileChord {
     /// x of E, mm: at most the equatorial radius.
     #[schemars(range(min = 0.0, max = 99_999.0))]
     e_radius: Spanned<f64>,
-    /// x of F, mm, another one than that of E.
+    /// x of F, mm, different from that of E.
     #[schemars(range(min = 0.0, max = 99_999.0))]
     f_radius: Spanned<f64>,
     /// Radius of the circle of candidates round each, mm.
     #[schemars(range(min = 0.01, max = 99_999.0))]
     circle: Spanned<f64>,
-    /// How many there are round each.
+    /// Number of candidates round each.
     #[schemars(range(min = 1, max = 10))]
     candidates: Spanned<i64>,
-    /// How much higher over the model the part may stand at one of E and F than at the other, mm, where they were touched
-    /// [default: 0.05, or half as much again as a part leaves that the run-out has set right].
+    /// Largest difference of the part's height over the model between E and F, mm, if they were touched
+    /// [default: 0.05, or 1.5 times what a part set right by the run-out leaves].
     #[schemars(range(min = 0.001, max = 100.0))]
     uneven: Option<Spanned<f64>>,
 }

@@ -8,17 +8,18 @@ use crate::job::{FileError, Reader, Surface};
 use crate::reader::Spanned;
 use gcode_lang::units::Deg;
 
-/// What a part that is set up may be off by.
+/// Tolerances of the set-up of a part.
 #[derive(Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileLimits {
-    /// Shift in x and in z that the last run-out may leave, mm [default: 0.025].
+    /// Tolerance of the shift in x and in z after the last run-out, mm [default: 0.025].
     #[schemars(range(min = 0.001, max = 10.0))]
     shift: Option<Spanned<f64>>,
-    /// Tilt about x and about z that the last run-out may leave, degrees [default: what shows as `dial` on the ellipse, 0.001 to 0.1].
+    /// Tolerance of the tilt about x and about z after the last run-out, degrees [default: the tilt that alone
+    /// gives `dial` on the ellipse, 0.001 to 0.1].
     #[schemars(range(min = 0.001, max = 1.0))]
     tilt: Option<Spanned<f64>>,
-    /// What the dial along the ellipse may show, mm [default: 0.03].
+    /// Tolerance of the dial reading along the ellipse, mm [default: 0.03].
     #[schemars(range(min = 0.001, max = 10.0))]
     dial: Option<Spanned<f64>>,
 }

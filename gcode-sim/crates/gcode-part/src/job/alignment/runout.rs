@@ -7,7 +7,7 @@ use crate::job::sections::in_range;
 use crate::job::{FileError, Reader, Surface};
 use crate::reader::{FixedArray, Spanned};
 
-/// An indicator against the part while the table turns.
+/// An indicator on the part while the table rotates.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileRunout {
@@ -17,7 +17,7 @@ pub(super) struct FileRunout {
     /// From, to, and the number of readings (3 to 100): degrees.
     #[schemars(inner(range(min = -360.0, max = 360.0)))]
     angles: Spanned<FixedArray<f64, 3>>,
-    /// The largest shift of the part in y that the fit is believed to find, mm [default: 0.4].
+    /// The largest shift of the part in y that the fit accepts, mm [default: 0.4].
     #[schemars(range(min = 0.01, max = 100.0))]
     y_shift: Option<Spanned<f64>>,
 }

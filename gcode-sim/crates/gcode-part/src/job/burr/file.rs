@@ -14,7 +14,7 @@ use gcode_lang::units::Deg;
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::job) struct File {
-    /// What kind of part it is: decides which keys there are.
+    /// The kind of part, which decides the other keys.
     #[serde(rename = "family")]
     #[schemars(extend("enum" = ["burr"]))]
     _family: String,
@@ -24,11 +24,11 @@ pub(in crate::job) struct File {
     burr: FileBurr,
     /// The grinder.
     machine: FileMachine,
-    /// How the program is written.
+    /// Form and conditions of the program.
     program: Option<FileProgram>,
-    /// How far flutes may be off.
+    /// Tolerances of the flutes.
     tolerance: Option<FileTolerance>,
-    /// What the set-up sheet says of people, time and money.
+    /// Additional data for the set-up sheet.
     sheet: Option<FileSheet>,
 }
 
@@ -42,7 +42,7 @@ struct FileBurr {
     /// Of the flutes, mm, nose included: no less than the nose.
     #[schemars(range(min = 0.0, max = 500.0))]
     length: Spanned<f64>,
-    /// How many: as many as have room at the tip.
+    /// Their number, limited by the room at the tip.
     #[schemars(range(min = 1, max = 360))]
     flutes: Spanned<i64>,
     /// Degrees, 1 to 60, or -60 to -1 for a left-hand burr.
@@ -71,12 +71,12 @@ struct FileMachine {
     /// From the C axis to the end of the cylinder at C = 0, X and Y, mm.
     #[schemars(length(equal = 2), inner(range(min = -2000.0, max = 2000.0)))]
     c_offset: Spanned<Vec<Spanned<f64>>>,
-    /// Axes that turn or slide the other way.
+    /// Directions of the axes: 1, or -1 if reversed.
     signs: Option<FileSigns>,
-    /// How far the wheel stays away between passes, mm [default: 2].
+    /// Clearance of the wheel between passes, mm [default: 2].
     #[schemars(range(min = 0.1, max = 500.0))]
     clearance: Option<Spanned<f64>>,
-    /// As in [burr]; once is enough.
+    /// As in [burr]; allowed once.
     profile: Option<Spanned<FileProfile>>,
 }
 
@@ -118,7 +118,7 @@ struct FileSigns {
     c: Option<Spanned<i64>>,
 }
 
-/// How the program is written.
+/// Form and conditions of the program.
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileProgram {

@@ -12,23 +12,23 @@ use crate::reader::{Spanned, names};
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::job) struct File {
-    /// What kind of part it is: decides which keys there are.
+    /// The kind of part, which decides the other keys.
     #[serde(rename = "family")]
     #[schemars(extend("enum" = ["honeycomb"]))]
     _family: String,
-    /// The control the programs are for.
+    /// The control of the programs.
     control: FileControl,
     /// The machine.
     machine: FileMachine,
-    /// How far holes may be off.
+    /// Tolerances of the holes.
     tolerance: FileTolerance,
     /// The part.
     cylinder: FileCylinder,
-    /// How the holes stand to one another.
+    /// The pattern of the holes.
     pattern: Spanned<FilePattern>,
     /// The tool and the holes it makes.
     drill: FileDrill,
-    /// What the set-up sheet says of people, time and money.
+    /// Additional data for the set-up sheet.
     sheet: Option<FileSheet>,
 }
 
@@ -36,15 +36,15 @@ pub(in crate::job) struct File {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileMachine {
-    /// The axis that turns the part.
+    /// The axis that rotates the part.
     rotary: FileRotary,
-    /// How far above the surface rapid becomes feed, mm [default: 2].
+    /// Distance from the surface where the feed begins, mm [default: 2].
     #[schemars(range(min = 0.01, max = 9_999.0))]
     clearance: Option<Spanned<f64>>,
-    /// How far above the surface the tool goes between holes, mm, no less than the clearance [default: 50].
+    /// Retract height above the surface between holes, mm, no less than the clearance [default: 50].
     #[schemars(range(min = 0.01, max = 9_999.0))]
     retract: Option<Spanned<f64>>,
-    /// The M codes that hold the rotary and let it go [default: none].
+    /// The M codes that clamp and release the rotary [default: none].
     clamp: Option<FileClamp>,
 }
 
@@ -52,10 +52,10 @@ struct FileMachine {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileClamp {
-    /// Holds the rotary.
+    /// Clamps the rotary.
     #[schemars(range(min = 10, max = 999), extend("not" = { "enum": RESERVED_M_CODES }))]
     on: Spanned<i64>,
-    /// Lets it go.
+    /// Releases the rotary.
     #[schemars(range(min = 10, max = 999), extend("not" = { "enum": RESERVED_M_CODES }))]
     off: Spanned<i64>,
 }
@@ -64,7 +64,7 @@ struct FileClamp {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileCylinder {
-    /// On which the pitch is to hold, mm.
+    /// Diameter of the pitch, mm.
     #[schemars(range(min = 0.01, max = 99_999.0))]
     diameter: Spanned<f64>,
     /// mm.
@@ -83,13 +83,13 @@ struct FileCylinder {
 #[serde(deny_unknown_fields)]
 #[schemars(extend("oneOf" = [{ "required": ["pitch"] }, { "required": ["divisions"] }]))]
 struct FilePattern {
-    /// Between neighbours, mm, above the drill's diameter; made to fit, so that the pattern closes.
+    /// Between neighbours, mm, above the drill diameter; adjusted so that the pattern closes.
     #[schemars(range(min = 0.01, max = 99_999.0))]
     pitch: Option<Spanned<f64>>,
     /// Rows of one group round the circumference.
     #[schemars(range(min = 2, max = 100_000))]
     divisions: Option<Spanned<i64>>,
-    /// How the distance of neighbours counts: arc on the surface, or chord.
+    /// Metric of the distance between neighbours: arc on the surface, or chord.
     #[schemars(extend("enum" = names(&Metric::ALL)))]
     metric: Spanned<String>,
 }

@@ -18,17 +18,17 @@ use crate::reader::{Spanned, names};
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::job) struct File {
-    /// What kind of part it is: decides which keys there are.
+    /// The kind of part, which decides the other keys.
     #[serde(rename = "family")]
     #[schemars(extend("enum" = ["pin-holes"]))]
     _family: String,
-    /// The control the programs are for.
+    /// The control of the programs.
     control: FileControl,
     /// The machine.
     machine: FileMachine,
     /// The surface that the holes begin in.
     surface: FileSurface,
-    /// How far holes may be off.
+    /// Tolerances of the holes.
     tolerance: FileTolerance,
     /// The holes, in the order in which they are drilled.
     #[schemars(length(min = 1))]
@@ -36,10 +36,10 @@ pub(in crate::job) struct File {
     /// The tools in the order of use [default: a drill and an end mill for each diameter].
     #[schemars(length(min = 1))]
     tool: Option<Vec<FileTool>>,
-    /// Which common variables the macros use.
+    /// The common variables of the macros.
     #[serde(rename = "macro")]
     macros: Option<FileMacro>,
-    /// What the set-up sheet says of people, time and money.
+    /// Additional data for the set-up sheet.
     sheet: Option<FileSheet>,
 }
 
@@ -47,14 +47,14 @@ pub(in crate::job) struct File {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::job) struct FileMachine {
-    /// The axis that turns the part.
+    /// The axis that rotates the part.
     rotary: FileRotary,
     /// How the tool is inclined [default: by hand].
     head: Option<FileHead>,
-    /// How far above the surface rapid becomes feed, mm [default: 2].
+    /// Distance from the surface where the feed begins, mm [default: 2].
     #[schemars(range(min = 0.01, max = 9_999.0))]
     clearance: Option<Spanned<f64>>,
-    /// How far above the surface the tool goes between holes, mm, no less than the clearance [default: 50].
+    /// Retract height above the surface between holes, mm, no less than the clearance [default: 50].
     #[schemars(range(min = 0.01, max = 9_999.0))]
     retract: Option<Spanned<f64>>,
 }
@@ -94,12 +94,12 @@ pub(in crate::job) struct FileSurface {
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 struct FileHole {
-    /// Its name; each has its own.
+    /// Its name, unique.
     id: Spanned<String>,
     /// Distance of its entry from the axis of revolution, mm: at most the equatorial radius.
     #[schemars(range(min = 0.0, max = 99_999.0))]
     radius: Spanned<f64>,
-    /// Where it stands round that axis, degrees.
+    /// Azimuth about that axis, degrees.
     #[schemars(range(min = -3600.0, max = 3600.0))]
     azimuth: Spanned<f64>,
     /// axial: along the axis of revolution; normal: along the surface's normal.
@@ -111,7 +111,7 @@ struct FileHole {
     /// From the surface along the axis, mm.
     #[schemars(range(min = 0.01, max = 9_999.0))]
     depth: Spanned<f64>,
-    /// The numbers of the tools that make it [default: every tool that isn't larger than it].
+    /// The numbers of the tools that make it [default: every tool that is not larger than it].
     tools: Option<Spanned<Vec<i64>>>,
 }
 

@@ -11,7 +11,7 @@ use crate::reader::Spanned;
 #[derive(Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FileTool {
-    /// Its number, and that of its length offset; each has its own.
+    /// Its number, and that of its length offset; unique.
     #[schemars(range(min = 1, max = 9999))]
     number: Spanned<i64>,
     /// mm.
@@ -29,7 +29,7 @@ pub(super) struct FileTool {
     /// Out of the hole, mm/min [default: 200, or feed if that is more].
     #[schemars(range(min = 0.01, max = 240_000.0))]
     retract_feed: Option<Spanned<f64>>,
-    /// What messages and the sheet call it [default: TOOL and its number].
+    /// Its name in messages and on the sheet [default: TOOL and its number].
     name: Option<String>,
 }
 
