@@ -37,6 +37,7 @@ mod misplaced;
 mod mutations;
 mod order;
 mod packaging;
+#[cfg(feature = "browser")]
 mod page;
 mod pilots;
 mod pin_holes;
